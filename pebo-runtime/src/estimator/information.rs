@@ -1,0 +1,150 @@
+//! Weighted linear equations in, one after another; the vector that fits them best out.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::sum::all_finite;
+use crate::{Fault, Real};
+
+/// A weighted least-squares problem, kept in triangular form.
+///
+/// It stands for `minimise sum_i w_i (v_i - row_i d)^2`, with the information matrix `sum_i w_i row_i^T row_i = U^T D U`,
+/// `U` unit upper triangular and `D` diagonal.
+///
+/// Method: Givens rotations without square roots. Weights only ever grow and nothing is subtracted from `D`, so it stays positive
+/// and no row, weight or ratio between them makes the problem singular. The matrix itself is never formed: that would square the ratios.
+/// Reference: Gentleman, *Least squares computations by Givens transformations without square roots*, J. Inst. Maths
+/// Applics, 1973, and algorithm AS 75, 1974.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Information<S: Real, const N: usize> {
+    /// U above its diagonal.
+    upper: SMatrix<S, N, N>,
+    weight: SVector<S, N>,
+    /// The right side of `U d = target`.
+    target: SVector<S, N>,
+}
+
+impl<S: Real, const N: usize> Information<S, N> {
+    /// The equations `d_i = 0` with weights `1 / variance_i`.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless each variance and its inverse is positive and finite.
+    pub fn from_variances(variances: &SVector<S, N>) -> Result<Self, Fault> {
+        let weight = variances.map(|variance| S::one() / variance);
+        let positive = |&number: &S| number > S::zero() && Real::is_finite(number);
+        if variances.iter().all(positive) && weight.iter().all(positive) {
+            Ok(Self {
+                upper: SMatrix::zeros(),
+                weight,
+                target: SVector::zeros(),
+            })
+        } else {
+            Err(Fault::Gain)
+        }
+    }
+
+    /// The equation `d = 0` with the weight matrix `covariance^-1`.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless the covariance is symmetric (up to rounding), positive definite and finite.
+    pub fn from_covariance(covariance: &SMatrix<S, N, N>) -> Result<Self, Fault> {
+        if !is_symmetric(covariance) {
+            return Err(Fault::Gain);
+        }
+        // covariance = V E V^T with V unit upper triangular, from the last column to the first; then U = V^-1, D = E^-1.
+        let mut v = *covariance;
+        let mut variances = SVector::<S, N>::zeros();
+        for j in (0..N).rev() {
+            let pivot = v[(j, j)];
+            // What is left of the diagonal after elimination must exceed its rounding error.
+            let positive = pivot > S::EPSILON * covariance[(j, j)];
+            if !positive {
+                return Err(Fault::Gain);
+            }
+            variances[j] = pivot;
+            for i in 0..j {
+                let factor = v[(i, j)] / pivot;
+                for k in 0..=i {
+                    let eliminated = factor * v[(k, j)];
+                    v[(k, i)] -= eliminated;
+                }
+            }
+            for i in 0..j {
+                v[(i, j)] /= pivot;
+            }
+        }
+        let mut information = Self::from_variances(&variances)?;
+        for j in 0..N {
+            for i in (0..j).rev() {
+                let mut inverse = v[(i, j)];
+                for k in i + 1..j {
+                    inverse += v[(i, k)] * information.upper[(k, j)];
+                }
+                information.upper[(i, j)] = -inverse;
+            }
+        }
+        if information.is_finite() {
+            Ok(information)
+        } else {
+            Err(Fault::Gain)
+        }
+    }
+
+    /// Adds the equation `row * d = value` with a weight, `weight >= 0`.
+    pub fn absorb(&mut self, row: &SVector<S, N>, value: S, weight: S) {
+        let (mut row, mut value, mut weight) = (*row, value, weight);
+        for i in 0..N {
+            let lead = row[i];
+            if lead == S::zero() {
+                continue;
+            }
+            let before = self.weight[i];
+            let after = before + weight * lead * lead;
+            let kept = before / after;
+            let taken = weight * lead / after;
+            self.weight[i] = after;
+            weight *= kept;
+            for k in i + 1..N {
+                let (entry, above) = (row[k], self.upper[(i, k)]);
+                row[k] = entry - lead * above;
+                self.upper[(i, k)] = kept * above + taken * entry;
+            }
+            let (entry, above) = (value, self.target[i]);
+            value = entry - lead * above;
+            self.target[i] = kept * above + taken * entry;
+        }
+    }
+
+    /// The vector that fits best.
+    ///
+    /// # Errors
+    /// [`Fault::State`] if an equation had infinite or NaN entries or its weight overflowed.
+    pub fn solve(&self) -> Result<SVector<S, N>, Fault> {
+        let mut solution = self.target;
+        for i in (0..N).rev() {
+            for k in i + 1..N {
+                let known = self.upper[(i, k)] * solution[k];
+                solution[i] -= known;
+            }
+        }
+        if self.is_finite() && all_finite(&solution) {
+            Ok(solution)
+        } else {
+            Err(Fault::State)
+        }
+    }
+
+    /// Whether every number of the state is finite.
+    pub fn is_finite(&self) -> bool {
+        all_finite(&self.upper) && all_finite(&self.weight) && all_finite(&self.target)
+    }
+}
+
+/// Whether the matrix is its transpose, up to the rounding of a product computed in either order.
+fn is_symmetric<S: Real, const N: usize>(matrix: &SMatrix<S, N, N>) -> bool {
+    let largest = matrix.iter().fold(S::zero(), |largest, &element| {
+        largest.max(Real::abs(element))
+    });
+    let four: S = Real::from_f64(4.0);
+    let tolerance = four * S::EPSILON * largest;
+    (0..N).all(|i| (0..i).all(|j| Real::abs(matrix[(i, j)] - matrix[(j, i)]) <= tolerance))
+}

@@ -1,0 +1,53 @@
+//! Why the observer refused: a fact, small enough to be copied into a log or a status register.
+
+use core::fmt;
+
+/// The reason for which a call was refused. What was called is then exactly as it was before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Fault {
+    /// An output sample is infinite or NaN.
+    Output {
+        /// Its place in `y`, from 0.
+        index: usize,
+    },
+    /// An input sample is infinite or NaN.
+    Input {
+        /// Its place in `u`, from 0.
+        index: usize,
+    },
+    /// The sample time is not a positive finite number.
+    Step,
+    /// The filter's `alpha` is not a positive number.
+    Filter,
+    /// A gain is not positive and finite, or a gain matrix is not symmetric and positive definite.
+    Gain,
+    /// The start of the extension or of the estimate, or a shift, is infinite or NaN.
+    Start,
+    /// A linear system has no unique solution at this step: the step is too long for `Lambda`.
+    Singular,
+    /// The new state would be infinite or NaN: a function left its domain or a number overflowed.
+    State,
+    /// The left inverse would give an infinite or NaN estimate.
+    Estimate,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Output { index } => write!(f, "output sample {index} is not finite"),
+            Self::Input { index } => write!(f, "input sample {index} is not finite"),
+            Self::Step => f.write_str("the sample time is not positive and finite"),
+            Self::Filter => f.write_str("the filter's alpha is not positive"),
+            Self::Gain => f.write_str("the gain is not symmetric, positive definite and finite"),
+            Self::Start => f.write_str("the start value or shift is not finite"),
+            Self::Singular => {
+                f.write_str("the extension cannot be advanced by this step: singular system")
+            }
+            Self::State => f.write_str("the new state would not be finite"),
+            Self::Estimate => f.write_str("the left inverse is not finite here"),
+        }
+    }
+}
+
+impl core::error::Error for Fault {}

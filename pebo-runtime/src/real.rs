@@ -1,0 +1,108 @@
+//! The scalar: `f32` or `f64`, with the functions that a formula may use.
+//!
+//! Emitted code is written for one concrete scalar and calls `Real::sin(x)`, which needs neither `std` nor any other
+//! import. Whatever a faster single-precision version of a function becomes, it belongs into the `f32` line at the end.
+
+use nalgebra::{ComplexField, RealField};
+
+/// A real scalar: `f32` or `f64`.
+///
+/// The functions bear the names of those of [`nalgebra`]: on a generic scalar write `Real::sqrt(x)`, not `x.sqrt()`.
+/// Out of its domain a function returns NaN, which an [`Observer`](crate::Observer) refuses.
+#[allow(
+    clippy::return_self_not_must_use,
+    reason = "nobody calls a sine for its effect"
+)]
+pub trait Real: RealField + Copy {
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+
+    /// The nearest number of this precision.
+    fn from_f64(value: f64) -> Self;
+    /// The same number in double precision (exact).
+    fn to_f64(self) -> f64;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// Sine of an angle in radians.
+    fn sin(self) -> Self;
+    /// Cosine of an angle in radians.
+    fn cos(self) -> Self;
+    /// Tangent of an angle in radians.
+    fn tan(self) -> Self;
+    /// Inverse sine, in [-pi/2, pi/2].
+    fn asin(self) -> Self;
+    /// Inverse cosine, in [0, pi].
+    fn acos(self) -> Self;
+    /// Inverse tangent, in [-pi/2, pi/2].
+    fn atan(self) -> Self;
+    /// Angle of the point (`x`, `self`), in [-pi, pi]: `Real::atan2(y, x)`.
+    fn atan2(self, x: Self) -> Self;
+    /// Hyperbolic sine.
+    fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self;
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+    /// Exponential.
+    fn exp(self) -> Self;
+    /// `exp(self) - 1`, accurate near 0.
+    fn exp_m1(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// `self` to a real power.
+    fn powf(self, exponent: Self) -> Self;
+    /// `self` to an integer power.
+    fn powi(self, exponent: i32) -> Self;
+}
+
+macro_rules! real {
+    ($scalar:ident, $($function:ident),+) => {
+        impl Real for $scalar {
+            const EPSILON: Self = $scalar::EPSILON;
+
+            #[inline]
+            #[allow(clippy::cast_possible_truncation, reason = "rounding to the precision in use is the purpose")]
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
+            #[inline]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline]
+            fn is_finite(self) -> bool {
+                Self::is_finite(self)
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                RealField::atan2(self, x)
+            }
+            #[inline]
+            fn powf(self, exponent: Self) -> Self {
+                ComplexField::powf(self, exponent)
+            }
+            #[inline]
+            fn powi(self, exponent: i32) -> Self {
+                ComplexField::powi(self, exponent)
+            }
+            $(
+                #[inline]
+                fn $function(self) -> Self {
+                    ComplexField::$function(self)
+                }
+            )+
+        }
+    };
+}
+
+real!(
+    f64, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs
+);
+real!(
+    f32, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs
+);

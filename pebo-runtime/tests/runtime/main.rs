@@ -1,0 +1,13 @@
+//! The runtime as its users see it. Every tolerance has its reason beside it.
+
+mod converter;
+mod random;
+
+mod drift;
+mod extension;
+mod fault;
+mod filter;
+mod gradient;
+mod kinds;
+mod paper;
+mod real;
