@@ -1,0 +1,158 @@
+//! The expression graph: every expression once.
+//!
+//! In: nodes. Out: handles. After a node is entered, an equal node yields the same handle.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::hash::{BuildHasher, Hash, Hasher};
+
+use hashbrown::HashTable;
+use rustc_hash::{FxBuildHasher, FxHashMap};
+
+use super::expr::{Expr, Node, Symbol};
+use super::rational::Rational;
+
+/// Owns the nodes of all expressions of one question.
+///
+/// Constructors take `&self`, so that they nest as the formula does.
+#[derive(Debug, Default)]
+pub struct Arena {
+    nodes: RefCell<Vec<Node>>,
+    table: RefCell<HashTable<Expr>>,
+    names: RefCell<Vec<String>>,
+    symbols: RefCell<FxHashMap<String, Symbol>>,
+}
+
+impl Arena {
+    /// An arena without expressions.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What the expression is.
+    pub fn node(&self, expr: Expr) -> Node {
+        self.nodes.borrow()[expr.0 as usize].clone()
+    }
+
+    /// Enters a node that is already in canonical form.
+    pub(super) fn intern(&self, node: Node) -> Expr {
+        let hash = hash_of(&node);
+        let mut nodes = self.nodes.borrow_mut();
+        let mut table = self.table.borrow_mut();
+        if let Some(&found) = table.find(hash, |e| nodes[e.0 as usize] == node) {
+            return found;
+        }
+        let expr = Expr(u32::try_from(nodes.len()).expect("fewer than 2^32 expressions"));
+        nodes.push(node);
+        table.insert_unique(hash, expr, |e| hash_of(&nodes[e.0 as usize]));
+        expr
+    }
+
+    /// The symbol of this name.
+    pub fn symbol(&self, name: &str) -> Symbol {
+        if let Some(&symbol) = self.symbols.borrow().get(name) {
+            return symbol;
+        }
+        let mut names = self.names.borrow_mut();
+        let symbol = Symbol(u32::try_from(names.len()).expect("fewer than 2^32 symbols"));
+        names.push(name.to_owned());
+        self.symbols.borrow_mut().insert(name.to_owned(), symbol);
+        symbol
+    }
+
+    /// The name of a symbol.
+    pub fn name(&self, symbol: Symbol) -> String {
+        self.names.borrow()[symbol.index()].clone()
+    }
+
+    /// The symbol of this name as an expression.
+    pub fn variable(&self, name: &str) -> Expr {
+        let symbol = self.symbol(name);
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// A symbol as an expression.
+    pub fn of_symbol(&self, symbol: Symbol) -> Expr {
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// The number as an expression.
+    pub fn number(&self, value: impl Into<Rational>) -> Expr {
+        self.intern(Node::Number(value.into()))
+    }
+
+    /// Zero.
+    pub fn zero(&self) -> Expr {
+        self.number(0)
+    }
+
+    /// One.
+    pub fn one(&self) -> Expr {
+        self.number(1)
+    }
+
+    /// The circle constant.
+    pub fn pi(&self) -> Expr {
+        self.intern(Node::Pi)
+    }
+
+    /// The value, if the expression is a number.
+    pub fn as_number(&self, expr: Expr) -> Option<Rational> {
+        match self.node(expr) {
+            Node::Number(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The symbol, if the expression is one.
+    pub fn as_symbol(&self, expr: Expr) -> Option<Symbol> {
+        match self.node(expr) {
+            Node::Symbol(symbol) => Some(symbol),
+            _ => None,
+        }
+    }
+
+    /// Whether the expression is the number zero.
+    pub fn is_zero(&self, expr: Expr) -> bool {
+        self.as_number(expr).is_some_and(|n| n.is_zero())
+    }
+
+    /// The operands of an expression, in order.
+    pub fn operands(&self, expr: Expr) -> Vec<Expr> {
+        match self.node(expr) {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
+            Node::Sum(sum) => sum.terms.iter().map(|t| t.0).collect(),
+            Node::Product(product) => product.factors.iter().map(|f| f.0).collect(),
+            Node::Call(_, arguments) => arguments.to_vec(),
+        }
+    }
+
+    /// Every expression that the roots consist of, operands before what uses them.
+    pub fn postorder(&self, roots: &[Expr]) -> Vec<Expr> {
+        let mut seen = BTreeSet::new();
+        let mut open: Vec<Expr> = roots.to_vec();
+        while let Some(expr) = open.pop() {
+            if seen.insert(expr) {
+                open.extend(self.operands(expr));
+            }
+        }
+        // Operands are entered before what uses them, so ascending handles are a topological order.
+        seen.into_iter().collect()
+    }
+
+    /// The symbols that the roots depend on.
+    pub fn symbols_of(&self, roots: &[Expr]) -> BTreeSet<Symbol> {
+        self.postorder(roots).into_iter().filter_map(|e| self.as_symbol(e)).collect()
+    }
+
+    /// Whether the expression contains one of the symbols.
+    pub fn depends_on(&self, expr: Expr, symbols: &BTreeSet<Symbol>) -> bool {
+        !self.symbols_of(&[expr]).is_disjoint(symbols)
+    }
+}
+
+fn hash_of(node: &Node) -> u64 {
+    let mut hasher = FxBuildHasher.build_hasher();
+    node.hash(&mut hasher);
+    hasher.finish()
+}

@@ -1,0 +1,55 @@
+//! The one question behind the claims: an expression as a combination of given functions of x, with
+//! coefficients that are free of x.
+//!
+//! ```text
+//! target, basis, x -> coefficients c with target = sum of c_k * basis_k, each c_k free of x
+//! ```
+//!
+//! Over a common denominator, target and basis are polynomials in the kernels that depend on x, with
+//! coefficients in all others. Comparing them monomial by monomial gives a linear system over the
+//! field of functions of the other symbols. If the kernels are independent, a missing solution means
+//! that there is none; what is found is an identity in any case.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::expr::{Expr, Symbol};
+use super::field::{Field, Fraction, Obstacle};
+use super::linear::solve;
+use super::poly::{Monomial, Poly};
+
+/// Solves for the coefficients of `target` over `basis`; none if the comparison has no solution.
+pub fn combine(
+    field: &Field<'_>,
+    target: Expr,
+    basis: &[Expr],
+    x: &BTreeSet<Symbol>,
+) -> Result<Option<Vec<Fraction>>, Obstacle> {
+    let hidden: Vec<u32> = field.kernels_of(x).into_iter().collect();
+    let mut fractions = basis.iter().map(|b| field.fraction(*b)).collect::<Result<Vec<_>, _>>()?;
+    fractions.push(field.fraction(target)?);
+    // One row for each monomial in the hidden kernels, the target in the last column.
+    let columns = fractions.len();
+    let mut rows: BTreeMap<Monomial, Vec<Fraction>> = BTreeMap::new();
+    for (column, numerator) in over_common_denominator(field, &fractions)?.iter().enumerate() {
+        for (monomial, coefficient) in numerator.collect(&hidden) {
+            let row = rows.entry(monomial).or_insert_with(|| vec![Fraction::zero(); columns]);
+            row[column] = field.of_polynomial(&coefficient)?;
+        }
+    }
+    solve(field, rows.into_values().collect(), basis.len())
+}
+
+/// The numerators of fractions over their least common denominator.
+fn over_common_denominator(field: &Field<'_>, fractions: &[Fraction]) -> Result<Vec<Poly>, Obstacle> {
+    let work = field.limit();
+    let mut common = Poly::one();
+    for fraction in fractions {
+        common = common.lcm(fraction.denominator(), work)?;
+    }
+    let common = field.of_polynomial(&common)?;
+    let mut numerators = Vec::with_capacity(fractions.len());
+    for fraction in fractions {
+        numerators.push(field.mul(fraction, &common)?.numerator().clone());
+    }
+    Ok(numerators)
+}

@@ -1,0 +1,160 @@
+//! Rational points of the assumed domain, for existence and for refutation.
+//!
+//! In: facts, and values that are given. Out: points at which every fact provably holds, simple ones
+//! first, the same ones every time.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::arena::Arena;
+use super::enclosure::Point;
+use super::expr::{Expr, Node, Symbol};
+use super::facts::{Facts, Relation};
+use super::rational::Rational;
+
+/// How many points are looked at before a search gives up.
+const MOST_TRIALS: u64 = 400;
+
+/// The assumed domain of a question: inequalities, and symbols whose values are given.
+#[derive(Clone, Debug, Default)]
+pub struct Domain {
+    /// Inequalities that hold.
+    pub facts: Facts,
+    /// Given values.
+    pub fixed: Point,
+}
+
+/// Bounds of one symbol that the facts state directly.
+#[derive(Clone, Debug, Default)]
+struct Range {
+    low: Option<Rational>,
+    high: Option<Rational>,
+}
+
+impl Domain {
+    /// Points of the domain over the given symbols and those of the facts that involve them.
+    pub fn points<'a>(&'a self, arena: &'a Arena, exprs: &[Expr]) -> impl Iterator<Item = Point> + 'a {
+        let mut symbols = arena.symbols_of(exprs);
+        let facts = self.relevant(arena, &mut symbols);
+        let ranges = ranges(arena, &facts);
+        (0..MOST_TRIALS).filter_map(move |trial| {
+            let mut draw = Draw::new(trial);
+            let mut point = Point::new();
+            for &symbol in &symbols {
+                let value = match self.fixed.get(&symbol) {
+                    Some(value) => value.clone(),
+                    None => draw.value(ranges.get(&symbol)),
+                };
+                point.insert(symbol, value);
+            }
+            facts.iter().all(|fact| holds(arena, *fact, &point)).then_some(point)
+        })
+    }
+
+    /// The facts that share a symbol with the question, directly or through other facts.
+    fn relevant(&self, arena: &Arena, symbols: &mut BTreeSet<Symbol>) -> Vec<(Expr, Relation)> {
+        let mut chosen = Vec::new();
+        let mut rest: Vec<_> = self.facts.iter().collect();
+        loop {
+            let (touching, apart): (Vec<_>, Vec<_>) =
+                rest.into_iter().partition(|(expr, _)| !arena.symbols_of(&[*expr]).is_disjoint(symbols));
+            if touching.is_empty() {
+                return chosen;
+            }
+            for (expr, _) in &touching {
+                symbols.extend(arena.symbols_of(&[*expr]));
+            }
+            chosen.extend(touching);
+            rest = apart;
+        }
+    }
+}
+
+/// Whether the fact provably holds at the point.
+fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bool {
+    match arena.separated_from_zero(expr, point) {
+        Some(value) => relation == Relation::NonZero || value.is_positive(),
+        None => false,
+    }
+}
+
+/// The bounds that facts of the form `c*s + d > 0` state.
+fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> {
+    let mut ranges: BTreeMap<Symbol, Range> = BTreeMap::new();
+    for (expr, relation) in facts {
+        if *relation == Relation::NonZero {
+            continue;
+        }
+        let Some((symbol, slope, constant)) = affine(arena, *expr) else { continue };
+        let Some(bound) = (-&constant).checked_div(&slope) else { continue };
+        let range = ranges.entry(symbol).or_default();
+        if slope.is_negative() {
+            range.high = Some(range.high.take().map_or(bound.clone(), |high| high.min(bound)));
+        } else {
+            range.low = Some(range.low.take().map_or(bound.clone(), |low| low.max(bound)));
+        }
+    }
+    ranges
+}
+
+/// `slope * symbol + constant`, if the expression is that.
+fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
+    let unit = |e: Expr| arena.as_symbol(e);
+    match arena.node(expr) {
+        Node::Symbol(symbol) => Some((symbol, Rational::ONE, Rational::ZERO)),
+        Node::Product(product) => match product.factors.as_slice() {
+            [(base, exponent)] if exponent.is_one() => Some((unit(*base)?, product.coefficient.clone(), Rational::ZERO)),
+            _ => None,
+        },
+        Node::Sum(sum) => match sum.terms.as_slice() {
+            [(term, slope)] => Some((unit(*term)?, slope.clone(), sum.constant.clone())),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// A reproducible sequence of simple rationals (`SplitMix64`, Steele, Lea and Flood 2014).
+struct Draw {
+    trial: u64,
+    state: u64,
+}
+
+impl Draw {
+    fn new(trial: u64) -> Self {
+        Self { trial, state: trial.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1 }
+    }
+
+    fn next(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// An integer from `low` to `high`.
+    fn integer(&mut self, low: i64, high: i64) -> i64 {
+        let span = u64::try_from(high - low + 1).unwrap_or(1);
+        low + i64::try_from(self.next() % span).unwrap_or(0)
+    }
+
+    /// A value within the range; small integers in the first trials, fractions later.
+    fn value(&mut self, range: Option<&Range>) -> Rational {
+        let (low, high) = range.map_or((None, None), |range| (range.low.as_ref(), range.high.as_ref()));
+        let size = 3 + i64::try_from(self.trial / 8).unwrap_or(0);
+        let parts = if self.trial < 8 { 1 } else { 1 + i64::try_from(self.trial % 7).unwrap_or(0) };
+        let ratio = |n: i64, d: i64| Rational::new(n, d).unwrap_or(Rational::ONE);
+        match (low, high) {
+            (Some(low), Some(high)) => {
+                let share = ratio(self.integer(1, 8 + self.trial.cast_signed()), 9 + self.trial.cast_signed());
+                low + &(&(high - low) * &share)
+            }
+            (Some(low), None) => low + &ratio(self.integer(1, size * parts), parts),
+            (None, Some(high)) => high - &ratio(self.integer(1, size * parts), parts),
+            (None, None) => {
+                let magnitude = ratio(self.integer(1, size * parts), parts);
+                if self.integer(0, 2) == 0 { -&magnitude } else { magnitude }
+            }
+        }
+    }
+}

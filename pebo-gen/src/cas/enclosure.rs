@@ -1,0 +1,84 @@
+//! Rigorous values of expressions at rational points.
+//!
+//! In: an expression and a rational value for each of its symbols. Out: an interval that contains the
+//! exact real value, or nothing where the value does not exist or could not be separated from a place
+//! where it does not.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+
+use super::arena::Arena;
+use super::expr::{Expr, Node, Symbol};
+use super::interval::{Interval, Precision};
+use super::rational::Rational;
+
+/// Values of symbols.
+pub type Point = BTreeMap<Symbol, Rational>;
+
+/// Working precisions that are tried in turn, in bits.
+const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
+
+impl Arena {
+    /// Encloses several expressions at a point, none where one of them has no value there.
+    pub fn enclose_all(&self, exprs: &[Expr], point: &Point, precision: Precision) -> Option<Vec<Interval>> {
+        let mut known: FxHashMap<Expr, Interval> = FxHashMap::default();
+        for e in self.postorder(exprs) {
+            let value = self.enclosure_of(e, point, precision, &known)?;
+            known.insert(e, value);
+        }
+        exprs.iter().map(|e| known.get(e).cloned()).collect()
+    }
+
+    /// Encloses an expression at a point.
+    pub fn enclose(&self, expr: Expr, point: &Point, precision: Precision) -> Option<Interval> {
+        self.enclose_all(&[expr], point, precision)?.pop()
+    }
+
+    /// The enclosure that excludes zero, at the least precision that shows it.
+    pub fn separated_from_zero(&self, expr: Expr, point: &Point) -> Option<Interval> {
+        PRECISIONS.iter().find_map(|&bits| {
+            self.enclose(expr, point, Precision::new(bits)).filter(|value| !value.contains_zero())
+        })
+    }
+
+    /// Whether the expression provably has a value at the point.
+    pub fn exists_at(&self, expr: Expr, point: &Point) -> bool {
+        PRECISIONS.iter().any(|&bits| self.enclose(expr, point, Precision::new(bits)).is_some())
+    }
+
+    fn enclosure_of(&self, e: Expr, point: &Point, p: Precision, known: &FxHashMap<Expr, Interval>) -> Option<Interval> {
+        match self.node(e) {
+            Node::Number(value) => Interval::from_rational(&value, p),
+            Node::Pi => Interval::pi(p),
+            Node::Symbol(symbol) => Interval::from_rational(point.get(&symbol)?, p),
+            Node::Sum(sum) => {
+                let mut total = Interval::from_rational(&sum.constant, p)?;
+                for (term, coefficient) in &sum.terms {
+                    let scaled = known.get(term)?.mul(&Interval::from_rational(coefficient, p)?, p)?;
+                    total = total.add(&scaled, p)?;
+                }
+                Some(total)
+            }
+            Node::Product(product) => {
+                let mut total = Interval::from_rational(&product.coefficient, p)?;
+                for (base, exponent) in &product.factors {
+                    let base = known.get(base)?;
+                    let power = match exponent.to_i64() {
+                        Some(integer) => base.powi(integer, p)?,
+                        None => base.pow(exponent, p)?,
+                    };
+                    total = total.mul(&power, p)?;
+                }
+                Some(total)
+            }
+            Node::Call(function, arguments) => {
+                let mut values = Vec::with_capacity(arguments.len());
+                for argument in arguments.iter() {
+                    values.push(known.get(argument)?.clone());
+                }
+                (function.row().enclosure)(&values, p)
+            }
+        }
+    }
+}

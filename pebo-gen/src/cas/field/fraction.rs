@@ -1,0 +1,242 @@
+//! Quotients of polynomials over kernels.
+//!
+//! In: numerators and denominators. Out: canonical fractions: coprime, the denominator's leading
+//! coefficient positive, powers of algebraic kernels reduced by their relations, and the denominator
+//! free of every kernel with a quadratic relation (it is cleared by the conjugate). Over kernels that
+//! are otherwise independent, equal fractions are therefore stored equally.
+
+use crate::cas::integer::Integer;
+use crate::cas::poly::Poly;
+use crate::cas::rational::Rational;
+
+use super::{Field, Obstacle};
+
+/// A quotient of polynomials, canonical with respect to one [`Field`].
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Fraction {
+    pub(super) num: Poly,
+    pub(super) den: Poly,
+}
+
+impl Fraction {
+    /// Zero.
+    pub fn zero() -> Self {
+        Self { num: Poly::zero(), den: Poly::one() }
+    }
+
+    /// One.
+    pub fn one() -> Self {
+        Self { num: Poly::one(), den: Poly::one() }
+    }
+
+    /// A rational number.
+    pub fn constant(value: &Rational) -> Self {
+        Self { num: Poly::constant(value.numerator()), den: Poly::constant(value.denominator()) }
+    }
+
+    /// A polynomial.
+    pub(super) fn polynomial(num: Poly) -> Self {
+        Self { num, den: Poly::one() }
+    }
+
+    /// Whether this is zero.
+    pub fn is_zero(&self) -> bool {
+        self.num.is_zero()
+    }
+
+    /// Whether this is one.
+    pub fn is_one(&self) -> bool {
+        self.num.is_one() && self.den.is_one()
+    }
+
+    /// The value, if this is a number.
+    pub fn to_constant(&self) -> Option<Rational> {
+        Rational::new(self.num.to_constant()?, self.den.to_constant()?)
+    }
+
+    /// The numerator.
+    pub fn numerator(&self) -> &Poly {
+        &self.num
+    }
+
+    /// The denominator.
+    pub fn denominator(&self) -> &Poly {
+        &self.den
+    }
+
+    /// The kernels that occur.
+    pub fn variables(&self) -> impl Iterator<Item = u32> + '_ {
+        self.num.variables().iter().chain(self.den.variables()).copied()
+    }
+
+    /// `-self`
+    pub fn opposite(&self) -> Self {
+        negated(self)
+    }
+
+    /// A measure of how unwieldy this is as a pivot.
+    pub(in crate::cas) fn weight(&self) -> usize {
+        self.num.term_count() + self.den.term_count()
+    }
+}
+
+impl Field<'_> {
+    /// The canonical fraction of two polynomials.
+    pub(super) fn fraction_of(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
+        let mut num = self.reduce(num)?;
+        let mut den = self.reduce(den)?;
+        if den.is_zero() {
+            return Err(Obstacle::DivisionByZero);
+        }
+        while let Some(conjugate) = self.conjugate(&den)? {
+            num = self.reduce(&num.mul(&conjugate, self.work())?)?;
+            den = self.reduce(&den.mul(&conjugate, self.work())?)?;
+            if den.is_zero() {
+                return Err(Obstacle::DivisionByZero);
+            }
+        }
+        if num.is_zero() {
+            return Ok(Fraction::zero());
+        }
+        if !den.is_one() {
+            let common = num.gcd(&den, self.work())?;
+            if !common.is_one() {
+                num = exact(num.div_exact(&common, self.work())?)?;
+                den = exact(den.div_exact(&common, self.work())?)?;
+            }
+            if den.leading_coefficient().is_negative() {
+                num = -&num;
+                den = -&den;
+            }
+        }
+        Ok(Fraction { num, den })
+    }
+
+    /// `a + b`.
+    pub fn add(&self, a: &Fraction, b: &Fraction) -> Result<Fraction, Obstacle> {
+        if a.is_zero() {
+            return Ok(b.clone());
+        }
+        if b.is_zero() {
+            return Ok(a.clone());
+        }
+        if a.den == b.den {
+            return self.fraction_of(&(&a.num + &b.num), &a.den);
+        }
+        // Over the least common denominator, so that intermediate results stay small.
+        let common = a.den.gcd(&b.den, self.work())?;
+        let left = exact(a.den.div_exact(&common, self.work())?)?;
+        let right = exact(b.den.div_exact(&common, self.work())?)?;
+        let num = &a.num.mul(&right, self.work())? + &b.num.mul(&left, self.work())?;
+        let den = a.den.mul(&right, self.work())?;
+        self.fraction_of(&num, &den)
+    }
+
+    /// `a - b`.
+    pub fn sub(&self, a: &Fraction, b: &Fraction) -> Result<Fraction, Obstacle> {
+        self.add(a, &negated(b))
+    }
+
+    /// `a * b`.
+    pub fn mul(&self, a: &Fraction, b: &Fraction) -> Result<Fraction, Obstacle> {
+        if a.is_one() {
+            return Ok(b.clone());
+        }
+        if b.is_one() {
+            return Ok(a.clone());
+        }
+        let num = a.num.mul(&b.num, self.work())?;
+        let den = a.den.mul(&b.den, self.work())?;
+        self.fraction_of(&num, &den)
+    }
+
+    /// `a / b`.
+    pub fn div(&self, a: &Fraction, b: &Fraction) -> Result<Fraction, Obstacle> {
+        let num = a.num.mul(&b.den, self.work())?;
+        let den = a.den.mul(&b.num, self.work())?;
+        self.fraction_of(&num, &den)
+    }
+
+    /// `factor * a`.
+    pub fn scale(&self, a: &Fraction, factor: &Rational) -> Result<Fraction, Obstacle> {
+        self.mul(a, &Fraction::constant(factor))
+    }
+
+    /// `a ^ exponent` for an integer exponent.
+    pub fn pow(&self, a: &Fraction, exponent: i64) -> Result<Fraction, Obstacle> {
+        let times = u32::try_from(exponent.unsigned_abs()).map_err(|_| Obstacle::TooLarge)?;
+        let num = self.power_of(&a.num, times)?;
+        let den = self.power_of(&a.den, times)?;
+        if exponent < 0 { self.fraction_of(&den, &num) } else { self.fraction_of(&num, &den) }
+    }
+
+    /// A power reduced as it grows, so that relations keep it small.
+    fn power_of(&self, base: &Poly, times: u32) -> Result<Poly, Obstacle> {
+        let mut result = Poly::one();
+        for bit in (0..u32::BITS - times.leading_zeros()).rev() {
+            result = self.reduce(&result.mul(&result, self.work())?)?;
+            if times >> bit & 1 == 1 {
+                result = self.reduce(&result.mul(base, self.work())?)?;
+            }
+        }
+        Ok(result)
+    }
+
+    /// Replaces powers of algebraic kernels by their relations, the last kernel first: relations
+    /// lead to earlier kernels only.
+    pub(super) fn reduce(&self, poly: &Poly) -> Result<Poly, Obstacle> {
+        let mut poly = poly.clone();
+        let kernels = self.kernels.borrow();
+        let mut above = u32::MAX;
+        loop {
+            let next = poly.variables().iter().rev().copied().find(|&variable| {
+                variable < above
+                    && kernels[variable as usize].relation.as_ref().is_some_and(|r| poly.degree(variable) >= r.degree)
+            });
+            let Some(variable) = next else { return Ok(poly) };
+            if let Some(relation) = &kernels[variable as usize].relation {
+                poly = poly.reduce_power(variable, relation.degree, &relation.value, self.work())?;
+            }
+            above = variable;
+        }
+    }
+
+    /// What clears the last quadratic kernel from a denominator.
+    fn conjugate(&self, den: &Poly) -> Result<Option<Poly>, Obstacle> {
+        let kernels = self.kernels.borrow();
+        let algebraic = den.variables().iter().rev().copied().find(|&variable| {
+            kernels[variable as usize].relation.as_ref().is_some_and(|relation| relation.degree == 2)
+        });
+        let Some(variable) = algebraic else { return Ok(None) };
+        // den = a + b v, conjugate a - b v
+        let flipped = den.terms().map(|(monomial, coefficient)| {
+            let odd = monomial.exponent(variable) % 2 == 1;
+            (monomial, if odd { -coefficient } else { coefficient.clone() })
+        });
+        let conjugate = Poly::from_terms(flipped)?;
+        if conjugate == -den {
+            // den = b v: the kernel itself is enough
+            return Ok(Some(Poly::variable(variable)));
+        }
+        Ok(Some(conjugate))
+    }
+}
+
+/// `-a`.
+pub(super) fn negated(a: &Fraction) -> Fraction {
+    Fraction { num: -&a.num, den: a.den.clone() }
+}
+
+/// The quotient of a division that the gcd guarantees.
+fn exact(quotient: Option<Poly>) -> Result<Poly, Obstacle> {
+    quotient.ok_or(Obstacle::TooLarge)
+}
+
+/// A positive rational that makes the polynomial primitive, and the primitive polynomial.
+pub(super) fn primitive(poly: &Poly) -> (Integer, Poly) {
+    let content = poly.content();
+    match poly.div_integer(&content) {
+        Some(rest) if !content.is_zero() => (content, rest),
+        _ => (Integer::ONE, poly.clone()),
+    }
+}

@@ -1,0 +1,91 @@
+//! Exact linear algebra over the field of fractions.
+//!
+//! Elimination picks the lightest pivot, so that entries stay short; what is free is set to zero.
+
+use super::field::{Field, Fraction, Obstacle};
+
+/// What elimination leaves: pivot columns and reduced rows.
+#[derive(Debug)]
+pub struct Echelon {
+    /// Rows in reduced form, each with its pivot column, where it is one.
+    rows: Vec<(usize, Vec<Fraction>)>,
+    columns: usize,
+}
+
+impl Echelon {
+    /// Eliminates on the first `columns` columns; a row may have more, which are carried along.
+    ///
+    /// The result's rows span the same space as the given ones, apart from rows that are zero on the
+    /// first columns, which come back separately.
+    pub fn of(field: &Field<'_>, rows: Vec<Vec<Fraction>>, columns: usize) -> Result<(Self, Vec<Vec<Fraction>>), Obstacle> {
+        let mut rest = rows;
+        let mut done: Vec<(usize, Vec<Fraction>)> = Vec::new();
+        loop {
+            // The lightest entry of all: constants before monomials before sums.
+            let pivot = rest
+                .iter()
+                .enumerate()
+                .flat_map(|(index, row)| {
+                    row.iter().take(columns).enumerate().filter(|(_, entry)| !entry.is_zero()).map(move |(column, entry)| {
+                        (entry.weight() + entry.variables().count(), column, index)
+                    })
+                })
+                .min();
+            let Some((_, column, index)) = pivot else { break };
+            let row = rest.swap_remove(index);
+            let row = row.iter().map(|entry| field.div(entry, &row[column])).collect::<Result<Vec<_>, _>>()?;
+            for other in rest.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
+                let factor = other[column].clone();
+                if factor.is_zero() {
+                    continue;
+                }
+                for (entry, own) in other.iter_mut().zip(&row) {
+                    *entry = field.sub(entry, &field.mul(&factor, own)?)?;
+                }
+            }
+            done.push((column, row));
+        }
+        done.sort_by_key(|(column, _)| *column);
+        Ok((Self { rows: done, columns }, rest))
+    }
+
+    /// The number of pivots.
+    pub fn rank(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The rows with their pivot columns, ascending.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[Fraction])> {
+        self.rows.iter().map(|(column, row)| (*column, row.as_slice()))
+    }
+
+    /// A basis of the vectors that every row annihilates.
+    pub fn null_space(&self) -> Vec<Vec<Fraction>> {
+        let is_pivot = |column: usize| self.rows.iter().any(|(pivot, _)| *pivot == column);
+        (0..self.columns)
+            .filter(|column| !is_pivot(*column))
+            .map(|free| {
+                let mut vector = vec![Fraction::zero(); self.columns];
+                vector[free] = Fraction::one();
+                for (pivot, row) in &self.rows {
+                    vector[*pivot] = row[free].opposite();
+                }
+                vector
+            })
+            .collect()
+    }
+}
+
+/// Solves `matrix * unknowns = right` for rows `[matrix | right]` with the right side in the last
+/// column; none where there is no solution, zero for unknowns that are free.
+pub fn solve(field: &Field<'_>, rows: Vec<Vec<Fraction>>, unknowns: usize) -> Result<Option<Vec<Fraction>>, Obstacle> {
+    let (echelon, rest) = Echelon::of(field, rows, unknowns)?;
+    if rest.iter().any(|row| !row[unknowns].is_zero()) {
+        return Ok(None);
+    }
+    let mut solution = vec![Fraction::zero(); unknowns];
+    for (column, row) in echelon.rows() {
+        solution[column] = row[unknowns].clone();
+    }
+    Ok(Some(solution))
+}

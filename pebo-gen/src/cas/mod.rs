@@ -1,0 +1,25 @@
+//! Exact algebra: expressions, their normal form, and the questions asked of them.
+//!
+//! Knows neither plants nor spans. An [`Arena`] owns expressions; [`Expr`] is a copyable handle.
+
+mod arena;
+mod build;
+pub mod combination;
+mod derivative;
+pub mod domain;
+pub mod enclosure;
+mod expr;
+pub mod facts;
+pub mod field;
+pub mod function;
+pub mod integer;
+pub mod interval;
+pub mod linear;
+pub mod poly;
+mod print;
+pub mod rational;
+pub mod zero;
+
+pub use arena::Arena;
+pub use expr::{Expr, Node, Product, Sum, Symbol};
+pub use function::Function;

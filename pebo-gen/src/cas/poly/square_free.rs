@@ -1,0 +1,71 @@
+//! Square-free decomposition.
+
+use std::collections::BTreeMap;
+
+use super::super::integer::Integer;
+use super::Poly;
+use super::work::{TooLarge, Work};
+
+/// A polynomial as a product of powers of square-free polynomials.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SquareFree {
+    /// The integer factor, with the sign; zero of zero.
+    pub content: Integer,
+    /// The other factors with their exponents, ascending: none has a square factor, no two have a
+    /// factor in common, none is constant, each is primitive with a positive leading coefficient.
+    pub factors: Vec<(Poly, u32)>,
+}
+
+impl Poly {
+    /// The square-free decomposition (Yun, 1976), by one variable after the other: the content with
+    /// respect to a variable is decomposed on its own.
+    pub fn square_free(&self, work: &Work) -> Result<SquareFree, TooLarge> {
+        let (content, mut rest) = self.primitive();
+        let mut factors = BTreeMap::new();
+        let monomial = self.monomial_content();
+        for (variable, exponent) in monomial.powers() {
+            insert(&mut factors, *exponent, &Self::variable(*variable), work)?;
+        }
+        rest = rest.over_monomial(&monomial);
+        while let Some(variable) = rest.variables().first().copied() {
+            let lower = rest.content_in(&[variable], work)?;
+            if let Some(part) = rest.div_exact(&lower, work)? {
+                part.yun(variable, &mut factors, work)?;
+            }
+            rest = lower;
+        }
+        let factors = factors.into_iter().map(|(exponent, factor)| (factor, exponent)).collect();
+        Ok(SquareFree { content, factors })
+    }
+
+    /// For a polynomial that is primitive in the variable.
+    fn yun(&self, variable: u32, factors: &mut BTreeMap<u32, Self>, work: &Work) -> Result<(), TooLarge> {
+        let derivative = self.derivative(variable);
+        let common = self.gcd(&derivative, work)?;
+        let over = |a: &Self, b: &Self| Ok(a.div_exact(b, work)?.unwrap_or_default());
+        let mut product = over(self, &common)?;
+        let mut slope = over(&derivative, &common)?;
+        let mut exponent = 1;
+        while !product.is_constant() {
+            slope = &slope - &product.derivative(variable);
+            let factor = product.gcd(&slope, work)?;
+            if !factor.is_constant() {
+                insert(factors, exponent, &factor, work)?;
+            }
+            product = over(&product, &factor)?;
+            slope = over(&slope, &factor)?;
+            exponent += 1;
+        }
+        Ok(())
+    }
+}
+
+fn insert(factors: &mut BTreeMap<u32, Poly>, exponent: u32, factor: &Poly, work: &Work) -> Result<(), TooLarge> {
+    let (_, factor) = factor.primitive();
+    let product = match factors.get(&exponent) {
+        Some(other) => other.mul(&factor, work)?,
+        None => factor,
+    };
+    factors.insert(exponent, product);
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! The zero test: proved, refuted with a witness, or open with the obstacle.
+//!
+//! Proved: the normal form is zero, and the expression has a value at a point of the domain (so that
+//! the proof is not about nothing). Refuted: at a rational point of the domain a rigorous enclosure of
+//! the value excludes zero. Neither relies on floating point or on the kernels being independent.
+
+use super::arena::Arena;
+use super::domain::Domain;
+use super::enclosure::Point;
+use super::expr::Expr;
+use super::field::{Field, Obstacle};
+use super::interval::Interval;
+
+/// The answer to whether an expression is zero.
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// It is zero wherever it has a value.
+    Zero,
+    /// It is not zero at a point.
+    NonZero(Witness),
+    /// It could not be decided.
+    Open(Obstacle),
+}
+
+/// A point at which an expression provably is not zero.
+#[derive(Clone, Debug)]
+pub struct Witness {
+    /// The values of the symbols.
+    pub point: Point,
+    /// An enclosure of the value, which excludes zero.
+    pub value: Interval,
+}
+
+impl Answer {
+    /// Whether the expression was proved to be zero.
+    pub fn is_zero(&self) -> bool {
+        matches!(self, Self::Zero)
+    }
+}
+
+/// Decides whether the expression is zero on the domain.
+pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
+    if arena.is_zero(expr) {
+        return Answer::Zero;
+    }
+    let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| field.fraction(expr));
+    match normal {
+        Ok(fraction) if fraction.is_zero() => match point_of(arena, expr, domain) {
+            Some(_) => Answer::Zero,
+            None => Answer::Open(Obstacle::NoPoint),
+        },
+        Ok(_) => refute(arena, expr, domain).map_or(Answer::Open(Obstacle::NoWitness), Answer::NonZero),
+        Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
+    }
+}
+
+/// Looks for a point of the domain at which the expression provably is not zero.
+pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
+    domain.points(arena, &[expr]).find_map(|point| {
+        let value = arena.separated_from_zero(expr, &point)?;
+        Some(Witness { point, value })
+    })
+}
+
+/// Looks for a point of the domain at which the expression provably has a value.
+pub fn point_of(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Point> {
+    domain.points(arena, &[expr]).find(|point| arena.exists_at(expr, point))
+}
