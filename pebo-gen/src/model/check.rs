@@ -1,0 +1,188 @@
+//! What a model declares, held against itself.
+//!
+//! In: a model of any front end. After this pass, if it found nothing: declared names are names and
+//! declared once; entries belong to what they are for, and `f_x` has one for each state; settings
+//! are in range.
+
+use std::collections::{HashMap, HashSet};
+
+use super::names::admit;
+use super::written::{Entry, Model, Simulation, Spanned};
+use super::{Decimal, Formula};
+use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
+
+/// Checks the model's declarations.
+///
+/// A list of states or outputs that is empty has been reported where it was read: what depends on
+/// it is not reported again.
+pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
+    let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() };
+    pass.name(&model.name);
+    let scope = pass.declare(model.names(), &[]);
+    let x = Group::new(&model.x, "a state of x");
+    let y = Group::new(&model.y, "an output of y");
+    let both = Group::new(model.x.iter().chain(&model.y), "a state of x or y");
+    if !model.x.is_empty() && !model.y.is_empty() {
+        pass.complete(&model.f_x, &model.x, "f_x");
+        pass.belong(&model.f_x, &x, "f_x");
+        pass.belong(&model.f_y, &y, "f_y");
+        pass.belong(&model.phi_left, &x, "phi_left");
+        pass.belong(&model.angles, &both, "angles");
+        if let Some(simulation) = &model.simulation {
+            pass.belong(&simulation.initial, &both, "initial");
+            pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
+            for baseline in &simulation.baselines {
+                pass.belong(&baseline.value.estimate, &x, "estimate");
+            }
+        }
+    }
+    pass.positive(model.observer.filter.as_ref(), "the filter frequency");
+    for gain in &model.observer.gain {
+        pass.positive(Some(gain), "a gain");
+    }
+    if let Some(simulation) = &model.simulation {
+        pass.simulation(simulation, &scope);
+    }
+}
+
+/// Names declared in one place of the model, with their places in the file.
+type Scope<'a> = HashMap<&'a str, Span>;
+
+/// Names that entries may be for.
+struct Group<'a> {
+    /// In the order of the file, for messages.
+    names: Vec<&'a str>,
+    set: HashSet<&'a str>,
+    /// What each of them is.
+    what: &'static str,
+}
+
+impl<'a> Group<'a> {
+    fn new(names: impl IntoIterator<Item = &'a Spanned<String>>, what: &'static str) -> Self {
+        let names: Vec<&str> = names.into_iter().map(|name| name.value.as_str()).collect();
+        Self { set: names.iter().copied().collect(), names, what }
+    }
+}
+
+struct Pass<'a> {
+    diagnostics: &'a mut Diagnostics,
+    /// Whether `t` is time.
+    simulated: bool,
+}
+
+impl Pass<'_> {
+    fn name(&mut self, name: &Spanned<String>) {
+        self.diagnostics.keep(admit(&name.value, name.span, false));
+    }
+
+    /// Declares names beside those of the `outer` scopes.
+    fn declare<'a>(&mut self, names: impl IntoIterator<Item = &'a Spanned<String>>, outer: &[&Scope<'_>]) -> Scope<'a> {
+        let mut scope = Scope::new();
+        for name in names {
+            let text = name.value.as_str();
+            self.diagnostics.keep(admit(text, name.span, self.simulated));
+            let outside = outer.iter().find_map(|scope| scope.get(text)).copied();
+            if let Some(first) = scope.insert(text, name.span).or(outside) {
+                let message = format!("{} is declared twice", quoted(text));
+                self.diagnostics.push(
+                    Diagnostic::error(Code::DuplicateName, name.span, message)
+                        .also(first, "first here")
+                        .help("rename one of them"),
+                );
+            }
+        }
+        scope
+    }
+
+    /// Every name has an entry.
+    fn complete(&mut self, entries: &[Entry<Formula>], names: &[Spanned<String>], section: &str) {
+        // Without any entry the section itself has been reported.
+        let Some(first) = entries.first() else { return };
+        let present: HashSet<&str> = entries.iter().map(|entry| entry.name.value.as_str()).collect();
+        for name in names.iter().filter(|name| !present.contains(name.value.as_str())) {
+            let message = format!("`{section}` has no entry for {}", quoted(&name.value));
+            self.diagnostics.push(
+                Diagnostic::error(Code::MissingEntry, name.span, message)
+                    .also(first.name.span, format!("`{section}` begins here"))
+                    .help(format!("add its rate under `{section}`")),
+            );
+        }
+    }
+
+    /// Every entry has a name of the group.
+    fn belong(&mut self, entries: &[Entry<Formula>], group: &Group<'_>, section: &str) {
+        let strangers = entries.iter().map(|entry| &entry.name);
+        for name in strangers.filter(|name| !group.set.contains(name.value.as_str())) {
+            self.diagnostics.push_with(|| stranger(name, group, section));
+        }
+    }
+
+    fn simulation(&mut self, simulation: &Simulation, model: &Scope<'_>) {
+        self.positive(simulation.duration.as_ref(), "the duration");
+        self.positive(simulation.step.as_ref(), "the step");
+        let signals = simulation.signals.iter().map(|entry| &entry.name);
+        let define = simulation.define.iter().map(|entry| &entry.name);
+        let own = self.declare(signals.chain(define), &[model]);
+        for signal in &simulation.signals {
+            for pair in signal.value.windows(2) {
+                let [before, after] = pair else { continue };
+                self.ascend(&before.from, &after.from);
+            }
+        }
+        // Baselines do not see one another: the same state may occur in two of them.
+        for baseline in &simulation.baselines {
+            self.name(&baseline.name);
+            let states = || baseline.value.state.iter().map(|entry| &entry.name);
+            self.declare(states(), &[model, &own]);
+            let group = Group::new(states(), "a state of the baseline");
+            self.belong(&baseline.value.initial, &group, "initial");
+        }
+        self.feedback(simulation);
+    }
+
+    fn feedback(&mut self, simulation: &Simulation) {
+        let Some(feedback) = &simulation.feedback else { return };
+        let baselines = simulation.baselines.iter().map(|entry| entry.name.value.as_str());
+        let choices: Vec<&str> = ["observer", "truth"].into_iter().chain(baselines).collect();
+        if choices.contains(&feedback.value.as_str()) {
+            return;
+        }
+        let message = format!("{} gives no estimates", quoted(&feedback.value));
+        self.diagnostics.push(
+            Diagnostic::error(Code::WrongChoice, feedback.span, message)
+                .help(format!("write one of {}", listed(choices))),
+        );
+    }
+
+    fn ascend(&mut self, before: &Spanned<Decimal>, after: &Spanned<Decimal>) {
+        if before.value.to_f64() < after.value.to_f64() {
+            return;
+        }
+        let message = "start times do not ascend";
+        self.diagnostics.push(
+            Diagnostic::error(Code::NumberOutOfRange, after.span, message)
+                .also(before.span, "the piece before starts here")
+                .help("order the pieces by their start times"),
+        );
+    }
+
+    fn positive(&mut self, number: Option<&Spanned<Decimal>>, what: &str) {
+        if let Some(number) = number.filter(|number| number.value.to_f64() <= 0.0) {
+            let message = format!("{what} must be positive");
+            self.diagnostics.push(
+                Diagnostic::error(Code::NumberOutOfRange, number.span, message).help("write a number above zero"),
+            );
+        }
+    }
+}
+
+/// An entry for a name that is none of the group.
+fn stranger(name: &Spanned<String>, group: &Group<'_>, section: &str) -> Diagnostic {
+    let message = format!("{} under `{section}` is not {}", quoted(&name.value), group.what);
+    let diagnostic = Diagnostic::error(Code::UnknownEntry, name.span, message);
+    match nearest(&name.value, group.names.iter().copied()) {
+        Some(near) => diagnostic.suggest(Some(near)),
+        None if group.names.is_empty() => diagnostic.help("remove it, or declare it"),
+        None => diagnostic.help(format!("entries here are for {}", listed(group.names.iter().copied()))),
+    }
+}

@@ -1,0 +1,292 @@
+//! Tokens to formulas, by precedence climbing.
+
+use super::bounds::{Measured, power_degree};
+use super::lexer::{Kind, Lexer, Token};
+use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, Function, LENGTH_LIMIT, Operator, Places, Term};
+use crate::source::{Code, Diagnostic, Span, nearest, quoted};
+
+/// Whether a formula may hold `hat(x)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimates {
+    /// In the plant and its observer there are no estimates.
+    Refused,
+    /// In a simulation's control law, definitions, baselines and panels there are.
+    Allowed,
+}
+
+/// Reads `text` as one formula.
+pub fn parse_formula(text: &str, places: &Places, estimates: Estimates) -> Result<Formula, Diagnostic> {
+    let mut parser = Parser::new(text, places, estimates)?;
+    let formula = parser.expression(SUM)?.formula;
+    match parser.next.kind {
+        Kind::End => Ok(formula),
+        Kind::Relation(_) => {
+            Err(parser.unexpected("a formula does not compare").help("comparisons belong under `assume`"))
+        }
+        _ => Err(parser.trailing()),
+    }
+}
+
+/// Reads `text` as a chain of comparisons.
+pub fn parse_comparison(text: &str, places: &Places) -> Result<Comparison, Diagnostic> {
+    let mut parser = Parser::new(text, places, Estimates::Refused)?;
+    let first = parser.expression(SUM)?.formula;
+    let mut rest = Vec::new();
+    while let Kind::Relation(relation) = parser.next.kind {
+        parser.advance()?;
+        rest.push((relation, parser.expression(SUM)?.formula));
+    }
+    if parser.next.kind != Kind::End {
+        return Err(parser.trailing());
+    }
+    let span = rest.last().map_or(first.span, |(_, last)| first.span.to(last.span));
+    if rest.is_empty() {
+        let message = "an assumption compares, and this does not".to_owned();
+        return Err(Diagnostic::error(Code::ComparisonExpected, span, message)
+            .help(format!("write for example `{} > 0`", text.trim())));
+    }
+    Ok(Comparison { span, first, rest })
+}
+
+/// Levels of precedence; a higher one binds tighter.
+const SUM: u8 = 1;
+const PRODUCT: u8 = 2;
+const SIGN: u8 = 3;
+const POWER: u8 = 4;
+
+struct Parser<'a> {
+    lexer: Lexer<'a>,
+    estimates: Estimates,
+    /// The token to be read next, and the one before it.
+    next: Token,
+    last: Token,
+    /// Calls of `expression` under way.
+    depth: usize,
+}
+
+impl<'a> Parser<'a> {
+    fn new(text: &'a str, places: &'a Places, estimates: Estimates) -> Result<Self, Diagnostic> {
+        if text.len() > LENGTH_LIMIT {
+            let message = format!("the formula has {} bytes", text.len());
+            return Err(Diagnostic::error(Code::FormulaTooLarge, places.whole(), message)
+                .help(format!("name parts of it under `define`; the limit is {LENGTH_LIMIT}")));
+        }
+        let mut lexer = Lexer::new(text, places);
+        let next = lexer.next()?;
+        if next.kind == Kind::End {
+            let message = "a formula is missing".to_owned();
+            return Err(Diagnostic::error(Code::EmptyFormula, places.whole(), message).help("write 0 for zero"));
+        }
+        Ok(Self { lexer, estimates, next, last: next, depth: 0 })
+    }
+
+    fn advance(&mut self) -> Result<Token, Diagnostic> {
+        self.last = self.next;
+        self.next = self.lexer.next()?;
+        Ok(self.last)
+    }
+
+    /// An expression whose operators bind at least as tight as `least`.
+    fn expression(&mut self, least: u8) -> Result<Measured, Diagnostic> {
+        self.depth += 1;
+        if self.depth > DEPTH_LIMIT {
+            let message = format!("the formula has more than {DEPTH_LIMIT} levels");
+            let place = self.lexer.span(self.next);
+            return Err(Diagnostic::error(Code::FormulaTooDeep, place, message)
+                .label("too deep from here on")
+                .help("name parts of it under `define`"));
+        }
+        let mut left = self.operand()?;
+        while let Some((operator, level)) = operator(self.next.kind)
+            && level >= least
+        {
+            self.advance()?;
+            // Powers group to the right: 2^3^2 is 2^(3^2). All others group to the left.
+            let right = self.expression(if level == POWER { POWER } else { level + 1 })?;
+            left = binary(operator, left, right)?;
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    fn operand(&mut self) -> Result<Measured, Diagnostic> {
+        match self.next.kind {
+            Kind::Number => self.number(),
+            Kind::Name => self.name(),
+            Kind::Minus => {
+                let sign = self.advance()?;
+                let operand = self.expression(SIGN)?;
+                let (depth, degree) = (operand.depth(), operand.degree());
+                let span = self.lexer.span(sign).to(operand.formula.span);
+                let term = Term::Negative(Box::new(operand.formula));
+                Measured::node(Formula { span, term }, depth, degree)
+            }
+            Kind::Open => {
+                let open = self.advance()?;
+                let mut inner = self.expression(SUM)?;
+                inner.formula.span = self.close(open)?;
+                Ok(inner)
+            }
+            Kind::Plus => Err(self.unexpected("a plus sign needs a left side").help("remove the plus sign")),
+            Kind::End => Err(self
+                .unexpected("the formula ends where an operand is missing")
+                .help("write what follows the operator, or remove the operator")),
+            _ => {
+                let message = format!("{} stands where an operand is missing", quoted(self.lexer.text(self.next)));
+                Err(self.unexpected(&message).help("write a name, a number or a parenthesis here"))
+            }
+        }
+    }
+
+    fn number(&mut self) -> Result<Measured, Diagnostic> {
+        let token = self.advance()?;
+        let span = self.lexer.span(token);
+        let number = Decimal::parse(self.lexer.text(token), span)?;
+        Ok(Measured::leaf(Formula { span, term: Term::Number(number) }))
+    }
+
+    fn name(&mut self) -> Result<Measured, Diagnostic> {
+        let token = self.advance()?;
+        let (span, name) = (self.lexer.span(token), self.lexer.text(token));
+        if self.next.kind != Kind::Open {
+            return Ok(Measured::leaf(Formula { span, term: Term::Name(name.to_owned()) }));
+        }
+        if name == "hat" {
+            return self.estimate(span);
+        }
+        match Function::named(name) {
+            Some(function) => self.call(function, span),
+            None => Err(unknown_function(name, span)),
+        }
+    }
+
+    /// `hat(x)`, from the parenthesis on.
+    fn estimate(&mut self, hat: Span) -> Result<Measured, Diagnostic> {
+        if self.estimates == Estimates::Refused {
+            let message = "there is no estimate in this place".to_owned();
+            return Err(Diagnostic::error(Code::MisplacedEstimate, hat, message)
+                .help("use hat() in the control law and panels of a simulation only"));
+        }
+        let open = self.advance()?;
+        if self.next.kind != Kind::Name {
+            return Err(self.unexpected("hat() takes a state").help("write hat(x), with a state x"));
+        }
+        let name = self.advance()?;
+        let span = hat.to(self.close(open)?);
+        let term = Term::Estimate(self.lexer.text(name).to_owned());
+        Ok(Measured::leaf(Formula { span, term }))
+    }
+
+    /// A call, from the parenthesis on.
+    fn call(&mut self, function: &'static Function, name: Span) -> Result<Measured, Diagnostic> {
+        let open = self.advance()?;
+        let (mut arguments, mut depth) = (Vec::new(), 0);
+        if self.next.kind != Kind::Close {
+            loop {
+                let argument = self.expression(SUM)?;
+                depth = depth.max(argument.depth());
+                arguments.push(argument.formula);
+                if self.next.kind != Kind::Comma {
+                    break;
+                }
+                self.advance()?;
+            }
+        }
+        let span = name.to(self.close(open)?);
+        if arguments.len() != function.arguments {
+            let (name, wanted) = (function.name, function.arguments);
+            let message = format!("`{name}` takes {wanted} and has {}", count(arguments.len()));
+            return Err(Diagnostic::error(Code::ArgumentCount, span, message).help(match wanted {
+                1 => format!("write `{name}(a)`"),
+                _ => format!("write `{name}(a, b)`"),
+            }));
+        }
+        // A call is one unknown quantity to the algebra, whatever its arguments are.
+        Measured::node(Formula { span, term: Term::Call(function, arguments) }, depth, 1.0)
+    }
+
+    /// Reads the parenthesis that closes `open`; gives the place of the whole.
+    fn close(&mut self, open: Token) -> Result<Span, Diagnostic> {
+        match self.next.kind {
+            Kind::Close => {
+                let close = self.advance()?;
+                Ok(self.lexer.span(open).to(self.lexer.span(close)))
+            }
+            Kind::End => {
+                let message = "this parenthesis is not closed".to_owned();
+                let span = self.lexer.span(open);
+                Err(Diagnostic::error(Code::UnclosedParenthesis, span, message)
+                    .help("close it; a formula with a comma needs quotes inside { } or [ ]"))
+            }
+            Kind::Relation(_) => Err(self
+                .unexpected("a comparison stands inside parentheses")
+                .help("compare whole formulas, and only under `assume`")),
+            _ => Err(self.trailing()),
+        }
+    }
+
+    /// The formula could end here, and goes on.
+    fn trailing(&self) -> Diagnostic {
+        match self.next.kind {
+            Kind::Number | Kind::Name | Kind::Open => {
+                let (left, right) = (self.lexer.text(self.last), self.lexer.text(self.next));
+                let span = self.lexer.span(self.last).to(self.lexer.span(self.next));
+                let message = "an operator is missing between two factors".to_owned();
+                Diagnostic::error(Code::ImplicitMultiplication, span, message)
+                    .help(format!("write `{left}*{right}` for a product"))
+            }
+            Kind::Close => self.unexpected("this parenthesis closes nothing").help("remove it, or open one before"),
+            Kind::Comma => self
+                .unexpected("a comma separates arguments, and there is no call here")
+                .help("write decimals with a point"),
+            Kind::Equals => self
+                .unexpected("a formula is not an equation")
+                .help("put what is zero by physics under `identities`, inequalities under `assume`"),
+            _ => self.unexpected("the formula goes on in an unexpected way").help("end the formula before this"),
+        }
+    }
+
+    fn unexpected(&self, message: &str) -> Diagnostic {
+        Diagnostic::error(Code::UnexpectedToken, self.lexer.span(self.next), message)
+    }
+}
+
+fn operator(kind: Kind) -> Option<(Operator, u8)> {
+    Some(match kind {
+        Kind::Plus => (Operator::Add, SUM),
+        Kind::Minus => (Operator::Subtract, SUM),
+        Kind::Times => (Operator::Multiply, PRODUCT),
+        Kind::Over => (Operator::Divide, PRODUCT),
+        Kind::Power => (Operator::Power, POWER),
+        _ => return None,
+    })
+}
+
+fn binary(operator: Operator, left: Measured, right: Measured) -> Result<Measured, Diagnostic> {
+    let depth = left.depth().max(right.depth());
+    let degree = match operator {
+        Operator::Add | Operator::Subtract => left.degree().max(right.degree()),
+        Operator::Multiply | Operator::Divide => left.degree() + right.degree(),
+        Operator::Power => power_degree(left.degree(), &right.formula)?,
+    };
+    let span = left.formula.span.to(right.formula.span);
+    let term = Term::Binary(operator, Box::new(left.formula), Box::new(right.formula));
+    Measured::node(Formula { span, term }, depth, degree)
+}
+
+fn unknown_function(name: &str, span: Span) -> Diagnostic {
+    let message = format!("{} is not a function", quoted(name));
+    let diagnostic = Diagnostic::error(Code::UnknownFunction, span, message);
+    match nearest(name, Function::names()) {
+        Some(near) => diagnostic.suggest(Some(near)),
+        None => diagnostic.help(format!("write `{name}*(` for a product")),
+    }
+    .note("a name before a parenthesis is a call")
+}
+
+fn count(arguments: usize) -> String {
+    match arguments {
+        0 => "none".to_owned(),
+        n => n.to_string(),
+    }
+}

@@ -1,0 +1,40 @@
+//! What the author wrote, with the place of every part.
+//!
+//! In: a [`Source`]. Out: a [`Model`], or every independent mistake in it. After this layer the
+//! file has the right shape, its formulas are parsed and bounded, every declared name is declared
+//! once, and maps that belong to declared names have entries for these and no others. Names
+//! *inside* formulas are not looked up here: that is what the plant layer does ([`unknown_name`]
+//! words its diagnostic).
+//!
+//! The passes: [`yaml`] reads the text, [`check`] holds what was declared against itself. A front
+//! end that builds a [`Model`] from something else than YAML runs the same check.
+
+mod check;
+pub mod formula;
+mod names;
+mod written;
+mod yaml;
+
+#[cfg(test)]
+mod tests;
+
+pub use check::check;
+pub use formula::{Comparison, Decimal, Formula, Function, Operator, Relation, Term};
+pub use names::unknown_name;
+pub use written::{Baseline, Entry, Hold, Model, Observer, Panel, Piece, Scale, Simulation, Spanned};
+
+use crate::source::{Diagnostic, Diagnostics, Source};
+
+impl Model {
+    /// Reads a model file.
+    pub fn parse(source: &Source) -> Result<Self, Vec<Diagnostic>> {
+        let mut diagnostics = Diagnostics::new();
+        let model = yaml::read(source, &mut diagnostics);
+        if let Some(model) = &model {
+            check(model, &mut diagnostics);
+        }
+        diagnostics.propagate()?;
+        // Without a model there is an error, which was propagated.
+        model.map(Self::ordered).ok_or_else(Vec::new)
+    }
+}

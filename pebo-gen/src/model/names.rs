@@ -1,0 +1,66 @@
+//! Names: which texts are names, which names are taken, and what to say about unknown ones.
+
+use super::formula::greek;
+use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
+
+/// Whether `text` can be declared as a name, for `what` the name is of; `simulated` if there is a
+/// simulation, in which `t` is time.
+pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagnostic> {
+    if !is_identifier(text) {
+        return Err(invalid(text, span));
+    }
+    let meaning = match coordinate(text) {
+        Some(meaning) => meaning,
+        None if text == "t" && simulated => "time in the simulation",
+        None => return Ok(()),
+    };
+    let message = format!("`{text}` is reserved for {meaning}");
+    let other = match text.find(|character: char| character.is_ascii_digit()) {
+        Some(at) => format!("{}_{}", &text[..at], &text[at..]),
+        None => format!("{text}_0"),
+    };
+    Err(Diagnostic::error(Code::ReservedName, span, message).help(format!("choose another name, as `{other}`")))
+}
+
+fn is_identifier(text: &str) -> bool {
+    let starts = text.starts_with(|character: char| character.is_ascii_alphabetic() || character == '_');
+    // A lone underscore is no identifier in the language that is emitted.
+    starts && text != "_" && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+fn invalid(text: &str, span: Span) -> Diagnostic {
+    let message = format!("{} is not a name", quoted(text));
+    let diagnostic = Diagnostic::error(Code::InvalidName, span, message);
+    let spelled: String =
+        text.chars().map(|character| greek(character).map_or_else(|| character.to_string(), str::to_owned)).collect();
+    if is_identifier(&spelled) {
+        return diagnostic.help(format!("spell it out: `{spelled}`"));
+    }
+    diagnostic.help("use ASCII letters, digits and underscores, beginning with a letter")
+}
+
+/// What the generator itself calls by this name.
+fn coordinate(name: &str) -> Option<&'static str> {
+    let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
+    if letters.len() == name.len() {
+        return None;
+    }
+    match letters {
+        "z" => Some("a coordinate"),
+        "chi" => Some("the dynamic extension"),
+        "theta" => Some("an unknown parameter"),
+        "xi" | "Psi" => Some("the generalised cascade"),
+        _ => None,
+    }
+}
+
+/// The diagnostic of a name that is not among the `candidates`, which are known in its place.
+pub fn unknown_name<'a>(name: &str, span: Span, candidates: impl IntoIterator<Item = &'a str>) -> Diagnostic {
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    let message = format!("unknown name {}", quoted(name));
+    let diagnostic = Diagnostic::error(Code::UnknownName, span, message);
+    match nearest(name, candidates.iter().copied()) {
+        Some(near) => diagnostic.suggest(Some(near)),
+        None => diagnostic.help(format!("names known here are {}", listed(candidates))),
+    }
+}

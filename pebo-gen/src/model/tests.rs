@@ -1,0 +1,132 @@
+//! Model files, right and wrong.
+
+mod hostile;
+mod mistakes;
+
+use super::{Hold, Model, Scale};
+use crate::source::{Diagnostic, Source};
+
+/// The design's example.
+const CUK: &str = "\
+model: cuk
+title: DC-DC Cuk converter, inductor currents from capacitor voltages
+parameters: {L1: 10e-3, C2: 22e-6, L3: 10e-3, C4: 22.9e-6, G: 0.0447, E: 12}
+x: [i1, i3]
+y: [v2, v4]
+u: [d]
+assume: [L1 > 0, 0 < d < 1]
+f_x: {i3: -(d*v2 + v4)/L3, i1: (E - (1 - d)*v2)/L1}
+f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}
+phi: [i1, i3]
+";
+
+/// Every key of the schema.
+const REST: &str = "\
+reference: a paper
+w: [omega]
+define: {p: v2*i1}
+phi_left: {i3: z2}
+identities: [i1 - i1]
+angles: {i1: 2*pi}
+observer: {estimator: gradient, gain: 1e7, filter: 500, hold: first-order, extension: [0, 1]}
+simulation:
+  duration: 0.5
+  step: 1e-6
+  initial: {i1: 0, v2: E}
+  signals: {V_d: {0: 25, 0.2: 30*t}, V: 1}
+  define: {power: V_d*hat(i1)}
+  control: {d: V_d/(V_d + E)}
+  feedback: copy
+  baselines:
+    copy:
+      state: {a: -a + v2 - hat(i1)}
+      initial: {a: v2}
+      estimate: {i1: a}
+  panels:
+    - {title: error, unit: A, curves: [hat(i1) - i1, v2], scale: log}
+    - {title: duty, curves: [d]}
+";
+
+fn source(text: &str) -> Source {
+    Source::new("model.yaml", text).expect("the text is small")
+}
+
+fn parse(text: &str) -> Result<Model, Vec<Diagnostic>> {
+    Model::parse(&source(text))
+}
+
+#[test]
+fn the_example_is_read() {
+    let model = parse(CUK).expect("it is right");
+    assert_eq!(model.name.value, "cuk");
+    let names: Vec<&str> = model.names().map(|name| name.value.as_str()).collect();
+    assert_eq!(names, ["L1", "C2", "L3", "C4", "G", "E", "i1", "i3", "v2", "v4", "d"]);
+    let rates: Vec<&str> = model.f_x.iter().map(|entry| entry.name.value.as_str()).collect();
+    assert_eq!(rates, ["i1", "i3"], "rates are in the order of x");
+    let value = model.parameters[0].value.as_ref().map(|value| value.value.text());
+    assert_eq!(value, Some("10e-3"));
+    assert!(model.phi_left.is_empty() && model.simulation.is_none());
+}
+
+#[test]
+fn every_key_is_read() {
+    let model = parse(&(CUK.to_owned() + REST)).expect("it is right");
+    assert_eq!(model.phi_left[0].name.value, "i3");
+    assert_eq!(model.observer.gain[0].value.text(), "1e7");
+    assert_eq!(model.observer.hold.map(|hold| hold.value), Some(Hold::FirstOrder));
+    assert_eq!(model.observer.extension.len(), 2);
+    let simulation = model.simulation.expect("it is there");
+    let starts: Vec<f64> = simulation.signals[0].value.iter().map(|piece| piece.from.value.to_f64()).collect();
+    assert_eq!(starts, [0.0, 0.2]);
+    assert_eq!(simulation.signals[1].value.len(), 1);
+    assert_eq!(simulation.baselines[0].value.state.len(), 1);
+    let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale).collect();
+    assert_eq!(scales, [Scale::Log, Scale::Linear]);
+}
+
+#[test]
+fn every_name_and_formula_has_its_place() {
+    let text = CUK.to_owned() + REST;
+    let source = source(&text);
+    let model = Model::parse(&source).expect("it is right");
+    for name in model.names() {
+        assert_eq!(source.slice(name.span), name.value);
+    }
+    let rates = model.f_x.iter().chain(&model.f_y).chain(&model.define);
+    for (name, span) in rates.flat_map(|entry| entry.value.names()) {
+        assert_eq!(source.slice(span), name);
+    }
+    assert_eq!(source.slice(model.phi[1].span), "i3");
+    assert_eq!(source.slice(model.assume[1].span), "0 < d < 1");
+}
+
+#[test]
+fn parameters_may_lack_values() {
+    for parameters in ["[L, R]", "{L: null, R: ~}", "{L: , R: }", "{L, R}"] {
+        let text = format!("model: m\nx: [a]\ny: [v]\nparameters: {parameters}\nf_x: {{a: v/L}}\nphi: [a]\n");
+        let model = parse(&text).expect(parameters);
+        assert_eq!(model.parameters.len(), 2, "{parameters}");
+        assert!(model.parameters.iter().all(|entry| entry.value.is_none()), "{parameters}");
+    }
+}
+
+#[test]
+fn names_are_free() {
+    // Functions, constants, words of Rust and of YAML, names that differ in case only.
+    let names = "[E, I, S, e, N, n, sin, hat, pi, t, fn, self, gen, y, no, theta, z, z1a, chi_1]";
+    let text = format!("model: type\nx: [a]\ny: [v]\nw: {names}\nf_x: {{a: sin*pi}}\nphi: [a]\n");
+    assert_eq!(parse(&text).map(|model| model.w.len()), Ok(19));
+}
+
+#[test]
+fn formulas_may_be_blocks() {
+    let text = "model: m\nx: [a]\ny: [v]\nf_x:\n  a: |\n    v +\n      v2x\nphi:\n- >-\n  a +\n  v\n";
+    let source = source(text);
+    let model = Model::parse(&source).expect("it is right");
+    let places: Vec<&str> = [&model.f_x[0].value, &model.phi[0]]
+        .into_iter()
+        .flat_map(|formula| formula.names())
+        .map(|(_, span)| source.slice(span))
+        .collect();
+    assert_eq!(places, ["v", "v2x", "a", "v"]);
+}

@@ -1,0 +1,116 @@
+//! One mistake, one diagnostic, at the right place.
+
+use super::{CUK, REST, parse};
+use crate::source::Code::{self, *};
+
+/// The example with one text replaced: the only diagnostic's code, and what it underlines.
+fn diagnose(from: &str, to: &str) -> (Code, String) {
+    let text = CUK.to_owned() + REST;
+    assert!(text.contains(from), "{from}");
+    let text = text.replacen(from, to, 1);
+    let found = parse(&text).expect_err(to);
+    assert_eq!(found.len(), 1, "{to}: {found:#?}");
+    assert!(found[0].help.is_some(), "{to}");
+    (found[0].code, text[found[0].primary.span.range()].to_owned())
+}
+
+#[test]
+fn each_gives_one_diagnostic() {
+    let cases = [
+        // Keys.
+        ("title:", "titel:", UnknownKey, "titel"),
+        ("hold:", "holt:", UnknownKey, "holt"),
+        ("scale:", "sc:", UnknownKey, "sc"),
+        ("title:", "model:", DuplicateKey, "model"),
+        ("f_x: {i3:", "f_x: {i1: 0, i3:", DuplicateKey, "i1"),
+        ("x: [i1, i3]\n", "", MissingKey, "model"),
+        ("phi: [i1, i3]\n", "", MissingKey, "model"),
+        ("model: cuk\n", "", MissingKey, "title"),
+        ("title: error, ", "", MissingKey, "{unit: A, curves: [hat(i1) - i1, v2], scale: log}"),
+        ("title:", "lti: {A11: [[0]]}\ntitle:", ClassNotYet, "lti"),
+        // Shapes.
+        ("x: [i1, i3]", "x: {i1: 0, i3: 0}", WrongShape, "{i1: 0, i3: 0}"),
+        ("x: [i1, i3]", "x: i1", WrongShape, "i1"),
+        ("phi: [i1, i3]", "phi: i1", WrongShape, "i1"),
+        ("phi: [i1, i3]", "phi: [i1, [i3]]", WrongShape, "[i3]"),
+        ("phi: [i1, i3]", "phi: []", EmptyList, "[]"),
+        ("y: [v2, v4]", "y: []", EmptyList, "[]"),
+        ("model: cuk", "model: [cuk]", WrongShape, "[cuk]"),
+        ("model: cuk", "model:", WrongShape, ""),
+        ("E: 12", "E: [12]", WrongShape, "[12]"),
+        ("E: 12", "E: 1/3", MalformedNumber, "1/3"),
+        ("E: 12", "E: 1e400", NumberTooLarge, "1e400"),
+        ("u: [d]", "u: [d,]\nphi_left: 3", WrongShape, "3"),
+        ("step: 1e-6", "step: fast", MalformedNumber, "fast"),
+        ("step: 1e-6", "step: -1", NumberOutOfRange, "-1"),
+        ("filter: 500", "filter: 0", NumberOutOfRange, "0"),
+        ("gain: 1e7", "gain: [1e7, -2]", NumberOutOfRange, "-2"),
+        ("0.2: 30*t", "0: 30*t, -1: 2", NumberOutOfRange, "-1"),
+        ("hold: first-order", "hold: first_order", WrongChoice, "first_order"),
+        ("feedback: copy", "feedback: cpoy", WrongChoice, "cpoy"),
+        // YAML.
+        ("E: 12", "E: &e 12", YamlFeature, "12"),
+        ("E: 12", "E: !!int 12", YamlFeature, "12"),
+        ("phi: [i1, i3]", "phi: [i1, *i3]", YamlFeature, "*i3"),
+        ("phi: [i1, i3]", "phi: [i1, \"atan2(i3\", ? [a] : b]", WrongShape, "[a]"),
+        // Names.
+        ("model: cuk", "model: 3cuk", InvalidName, "3cuk"),
+        ("w: [omega]", "w: [ω]", InvalidName, "ω"),
+        ("w: [omega]", "w: [a b]", InvalidName, "a b"),
+        ("w: [omega]", "w: [_]", InvalidName, "_"),
+        ("w: [omega]", "w: [z12]", ReservedName, "z12"),
+        ("w: [omega]", "w: [theta1]", ReservedName, "theta1"),
+        ("w: [omega]", "w: [t]", ReservedName, "t"),
+        ("w: [omega]", "w: [E]", DuplicateName, "E"),
+        ("define: {p:", "define: {d:", DuplicateName, "d"),
+        ("{V_d: {", "{E: {", DuplicateName, "E"),
+        ("state: {a:", "state: {V: 0, a:", DuplicateName, "V"),
+        // Entries.
+        ("f_x: {i3: -(d*v2 + v4)/L3, ", "f_x: {", MissingEntry, "i3"),
+        ("f_x: {i3:", "f_x: {omega: 0, i3:", UnknownEntry, "omega"),
+        ("f_y: {v2:", "f_y: {V2:", UnknownEntry, "V2"),
+        ("control: {d:", "control: {D:", UnknownEntry, "D"),
+        ("estimate: {i1:", "estimate: {i2:", UnknownEntry, "i2"),
+        ("initial: {a:", "initial: {b:", UnknownEntry, "b"),
+        // Formulas.
+        ("phi: [i1, i3]", "phi: [i1, 2 i3]", ImplicitMultiplication, "2 i3"),
+        ("phi: [i1, i3]", "phi: [i1, atan2(i1, v2)/G]", UnclosedParenthesis, "atan2(i1, v2)/G"),
+        ("phi_left: {i3: z2}", "phi_left: {i3: atan2(z2, z1)}", UnclosedParenthesis, "atan2(z2, z1)"),
+        ("phi: [i1, i3]", "phi: [i1, ]\nidentities: []", DuplicateKey, "identities"),
+        ("phi: [i1, i3]", "phi: [i1, hat(i3)]", MisplacedEstimate, "hat"),
+        ("V: 1}", "V: hat(i1)}", MisplacedEstimate, "hat"),
+        ("assume: [L1 > 0", "assume: [L1", ComparisonExpected, "L1"),
+        ("d*v2 + v4", "d*v2 + + v4", UnexpectedToken, "+"),
+        ("f_x: {i3: -(d*v2 + v4)/L3", "f_x: {i3: ", WrongShape, ""),
+    ];
+    for (from, to, code, underlined) in cases {
+        assert_eq!(diagnose(from, to), (code, underlined.to_owned()), "{to}");
+    }
+}
+
+#[test]
+fn independent_mistakes_are_all_found() {
+    let text = CUK
+        .replace("title", "titel")
+        .replace("E: 12", "E: x")
+        .replace("u: [d]", "u: [d, d]")
+        .replace("*v2 + v4", "v2")
+        .replace("i1:", "i2:");
+    let codes: Vec<Code> = parse(&text).expect_err("it is wrong").iter().map(|found| found.code).collect();
+    let expected = [UnknownKey, MalformedNumber, MissingEntry, DuplicateName, UnknownEntry];
+    assert_eq!(codes, expected);
+}
+
+#[test]
+fn help_names_the_nearest() {
+    let help = |from: &str, to: &str| {
+        let found = parse(&CUK.replacen(from, to, 1)).expect_err(to);
+        found[0].help.as_deref().unwrap_or_default().to_owned()
+    };
+    assert_eq!(help("parameters", "paramters"), "did you mean `parameters`?");
+    assert_eq!(help("f_y: {v2", "f_y: {v22"), "did you mean `v2`?");
+    assert_eq!(help("x: [i1", "x: [λ"), "spell it out: `lambda`");
+    assert_eq!(help("[i1, i3]\ny", "i1\ny"), "write for example `x: [i1, i3]`");
+    let unknown = super::super::unknown_name("v_2", crate::source::Span::default(), ["v2", "d"]);
+    assert_eq!(unknown.help.as_deref(), Some("did you mean `v2`?"));
+}

@@ -1,0 +1,186 @@
+//! The types of a model as written.
+//!
+//! These are the sections of a model file, in its words. Lists keep the order of the file, except
+//! where [`Model::ordered`] says otherwise.
+
+use serde::Deserialize;
+
+use super::formula::{Comparison, Decimal, Formula};
+use crate::source::Span;
+
+/// A value and where it stands.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Spanned<T> {
+    /// The value.
+    pub value: T,
+    /// Its place.
+    pub span: Span,
+}
+
+/// A named value: `name: value` in a map.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Entry<T> {
+    /// The name.
+    pub name: Spanned<String>,
+    /// The value.
+    pub value: T,
+}
+
+/// A model.
+///
+/// A list that the file leaves out is empty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Identifier: the emitted module's name.
+    pub name: Spanned<String>,
+    /// One line for people.
+    pub title: Option<Spanned<String>>,
+    /// Where the model is from.
+    pub reference: Option<Spanned<String>>,
+    /// Parameters, with their values where these are given already.
+    pub parameters: Vec<Entry<Option<Spanned<Decimal>>>>,
+    /// Unmeasured states.
+    pub x: Vec<Spanned<String>>,
+    /// Measured outputs.
+    pub y: Vec<Spanned<String>>,
+    /// Inputs.
+    pub u: Vec<Spanned<String>>,
+    /// Unmeasured signals that are not estimated: no result may depend on them.
+    pub w: Vec<Spanned<String>>,
+    /// Named sub-expressions, each of which may use those before it.
+    pub define: Vec<Entry<Formula>>,
+    /// Inequalities that hold where the plant operates.
+    pub assume: Vec<Comparison>,
+    /// Rates of x: one for each, in the order of `x`.
+    pub f_x: Vec<Entry<Formula>>,
+    /// Rates of y, in the order of `y`; those that nothing needs may be absent.
+    pub f_y: Vec<Entry<Formula>>,
+    /// The transform, component by component.
+    pub phi: Vec<Formula>,
+    /// The left inverse, in the order of `x`: of all, of some (a partial observer) or of none (to
+    /// be derived).
+    pub phi_left: Vec<Entry<Formula>>,
+    /// Expressions that are zero by physics.
+    pub identities: Vec<Formula>,
+    /// States that are angles, with their periods.
+    pub angles: Vec<Entry<Formula>>,
+    /// How the observer is built.
+    pub observer: Observer,
+    /// What to simulate.
+    pub simulation: Option<Simulation>,
+}
+
+/// How the observer is built; what is left out, the generator chooses.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Observer {
+    /// The estimator's name, as `gradient`.
+    pub estimator: Option<Spanned<String>>,
+    /// One gain for each unknown, or one for all.
+    pub gain: Vec<Spanned<Decimal>>,
+    /// The filters' corner frequency in rad/s.
+    pub filter: Option<Spanned<Decimal>>,
+    /// How samples are joined to signals.
+    pub hold: Option<Spanned<Hold>>,
+    /// The extension chi at the start: one value each; empty for zeros.
+    pub extension: Vec<Spanned<Decimal>>,
+}
+
+/// How samples are joined to signals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hold {
+    /// Constant between samples.
+    ZeroOrder,
+    /// Straight lines between samples.
+    FirstOrder,
+}
+
+/// A closed loop to simulate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// How long, in seconds.
+    pub duration: Option<Spanned<Decimal>>,
+    /// Sampling period of observer and control, in seconds.
+    pub step: Option<Spanned<Decimal>>,
+    /// States x and outputs y at the start, in parameters.
+    pub initial: Vec<Entry<Formula>>,
+    /// Signals in time, in `t` and parameters.
+    pub signals: Vec<Entry<Vec<Piece>>>,
+    /// Named sub-expressions for the control law, each of which may use those before it.
+    pub define: Vec<Entry<Formula>>,
+    /// The control law: inputs in outputs, estimates, signals, parameters and `t`.
+    pub control: Vec<Entry<Formula>>,
+    /// Whose estimates the control law sees: `observer` (so also if absent), `truth`, or a
+    /// baseline.
+    pub feedback: Option<Spanned<String>>,
+    /// Other observers to compare with.
+    pub baselines: Vec<Entry<Baseline>>,
+    /// The parts of the figure.
+    pub panels: Vec<Panel>,
+}
+
+/// A formula of time that holds from some time on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Its beginning, in seconds; the pieces of a signal begin one after the other.
+    pub from: Spanned<Decimal>,
+    /// The formula.
+    pub formula: Formula,
+}
+
+/// An observer given by its equations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baseline {
+    /// Its states with their rates; `hat(x)` is its own estimate.
+    pub state: Vec<Entry<Formula>>,
+    /// Its states at the start, in outputs and parameters; zero where absent.
+    pub initial: Vec<Entry<Formula>>,
+    /// Its estimates of x, in its states, outputs, inputs and parameters.
+    pub estimate: Vec<Entry<Formula>>,
+}
+
+/// A part of the figure: curves over time on one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// Its heading.
+    pub title: Spanned<String>,
+    /// The unit of the axis.
+    pub unit: Option<Spanned<String>>,
+    /// What to draw.
+    pub curves: Vec<Formula>,
+    /// The axis.
+    pub scale: Scale,
+}
+
+/// The divisions of an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// Equal differences are equally far apart.
+    #[default]
+    Linear,
+    /// Equal quotients are equally far apart; of the curves, magnitudes are drawn.
+    Log,
+}
+
+impl Model {
+    /// The model with the entries of `f_x`, `f_y` and `phi_left` in the order of their states.
+    #[must_use]
+    pub(super) fn ordered(mut self) -> Self {
+        let order = |entries: &mut Vec<Entry<Formula>>, states: &[Spanned<String>]| {
+            entries.sort_by_cached_key(|entry| states.iter().position(|state| state.value == entry.name.value));
+        };
+        order(&mut self.f_x, &self.x);
+        order(&mut self.f_y, &self.y);
+        order(&mut self.phi_left, &self.x);
+        self
+    }
+
+    /// The names of the model: parameters, x, y, u, w and definitions, in this order.
+    pub fn names(&self) -> impl Iterator<Item = &Spanned<String>> {
+        let parameters = self.parameters.iter().map(|entry| &entry.name);
+        let signals = [&self.x, &self.y, &self.u, &self.w].into_iter().flatten();
+        parameters.chain(signals).chain(self.define.iter().map(|entry| &entry.name))
+    }
+}

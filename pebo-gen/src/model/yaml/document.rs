@@ -1,0 +1,78 @@
+//! A model file with formulas still as text: what serde decodes.
+//!
+//! The types mirror the key tables of [`schema`](super::schema); a test decodes a file that has
+//! every key. Sections without formulas are the model's own types.
+
+use serde::Deserialize;
+
+use crate::model::formula::Decimal;
+use crate::model::written::{Entry, Observer, Scale, Spanned};
+
+/// A text with its place: a name, a title, a formula.
+pub(super) type Text = Spanned<String>;
+
+/// The file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Document {
+    pub(super) model: Option<Text>,
+    pub(super) title: Option<Text>,
+    pub(super) reference: Option<Text>,
+    pub(super) parameters: Vec<Entry<Option<Spanned<Decimal>>>>,
+    pub(super) x: Vec<Text>,
+    pub(super) y: Vec<Text>,
+    pub(super) u: Vec<Text>,
+    pub(super) w: Vec<Text>,
+    pub(super) define: Vec<Entry<Text>>,
+    pub(super) assume: Vec<Text>,
+    pub(super) f_x: Vec<Entry<Text>>,
+    pub(super) f_y: Vec<Entry<Text>>,
+    pub(super) phi: Vec<Text>,
+    pub(super) phi_left: Vec<Entry<Text>>,
+    pub(super) identities: Vec<Text>,
+    pub(super) angles: Vec<Entry<Text>>,
+    pub(super) observer: Observer,
+    pub(super) simulation: Option<Simulation>,
+}
+
+/// The section `simulation`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Simulation {
+    pub(super) duration: Option<Spanned<Decimal>>,
+    pub(super) step: Option<Spanned<Decimal>>,
+    pub(super) initial: Vec<Entry<Text>>,
+    pub(super) signals: Vec<Entry<Vec<Piece>>>,
+    pub(super) define: Vec<Entry<Text>>,
+    pub(super) control: Vec<Entry<Text>>,
+    pub(super) feedback: Option<Text>,
+    pub(super) baselines: Vec<Entry<Baseline>>,
+    pub(super) panels: Vec<Panel>,
+}
+
+/// A piece of a signal.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Piece {
+    pub(super) from: Spanned<Decimal>,
+    pub(super) formula: Text,
+}
+
+/// An entry of `baselines`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Baseline {
+    pub(super) state: Vec<Entry<Text>>,
+    pub(super) initial: Vec<Entry<Text>>,
+    pub(super) estimate: Vec<Entry<Text>>,
+}
+
+/// An entry of `panels`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Panel {
+    pub(super) title: Option<Text>,
+    pub(super) unit: Option<Text>,
+    pub(super) curves: Vec<Text>,
+    pub(super) scale: Option<Spanned<Scale>>,
+}

@@ -1,0 +1,118 @@
+//! A document's texts to formulas.
+//!
+//! In: a [`Document`]. Out: the [`Model`] that it is. A formula that does not parse gets its
+//! diagnostic and is `0` from there on, so that its entry is not missing as well.
+
+use super::document::{self, Document, Text};
+use crate::model::formula::{Comparison, Decimal, Estimates, Formula, Places, Term, parse_comparison, parse_formula};
+use crate::model::written::{Baseline, Entry, Model, Panel, Piece, Simulation};
+use crate::source::{Diagnostics, Source};
+
+/// Parses every formula of the document; nothing if the model has no name.
+pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagnostics) -> Option<Model> {
+    let mut pass = Pass { source, diagnostics, estimates: Estimates::Refused };
+    let define = pass.entries(document.define);
+    let assume = document.assume.iter().filter_map(|text| pass.comparison(text)).collect();
+    let f_x = pass.entries(document.f_x);
+    let f_y = pass.entries(document.f_y);
+    let phi = pass.list(&document.phi);
+    let phi_left = pass.entries(document.phi_left);
+    let identities = pass.list(&document.identities);
+    let angles = pass.entries(document.angles);
+    let simulation = document.simulation.map(|simulation| pass.simulation(simulation));
+    Some(Model {
+        name: document.model?,
+        title: document.title,
+        reference: document.reference,
+        parameters: document.parameters,
+        x: document.x,
+        y: document.y,
+        u: document.u,
+        w: document.w,
+        define,
+        assume,
+        f_x,
+        f_y,
+        phi,
+        phi_left,
+        identities,
+        angles,
+        observer: document.observer,
+        simulation,
+    })
+}
+
+struct Pass<'a> {
+    source: &'a Source,
+    diagnostics: &'a mut Diagnostics,
+    /// Whether `hat()` has a meaning in the section at hand.
+    estimates: Estimates,
+}
+
+impl Pass<'_> {
+    fn formula(&mut self, text: &Text) -> Formula {
+        let places = Places::align(&text.value, text.span, self.source);
+        let parsed = parse_formula(&text.value, &places, self.estimates);
+        self.diagnostics
+            .keep(parsed)
+            .unwrap_or_else(|| Formula { span: text.span, term: Term::Number(Decimal::zero()) })
+    }
+
+    fn comparison(&mut self, text: &Text) -> Option<Comparison> {
+        let places = Places::align(&text.value, text.span, self.source);
+        self.diagnostics.keep(parse_comparison(&text.value, &places))
+    }
+
+    fn list(&mut self, texts: &[Text]) -> Vec<Formula> {
+        texts.iter().map(|text| self.formula(text)).collect()
+    }
+
+    fn entries(&mut self, entries: Vec<Entry<Text>>) -> Vec<Entry<Formula>> {
+        let parse = |entry: Entry<Text>| Entry { value: self.formula(&entry.value), name: entry.name };
+        entries.into_iter().map(parse).collect()
+    }
+
+    fn simulation(&mut self, simulation: document::Simulation) -> Simulation {
+        let initial = self.entries(simulation.initial);
+        let signals = simulation.signals.into_iter().map(|signal| Entry {
+            name: signal.name,
+            value: signal.value.into_iter().map(|piece| self.piece(piece)).collect(),
+        });
+        let signals = signals.collect();
+        self.estimates = Estimates::Allowed;
+        Simulation {
+            duration: simulation.duration,
+            step: simulation.step,
+            initial,
+            signals,
+            define: self.entries(simulation.define),
+            control: self.entries(simulation.control),
+            feedback: simulation.feedback,
+            baselines: simulation
+                .baselines
+                .into_iter()
+                .map(|entry| Entry { value: self.baseline(entry.value), name: entry.name })
+                .collect(),
+            panels: simulation.panels.into_iter().filter_map(|panel| self.panel(panel)).collect(),
+        }
+    }
+
+    fn piece(&mut self, piece: document::Piece) -> Piece {
+        Piece { formula: self.formula(&piece.formula), from: piece.from }
+    }
+
+    fn baseline(&mut self, baseline: document::Baseline) -> Baseline {
+        Baseline {
+            state: self.entries(baseline.state),
+            initial: self.entries(baseline.initial),
+            estimate: self.entries(baseline.estimate),
+        }
+    }
+
+    /// Nothing if there is no title, whose diagnostic is out.
+    fn panel(&mut self, panel: document::Panel) -> Option<Panel> {
+        let curves = self.list(&panel.curves);
+        let scale = panel.scale.map(|scale| scale.value).unwrap_or_default();
+        Some(Panel { title: panel.title?, unit: panel.unit, curves, scale })
+    }
+}

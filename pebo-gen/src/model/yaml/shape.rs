@@ -1,0 +1,230 @@
+//! The tree against the schema.
+//!
+//! In: a [`Node`]. Out: a `serde_yaml` value in canonical form, which decodes to a
+//! [`Document`](super::document::Document) whatever the file was like. In this form
+//! - a scalar is a map `{value, span}`;
+//! - a map with names for keys is a list of `{name, value}`, in the order of the file;
+//! - a choice of notations is made: parameters are a map, one gain is a list of one, a signal is a
+//!   list of pieces;
+//! - what was faulty is absent, or `0` where a formula has to be, and its diagnostic is out.
+
+use serde_yaml::{Mapping, Value};
+
+use super::refusal;
+use super::schema::{Key, MODEL, Shape};
+use super::tree::{self, Content, Node};
+use crate::model::formula::Decimal;
+use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
+
+/// Fits the whole file to the schema; nothing if it is no map.
+pub(super) fn fit(root: &Node, diagnostics: &mut Diagnostics) -> Option<Value> {
+    let mut fitter = Fitter { diagnostics, example: "model: cuk" };
+    match &root.content {
+        Content::Map(entries) => {
+            // The line that names the model is where something is missing from the model.
+            let title = entries.iter().find(|(key, _)| key.text == "model").or(entries.first());
+            let place = title.map_or(root.span, |(key, _)| key.span);
+            Some(fitter.record(entries, MODEL, place))
+        }
+        Content::Null => {
+            fitter.diagnostics.push(refusal::empty());
+            None
+        }
+        _ => fitter.refuse(root, &Shape::Record(MODEL)),
+    }
+}
+
+struct Fitter<'a> {
+    diagnostics: &'a mut Diagnostics,
+    /// How the key at hand is written.
+    example: &'static str,
+}
+
+impl Fitter<'_> {
+    fn fit(&mut self, node: &Node, shape: &'static Shape) -> Option<Value> {
+        match (shape, &node.content) {
+            (Shape::Text | Shape::Formula, Content::Scalar(text)) => Some(spanned(text, node.span)),
+            (Shape::Number, Content::Scalar(text)) => self.number(text, node.span),
+            (Shape::Choice(words), Content::Scalar(text)) => self.choice(words, text, node.span),
+            (Shape::List(item) | Shape::OneOrMore(item), Content::List(items)) => {
+                Some(sequence(items.iter().map(|node| self.fit(node, item))))
+            }
+            (Shape::OneOrMore(item), Content::Scalar(_)) => Some(sequence([self.fit(node, item)])),
+            (Shape::Map(shape), Content::Map(entries)) => Some(sequence(
+                entries.iter().map(|(key, node)| Some(entry(&key.text, key.span, self.fit(node, shape)?))),
+            )),
+            (Shape::Parameters, Content::Map(entries)) => Some(sequence(entries.iter().map(|(key, node)| {
+                let value = match node.content {
+                    Content::Null => None,
+                    _ => self.fit(node, &Shape::Number),
+                };
+                Some(entry(&key.text, key.span, value.unwrap_or(Value::Null)))
+            }))),
+            (Shape::Parameters, Content::List(items)) => Some(sequence(items.iter().map(|node| self.parameter(node)))),
+            (Shape::Signal, Content::Scalar(text)) => {
+                let start = spanned("0", node.span);
+                Some(sequence([Some(piece(start, spanned(text, node.span)))]))
+            }
+            (Shape::Signal, Content::Map(entries)) => Some(sequence(entries.iter().map(|(key, node)| {
+                let start = self.number(&key.text, key.span)?;
+                Some(piece(start, self.fit(node, &Shape::Formula)?))
+            }))),
+            (Shape::Record(keys), Content::Map(entries)) => Some(self.record(entries, keys, node.span)),
+            _ => self.refuse(node, shape),
+        }
+    }
+
+    /// A parameter in a plain list of names.
+    fn parameter(&mut self, node: &Node) -> Option<Value> {
+        match &node.content {
+            Content::Scalar(name) => Some(entry(name, node.span, Value::Null)),
+            _ => self.refuse(node, &Shape::Text),
+        }
+    }
+
+    fn number(&mut self, text: &str, span: Span) -> Option<Value> {
+        let number = self.diagnostics.keep(Decimal::parse(text, span))?;
+        Some(spanned(number.text(), span))
+    }
+
+    fn choice(&mut self, words: &[&'static str], text: &str, span: Span) -> Option<Value> {
+        if words.contains(&text) {
+            return Some(spanned(text, span));
+        }
+        let message = format!("{} is none of the choices", quoted(text));
+        self.diagnostics.push(
+            Diagnostic::error(Code::WrongChoice, span, message)
+                .help(format!("write one of {}", listed(words.iter().copied()))),
+        );
+        None
+    }
+
+    /// A map with known keys; `place` is where something is missing if it is.
+    fn record(&mut self, entries: &[(tree::Key, Node)], keys: &'static [Key], place: Span) -> Value {
+        let mut fields = Mapping::new();
+        let mut by_class = false;
+        for (name, node) in entries {
+            let Some(key) = keys.iter().find(|key| key.name == name.text) else {
+                self.diagnostics.push(unknown_key(&name.text, name.span, keys));
+                continue;
+            };
+            self.example = key.example;
+            if let Shape::Later = key.shape {
+                by_class = true;
+                self.diagnostics.push(not_yet(key.name, name.span));
+            } else if key.required && is_empty(node) {
+                let message = format!("`{}` is empty", key.name);
+                self.diagnostics.push(
+                    Diagnostic::error(Code::EmptyList, node.span, message)
+                        .help(format!("write for example `{}`", key.example)),
+                );
+            } else if let Some(value) = self.fit(node, &key.shape) {
+                fields.insert(key.name.into(), value);
+            }
+        }
+        // A class stands for the keys that it replaces.
+        for key in keys.iter().filter(|key| key.required && !by_class) {
+            if !entries.iter().any(|(name, _)| name.text == key.name) {
+                let message = format!("the key `{}` is missing", key.name);
+                self.diagnostics.push(
+                    Diagnostic::error(Code::MissingKey, place, message)
+                        .help(format!("add it, for example `{}`", key.example)),
+                );
+            }
+        }
+        Value::Mapping(fields)
+    }
+
+    /// The shape of a value is wrong: there is nothing, or a stand-in for a formula, so that the
+    /// entry it belongs to is not missing as well.
+    fn refuse(&mut self, node: &Node, shape: &Shape) -> Option<Value> {
+        let stand_in = matches!(shape, Shape::Formula).then(|| spanned("0", node.span));
+        let found = match &node.content {
+            Content::Null => "nothing".to_owned(),
+            Content::Scalar(text) => quoted(text),
+            Content::List(_) => "a list".to_owned(),
+            Content::Map(_) => "a map".to_owned(),
+            Content::Broken => return stand_in,
+        };
+        let message = format!("expected {}, found {found}", describe(shape));
+        self.diagnostics.push(
+            Diagnostic::error(Code::WrongShape, node.span, message)
+                .help(format!("write for example `{}`", self.example)),
+        );
+        stand_in
+    }
+}
+
+fn describe(shape: &Shape) -> String {
+    match shape {
+        Shape::Text => "a text".to_owned(),
+        Shape::Number => "a number".to_owned(),
+        Shape::Formula => "a formula".to_owned(),
+        Shape::Choice(words) => format!("one of {}", listed(words.iter().copied())),
+        Shape::List(item) => format!("a list of {}", plural(item)),
+        Shape::OneOrMore(item) => format!("{} or a list of {}", describe(item), plural(item)),
+        Shape::Map(value) => format!("a map from names to {}", plural(value)),
+        Shape::Parameters => "a map from names to numbers, or a list of names".to_owned(),
+        Shape::Signal => "a formula, or a map from start times to formulas".to_owned(),
+        Shape::Record(keys) => {
+            format!("a map with keys of {}", listed(keys.iter().map(|key| key.name)))
+        }
+        Shape::Later => "a section".to_owned(),
+    }
+}
+
+fn plural(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Text => "names",
+        Shape::Number => "numbers",
+        Shape::Formula => "formulas",
+        Shape::Record(_) => "maps",
+        _ => "values",
+    }
+}
+
+fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
+    let names = || keys.iter().map(|key| key.name);
+    let valid = format!("valid keys here are {}", listed(names()));
+    let message = format!("unknown key {}", quoted(name));
+    let diagnostic = Diagnostic::error(Code::UnknownKey, span, message);
+    match nearest(name, names()) {
+        Some(near) => diagnostic.suggest(Some(near)).note(valid),
+        None => diagnostic.help(valid),
+    }
+}
+
+fn not_yet(class: &str, span: Span) -> Diagnostic {
+    let message = format!("models by class are not expanded yet: `{class}`");
+    Diagnostic::error(Code::ClassNotYet, span, message).help("write x, y, u, f_x, f_y and phi instead")
+}
+
+fn is_empty(node: &Node) -> bool {
+    match &node.content {
+        Content::List(items) => items.is_empty(),
+        Content::Map(entries) => entries.is_empty(),
+        _ => false,
+    }
+}
+
+/// The items that are there.
+fn sequence(items: impl IntoIterator<Item = Option<Value>>) -> Value {
+    Value::Sequence(items.into_iter().flatten().collect())
+}
+
+fn spanned(text: &str, span: Span) -> Value {
+    let place = fields([("start", span.start.into()), ("end", span.end.into())]);
+    fields([("value", text.into()), ("span", place)])
+}
+
+fn entry(name: &str, span: Span, value: Value) -> Value {
+    fields([("name", spanned(name, span)), ("value", value)])
+}
+
+fn piece(from: Value, formula: Value) -> Value {
+    fields([("from", from), ("formula", formula)])
+}
+
+fn fields<const N: usize>(entries: [(&str, Value); N]) -> Value {
+    Value::Mapping(entries.into_iter().map(|(key, value)| (key.into(), value)).collect())
+}

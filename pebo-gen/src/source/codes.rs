@@ -1,0 +1,194 @@
+//! The one table of diagnostic codes.
+//!
+//! A row is a variant, the name that programs and people see, a title, and the explanation that
+//! `pebo-gen explain CODE` prints. To add a code is to add a row; a code that was released keeps
+//! its name.
+
+macro_rules! codes {
+    ($($(#[$group:meta])* $variant:ident $name:literal $title:literal $explanation:literal)*) => {
+        /// What kind of mistake or finding a diagnostic is about.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Code {
+            $(#[doc = concat!("`", $name, "`: ", $title, ".")] $variant,)*
+        }
+
+        impl Code {
+            /// Every code, in the order of the table.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            /// The name, as in `error[unknown-key]`.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),* }
+            }
+
+            /// The title: a few words.
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$variant => $title),* }
+            }
+
+            /// The explanation: a paragraph or two.
+            pub fn explanation(self) -> &'static str {
+                match self { $(Self::$variant => $explanation),* }
+            }
+
+            /// The code of that name.
+            pub fn from_name(name: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|code| code.name() == name)
+            }
+        }
+    };
+}
+
+codes! {
+    // Files.
+
+    CannotRead "cannot-read" "a file cannot be read"
+        "The operating system refused to open or read the file; the message has its reason. Check the path and the \
+         permissions."
+    CannotWrite "cannot-write" "a file cannot be written"
+        "The operating system refused to create or write the file; the message has its reason. A file is written \
+         whole or not at all: an older file of that name is unchanged."
+    NotText "not-text" "a file is not UTF-8 text"
+        "A model file is YAML text encoded in UTF-8. This file has a byte sequence that is not UTF-8: it is binary, \
+         or it was saved in another encoding."
+    FileTooLarge "file-too-large" "a file is larger than a model can be"
+        "Model files are limited to one megabyte. Models written by hand have a few kilobytes."
+
+    // YAML.
+
+    EmptyFile "empty-file" "a model file has no content"
+        "The file is empty, or holds only comments. A model is a map with at least the keys model, x, y, f_x and phi."
+    YamlSyntax "yaml-syntax" "the text is not YAML"
+        "The YAML parser stopped here. Frequent causes: a tab in the indentation; a missing space after a colon; a \
+         formula that begins with a character that means something to YAML (* & ! { [ % @ ` | >) and needs quotes; a \
+         bracket or quote that is never closed; a formula with a comma inside { } or [ ], which needs quotes too."
+    YamlFeature "yaml-feature" "a feature of YAML that model files do without"
+        "Anchors (&name), aliases (*name), tags (!name), merge keys, directives (%) and several documents in one file \
+         are refused: a model says what it means where it means it. A formula that begins with * & or ! needs quotes."
+    NestedTooDeep "nested-too-deep" "lists or maps are nested too deep"
+        "No part of a model file nests more than a handful of levels."
+    TooManyValues "too-many-values" "the file has too many values"
+        "The number of names, numbers and formulas in one model file is limited, so that checking it ends in time."
+    DuplicateKey "duplicate-key" "a key occurs twice in one map"
+        "YAML leaves open which of two equal keys counts. Remove one of them."
+
+    // The shape of a model file.
+
+    UnknownKey "unknown-key" "a key that model files do not have"
+        "The help lists the keys that are valid in this place. Keys are written exactly so: case matters."
+    MissingKey "missing-key" "a required key is absent"
+        "A model needs model, x, y, f_x and phi; some of the nested maps have required keys of their own."
+    WrongShape "wrong-shape" "a value has the wrong shape"
+        "A key expects a name, a number, a formula, a list or a map, and found another of these."
+    WrongChoice "wrong-choice" "a word that is none of the choices"
+        "The key accepts only the words that the help lists."
+    EmptyList "empty-list" "a list must not be empty"
+        "A model has at least one unmeasured state, one output and one component of phi."
+    ClassNotYet "class-not-yet" "a model class that this version does not expand yet"
+        "Models may be written by class as lti, mechanical or electromechanical. This version does not expand these \
+         classes: write x, y, u, f_x, f_y and phi instead."
+
+    // Names.
+
+    InvalidName "invalid-name" "a text that is not a name"
+        "A name has ASCII letters, digits and underscores, and does not begin with a digit. Greek letters are spelled \
+         out, as lambda_m."
+    ReservedName "reserved-name" "a name that the generator needs itself"
+        "z1, z2, .. are the coordinates, chi1, .. the dynamic extension, theta1, .. the unknown parameters, xi1, .. and \
+         Psi11, .. those of the generalised cascade; t is time where a simulation is given. A declared quantity of \
+         that name would make formulas ambiguous. All other names are free, also E, I, S, e, pi and sin."
+    DuplicateName "duplicate-name" "a name is declared twice"
+        "Parameters, states, outputs, inputs, unmeasured signals and definitions share one space of names."
+    UnknownName "unknown-name" "a name that is not declared"
+        "A formula uses a name that is neither declared in the model nor known in this place. Names are declared under \
+         parameters, x, y, u, w or define; case matters."
+    MissingEntry "missing-entry" "a map lacks an entry for a declared name"
+        "Every unmeasured state needs its rate under f_x."
+    UnknownEntry "unknown-entry" "a map has an entry for a name that does not belong there"
+        "The entries of f_x and phi_left are for states x, those of f_y for outputs y, those of control for inputs u."
+
+    // Numbers.
+
+    MalformedNumber "malformed-number" "a text that is not a number"
+        "A number is written with decimal digits, an optional point and an optional exponent, as 12, 0.5 or 22e-6. It \
+         is read exactly: 0.1 is one tenth."
+    NumberTooLarge "number-too-large" "a number is out of range"
+        "Numbers have at most 400 digits and an exponent between -308 and 308: beyond that the emitted code could not \
+         hold them."
+    NumberOutOfRange "number-out-of-range" "a setting has an impossible value"
+        "Durations, steps, gains and filter frequencies are positive; start times ascend."
+
+    // Formulas.
+
+    EmptyFormula "empty-formula" "a formula is missing"
+        "A formula was expected and nothing is there. Write 0 for zero."
+    UnexpectedCharacter "unexpected-character" "a character that formulas do not have"
+        "Formulas have names, numbers, + - * / ^ (or **), parentheses and commas between arguments."
+    UnexpectedToken "unexpected-token" "a formula goes on in an unexpected way"
+        "The parser read a formula up to here and cannot make sense of what follows."
+    UnclosedParenthesis "unclosed-parenthesis" "a parenthesis is not closed"
+        "In a model file, a comma inside { } or [ ] ends a formula that is not quoted: write \"atan2(a, b)\" there."
+    ImplicitMultiplication "implicit-multiplication" "two factors without an operator"
+        "Multiplication is written: 2*x, not 2 x."
+    UnknownFunction "unknown-function" "a function that does not exist"
+        "The functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log (ln) sqrt abs. A name followed by \
+         an opening parenthesis is a call; a product is written with *."
+    ArgumentCount "argument-count" "a function with the wrong number of arguments"
+        "atan2 takes two arguments, all other functions take one."
+    MisplacedEstimate "misplaced-estimate" "hat() where there is no estimate"
+        "hat(x) is the observer's estimate of the state x. It has a meaning in the control law, in the definitions, \
+         baselines and panels of a simulation, and nowhere else."
+    ComparisonExpected "comparison-expected" "an assumption without a comparison"
+        "An assumption compares formulas with < <= > >= or !=, as 0 < d < 1."
+    FormulaTooDeep "formula-too-deep" "a formula is nested too deep"
+        "Formulas are limited to 200 levels of operators, calls and parentheses; a sum of n terms has n levels. Name \
+         parts of the formula under define."
+    FormulaTooLarge "formula-too-large" "a formula is too large"
+        "Formulas are limited in length, and powers of powers in their total degree. Name parts of the formula under \
+         define."
+    ExponentTooLarge "exponent-too-large" "an exponent is too large"
+        "Constant exponents lie between -64 and 64: the algebra expands integer powers exactly."
+
+    // Meaning.
+
+    MisplacedName "misplaced-name" "a formula depends on what its place does not allow"
+        "The transform is a function of x and y, the left inverse one of z and y, a period one of parameters. A formula \
+         that depends on anything else, perhaps through a definition, cannot stand there."
+    DivisionByZero "division-by-zero" "a formula divides by zero"
+        "A denominator is zero whatever the values of the names in it are, so the formula has no value anywhere."
+    NoRealValue "no-real-value" "a formula has no real value"
+        "A constant is outside of the domain of the function it is put into: the logarithm of a number that is not \
+         positive, the root of a negative number, the inverse sine of a number beyond 1."
+    MissingRate "missing-rate" "a rate is needed that the model does not give"
+        "The transform phi uses an output whose derivative stands nowhere. Its own derivative along the plant, which \
+         must be h(y, u), then cannot be formed. Give the output's rate under f_y."
+
+    // Claims.
+
+    CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
+        "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone (or, for the \
+         generalised cascade, linear in phi besides). The residual shown remains for any choice, and the witness is a \
+         point where it is certainly not constant in x. Change phi, or let `pebo-gen solve` propose one."
+    CascadeUndecided "cascade-undecided" "the cascade claim is neither proved nor refuted"
+        "Claim C1 could not be decided; the obstacle names the expression that the algebra does not cover. Nothing is \
+         emitted without a proof."
+    LeftInverseRefuted "left-inverse-refuted" "phi_left does not invert phi"
+        "Claim C2: phi_left(phi(x, y), y) = x. The witness is a state that phi_left does not return. If it holds only \
+         up to a period, say so under angles; if only in a part of the state space, under assume."
+    LeftInverseUndecided "left-inverse-undecided" "the left inverse is neither proved nor refuted"
+        "Claim C2 could not be decided; the obstacle names what the algebra does not cover. An assumption on signs \
+         often decides roots."
+    LeftInverseUnderivable "left-inverse-underivable" "no left inverse was found"
+        "phi_left is absent and could not be derived from phi. Give it under phi_left; if phi does not determine x, \
+         no left inverse exists."
+    RegressionNonlinear "regression-nonlinear" "the outputs do not give a linear regression"
+        "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them that \
+         can be listed. Another phi, or an identity for a static regression, may help."
+    RegressionUndecided "regression-undecided" "the regression is neither proved nor refuted"
+        "Claim C3 could not be decided; the obstacle names what the algebra does not cover."
+    NeverIdentifiable "never-identifiable" "the regressor never determines theta"
+        "Claim C4: there is a direction of theta, shown in the message, that no input makes visible in the outputs. \
+         Measure another signal, or choose a phi with fewer components."
+    IdentifiabilityUndecided "identifiability-undecided" "identifiability is neither proved nor refuted"
+        "Claim C4 could not be decided; the obstacle says which rank is unknown."
+}

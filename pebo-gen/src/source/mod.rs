@@ -1,0 +1,26 @@
+//! Texts, places in them, and what there is to say about them.
+//!
+//! In: bytes. Out: a [`Source`], a UTF-8 text of bounded size with a name; and [`Diagnostic`]s,
+//! which are data with a [`Span`] into that text. After this layer a place is a byte range: lines
+//! and columns exist only where a diagnostic is printed, as a picture ([`render()`]) or as a JSON
+//! object ([`Located`]).
+//!
+//! This layer knows neither model files nor formulas; it holds the one table of [`Code`]s that
+//! every layer uses.
+
+mod codes;
+mod diagnostic;
+mod render;
+mod span;
+mod spelling;
+mod text;
+
+#[cfg(test)]
+mod tests;
+
+pub use codes::Code;
+pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
+pub use render::{Colour, Located, render};
+pub use span::Span;
+pub use spelling::{listed, nearest, quoted};
+pub use text::{Position, SIZE_LIMIT, Source};

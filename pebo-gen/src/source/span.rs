@@ -1,0 +1,47 @@
+//! A place in a text.
+
+use std::ops::Range;
+
+/// A byte range of a [`Source`](super::Source)'s text: from `start` up to, not including, `end`.
+///
+/// An empty span is a point: where something is missing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+pub struct Span {
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+impl Span {
+    /// The span from `start` to `end`; an inverted pair is read as the point `start`.
+    pub fn new(start: usize, end: usize) -> Self {
+        Self { start, end: end.max(start) }
+    }
+
+    /// The point at `offset`.
+    pub fn point(offset: usize) -> Self {
+        Self { start: offset, end: offset }
+    }
+
+    /// The least span that covers both.
+    #[must_use]
+    pub fn to(self, other: Self) -> Self {
+        Self { start: self.start.min(other.start), end: self.end.max(other.end) }
+    }
+
+    /// Number of bytes.
+    pub fn len(self) -> usize {
+        self.end - self.start
+    }
+
+    /// Whether it is a point.
+    pub fn is_empty(self) -> bool {
+        self.start == self.end
+    }
+
+    /// The same range for slicing.
+    pub fn range(self) -> Range<usize> {
+        self.start..self.end
+    }
+}

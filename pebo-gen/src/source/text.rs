@@ -1,0 +1,115 @@
+//! A named text.
+
+use super::{Code, Diagnostic, Span};
+
+/// The largest text that is read, in bytes. The largest model written by hand is some thousand
+/// times smaller.
+pub const SIZE_LIMIT: usize = 1 << 20;
+
+/// The byte order mark.
+const MARK: char = '\u{feff}';
+
+/// A text with a name by which diagnostics call it: a path, or a word like `<stdin>`.
+///
+/// Holds: at most [`SIZE_LIMIT`] bytes; no byte order mark, which would take a column that no
+/// screen shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    name: String,
+    text: String,
+}
+
+/// A place as people count it: the first line is 1, and so is the first column, in characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl Source {
+    /// A text under a name, unless it is too large.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Result<Self, Diagnostic> {
+        let (name, mut text) = (name.into(), text.into());
+        admit(text.len())?;
+        if text.starts_with(MARK) {
+            text.drain(..MARK.len_utf8());
+        }
+        Ok(Self { name, text })
+    }
+
+    /// The text that `bytes` encode, unless it is too large or not UTF-8.
+    ///
+    /// A diagnostic from here has no text to underline: print it over [`Source::unread`].
+    pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Result<Self, Diagnostic> {
+        admit(bytes.len())?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Self::new(name, text),
+            Err(error) => {
+                let valid = error.utf8_error().valid_up_to();
+                let byte = error.as_bytes()[valid];
+                Err(Diagnostic::error(
+                    Code::NotText,
+                    Span::default(),
+                    format!("the file is not UTF-8 text: byte {valid} is 0x{byte:02x}"),
+                )
+                .help("give a model file, which is YAML text encoded in UTF-8"))
+            }
+        }
+    }
+
+    /// A name without a text: what to print a diagnostic over when the file could not be read.
+    pub fn unread(name: impl Into<String>) -> Self {
+        Self { name: name.into(), text: String::new() }
+    }
+
+    /// The name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The part of the text under `span`, shrunk to whole characters of the text where it does not
+    /// fit.
+    pub fn slice(&self, span: Span) -> &str {
+        &self.text[self.fit(span).range()]
+    }
+
+    /// `span`, shrunk until it lies on whole characters of the text.
+    pub(super) fn fit(&self, span: Span) -> Span {
+        let end = self.floor(span.end);
+        Span { start: self.floor(span.start).min(end), end }
+    }
+
+    /// The start of the character that holds the byte `offset`.
+    fn floor(&self, offset: usize) -> usize {
+        (0..=offset.min(self.text.len())).rev().find(|&at| self.text.is_char_boundary(at)).unwrap_or(0)
+    }
+
+    /// The line and column of a byte. A place past the end is the end.
+    pub fn position(&self, offset: usize) -> Position {
+        let before = &self.text[..self.floor(offset)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Position {
+            line: before.bytes().filter(|&byte| byte == b'\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+}
+
+fn admit(size: usize) -> Result<(), Diagnostic> {
+    if size <= SIZE_LIMIT {
+        return Ok(());
+    }
+    Err(Diagnostic::error(
+        Code::FileTooLarge,
+        Span::default(),
+        format!("the file has {size} bytes, more than the limit of {SIZE_LIMIT}"),
+    )
+    .help("give a model file; a model needs a few kilobytes"))
+}
