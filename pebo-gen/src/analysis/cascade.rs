@@ -1,0 +1,214 @@
+//! Claim 1, the cascade: the transform moves by known signals.
+//!
+//! In: the plant. Out: h(y, u) with d(phi)/dx f_x + d(phi)/dy f_y = h, or, where that fails, what keeps
+//! the derivative from being free of x, a point that shows it, and a mended transform if adding
+//! multiples of the outputs makes one (Ortega et al. 2015, eq. 3).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::combination::combine;
+use crate::cas::domain::Domain;
+use crate::cas::field::{Field, Obstacle};
+use crate::cas::zero::{Answer, decide, point_of};
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic, listed};
+
+use super::design::{Cascade, Claim, Class, Verdict, Witness};
+use super::gpebo;
+use super::tidy::{proved_shortest, shortest};
+
+/// One component of the derivative of the transform.
+enum Component {
+    /// Free of x.
+    Free(Expr),
+    /// Not free of x: the part that varies with x, and where it is seen.
+    Bound { residual: Expr, witness: Witness, through: Vec<Symbol> },
+    /// It could not be decided.
+    Open(Obstacle),
+}
+
+/// Proves or refutes the cascade.
+pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
+    let lie = plant.derivative_of_transform();
+    let components: Vec<Component> = lie.iter().map(|rate| component(plant, domain, *rate)).collect();
+    if components.iter().all(|c| matches!(c, Component::Free(_))) {
+        let h = components.iter().filter_map(Component::free).collect();
+        let result = Cascade { h, lambda: None, residual: Vec::new(), witness: None };
+        return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(result) });
+    }
+    if components.iter().any(|c| matches!(c, Component::Open(_))) {
+        for (index, component) in components.iter().enumerate() {
+            if let Component::Open(obstacle) = component {
+                found.push(undecided(plant, index, obstacle));
+            }
+        }
+        return (Class::Pebo, Claim { verdict: Verdict::Undecided, result: None });
+    }
+    let mends: Vec<Option<Expr>> = lie.iter().zip(&plant.phi).map(|(rate, phi)| mend(plant, domain, *rate, phi.expr)).collect();
+    let mendable = components.iter().zip(&mends).all(|(c, m)| matches!(c, Component::Free(_)) || m.is_some());
+    if !mendable && let Some(result) = gpebo::generalised(plant, domain, &lie) {
+        return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
+    }
+    let mut residual = Vec::new();
+    let mut first = None;
+    for (index, (component, mend)) in components.iter().zip(&mends).enumerate() {
+        residual.push(match component {
+            Component::Bound { residual, witness, through } => {
+                found.push(refuted(plant, index, *residual, witness, through, *mend));
+                first.get_or_insert_with(|| witness.clone());
+                *residual
+            }
+            _ => plant.arena.zero(),
+        });
+    }
+    let h = Vec::new();
+    let result = Cascade { h, lambda: None, residual, witness: first };
+    (Class::Pebo, Claim { verdict: Verdict::Refuted, result: Some(result) })
+}
+
+impl Component {
+    fn free(&self) -> Option<Expr> {
+        match self {
+            Self::Free(rate) => Some(*rate),
+            _ => None,
+        }
+    }
+}
+
+fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    if !arena.depends_on(rate, &hidden) {
+        return match point_of(arena, rate, domain) {
+            Some(_) => Component::Free(proved_shortest(arena, domain, rate)),
+            None => Component::Open(Obstacle::NoPoint),
+        };
+    }
+    let tidied = match Field::over(arena, &domain.facts, &[rate]).and_then(|field| {
+        let fraction = field.fraction(rate)?;
+        Ok(field.show(&fraction))
+    }) {
+        Ok(tidied) => tidied,
+        Err(obstacle) => return Component::Open(obstacle),
+    };
+    if !arena.depends_on(tidied, &hidden) {
+        // The normal form is free of x; that it equals the rate is what the zero test confirms.
+        return match decide(arena, arena.sub(rate, tidied), domain) {
+            Answer::Zero => Component::Free(tidied),
+            Answer::Open(obstacle) => Component::Open(obstacle),
+            Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
+        };
+    }
+    bound(plant, domain, tidied)
+}
+
+/// The part of an expression that varies with x: its difference to the value at a fixed x.
+fn bound(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    let through: Vec<Symbol> = arena.symbols_of(&[rate]).intersection(&hidden).copied().collect();
+    for reference in [0, 1, 2] {
+        let fixed: BTreeMap<Symbol, Expr> = through.iter().map(|s| (*s, arena.number(reference))).collect();
+        let difference = arena.sub(rate, arena.substitute(rate, &fixed));
+        if point_of(arena, difference, domain).is_none() {
+            continue;
+        }
+        let residual = shortest(arena, domain, difference);
+        return match decide(arena, residual, domain) {
+            Answer::NonZero(witness) => {
+                Component::Bound { residual, witness: Witness::of(residual, &witness), through }
+            }
+            Answer::Zero => Component::Open(Obstacle::NoWitness),
+            Answer::Open(obstacle) => Component::Open(obstacle),
+        };
+    }
+    Component::Open(Obstacle::NoPoint)
+}
+
+/// The component with constant multiples of outputs added so that its derivative is free of x.
+fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
+    let arena = &plant.arena;
+    let measured: Vec<(Symbol, Expr)> = plant.y.iter().filter_map(|o| o.rate.map(|r| (o.symbol, r.expr))).collect();
+    let mut roots = vec![rate];
+    roots.extend(measured.iter().map(|m| m.1));
+    let field = Field::over(arena, &domain.facts, &roots).ok()?;
+    let mut basis = vec![arena.one()];
+    basis.extend(measured.iter().map(|m| m.1));
+    let coefficients = combine(&field, rate, &basis, &plant.hidden()).ok()??;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let mut mended = phi;
+    for ((output, _), coefficient) in measured.iter().zip(&coefficients[1..]) {
+        let coefficient = field.show(coefficient);
+        if !arena.symbols_of(&[coefficient]).is_subset(&constants) {
+            return None;
+        }
+        mended = arena.sub(mended, arena.mul(coefficient, arena.of_symbol(*output)));
+    }
+    (mended != phi).then_some(mended)
+}
+
+fn refuted(
+    plant: &Plant,
+    index: usize,
+    residual: Expr,
+    witness: &Witness,
+    through: &[Symbol],
+    mend: Option<Expr>,
+) -> Diagnostic {
+    let arena = &plant.arena;
+    let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
+    let shown = arena.print(residual);
+    let component = index + 1;
+    let diagnostic = Diagnostic::error(
+        Code::CascadeRefuted,
+        plant.phi[index].span,
+        format!("the derivative of phi component {component} is not free of {}", listed(names.iter().map(String::as_str))),
+    )
+    .label(format!("its derivative keeps the term `{shown}`"))
+    .note(format!("d(phi)/dt must be a function of y and u alone, but `{shown}` survives in z{component}'"))
+    .note(witness.sentence(arena));
+    match mend {
+        Some(mend) => diagnostic.help(format!("use `{}` for this component", arena.print(mend))),
+        None => diagnostic.help("choose a phi whose derivative along the plant is free of the unmeasured states"),
+    }
+}
+
+fn undecided(plant: &Plant, index: usize, obstacle: &Obstacle) -> Diagnostic {
+    Diagnostic::error(
+        Code::CascadeUndecided,
+        plant.phi[index].span,
+        format!("it could not be decided whether the derivative of phi component {} is free of x", index + 1),
+    )
+    .note(format!("obstacle: {obstacle}"))
+    .help("write the formulas with fewer functions, or state signs under `assume`")
+}
+
+impl Witness {
+    /// The witness of the zero test, for a report.
+    pub(super) fn of(expr: Expr, witness: &crate::cas::zero::Witness) -> Self {
+        let point = witness.point.iter().map(|(s, v)| (*s, v.clone())).collect();
+        Self { expr, point, bounds: (witness.value.lo(), witness.value.hi()) }
+    }
+
+    /// What the witness shows, as a reader would say it: `-G*v4/C4 = 9 where C4 = 1, ..`.
+    pub fn sentence(&self, arena: &Arena) -> String {
+        let entries: Vec<String> =
+            self.point.iter().map(|(s, v)| format!("{} = {}", arena.name(*s), arena.print(arena.number(v.clone())))).collect();
+        let (low, high) = self.bounds;
+        // Bounds that agree to nine digits read better as one number.
+        let value = if (high - low).abs() <= 1e-9 * low.abs().max(high.abs()) {
+            format!("about {}", short(low))
+        } else {
+            format!("between {} and {}", short(low), short(high))
+        };
+        let place = if entries.is_empty() { "everywhere".to_owned() } else { format!("where {}", entries.join(", ")) };
+        format!("`{}` is {value} {place}", arena.print(self.expr))
+    }
+}
+
+/// A few significant digits.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude >= 1e-3 && magnitude < 1e6 { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.4e}") }
+}

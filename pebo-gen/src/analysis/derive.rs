@@ -1,0 +1,61 @@
+//! The order of the claims: what each builds on.
+
+use crate::plant::Plant;
+use crate::source::Diagnostic;
+
+use super::design::{Claim, Derivation, Outcome, Verdict};
+use super::{cascade, identifiability, left_inverse, regression};
+
+impl Derivation {
+    /// Derives the observer of a plant: every claim with its verdict.
+    pub fn derive(plant: &Plant) -> Self {
+        let domain = plant.domain();
+        let mut found = Vec::new();
+        let (class, cascade) = cascade::prove(plant, &domain, &mut found);
+        let left_inverse = left_inverse::prove(plant, &domain, &mut found);
+        let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
+        let regression = match &cascade.result {
+            Some(result) if cascade.verdict == Verdict::Proved => {
+                regression::prove(plant, &domain, result, inverse, &mut found)
+            }
+            _ => Claim::skipped(),
+        };
+        let identifiability = match (&cascade.result, &regression.result) {
+            (Some(cascade), Some(result)) if regression.verdict == Verdict::Proved => {
+                identifiability::prove(plant, &domain, cascade, result, inverse, &mut found)
+            }
+            _ => Claim::skipped(),
+        };
+        let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
+        Self {
+            outcome: outcome(&verdicts),
+            class,
+            cascade,
+            left_inverse,
+            regression,
+            identifiability,
+            diagnostics: found,
+        }
+    }
+
+    /// The derivation, if every claim is proved; else what to tell the author.
+    pub fn admit(&self) -> Result<&Self, &[Diagnostic]> {
+        if self.outcome == Outcome::Accepted { Ok(self) } else { Err(&self.diagnostics) }
+    }
+}
+
+impl<T> Claim<T> {
+    fn skipped() -> Self {
+        Self { verdict: Verdict::Skipped, result: None }
+    }
+}
+
+fn outcome(verdicts: &[Verdict]) -> Outcome {
+    if verdicts.contains(&Verdict::Refuted) {
+        Outcome::Rejected
+    } else if verdicts.iter().all(|v| *v == Verdict::Proved) {
+        Outcome::Accepted
+    } else {
+        Outcome::Undecided
+    }
+}

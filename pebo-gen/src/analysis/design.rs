@@ -1,0 +1,173 @@
+//! What was derived of a plant: each claim with its verdict.
+
+use crate::cas::rational::Rational;
+use crate::cas::{Expr, Symbol};
+use crate::plant::Plant;
+use crate::source::Diagnostic;
+
+/// The verdict on one claim.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// Exact algebra showed it.
+    Proved,
+    /// A point exists where it fails.
+    Refuted,
+    /// Neither could be shown.
+    Undecided,
+    /// Not looked at, because a claim it builds on is not proved.
+    Skipped,
+}
+
+/// The verdict on the model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Outcome {
+    /// Every claim is proved.
+    Accepted,
+    /// A claim is refuted.
+    Rejected,
+    /// No claim is refuted, but one is undecided.
+    Undecided,
+}
+
+/// A claim: its verdict, and what was derived where anything was.
+#[derive(Clone, Debug)]
+pub struct Claim<T> {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What was derived.
+    pub result: Option<T>,
+}
+
+/// How the transform moves.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Class {
+    /// z' = h: the extension is an integrator, z = chi + theta.
+    Pebo,
+    /// z' = Lambda z + h: xi' = Lambda xi + h, Psi' = Lambda Psi, z = xi + Psi theta.
+    Gpebo,
+}
+
+/// Claim 1: the transform moves by known signals.
+#[derive(Clone, Debug)]
+pub struct Cascade {
+    /// The known part of z', free of x, a component each.
+    pub h: Vec<Expr>,
+    /// The matrix Lambda(y, u) by rows, for the generalised cascade.
+    pub lambda: Option<Vec<Vec<Expr>>>,
+    /// What keeps z' from being free of x, a component each; empty where the claim is proved.
+    pub residual: Vec<Expr>,
+    /// A point at which a residual is bounded away from zero.
+    pub witness: Option<Witness>,
+}
+
+/// A rational point at which an expression provably is not zero.
+#[derive(Clone, Debug)]
+pub struct Witness {
+    /// The expression.
+    pub expr: Expr,
+    /// The values of its symbols.
+    pub point: Vec<(Symbol, Rational)>,
+    /// Bounds of its value there, outward rounded; both of one sign.
+    pub bounds: (f64, f64),
+}
+
+/// Claim 2: the states are recovered from z and y.
+#[derive(Clone, Debug)]
+pub struct LeftInverse {
+    /// The states with their formulas in z1.. and y.
+    pub x: Vec<(Symbol, Expr)>,
+    /// Periods of the states that are recovered as angles.
+    pub modulo: Vec<(Symbol, Expr)>,
+    /// Whether the author gave it.
+    pub origin: Origin,
+    /// A point at which the author's formula fails.
+    pub witness: Option<Witness>,
+}
+
+/// Where a left inverse is from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Origin {
+    /// The model file gives it.
+    Given,
+    /// It was solved for.
+    Derived,
+}
+
+/// What the regression's left side is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum RegressionKind {
+    /// y' = `Phi_0` + `Phi_1` eta.
+    Dynamic,
+    /// `Phi_0` = `Phi_1` eta.
+    Static,
+    /// d/dt(p_0 + p_1 eta) = `Phi_0` + `Phi_1` eta.
+    Implicit,
+}
+
+/// Claim 3: the unknowns enter linearly.
+#[derive(Clone, Debug)]
+pub struct Regression {
+    /// What stands on the left.
+    pub kind: RegressionKind,
+    /// Positions in the plant's outputs of the rows, for a dynamic regression.
+    pub rows: Vec<usize>,
+    /// `Phi_0` by rows, in chi1.. (xi1.. and Psi11.. for the generalised cascade), y and u.
+    pub phi_0: Vec<Expr>,
+    /// `Phi_1` by rows, an entry for each eta.
+    pub phi_1: Vec<Vec<Expr>>,
+    /// The unknowns as functions of theta1..; theta itself where the parameterisation is linear.
+    pub eta: Vec<Expr>,
+    /// theta as functions of eta1.., an entry for each theta.
+    pub theta: Vec<Expr>,
+    /// The symbols eta1..
+    pub eta_symbols: Vec<Symbol>,
+}
+
+impl Regression {
+    /// Whether the unknowns are theta itself.
+    pub fn is_linear(&self, plant: &Plant) -> bool {
+        self.eta.len() == plant.theta.len()
+            && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
+    }
+}
+
+/// Claim 4: the unknowns can be told apart.
+#[derive(Clone, Debug)]
+pub struct Identifiability {
+    /// How.
+    pub kind: Excitation,
+    /// Where the regressor loses rank, each as a readable condition.
+    pub singular_where: Vec<String>,
+    /// A direction of eta that no trajectory shows, where there is one.
+    pub direction: Option<Vec<Expr>>,
+}
+
+/// What identifying the unknowns takes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Excitation {
+    /// `Phi_1` has full column rank at almost every point.
+    Instant,
+    /// It has over time, along almost every trajectory.
+    Excitation,
+    /// It never has.
+    Never,
+}
+
+/// What was derived of a plant.
+#[derive(Debug)]
+pub struct Derivation {
+    /// The verdict on the model.
+    pub outcome: Outcome,
+    /// How the transform moves.
+    pub class: Class,
+    /// Claim 1.
+    pub cascade: Claim<Cascade>,
+    /// Claim 2.
+    pub left_inverse: Claim<LeftInverse>,
+    /// Claim 3.
+    pub regression: Claim<Regression>,
+    /// Claim 4.
+    pub identifiability: Claim<Identifiability>,
+    /// What to tell the author.
+    pub diagnostics: Vec<Diagnostic>,
+}

@@ -1,0 +1,241 @@
+//! Claim 4, identifiability: the unknowns can be told apart.
+//!
+//! In: the regression. Out: `instant` where `Phi_1` has full column rank at almost every point (shown by a
+//! point at which a rigorous elimination finds it), `excitation` where it has only together with its
+//! time derivatives along the plant, `never` where a direction of the unknowns stays unseen by every
+//! derivative (shown by exact linear algebra). Inputs, and signals without an equation, are free
+//! functions of time: their derivatives are new symbols (Ortega et al. 2015, remark R3).
+
+use std::collections::BTreeMap;
+
+use crate::cas::domain::Domain;
+use crate::cas::enclosure::Point;
+use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::interval::{Interval, Precision};
+use crate::cas::linear::Echelon;
+use crate::cas::zero::decide;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic, Span};
+
+use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
+use super::singular::singular_where;
+
+/// Points that are tried before a rank counts as deficient.
+const MOST_POINTS: usize = 6;
+
+/// Decides how the unknowns are identified.
+pub(super) fn prove(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Identifiability> {
+    let arena = &plant.arena;
+    let unknowns = regression.eta.len();
+    let mut stack = regression.phi_1.clone();
+    let answer = |kind, singular_where, direction, verdict| Claim {
+        verdict,
+        result: Some(Identifiability { kind, singular_where, direction }),
+    };
+    if full_rank(arena, domain, &stack, unknowns) {
+        let singular = singular_where(plant, domain, &regression.phi_1);
+        return answer(Excitation::Instant, singular, None, Verdict::Proved);
+    }
+    let mut flow = Flow::new(plant, cascade);
+    let mut latest = stack.clone();
+    let mut unseen = match null_vectors(arena, domain, &stack, unknowns) {
+        Ok(unseen) => unseen,
+        Err(obstacle) => return open(plant, &obstacle, found),
+    };
+    for _ in 1..unknowns {
+        latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
+        stack.extend(latest.iter().cloned());
+        if full_rank(arena, domain, &stack, unknowns) {
+            return answer(Excitation::Excitation, Vec::new(), None, Verdict::Proved);
+        }
+        flow.advance(plant);
+        let next = match null_vectors(arena, domain, &stack, unknowns) {
+            Ok(next) => next,
+            Err(obstacle) => return open(plant, &obstacle, found),
+        };
+        // No derivative adds to a rank that one derivative did not raise.
+        let settled = next.len() == unseen.len();
+        unseen = next;
+        if settled {
+            break;
+        }
+    }
+    let Some(direction) = unseen.into_iter().next() else {
+        return open(plant, &Obstacle::NoWitness, found);
+    };
+    found.push(never(plant, domain, &direction, regression, left_inverse));
+    answer(Excitation::Never, Vec::new(), Some(direction), Verdict::Refuted)
+}
+
+/// The plant's motion with its observer's extension: rates of all that moves.
+struct Flow {
+    rates: BTreeMap<Symbol, Expr>,
+    free: Vec<Symbol>,
+}
+
+impl Flow {
+    fn new(plant: &Plant, cascade: &Cascade) -> Self {
+        let arena = &plant.arena;
+        let mut rates = plant.rates();
+        match &cascade.lambda {
+            None => rates.extend(plant.chi.iter().copied().zip(cascade.h.iter().copied())),
+            Some(lambda) => {
+                let of = |row: &[Expr], vector: &[Symbol]| {
+                    arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, arena.of_symbol(*b))))
+                };
+                for (index, row) in lambda.iter().enumerate() {
+                    rates.insert(plant.xi[index], arena.add(of(row, &plant.xi), cascade.h[index]));
+                    for column in 0..plant.z.len() {
+                        let psi: Vec<Symbol> = plant.psi.iter().map(|r| r[column]).collect();
+                        rates.insert(plant.psi[index][column], of(row, &psi));
+                    }
+                }
+            }
+        }
+        let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
+        let free = plant.u.iter().copied().chain(plant.w.iter().copied()).chain(unruled).collect();
+        let mut flow = Self { rates, free };
+        flow.advance(plant);
+        flow
+    }
+
+    /// Gives the latest derivatives of the free signals rates of their own.
+    fn advance(&mut self, plant: &Plant) {
+        let arena = &plant.arena;
+        self.free = self
+            .free
+            .iter()
+            .map(|signal| {
+                let rate = arena.variable(&format!("{}'", arena.name(*signal)));
+                self.rates.insert(*signal, rate);
+                arena.symbol(&format!("{}'", arena.name(*signal)))
+            })
+            .collect();
+    }
+
+    fn rate(&self, arena: &Arena, expr: Expr) -> Expr {
+        arena.directional(expr, &self.rates)
+    }
+}
+
+/// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere.
+fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
+    if rows.len() < columns {
+        return false;
+    }
+    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
+    domain.points(arena, &entries).take(MOST_POINTS).any(|point| full_rank_at(arena, &entries, columns, &point))
+}
+
+fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> bool {
+    const PRECISION: Precision = Precision::new(256);
+    let Some(values) = arena.enclose_all(entries, point, PRECISION) else { return false };
+    let rows: Vec<Vec<Interval>> = values.chunks(columns).map(<[Interval]>::to_vec).collect();
+    eliminates(rows, columns, PRECISION).unwrap_or(false)
+}
+
+/// Gaussian elimination on enclosures: whether a pivot that excludes zero exists in every column.
+fn eliminates(mut rows: Vec<Vec<Interval>>, columns: usize, p: Precision) -> Option<bool> {
+    for column in 0..columns {
+        let candidates = rows.iter().enumerate().filter(|(_, row)| !row[column].contains_zero());
+        let best = candidates.max_by(|(_, a), (_, b)| size(&a[column]).total_cmp(&size(&b[column])));
+        let Some((index, _)) = best else { return Some(false) };
+        let pivot = rows.swap_remove(index);
+        for row in &mut rows {
+            let factor = row[column].div(&pivot[column], p)?;
+            for other in column..columns {
+                row[other] = row[other].sub(&factor.mul(&pivot[other], p)?, p)?;
+            }
+        }
+    }
+    Some(true)
+}
+
+fn size(value: &Interval) -> f64 {
+    value.lo().abs().min(value.hi().abs())
+}
+
+/// Vectors that every row provably annihilates.
+fn null_vectors(
+    arena: &Arena,
+    domain: &Domain,
+    rows: &[Vec<Expr>],
+    columns: usize,
+) -> Result<Vec<Vec<Expr>>, Obstacle> {
+    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
+    let field = Field::over(arena, &domain.facts, &entries)?;
+    let matrix = rows
+        .iter()
+        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
+        .collect::<Result<Vec<_>, _>>()?;
+    let (echelon, _) = Echelon::of(&field, matrix, columns)?;
+    let vectors: Vec<Vec<Expr>> =
+        echelon.null_space().iter().map(|vector| vector.iter().map(|e| field.show(e)).collect()).collect();
+    for vector in &vectors {
+        for row in rows {
+            let product = arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, *b)));
+            if !decide(arena, product, domain).is_zero() {
+                return Err(Obstacle::NoWitness);
+            }
+        }
+    }
+    Ok(vectors)
+}
+
+fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Claim<Identifiability> {
+    found.push(
+        Diagnostic::error(Code::IdentifiabilityUndecided, at_phi(plant), "it could not be decided whether the unknowns can be told apart")
+            .note(format!("obstacle: {obstacle}"))
+            .help("give the parameters values, or state signs under `assume`"),
+    );
+    Claim { verdict: Verdict::Undecided, result: None }
+}
+
+fn never(
+    plant: &Plant,
+    domain: &Domain,
+    direction: &[Expr],
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+) -> Diagnostic {
+    let arena = &plant.arena;
+    let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
+    let linear = regression.eta.iter().all(|e| arena.as_symbol(*e).is_some_and(|s| plant.theta.contains(&s)));
+    let unknown = if linear { "theta" } else { "eta" };
+    let mut diagnostic = Diagnostic::error(
+        Code::NeverIdentifiable,
+        at_phi(plant),
+        format!("no input and no trajectory identifies {unknown}"),
+    )
+    .label(format!("{unknown} can move along ({}) unseen by the outputs", entries.join(", ")));
+    if linear && let Some(left_inverse) = left_inverse {
+        let harmless = left_inverse.x.iter().all(|(_, formula)| {
+            let slope = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(*formula, *z), *d));
+            decide(arena, arena.sum(slope), domain).is_zero()
+        });
+        diagnostic = diagnostic.note(if harmless {
+            "the states do not change along this direction: phi_left cancels it, so x is recoverable although theta is not"
+        } else {
+            "the states change along this direction, so x cannot be recovered either"
+        });
+        if harmless {
+            return diagnostic.help("drop the redundant components of phi");
+        }
+    }
+    diagnostic.help("measure another output, or choose another phi")
+}
+
+fn at_phi(plant: &Plant) -> Span {
+    match (plant.phi.first(), plant.phi.last()) {
+        (Some(first), Some(last)) => first.span.to(last.span),
+        _ => Span::point(0),
+    }
+}

@@ -1,0 +1,25 @@
+//! The claims of a parameter-estimation-based observer, each with its verdict.
+//!
+//! ```text
+//! Plant -> cascade -> left inverse -> regression -> identifiability -> Derivation
+//! ```
+//!
+//! Holds after: what is called proved was shown by exact algebra, what is called refuted by a rational
+//! point with a rigorous enclosure or by an exact null vector; everything else is undecided and says why.
+
+mod cascade;
+mod derive;
+mod design;
+mod gpebo;
+mod identifiability;
+mod left_inverse;
+mod regression;
+mod separation;
+mod singular;
+mod solve;
+mod tidy;
+
+pub use design::{
+    Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
+    RegressionKind, Verdict, Witness,
+};

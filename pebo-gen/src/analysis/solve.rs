@@ -1,0 +1,173 @@
+//! Solving equations for unknown symbols, where elimination and inverse functions suffice.
+//!
+//! In: equations `formula(unknowns) = value`. Out: candidates for the unknowns in the values. Nothing
+//! is claimed of a candidate; who asks proves it.
+//!
+//! Each pass takes the equations as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`,
+//! `x^3`), eliminates, and inverts the kernels that come out: a sine and a cosine of one angle give
+//! `atan2`, an exponential gives `log`, a power gives a root.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::domain::Domain;
+use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::function::Function;
+use crate::cas::linear::Echelon;
+use crate::cas::poly::Monomial;
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Node, Symbol};
+
+/// `formula = value`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Equation {
+    /// What depends on the unknowns.
+    pub formula: Expr,
+    /// What it equals.
+    pub value: Expr,
+}
+
+/// Candidates for those unknowns that the equations give.
+pub(super) fn solve(
+    arena: &Arena,
+    domain: &Domain,
+    equations: &[Equation],
+    unknowns: &[Symbol],
+) -> Result<BTreeMap<Symbol, Expr>, Obstacle> {
+    let mut found: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    let mut differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
+    // Every pass that goes on finds an unknown or replaces a kernel by its argument.
+    for _ in 0..(2 * unknowns.len() + 2) {
+        let open: BTreeSet<Symbol> = unknowns.iter().copied().filter(|s| !found.contains_key(s)).collect();
+        differences.retain(|d| arena.depends_on(*d, &open));
+        if open.is_empty() || differences.is_empty() {
+            break;
+        }
+        let known = eliminate(arena, domain, &differences, &open)?;
+        let mut progress = false;
+        let mut inner = Vec::new();
+        for inverted in invert(arena, domain, &known) {
+            match arena.as_symbol(inverted.formula) {
+                Some(symbol) if open.contains(&symbol) => {
+                    progress |= found.insert(symbol, inverted.value).is_none();
+                }
+                _ => inner.push(arena.sub(inverted.formula, inverted.value)),
+            }
+        }
+        let before = differences.len();
+        for difference in inner {
+            if !differences.contains(&difference) {
+                differences.push(difference);
+            }
+        }
+        if !progress && differences.len() == before {
+            break;
+        }
+        differences = arena.substitute_all(&differences, &found);
+    }
+    Ok(found)
+}
+
+/// The monomials in unknown kernels that linear elimination determines, with their values.
+fn eliminate(
+    arena: &Arena,
+    domain: &Domain,
+    differences: &[Expr],
+    open: &BTreeSet<Symbol>,
+) -> Result<Vec<Equation>, Obstacle> {
+    let field = Field::over(arena, &domain.facts, differences)?;
+    let hidden: Vec<u32> = field.kernels_of(open).into_iter().collect();
+    let mut rows: Vec<BTreeMap<Monomial, Fraction>> = Vec::new();
+    let mut columns: BTreeSet<Monomial> = BTreeSet::new();
+    for difference in differences {
+        let mut row = BTreeMap::new();
+        for (monomial, coefficient) in field.fraction(*difference)?.numerator().collect(&hidden) {
+            if !monomial.is_one() {
+                columns.insert(monomial.clone());
+            }
+            row.insert(monomial, field.of_polynomial(&coefficient)?);
+        }
+        rows.push(row);
+    }
+    // Heavier monomials first, so that lighter ones stay when there are fewer equations.
+    let mut columns: Vec<Monomial> = columns.into_iter().collect();
+    columns.sort_by_key(|monomial| std::cmp::Reverse(monomial.degree()));
+    let matrix = rows
+        .into_iter()
+        .map(|mut row| {
+            let mut entries: Vec<Fraction> =
+                columns.iter().map(|m| row.remove(m).unwrap_or_else(Fraction::zero)).collect();
+            entries.push(row.remove(&Monomial::one()).unwrap_or_else(Fraction::zero).opposite());
+            entries
+        })
+        .collect();
+    let (echelon, _) = Echelon::of(&field, matrix, columns.len())?;
+    let mut known = Vec::new();
+    for (pivot, row) in echelon.rows() {
+        let alone = row[..columns.len()].iter().enumerate().all(|(column, entry)| column == pivot || entry.is_zero());
+        if alone {
+            let factors =
+                columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
+            let formula = arena.multiply(&Rational::ONE, factors);
+            known.push(Equation { formula, value: field.show(&row[columns.len()]) });
+        }
+    }
+    Ok(known)
+}
+
+/// Inverts the outermost function of what is known.
+fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
+    let mut inverted = Vec::new();
+    for equation in known {
+        let Equation { formula, value } = *equation;
+        let next = match arena.node(formula) {
+            Node::Symbol(_) => Some(*equation),
+            Node::Product(product) => match product.factors.as_slice() {
+                [(base, exponent)] => unpower(arena, domain, *base, exponent, value),
+                _ => None,
+            },
+            Node::Call(function, arguments) => {
+                let inside = arguments[0];
+                let outer = |f: Function| Some(Equation { formula: inside, value: arena.call(f, &[value]) });
+                match function {
+                    Function::Exp => outer(Function::Log),
+                    Function::Log => outer(Function::Exp),
+                    Function::Atan => outer(Function::Tan),
+                    Function::Asin => outer(Function::Sin),
+                    Function::Cos => beside(arena, known, Function::Sin, inside)
+                        .map(|sin| Equation { formula: inside, value: arena.call(Function::Atan2, &[sin, value]) }),
+                    _ => None,
+                }
+            }
+            _ => None,
+        };
+        inverted.extend(next);
+    }
+    inverted
+}
+
+/// `base = value^(1/exponent)`, where the base is known to be positive or the power to be a root.
+fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, value: Expr) -> Option<Equation> {
+    if exponent.is_one() {
+        return Some(Equation { formula: base, value });
+    }
+    let inverse = exponent.recip()?;
+    if !exponent.is_integer() {
+        return Some(Equation { formula: base, value: arena.power(value, &inverse) });
+    }
+    let field = Field::over(arena, &domain.facts, &[base]).ok()?;
+    let fraction = field.fraction(base).ok()?;
+    let root = arena.power(value, &inverse);
+    if field.is_positive(&fraction).ok()? {
+        return Some(Equation { formula: base, value: root });
+    }
+    if field.is_positive(&fraction.opposite()).ok()? && exponent.numerator().trailing_zeros() > 0 {
+        return Some(Equation { formula: base, value: arena.neg(root) });
+    }
+    None
+}
+
+/// The value that is known for another function of the same argument.
+fn beside(arena: &Arena, known: &[Equation], function: Function, inside: Expr) -> Option<Expr> {
+    let wanted = arena.call(function, &[inside]);
+    known.iter().find(|e| e.formula == wanted).map(|e| e.value)
+}

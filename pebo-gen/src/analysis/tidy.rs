@@ -1,0 +1,73 @@
+//! The shortest of several equal forms of a result, for people and for emitted code.
+
+use crate::cas::domain::Domain;
+use crate::cas::field::Field;
+use crate::cas::zero::decide;
+use crate::cas::{Arena, Expr, Node};
+
+/// The shortest of an expression and the ways to write its normal form.
+pub(super) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+    let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
+        let fraction = field.fraction(expr)?;
+        Ok([field.show(&fraction), field.show_apart(&fraction)])
+    });
+    match normal {
+        Ok(forms) => forms.into_iter().fold(expr, |best, form| shorter(arena, best, form)),
+        Err(_) => expr,
+    }
+}
+
+/// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
+pub(super) fn proved_shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+    let candidate = shortest(arena, domain, expr);
+    shortest_equal(arena, domain, expr, &[candidate])
+}
+
+/// The one of two equal expressions that takes fewer operations; the first where they are level.
+pub(super) fn shorter(arena: &Arena, first: Expr, second: Expr) -> Expr {
+    if operations(arena, second) < operations(arena, first) { second } else { first }
+}
+
+/// The first of the candidates by length that is proved equal to the expression.
+pub(super) fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+    let mut best = expr;
+    for &candidate in candidates {
+        if operations(arena, candidate) < operations(arena, best)
+            && decide(arena, arena.sub(candidate, expr), domain).is_zero()
+        {
+            best = candidate;
+        }
+    }
+    best
+}
+
+/// The number of operations of an expression, shared parts once; functions weigh more.
+pub(super) fn operations(arena: &Arena, expr: Expr) -> usize {
+    const FUNCTION: usize = 10;
+    arena
+        .postorder(&[expr])
+        .into_iter()
+        .map(|e| match arena.node(e) {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,
+            Node::Sum(sum) => {
+                let scaled = sum.terms.iter().filter(|(_, c)| !c.abs().is_one()).count();
+                sum.terms.len() + scaled - usize::from(sum.constant.is_zero())
+            }
+            Node::Product(product) => {
+                let powers: usize = product
+                    .factors
+                    .iter()
+                    .map(|(_, exponent)| match exponent.abs().to_i64() {
+                        Some(1) => 1,
+                        Some(_) => 2,
+                        None => FUNCTION,
+                    })
+                    .sum();
+                let scaled = usize::from(!product.coefficient.abs().is_one());
+                let inverted = usize::from(product.factors.iter().all(|(_, exponent)| exponent.is_negative()));
+                (powers + scaled + inverted).saturating_sub(1)
+            }
+            Node::Call(..) => FUNCTION,
+        })
+        .sum()
+}

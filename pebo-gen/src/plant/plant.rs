@@ -1,0 +1,157 @@
+//! What a model means: names resolved, numbers exact.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::source::Span;
+
+/// A plant with its candidate transform, resolved.
+#[derive(Debug)]
+pub struct Plant {
+    /// The identifier of the model.
+    pub name: String,
+    /// What the plant is, in words.
+    pub title: Option<String>,
+    /// Where it is from.
+    pub reference: Option<String>,
+    /// Where all expressions of this plant live.
+    pub arena: Arena,
+    /// Constants of the plant.
+    pub parameters: Vec<Parameter>,
+    /// Unmeasured states with their rates.
+    pub x: Vec<State>,
+    /// Measured outputs with their rates.
+    pub y: Vec<Output>,
+    /// Inputs.
+    pub u: Vec<Symbol>,
+    /// Signals that are neither measured nor estimated; no result may depend on them.
+    pub w: Vec<Symbol>,
+    /// The candidate transform z = phi(x, y), one formula a component.
+    pub phi: Vec<Formula>,
+    /// The left inverse as the author gave it: states with formulas in z and y.
+    pub phi_left: Option<Vec<(Symbol, Formula)>>,
+    /// Expressions in x and y that are zero by physics.
+    pub identities: Vec<Formula>,
+    /// States that are angles, with their period.
+    pub angles: Vec<(Symbol, Formula)>,
+    /// The domain that the author assumes.
+    pub assumptions: Vec<Assumption>,
+    /// The coordinates z1.. of the transform.
+    pub z: Vec<Symbol>,
+    /// The states chi1.. of the dynamic extension.
+    pub chi: Vec<Symbol>,
+    /// The states xi1.. of the extension of a generalised cascade.
+    pub xi: Vec<Symbol>,
+    /// The entries Psi11.. of its fundamental matrix, by rows.
+    pub psi: Vec<Vec<Symbol>>,
+    /// The unknown constants theta1..
+    pub theta: Vec<Symbol>,
+}
+
+/// A constant of the plant.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its symbol.
+    pub symbol: Symbol,
+    /// Its value, unless it is given later.
+    pub value: Option<Rational>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// An unmeasured state.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its symbol.
+    pub symbol: Symbol,
+    /// Its time derivative f_x.
+    pub rate: Formula,
+}
+
+/// A measured output.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Its symbol.
+    pub symbol: Symbol,
+    /// Its time derivative f_y, unless nothing needs it.
+    pub rate: Option<Formula>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// An expression and where its author wrote it.
+#[derive(Clone, Copy, Debug)]
+pub struct Formula {
+    /// The expression.
+    pub expr: Expr,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// One inequality of the assumed domain: `expr > 0`, `>= 0` or `!= 0`.
+#[derive(Clone, Copy, Debug)]
+pub struct Assumption {
+    /// What is compared with zero.
+    pub expr: Expr,
+    /// How.
+    pub relation: Relation,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl Plant {
+    /// The components of the transform.
+    pub fn transform(&self) -> Vec<Expr> {
+        self.phi.iter().map(|f| f.expr).collect()
+    }
+
+    /// What no result may depend on: unmeasured states and signals.
+    pub fn hidden(&self) -> BTreeSet<Symbol> {
+        self.x.iter().map(|s| s.symbol).chain(self.w.iter().copied()).collect()
+    }
+
+    /// The time derivatives of the states and outputs that have one.
+    pub fn rates(&self) -> BTreeMap<Symbol, Expr> {
+        let states = self.x.iter().map(|s| (s.symbol, s.rate.expr));
+        let outputs = self.y.iter().filter_map(|o| Some((o.symbol, o.rate?.expr)));
+        states.chain(outputs).collect()
+    }
+
+    /// `d(phi)/dx f_x + d(phi)/dy f_y`, a component each.
+    pub fn derivative_of_transform(&self) -> Vec<Expr> {
+        let rates = self.rates();
+        self.phi.iter().map(|phi| self.arena.directional(phi.expr, &rates)).collect()
+    }
+
+    /// The period of a state, if it is an angle.
+    pub fn period(&self, state: Symbol) -> Option<Expr> {
+        self.angles.iter().find(|(s, _)| *s == state).map(|(_, period)| period.expr)
+    }
+
+    /// The symbols eta1.. of so many unknowns.
+    pub fn eta(&self, count: usize) -> Vec<Symbol> {
+        (1..=count).map(|i| self.arena.symbol(&format!("eta{i}"))).collect()
+    }
+
+    /// What is assumed of values: the author's inequalities, and the values of the parameters.
+    pub fn domain(&self) -> Domain {
+        let mut domain = Domain::default();
+        for assumption in &self.assumptions {
+            domain.facts.assume(assumption.expr, assumption.relation);
+        }
+        for parameter in &self.parameters {
+            let Some(value) = &parameter.value else { continue };
+            domain.fixed.insert(parameter.symbol, value.clone());
+            let symbol = self.arena.of_symbol(parameter.symbol);
+            match value.signum() {
+                1 => domain.facts.assume(symbol, Relation::Positive),
+                -1 => domain.facts.assume(self.arena.neg(symbol), Relation::Positive),
+                _ => {}
+            }
+        }
+        domain
+    }
+}

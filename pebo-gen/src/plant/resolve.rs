@@ -1,0 +1,178 @@
+//! A written model to a plant.
+//!
+//! In: a model whose declarations are consistent. Out: the plant, or every name and formula in it that
+//! has no meaning.
+
+use std::collections::BTreeSet;
+
+use crate::cas::facts::Relation as Compared;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::model::{self, Comparison, Entry, Model, Spanned};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::formula::{exact, lower};
+use super::plant::{Assumption, Formula, Output, Parameter, Plant, State};
+use super::scope::Scope;
+
+impl Plant {
+    /// Resolves the names and numbers of a model.
+    pub fn resolve(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        let mut problems = Diagnostics::new();
+        let arena = Arena::new();
+        // In this order, so that results print parameters before states before inputs.
+        let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
+        let names = |list: &[Spanned<String>]| -> Vec<Symbol> {
+            list.iter().map(|name| arena.as_symbol(arena.variable(&name.value))).collect::<Option<_>>().unwrap_or_default()
+        };
+        let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
+        let indexed = |letter: &str| -> Vec<Symbol> {
+            (1..=model.phi.len()).map(|i| format!("{letter}{i}")).filter_map(|n| arena.as_symbol(arena.variable(&n))).collect()
+        };
+        let (z, chi, theta, xi) = (indexed("z"), indexed("chi"), indexed("theta"), indexed("xi"));
+        let psi = (1..=model.phi.len()).map(|row| indexed(&format!("Psi{row}"))).collect();
+
+        let mut scope = Scope::new();
+        for name in model.names() {
+            scope.define(&name.value, arena.variable(&name.value));
+        }
+        for definition in &model.define {
+            // A definition that fails was reported; what uses it is looked at all the same.
+            if let Some(meaning) = problems.keep(lower(&arena, &scope, &definition.value)) {
+                scope.define(&definition.name.value, meaning);
+            }
+        }
+        let constants: BTreeSet<Symbol> = parameters.iter().map(|p| p.symbol).collect();
+        let with = |groups: &[&[Symbol]]| -> BTreeSet<Symbol> {
+            groups.iter().flat_map(|g| g.iter().copied()).chain(constants.iter().copied()).collect()
+        };
+        let within = |formula: &model::Formula, allowed: &BTreeSet<Symbol>, place: &str| {
+            let expr = lower(&arena, &scope, formula)?;
+            confined(&arena, expr, formula.span, allowed, place)
+        };
+
+        let states = model.x.iter().zip(&model.f_x).zip(&x).map(|((_, rate), symbol)| {
+            Ok(State { symbol: *symbol, rate: resolved(&arena, &scope, &rate.value)? })
+        });
+        let states = problems.all(states);
+        let outputs = model.y.iter().zip(&y).map(|(name, symbol)| {
+            let rate = model.f_y.iter().find(|entry| entry.name.value == name.value);
+            let rate = rate.map(|entry| resolved(&arena, &scope, &entry.value)).transpose()?;
+            Ok(Output { symbol: *symbol, rate, span: name.span })
+        });
+        let outputs = problems.all(outputs);
+        let on_states = with(&[&x, &y]);
+        let phi = problems.all(model.phi.iter().map(|f| within(f, &on_states, "phi(x, y)")));
+        let identities = problems.all(model.identities.iter().map(|f| within(f, &on_states, "an identity in x and y")));
+        let angles = problems.all(model.angles.iter().map(|entry| {
+            let period = within(&entry.value, &with(&[]), "a period")?;
+            Ok((arena.symbol(&entry.name.value), period))
+        }));
+        let mut inverse_scope = scope.clone();
+        for symbol in &z {
+            inverse_scope.define(arena.name(*symbol), arena.of_symbol(*symbol));
+        }
+        let on_transform = with(&[&z, &y]);
+        let phi_left = problems.all(model.phi_left.iter().map(|entry| {
+            let expr = lower(&arena, &inverse_scope, &entry.value)?;
+            let formula = confined(&arena, expr, entry.value.span, &on_transform, "phi_left(z, y)")?;
+            Ok((arena.symbol(&entry.name.value), formula))
+        }));
+        let assumptions = problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c)));
+        rates_of_transform(&arena, &phi, &outputs, &mut problems);
+        problems.propagate()?;
+        Ok(Self {
+            name: model.name.value.clone(),
+            title: model.title.as_ref().map(|t| t.value.clone()),
+            reference: model.reference.as_ref().map(|r| r.value.clone()),
+            parameters,
+            x: states,
+            y: outputs,
+            u,
+            w,
+            phi,
+            phi_left: (!phi_left.is_empty()).then_some(phi_left),
+            identities,
+            angles,
+            assumptions: assumptions.into_iter().flatten().collect(),
+            z,
+            chi,
+            theta,
+            xi,
+            psi,
+            arena,
+        })
+    }
+}
+
+impl Diagnostics {
+    /// The good results; the others are kept as diagnostics.
+    fn all<T>(&mut self, results: impl Iterator<Item = Result<T, Diagnostic>>) -> Vec<T> {
+        results.filter_map(|result| self.keep(result)).collect()
+    }
+}
+
+fn parameter(arena: &Arena, entry: &Entry<Option<Spanned<model::Decimal>>>) -> Result<Parameter, Diagnostic> {
+    let value = entry.value.as_ref().map(|v| exact(&v.value, v.span)).transpose()?;
+    arena.variable(&entry.name.value);
+    Ok(Parameter { symbol: arena.symbol(&entry.name.value), value, span: entry.name.span })
+}
+
+fn resolved(arena: &Arena, scope: &Scope, formula: &model::Formula) -> Result<Formula, Diagnostic> {
+    Ok(Formula { expr: lower(arena, scope, formula)?, span: formula.span })
+}
+
+/// The formula, if it depends on nothing but what its place allows.
+fn confined(
+    arena: &Arena,
+    expr: Expr,
+    span: Span,
+    allowed: &BTreeSet<Symbol>,
+    place: &str,
+) -> Result<Formula, Diagnostic> {
+    match arena.symbols_of(&[expr]).iter().find(|s| !allowed.contains(s)) {
+        None => Ok(Formula { expr, span }),
+        Some(stray) => {
+            let names: Vec<String> = allowed.iter().map(|s| arena.name(*s)).collect();
+            Err(Diagnostic::error(
+                Code::MisplacedName,
+                span,
+                format!("{place} cannot depend on `{}`", arena.name(*stray)),
+            )
+            .help(format!("use only {}", names.join(", "))))
+        }
+    }
+}
+
+/// The inequalities of a chain as comparisons with zero.
+fn compared(arena: &Arena, scope: &Scope, comparison: &Comparison) -> Result<Vec<Assumption>, Diagnostic> {
+    use model::Relation::{Greater, GreaterOrEqual, Less, LessOrEqual, NotEqual};
+    comparison
+        .pairs()
+        .map(|(left, relation, right)| {
+            let (a, b) = (lower(arena, scope, left)?, lower(arena, scope, right)?);
+            let (difference, relation) = match relation {
+                Less => (arena.sub(b, a), Compared::Positive),
+                LessOrEqual => (arena.sub(b, a), Compared::NonNegative),
+                Greater => (arena.sub(a, b), Compared::Positive),
+                GreaterOrEqual => (arena.sub(a, b), Compared::NonNegative),
+                NotEqual => (arena.sub(a, b), Compared::NonZero),
+            };
+            Ok(Assumption { expr: difference, relation, span: comparison.span })
+        })
+        .collect()
+}
+
+/// Every output that the transform uses needs a rate.
+fn rates_of_transform(arena: &Arena, phi: &[Formula], outputs: &[Output], problems: &mut Diagnostics) {
+    for component in phi {
+        let used = arena.symbols_of(&[component.expr]);
+        for output in outputs.iter().filter(|o| o.rate.is_none() && used.contains(&o.symbol)) {
+            let name = arena.name(output.symbol);
+            problems.push(
+                Diagnostic::error(Code::MissingRate, component.span, format!("phi uses {name}, whose rate is not given"))
+                    .also(output.span, "declared here")
+                    .help(format!("give the rate of {name} under `f_y`")),
+            );
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Which names a formula may use, and what they stand for.
+
+use std::collections::BTreeMap;
+
+use crate::cas::Expr;
+use crate::source::{Code, Diagnostic, Span, nearest};
+
+/// Names with their meaning, in one place of the model.
+#[derive(Clone, Debug, Default)]
+pub struct Scope {
+    names: BTreeMap<String, Expr>,
+    estimates: BTreeMap<String, Expr>,
+    /// Names that are declared but may not stand here, with the reason.
+    barred: BTreeMap<String, String>,
+}
+
+impl Scope {
+    /// A scope without names.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a name.
+    pub fn define(&mut self, name: impl Into<String>, meaning: Expr) {
+        self.names.insert(name.into(), meaning);
+    }
+
+    /// Adds an estimate `hat(name)`.
+    pub fn define_estimate(&mut self, name: impl Into<String>, meaning: Expr) {
+        self.estimates.insert(name.into(), meaning);
+    }
+
+    /// Names something that exists but may not be used here, and why.
+    pub fn bar(&mut self, name: impl Into<String>, reason: impl Into<String>) {
+        self.barred.insert(name.into(), reason.into());
+    }
+
+    /// The names, for suggestions.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.keys().map(String::as_str)
+    }
+
+    /// What the name stands for.
+    pub fn look_up(&self, name: &str, span: Span) -> Result<Expr, Diagnostic> {
+        if let Some(&meaning) = self.names.get(name) {
+            return Ok(meaning);
+        }
+        if let Some(reason) = self.barred.get(name) {
+            return Err(Diagnostic::error(Code::UnknownName, span, format!("`{name}` cannot be used here"))
+                .label(reason.clone())
+                .help("use only names that are known at this place"));
+        }
+        Err(unknown(name, span, self.names()))
+    }
+
+    /// What `hat(name)` stands for.
+    pub fn look_up_estimate(&self, name: &str, span: Span) -> Result<Expr, Diagnostic> {
+        match self.estimates.get(name) {
+            Some(&meaning) => Ok(meaning),
+            None => Err(unknown(name, span, self.estimates.keys().map(String::as_str))
+                .note("hat(..) takes an unmeasured state that the observer estimates")),
+        }
+    }
+}
+
+fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>) -> Diagnostic {
+    let diagnostic = Diagnostic::error(Code::UnknownName, span, format!("unknown name `{name}`"))
+        .label("not declared in this model");
+    match nearest(name, candidates) {
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None => diagnostic.help("declare it under `parameters`, `x`, `y`, `u`, `w` or `define`"),
+    }
+}

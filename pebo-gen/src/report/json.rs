@@ -1,0 +1,207 @@
+//! The JSON object of `check --format json`: one line a model, schema 1.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use crate::analysis::{
+    Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
+    RegressionKind, Verdict, Witness,
+};
+use crate::cas::{Arena, Expr};
+use crate::plant::Plant;
+use crate::source::{Diagnostic, Located, Source};
+
+/// The object of one model.
+#[derive(Serialize)]
+struct Report<'a> {
+    schema: u32,
+    model: &'a str,
+    verdict: &'static str,
+    class: Option<&'static str>,
+    cascade: Option<CascadeReport>,
+    left_inverse: Option<LeftInverseReport>,
+    regression: Option<RegressionReport>,
+    identifiability: Option<IdentifiabilityReport>,
+    diagnostics: Vec<Located<'a>>,
+}
+
+#[derive(Serialize)]
+struct CascadeReport {
+    verdict: &'static str,
+    h: Vec<String>,
+    lambda: Option<Vec<Vec<String>>>,
+    residual: Vec<String>,
+    witness: Option<WitnessReport>,
+}
+
+#[derive(Serialize)]
+struct LeftInverseReport {
+    verdict: &'static str,
+    x: IndexMap<String, String>,
+    modulo: IndexMap<String, String>,
+    origin: Option<&'static str>,
+    /// Whether some states are not recovered.
+    partial: bool,
+    witness: Option<WitnessReport>,
+}
+
+#[derive(Serialize)]
+struct RegressionReport {
+    verdict: &'static str,
+    kind: Option<&'static str>,
+    parameterisation: Option<&'static str>,
+    phi_0: Vec<String>,
+    phi_1: Vec<Vec<String>>,
+    eta: Vec<String>,
+    theta: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct IdentifiabilityReport {
+    verdict: &'static str,
+    kind: Option<&'static str>,
+    singular_where: Vec<String>,
+    direction: Option<Vec<String>>,
+}
+
+/// A point where an expression provably is not zero: exact coordinates, outward rounded bounds.
+#[derive(Serialize)]
+struct WitnessReport {
+    expression: String,
+    point: IndexMap<String, String>,
+    bounds: [f64; 2],
+}
+
+/// The object of a model that was read.
+pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String {
+    let arena = &plant.arena;
+    let report = Report {
+        schema: 1,
+        model: &plant.name,
+        verdict: match derivation.outcome {
+            Outcome::Accepted => "accepted",
+            Outcome::Rejected => "rejected",
+            Outcome::Undecided => "undecided",
+        },
+        class: Some(match derivation.class {
+            Class::Pebo => "pebo",
+            Class::Gpebo => "gpebo",
+        }),
+        cascade: Some(cascade(arena, &derivation.cascade)),
+        left_inverse: Some(left_inverse(plant, &derivation.left_inverse)),
+        regression: Some(regression(plant, &derivation.regression)),
+        identifiability: Some(identifiability(arena, &derivation.identifiability)),
+        diagnostics: located(&derivation.diagnostics, source),
+    };
+    line(&report)
+}
+
+/// The object of a model that could not be read: rejected, for the diagnostics alone.
+pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> String {
+    line(&Report {
+        schema: 1,
+        model: name,
+        verdict: "rejected",
+        class: None,
+        cascade: None,
+        left_inverse: None,
+        regression: None,
+        identifiability: None,
+        diagnostics: located(diagnostics, source),
+    })
+}
+
+fn line(report: &Report<'_>) -> String {
+    // Strings, numbers and maps with string keys always serialise.
+    serde_json::to_string(report).unwrap_or_default()
+}
+
+fn located<'a>(diagnostics: &'a [Diagnostic], source: &Source) -> Vec<Located<'a>> {
+    diagnostics.iter().map(|d| Located::new(d, source)).collect()
+}
+
+fn name(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Proved => "proved",
+        Verdict::Refuted => "refuted",
+        Verdict::Undecided => "undecided",
+        Verdict::Skipped => "skipped",
+    }
+}
+
+fn printed(arena: &Arena, exprs: &[Expr]) -> Vec<String> {
+    exprs.iter().map(|e| arena.print(*e)).collect()
+}
+
+fn matrix(arena: &Arena, rows: &[Vec<Expr>]) -> Vec<Vec<String>> {
+    rows.iter().map(|row| printed(arena, row)).collect()
+}
+
+fn witness(arena: &Arena, witness: &Witness) -> WitnessReport {
+    WitnessReport {
+        expression: arena.print(witness.expr),
+        point: witness.point.iter().map(|(s, v)| (arena.name(*s), v.to_string())).collect(),
+        bounds: [witness.bounds.0, witness.bounds.1],
+    }
+}
+
+fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {
+    let result = claim.result.as_ref();
+    CascadeReport {
+        verdict: name(claim.verdict),
+        h: result.map(|r| printed(arena, &r.h)).unwrap_or_default(),
+        lambda: result.and_then(|r| r.lambda.as_ref()).map(|l| matrix(arena, l)),
+        residual: result.map(|r| printed(arena, &r.residual)).unwrap_or_default(),
+        witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
+    }
+}
+
+fn left_inverse(plant: &Plant, claim: &Claim<LeftInverse>) -> LeftInverseReport {
+    let arena = &plant.arena;
+    let result = claim.result.as_ref();
+    LeftInverseReport {
+        verdict: name(claim.verdict),
+        x: result.map(|r| r.x.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect()).unwrap_or_default(),
+        modulo: result
+            .map(|r| r.modulo.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect())
+            .unwrap_or_default(),
+        origin: result.map(|r| match r.origin {
+            Origin::Given => "given",
+            Origin::Derived => "derived",
+        }),
+        partial: result.is_some_and(|r| r.x.len() < plant.x.len()),
+        witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
+    }
+}
+
+fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
+    let arena = &plant.arena;
+    let result = claim.result.as_ref();
+    RegressionReport {
+        verdict: name(claim.verdict),
+        kind: result.map(|r| match r.kind {
+            RegressionKind::Dynamic => "dynamic",
+            RegressionKind::Static => "static",
+            RegressionKind::Implicit => "implicit",
+        }),
+        parameterisation: result.map(|r| if r.is_linear(plant) { "linear" } else { "over-parameterised" }),
+        phi_0: result.map(|r| printed(arena, &r.phi_0)).unwrap_or_default(),
+        phi_1: result.map(|r| matrix(arena, &r.phi_1)).unwrap_or_default(),
+        eta: result.map(|r| printed(arena, &r.eta)).unwrap_or_default(),
+        theta: result.map(|r| printed(arena, &r.theta)).unwrap_or_default(),
+    }
+}
+
+fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> IdentifiabilityReport {
+    let result = claim.result.as_ref();
+    IdentifiabilityReport {
+        verdict: name(claim.verdict),
+        kind: result.map(|r| match r.kind {
+            Excitation::Instant => "instant",
+            Excitation::Excitation => "excitation",
+            Excitation::Never => "never",
+        }),
+        singular_where: result.map(|r| r.singular_where.clone()).unwrap_or_default(),
+        direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
+    }
+}

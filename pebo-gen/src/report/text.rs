@@ -1,0 +1,145 @@
+//! The verdict as a person reads it.
+
+use crate::analysis::{
+    Claim, Class, Derivation, Excitation, Origin, Outcome, Regression, RegressionKind, Verdict,
+};
+use crate::plant::Plant;
+use crate::source::listed;
+
+/// Where the second column starts.
+const INDENT: &str = "                             ";
+
+/// A few lines: the verdict on the model, then each claim with what was derived.
+pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
+    let outcome = match derivation.outcome {
+        Outcome::Accepted => "accepted: every claim is proved",
+        Outcome::Rejected => "rejected: a claim is refuted",
+        Outcome::Undecided => "undecided: a claim could not be decided",
+    };
+    let mut text = format!("{}: {outcome}\n", plant.name);
+    claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));
+    claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
+    claim(&mut text, "regression", &derivation.regression, |r| regression(plant, derivation, r));
+    claim(&mut text, "identifiability", &derivation.identifiability, |r| {
+        let mut lines = vec![
+            match r.kind {
+                Excitation::Instant => "instant: Phi_1 has full column rank",
+                Excitation::Excitation => "with excitation: Phi_1 has full column rank over time",
+                Excitation::Never => "never: a direction of the unknowns stays unseen",
+            }
+            .to_owned(),
+        ];
+        if !r.singular_where.is_empty() {
+            lines.push(format!("except where {}", listed(r.singular_where.iter().map(String::as_str))));
+        }
+        lines
+    });
+    text
+}
+
+fn claim<T>(text: &mut String, name: &str, claim: &Claim<T>, lines: impl Fn(&T) -> Vec<String>) {
+    let verdict = match claim.verdict {
+        Verdict::Proved => "proved",
+        Verdict::Refuted => "refuted",
+        Verdict::Undecided => "undecided",
+        Verdict::Skipped => "skipped",
+    };
+    let shown = match (&claim.result, claim.verdict) {
+        (Some(result), Verdict::Proved | Verdict::Refuted) => lines(result),
+        _ => Vec::new(),
+    };
+    text.push_str(&format!("  {name:<16} {verdict:<9}"));
+    if shown.is_empty() {
+        text.truncate(text.trim_end().len());
+    }
+    text.push_str(&shown.join(&format!("\n{INDENT}")));
+    text.push('\n');
+}
+
+fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
+    let Some(cascade) = &derivation.cascade.result else { return Vec::new() };
+    let arena = &plant.arena;
+    if derivation.cascade.verdict == Verdict::Refuted {
+        let kept = cascade.residual.iter().enumerate().filter(|(_, e)| !arena.is_zero(**e));
+        return kept.map(|(i, e)| format!("z{}' keeps the term {}", i + 1, arena.print(*e))).collect();
+    }
+    let mut lines: Vec<String> = match derivation.class {
+        Class::Pebo => cascade.h.iter().enumerate().map(|(i, h)| format!("z{}' = {}", i + 1, arena.print(*h))).collect(),
+        Class::Gpebo => {
+            let mut lines: Vec<String> =
+                cascade.h.iter().enumerate().map(|(i, h)| format!("h{} = {}", i + 1, arena.print(*h))).collect();
+            for row in cascade.lambda.iter().flatten() {
+                let entries: Vec<String> = row.iter().map(|e| arena.print(*e)).collect();
+                lines.push(format!("Lambda row [{}]", entries.join(", ")));
+            }
+            lines
+        }
+    };
+    if derivation.class == Class::Gpebo {
+        lines.insert(0, "generalised: z' = Lambda z + h, z = xi + Psi theta".to_owned());
+    }
+    lines
+}
+
+fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
+    let Some(inverse) = &derivation.left_inverse.result else { return Vec::new() };
+    let arena = &plant.arena;
+    let origin = match inverse.origin {
+        Origin::Given => "given",
+        Origin::Derived => "derived",
+    };
+    let mut lines: Vec<String> = inverse
+        .x
+        .iter()
+        .map(|(state, formula)| {
+            let period = inverse.modulo.iter().find(|(s, _)| s == state);
+            let modulo = period.map(|(_, p)| format!(" modulo {}", arena.print(*p))).unwrap_or_default();
+            format!("{} = {}{modulo} ({origin})", arena.name(*state), arena.print(*formula))
+        })
+        .collect();
+    let missing: Vec<String> = plant
+        .x
+        .iter()
+        .filter(|s| inverse.x.iter().all(|(symbol, _)| *symbol != s.symbol))
+        .map(|s| arena.name(s.symbol))
+        .collect();
+    if !missing.is_empty() {
+        lines.push(format!("a partial observer: {} not recovered", listed(missing.iter().map(String::as_str))));
+    }
+    lines
+}
+
+fn regression(plant: &Plant, derivation: &Derivation, regression: &Regression) -> Vec<String> {
+    let arena = &plant.arena;
+    let linear = regression.is_linear(plant);
+    let unknown = |index: usize| -> String {
+        match (linear, derivation.class) {
+            (true, _) => arena.name(plant.theta[index]),
+            (false, _) => format!("eta{}", index + 1),
+        }
+    };
+    let mut lines = Vec::new();
+    for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
+        let terms: Vec<String> = factors
+            .iter()
+            .enumerate()
+            .filter(|(_, factor)| !arena.is_zero(**factor))
+            .map(|(column, factor)| format!("[{}]*{}", arena.print(*factor), unknown(column)))
+            .collect();
+        let sum = terms.join(" + ");
+        lines.push(match regression.kind {
+            RegressionKind::Static => format!("{} = {sum}", arena.print(*known)),
+            RegressionKind::Dynamic | RegressionKind::Implicit => {
+                let output = regression.rows.get(index).map_or_else(String::new, |o| arena.name(plant.y[*o].symbol));
+                let known = if arena.is_zero(*known) && !terms.is_empty() { Vec::new() } else { vec![arena.print(*known)] };
+                format!("{output}' = {}", known.into_iter().chain(terms).collect::<Vec<_>>().join(" + "))
+            }
+        });
+    }
+    if !linear {
+        for (index, eta) in regression.eta.iter().enumerate() {
+            lines.push(format!("eta{} = {}", index + 1, arena.print(*eta)));
+        }
+    }
+    lines
+}
