@@ -43,6 +43,7 @@ proptest! {
         prop_assert_eq!(a.cmp(&b), x.cmp(&y));
         prop_assert_eq!(a.to_string(), x.to_string());
         prop_assert_eq!(a.bits(), x.bits());
+        prop_assert_eq!(u64::from(a.trailing_zeros()), x.trailing_zeros().unwrap_or(0));
         prop_assert_eq!(a.to_i128(), i128::try_from(&x).ok());
         let (mut sum, mut difference) = (c.clone(), c);
         sum.add_product(&a, &b);

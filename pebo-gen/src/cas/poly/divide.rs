@@ -55,6 +55,13 @@ impl Poly {
         self.div_long(divisor, &keys, work)
     }
 
+    /// The quotient by a polynomial that is known to divide this.
+    pub(super) fn over(&self, divisor: &Self, work: &Work) -> Result<Self, TooLarge> {
+        let quotient = self.div_exact(divisor, work)?;
+        debug_assert!(quotient.is_some(), "{divisor} does not divide {self}");
+        Ok(quotient.unwrap_or_default())
+    }
+
     fn div_term(&self, layout: &Layout, divisor: &[u64], coefficient: &Integer) -> Option<Self> {
         let mut keys = vec![0; self.keys.len()];
         let quotients = keys.chunks_exact_mut(layout.words());

@@ -20,10 +20,10 @@ impl Poly {
             return Ok(None);
         }
         // As by hand: the next term of the root is half the rest's leading term over the root's.
-        let leading = Self::from_terms([(monomial, &coefficient + &coefficient)])?;
+        let first = Self::from_terms([(monomial, coefficient)])?;
+        let leading = first.scale(&Integer::from(2));
         let mut doubled = leading.clone();
-        let square = leading.mul(&leading, work)?.div_integer(&Integer::from(4));
-        let mut rest = self - &square.unwrap_or_default();
+        let mut rest = self - &first.mul(&first, work)?;
         while let Some((monomial, coefficient)) = rest.leading_term() {
             work.spend(steps(rest.term_count()))?;
             let leading_rest = Self::from_terms([(monomial, coefficient.clone())])?;

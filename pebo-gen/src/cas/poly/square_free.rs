@@ -29,9 +29,7 @@ impl Poly {
         rest = rest.over_monomial(&monomial);
         while let Some(variable) = rest.variables().first().copied() {
             let lower = rest.content_in(&[variable], work)?;
-            if let Some(part) = rest.div_exact(&lower, work)? {
-                part.yun(variable, &mut factors, work)?;
-            }
+            rest.over(&lower, work)?.yun(variable, &mut factors, work)?;
             rest = lower;
         }
         let factors = factors.into_iter().map(|(exponent, factor)| (factor, exponent)).collect();
@@ -42,9 +40,8 @@ impl Poly {
     fn yun(&self, variable: u32, factors: &mut BTreeMap<u32, Self>, work: &Work) -> Result<(), TooLarge> {
         let derivative = self.derivative(variable);
         let common = self.gcd(&derivative, work)?;
-        let over = |a: &Self, b: &Self| Ok(a.div_exact(b, work)?.unwrap_or_default());
-        let mut product = over(self, &common)?;
-        let mut slope = over(&derivative, &common)?;
+        let mut product = self.over(&common, work)?;
+        let mut slope = derivative.over(&common, work)?;
         let mut exponent = 1;
         while !product.is_constant() {
             slope = &slope - &product.derivative(variable);
@@ -52,8 +49,8 @@ impl Poly {
             if !factor.is_constant() {
                 insert(factors, exponent, &factor, work)?;
             }
-            product = over(&product, &factor)?;
-            slope = over(&slope, &factor)?;
+            product = product.over(&factor, work)?;
+            slope = slope.over(&factor, work)?;
             exponent += 1;
         }
         Ok(())

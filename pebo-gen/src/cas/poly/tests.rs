@@ -165,6 +165,30 @@ proptest! {
     }
 }
 
+/// Polynomials in many variables, or with large exponents: keys of several words.
+fn wide() -> impl Strategy<Value = Poly> {
+    let few = prop::collection::btree_map(0_u32..3, 1_u32..70_000, 0..4);
+    let many = prop::collection::btree_map(0_u32..60, 1_u32..9, 0..30);
+    let terms = |monomial: BoxedStrategy<Monomial>| prop::collection::vec((monomial, coefficient()), 0..12);
+    prop_oneof![terms(few.prop_map(Monomial::new).boxed()), terms(many.prop_map(Monomial::new).boxed())]
+        .prop_map(|terms| Poly::from_terms(terms).expect("small exponents"))
+}
+
+proptest! {
+    #[test]
+    fn wide_keys(a in wide(), b in wide()) {
+        let product = mul(&a, &b);
+        prop_assert_eq!(&product, &schoolbook(&a, &b));
+        prop_assert!(product.is_canonical());
+        prop_assert_eq!(&(&product - &a) + &a, product.clone());
+        if !b.is_zero() {
+            prop_assert_eq!(product.div_exact(&b, &work()), Ok(Some(a.clone())));
+            let other = &product + &Poly::variable(70);
+            prop_assert_eq!(other.div_exact(&b, &work()).map(|q| q.is_some()), Ok(b.is_constant() && b.bits() < 2));
+        }
+    }
+}
+
 fn gcd(a: &Poly, b: &Poly) -> Poly {
     a.gcd(b, &work()).expect("small")
 }
@@ -250,7 +274,6 @@ proptest! {
     #[test]
     fn interpolated_divisors(a in crowded(), b in crowded(), g in crowded()) {
         let common = gcd(&mul(&a, &g), &mul(&b, &g));
-        // Random polynomials seldom have a common factor, and then a single variable mostly.
         let rest = common.div_exact(&gcd(&a, &b), &work()).expect("small").expect("divides");
         prop_assert!(rest == g.primitive().1.scale(&g.content()));
     }

@@ -1,7 +1,7 @@
 //! The work limit: a counter that every operation that can explode draws from.
 //!
-//! One step is about one product of machine words with its bookkeeping, some nanoseconds. A
-//! computation that would draw more than is left stops before it does the work.
+//! One step is about one product of machine words with its bookkeeping: one to some tens of
+//! nanoseconds. A computation that would draw more than is left stops before it does the work.
 
 use std::cell::Cell;
 use std::fmt;

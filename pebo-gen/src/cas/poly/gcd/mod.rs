@@ -46,7 +46,7 @@ impl Poly {
         if self.is_zero() || other.is_zero() {
             return Ok(Self::zero());
         }
-        let part = self.div_exact(&self.gcd(other, work)?, work)?.unwrap_or_default();
+        let part = self.over(&self.gcd(other, work)?, work)?;
         let (content, multiple) = part.mul(other, work)?.primitive();
         Ok(multiple.scale(&content.abs()))
     }
@@ -145,8 +145,7 @@ fn interpolated(a: &Poly, b: &Poly, bounds: &[u32], points: &mut Points, work: &
     let main = &variables[..1];
     let (lower_a, lower_b) = (a.content_in(main, work)?, b.content_in(main, work)?);
     let lower = lower_a.gcd(&lower_b, work)?;
-    let (a, b) = (a.div_exact(&lower_a, work)?, b.div_exact(&lower_b, work)?);
-    let (a, b) = (a.unwrap_or_default(), b.unwrap_or_default());
+    let (a, b) = (a.over(&lower_a, work)?, b.over(&lower_b, work)?);
     let upper = if lower_a.is_one() && lower_b.is_one() {
         Problem { a: &a, b: &b, variables: &variables, bounds: &bounds, work }.solve(points)?
     } else {
