@@ -145,7 +145,8 @@ fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
         }
         mended = arena.sub(mended, arena.mul(coefficient, arena.of_symbol(*output)));
     }
-    (mended != phi).then_some(mended)
+    // A component that no longer holds a state would be of no use.
+    (mended != phi && arena.depends_on(mended, &plant.hidden())).then_some(mended)
 }
 
 fn refuted(

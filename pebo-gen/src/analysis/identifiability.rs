@@ -164,7 +164,7 @@ fn size(value: &Interval) -> f64 {
 }
 
 /// Vectors that every row provably annihilates.
-fn null_vectors(
+pub(super) fn null_vectors(
     arena: &Arena,
     domain: &Domain,
     rows: &[Vec<Expr>],

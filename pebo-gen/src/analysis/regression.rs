@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide, refute};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
@@ -58,7 +59,7 @@ pub(super) fn prove(
         let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| plant.arena.substitute(*rate, &inverse)).collect();
         if let Ok(Some(separated)) = separation::separate(plant, domain, &rates)
-            && let Some(result) = over_parameterised(plant, domain, rows.iter().map(|r| r.0).collect(), separated)
+            && let Some(result) = over_parameterised(plant, domain, rows.iter().map(|r| r.0).collect(), separated, found)
         {
             return Claim { verdict: Verdict::Proved, result: Some(result) };
         }
@@ -162,8 +163,15 @@ fn linear(
 }
 
 /// A dynamic regression in functions of theta, if theta can be recovered from them.
-fn over_parameterised(plant: &Plant, domain: &Domain, rows: Vec<usize>, separated: Separated) -> Option<Regression> {
-    let theta = separation::recover(plant, domain, &separated.eta)?;
+fn over_parameterised(
+    plant: &Plant,
+    domain: &Domain,
+    rows: Vec<usize>,
+    separated: Separated,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Regression> {
+    let (theta, turns) = separation::recover(plant, domain, &separated.eta)?;
+    found.extend(turns.then(|| up_to_turns(plant)));
     Some(Regression {
         kind: RegressionKind::Dynamic,
         rows,
@@ -173,6 +181,14 @@ fn over_parameterised(plant: &Plant, domain: &Domain, rows: Vec<usize>, separate
         eta: separated.eta,
         theta,
     })
+}
+
+/// What to know where theta enters through sine and cosine alone.
+fn up_to_turns(plant: &Plant) -> Diagnostic {
+    let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
+    Diagnostic::warning(Code::UnknownUpToTurns, span, "theta is determined only up to whole turns")
+        .label("the outputs see this transform through its sine and cosine")
+        .help("read what is recovered from it as an angle: declare the state under `angles`")
 }
 
 /// A static regression `Phi_0 = Phi_1 eta` from the identities.
@@ -198,7 +214,8 @@ fn from_identities(
     match separation::separate(plant, domain, &identities) {
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
-            if let Some(theta) = separation::recover(plant, domain, &separated.eta) {
+            if let Some((theta, turns)) = separation::recover(plant, domain, &separated.eta) {
+                found.extend(turns.then(|| up_to_turns(plant)));
                 // identity = known + factors eta = 0, so known = -factors eta
                 let negated = |row: &Vec<Expr>| row.iter().map(|e| shortest(arena, domain, arena.neg(*e))).collect();
                 let result = Regression {
@@ -233,7 +250,7 @@ fn from_identities(
     }
 }
 
-/// A point at which the rate, as a function of z, has a second derivative.
+/// A point at which the rate, as a function of z, has a second derivative, or a bend.
 fn nonlinear(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: Option<&LeftInverse>) -> Option<Witness> {
     let arena = &plant.arena;
     let inverse: BTreeMap<Symbol, Expr> = left_inverse?.x.iter().copied().collect();
@@ -252,7 +269,17 @@ fn nonlinear(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: Option<&L
             }
         }
     }
-    None
+    // Pieces of lines have no second derivative, but the middle of a chord shows the bend.
+    plant.z.iter().find_map(|z| {
+        let moved = |by: i64| {
+            let place = arena.add(arena.of_symbol(*z), arena.number(by));
+            arena.substitute(in_z, &BTreeMap::from([(*z, place)]))
+        };
+        let ends = arena.add(moved(4), moved(-4));
+        let bend = arena.sub(ends, arena.scale(in_z, &Rational::from(2)));
+        let bend = arena.substitute(bend, &transform);
+        refute(arena, bend, domain).map(|point| Witness::of(bend, &point))
+    })
 }
 
 fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness) -> Diagnostic {
@@ -264,7 +291,7 @@ fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness) -> Diagno
         format!("the rate of {output} is not linear in the unknowns"),
     )
     .label("not an affine function of phi with coefficients in y and u")
-    .note(format!("its second derivative by z is not zero: {}", witness.sentence(arena)))
+    .note(format!("as a function of z it bends: {}", witness.sentence(arena)))
     .note("it is no sum of products of functions of theta with known signals either, as far as polynomials, \
            exponentials, sines and cosines of z go")
     .help("choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \

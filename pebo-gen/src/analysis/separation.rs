@@ -14,6 +14,7 @@ use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
+use super::left_inverse::is_whole_turns;
 use super::solve::{Equation, solve};
 use super::tidy::shortest;
 
@@ -48,39 +49,55 @@ pub(super) fn separate(plant: &Plant, domain: &Domain, in_z: &[Expr]) -> Result<
     if kernels.iter().any(|k| !arena.symbols_of(&[field.kernel(*k)]).is_subset(&constants)) {
         return Ok(None);
     }
-    let mut columns: Vec<Monomial> = Vec::new();
-    let mut rows: Vec<BTreeMap<Monomial, Fraction>> = Vec::new();
+    let mut columns: Vec<Powers> = Vec::new();
+    let mut rows: Vec<BTreeMap<Powers, Fraction>> = Vec::new();
     for expr in &exprs {
         let fraction = field.fraction(*expr)?;
-        if fraction.denominator().variables().iter().any(|v| kernels.contains(v)) {
-            return Ok(None);
-        }
+        // A product of kernels of theta may stand below, as exp(theta) in cosh; a sum may not.
+        let denominator = fraction.denominator().collect(&kernels);
+        let [(below, known)] = denominator.as_slice() else { return Ok(None) };
+        let below = powers(below, -1);
         let mut row = BTreeMap::new();
         for (monomial, coefficient) in fraction.numerator().collect(&kernels) {
-            if !monomial.is_one() && !columns.contains(&monomial) {
-                columns.push(monomial.clone());
+            let column = product(&powers(&monomial, 1), &below);
+            let coefficient = field.quotient(&coefficient, known)?;
+            if !column.is_empty() && !columns.contains(&column) {
+                columns.push(column.clone());
             }
-            row.insert(monomial, field.quotient(&coefficient, fraction.denominator())?);
+            row.insert(column, coefficient);
         }
         rows.push(row);
     }
     // theta itself first, then by degree.
-    columns.sort_by_key(|monomial| (monomial.degree(), monomial.powers().to_vec()));
-    let show = |row: &BTreeMap<Monomial, Fraction>, monomial: &Monomial| {
-        row.get(monomial).map_or_else(|| arena.zero(), |fraction| field.show(fraction))
+    columns.sort_by_key(|column| (column.iter().map(|(_, e)| e.abs()).sum::<i64>(), column.clone()));
+    let show = |row: &BTreeMap<Powers, Fraction>, column: &Powers| {
+        row.get(column).map_or_else(|| arena.zero(), |fraction| field.show(fraction))
     };
     let separated = Separated {
-        known: rows.iter().map(|row| show(row, &Monomial::one())).collect(),
-        factors: rows.iter().map(|row| columns.iter().map(|m| show(row, m)).collect()).collect(),
+        known: rows.iter().map(|row| show(row, &Powers::new())).collect(),
+        factors: rows.iter().map(|row| columns.iter().map(|c| show(row, c)).collect()).collect(),
         eta: columns
             .iter()
-            .map(|m| {
-                let powers = m.powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
-                arena.multiply(&Rational::ONE, powers)
-            })
+            .map(|c| arena.multiply(&Rational::ONE, c.iter().map(|&(k, e)| (field.kernel(k), Rational::from(e)))))
             .collect(),
     };
     Ok(proved(plant, domain, &exprs, &separated).then_some(separated))
+}
+
+/// Kernels with their exponents, ascending, no exponent zero.
+type Powers = Vec<(u32, i64)>;
+
+/// The powers of a monomial, to a common exponent.
+fn powers(monomial: &Monomial, exponent: i64) -> Powers {
+    monomial.powers().iter().map(|&(kernel, times)| (kernel, exponent * i64::from(times))).filter(|p| p.1 != 0).collect()
+}
+
+fn product(a: &Powers, b: &Powers) -> Powers {
+    let mut total: BTreeMap<u32, i64> = BTreeMap::new();
+    for &(kernel, exponent) in a.iter().chain(b) {
+        *total.entry(kernel).or_default() += exponent;
+    }
+    total.into_iter().filter(|p| p.1 != 0).collect()
 }
 
 /// Whether the separation is an identity.
@@ -124,8 +141,9 @@ pub(super) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separa
     Separated { known: vec![known], factors: vec![row], eta }
 }
 
-/// theta as functions of the eta symbols, each proved.
-pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Vec<Expr>> {
+/// theta as functions of the eta symbols, each proved, and whether some are determined only up to
+/// whole turns, as from sine and cosine of theta.
+pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<(Vec<Expr>, bool)> {
     let arena = &plant.arena;
     let symbols = plant.eta(eta.len());
     let equations: Vec<Equation> =
@@ -137,15 +155,17 @@ pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Ve
         .collect();
     let rest: Vec<Symbol> = plant.theta.iter().copied().filter(|t| !direct.contains_key(t)).collect();
     let mut solved = if rest.is_empty() { BTreeMap::new() } else { solve(arena, domain, &equations, &rest).ok()? };
-    solved.extend(direct);
+    solved.extend(direct.into_iter().map(|(symbol, value)| (symbol, vec![value])));
     let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
-    plant
-        .theta
-        .iter()
-        .map(|theta| {
-            let formula = *solved.get(theta)?;
-            let difference = arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
-            decide(arena, difference, domain).is_zero().then_some(formula)
-        })
-        .collect()
+    let mut turns = false;
+    let mut formulas = Vec::new();
+    for theta in &plant.theta {
+        let candidates = solved.get(theta)?;
+        let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
+        let exact = candidates.iter().find(|f| decide(arena, difference(**f), domain).is_zero());
+        turns |= exact.is_none();
+        let formula = exact.or_else(|| candidates.iter().find(|f| is_whole_turns(arena, domain, difference(**f))));
+        formulas.push(*formula?);
+    }
+    Some((formulas, turns))
 }

@@ -3,9 +3,9 @@
 //! In: equations `formula(unknowns) = value`. Out: candidates for the unknowns in the values. Nothing
 //! is claimed of a candidate; who asks proves it.
 //!
-//! Each pass takes the equations as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`,
-//! `x^3`), eliminates, and inverts the kernels that come out: a sine and a cosine of one angle give
-//! `atan2`, an exponential gives `log`, a power gives a root.
+//! An equation in which the unknown stands in one place is turned inside out. Where none is left, the
+//! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and
+//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,15 +26,44 @@ pub(super) struct Equation {
     pub value: Expr,
 }
 
-/// Candidates for those unknowns that the equations give.
+/// Candidates for those unknowns that the equations give, the likelier first.
 pub(super) fn solve(
     arena: &Arena,
     domain: &Domain,
     equations: &[Equation],
     unknowns: &[Symbol],
+) -> Result<BTreeMap<Symbol, Vec<Expr>>, Obstacle> {
+    let mut alone: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    for equation in equations {
+        if let Some(Equation { formula, value }) = turned_out(arena, domain, *equation, unknowns)
+            && let Some(symbol) = arena.as_symbol(formula)
+        {
+            alone.entry(symbol).or_insert(value);
+        }
+    }
+    let mut candidates: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
+    // All equations together know branches that one alone does not: cosine and sine, but not cosine.
+    for start in [BTreeMap::new(), alone] {
+        for (symbol, value) in eliminated(arena, domain, equations, unknowns, start)? {
+            let known = candidates.entry(symbol).or_default();
+            if !known.contains(&value) {
+                known.push(value);
+            }
+        }
+    }
+    Ok(candidates)
+}
+
+/// Eliminates and inverts until no unknown comes out any more.
+fn eliminated(
+    arena: &Arena,
+    domain: &Domain,
+    equations: &[Equation],
+    unknowns: &[Symbol],
+    mut found: BTreeMap<Symbol, Expr>,
 ) -> Result<BTreeMap<Symbol, Expr>, Obstacle> {
-    let mut found: BTreeMap<Symbol, Expr> = BTreeMap::new();
     let mut differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
+    differences = arena.substitute_all(&differences, &found);
     // Every pass that goes on finds an unknown or replaces a kernel by its argument.
     for _ in 0..(2 * unknowns.len() + 2) {
         let open: BTreeSet<Symbol> = unknowns.iter().copied().filter(|s| !found.contains_key(s)).collect();
@@ -65,6 +94,51 @@ pub(super) fn solve(
         differences = arena.substitute_all(&differences, &found);
     }
     Ok(found)
+}
+
+/// The equation with its formula reduced to one unknown, if that stands in one place of it.
+fn turned_out(arena: &Arena, domain: &Domain, equation: Equation, unknowns: &[Symbol]) -> Option<Equation> {
+    let open: BTreeSet<Symbol> = unknowns.iter().copied().collect();
+    let mut equation = equation;
+    loop {
+        let Equation { formula, value } = equation;
+        let alone = |e: &Expr| arena.depends_on(*e, &open);
+        equation = match arena.node(formula) {
+            Node::Symbol(_) => return Some(equation),
+            Node::Sum(sum) => {
+                let (inner, rest): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(t, _)| alone(t));
+                let [(term, slope)] = inner.as_slice() else { return None };
+                let rest = arena.combine(&sum.constant, rest);
+                Equation { formula: *term, value: arena.scale(arena.sub(value, rest), &slope.recip()?) }
+            }
+            Node::Product(product) => {
+                let (inner, rest): (Vec<_>, Vec<_>) = product.factors.iter().cloned().partition(|(b, _)| alone(b));
+                let [(base, exponent)] = inner.as_slice() else { return None };
+                let rest = arena.multiply(&product.coefficient, rest);
+                unpower(arena, domain, *base, exponent, arena.div(value, rest))?
+            }
+            Node::Call(function, arguments) => {
+                let [inside] = arguments.as_ref() else { return None };
+                Equation { formula: *inside, value: arena.call(inverse(function)?, &[value]) }
+            }
+            Node::Number(_) | Node::Pi => return None,
+        };
+    }
+}
+
+/// The inverse function, on a principal branch.
+fn inverse(function: Function) -> Option<Function> {
+    match function {
+        Function::Exp => Some(Function::Log),
+        Function::Log => Some(Function::Exp),
+        Function::Sin => Some(Function::Asin),
+        Function::Asin => Some(Function::Sin),
+        Function::Cos => Some(Function::Acos),
+        Function::Acos => Some(Function::Cos),
+        Function::Tan => Some(Function::Atan),
+        Function::Atan => Some(Function::Tan),
+        _ => None,
+    }
 }
 
 /// The monomials in unknown kernels that linear elimination determines, with their values.
@@ -127,15 +201,13 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
             },
             Node::Call(function, arguments) => {
                 let inside = arguments[0];
-                let outer = |f: Function| Some(Equation { formula: inside, value: arena.call(f, &[value]) });
-                match function {
-                    Function::Exp => outer(Function::Log),
-                    Function::Log => outer(Function::Exp),
-                    Function::Atan => outer(Function::Tan),
-                    Function::Asin => outer(Function::Sin),
-                    Function::Cos => beside(arena, known, Function::Sin, inside)
-                        .map(|sin| Equation { formula: inside, value: arena.call(Function::Atan2, &[sin, value]) }),
+                let partner = match function {
+                    Function::Cos => beside(arena, known, Function::Sin, inside),
                     _ => None,
+                };
+                match partner {
+                    Some(sin) => Some(Equation { formula: inside, value: arena.call(Function::Atan2, &[sin, value]) }),
+                    None => inverse(function).map(|f| Equation { formula: inside, value: arena.call(f, &[value]) }),
                 }
             }
             _ => None,
@@ -145,7 +217,7 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
     inverted
 }
 
-/// `base = value^(1/exponent)`, where the base is known to be positive or the power to be a root.
+/// `base = value^(1/exponent)`: the positive root unless the base is known to be negative.
 fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, value: Expr) -> Option<Equation> {
     if exponent.is_one() {
         return Some(Equation { formula: base, value });
@@ -157,13 +229,9 @@ fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, valu
     let field = Field::over(arena, &domain.facts, &[base]).ok()?;
     let fraction = field.fraction(base).ok()?;
     let root = arena.power(value, &inverse);
-    if field.is_positive(&fraction).ok()? {
-        return Some(Equation { formula: base, value: root });
-    }
-    if field.is_positive(&fraction.opposite()).ok()? && exponent.numerator().trailing_zeros() > 0 {
-        return Some(Equation { formula: base, value: arena.neg(root) });
-    }
-    None
+    let even = exponent.numerator().trailing_zeros() > 0;
+    let negative = even && field.is_positive(&fraction.opposite()).ok()?;
+    Some(Equation { formula: base, value: if negative { arena.neg(root) } else { root } })
 }
 
 /// The value that is known for another function of the same argument.

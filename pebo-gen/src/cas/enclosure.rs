@@ -22,9 +22,23 @@ const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
 impl Arena {
     /// Encloses several expressions at a point, none where one of them has no value there.
     pub fn enclose_all(&self, exprs: &[Expr], point: &Point, precision: Precision) -> Option<Vec<Interval>> {
+        let mut values = BTreeMap::new();
+        for symbol in self.symbols_of(exprs) {
+            values.insert(symbol, Interval::from_rational(point.get(&symbol)?, precision)?);
+        }
+        self.enclose_over(exprs, &values, precision)
+    }
+
+    /// Encloses several expressions over all values that the symbols may have.
+    pub fn enclose_over(
+        &self,
+        exprs: &[Expr],
+        values: &BTreeMap<Symbol, Interval>,
+        precision: Precision,
+    ) -> Option<Vec<Interval>> {
         let mut known: FxHashMap<Expr, Interval> = FxHashMap::default();
         for e in self.postorder(exprs) {
-            let value = self.enclosure_of(e, point, precision, &known)?;
+            let value = self.enclosure_of(e, values, precision, &known)?;
             known.insert(e, value);
         }
         exprs.iter().map(|e| known.get(e).cloned()).collect()
@@ -47,11 +61,17 @@ impl Arena {
         PRECISIONS.iter().any(|&bits| self.enclose(expr, point, Precision::new(bits)).is_some())
     }
 
-    fn enclosure_of(&self, e: Expr, point: &Point, p: Precision, known: &FxHashMap<Expr, Interval>) -> Option<Interval> {
+    fn enclosure_of(
+        &self,
+        e: Expr,
+        values: &BTreeMap<Symbol, Interval>,
+        p: Precision,
+        known: &FxHashMap<Expr, Interval>,
+    ) -> Option<Interval> {
         match self.node(e) {
             Node::Number(value) => Interval::from_rational(&value, p),
             Node::Pi => Interval::pi(p),
-            Node::Symbol(symbol) => Interval::from_rational(point.get(&symbol)?, p),
+            Node::Symbol(symbol) => values.get(&symbol).cloned(),
             Node::Sum(sum) => {
                 let mut total = Interval::from_rational(&sum.constant, p)?;
                 for (term, coefficient) in &sum.terms {

@@ -6,7 +6,7 @@
 //! *inside* formulas are not looked up here: that is what the plant layer does ([`unknown_name`]
 //! words its diagnostic).
 //!
-//! The passes: [`yaml`] reads the text, [`check`] holds what was declared against itself. A front
+//! The passes: `yaml` reads the text, [`check()`] holds what was declared against itself. A front
 //! end that builds a [`Model`] from something else than YAML runs the same check.
 
 mod check;

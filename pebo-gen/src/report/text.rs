@@ -103,7 +103,7 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
         .filter(|s| inverse.x.iter().all(|(symbol, _)| *symbol != s.symbol))
         .map(|s| arena.name(s.symbol))
         .collect();
-    if !missing.is_empty() {
+    if !missing.is_empty() && derivation.left_inverse.verdict == Verdict::Proved {
         lines.push(format!("a partial observer: {} not recovered", listed(missing.iter().map(String::as_str))));
     }
     lines

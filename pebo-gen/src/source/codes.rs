@@ -184,6 +184,9 @@ codes! {
     RegressionNonlinear "regression-nonlinear" "the outputs do not give a linear regression"
         "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them that \
          can be listed. Another phi, or an identity for a static regression, may help."
+    UnknownUpToTurns "unknown-up-to-turns" "theta is determined only up to whole turns"
+        "The rates of the outputs depend on theta through its sine and cosine, from which atan2 gives it up to whole \
+         turns. For a state that is an angle this is all there is to know; for another it is an ambiguity."
     RegressionUndecided "regression-undecided" "the regression is neither proved nor refuted"
         "Claim C3 could not be decided; the obstacle names what the algebra does not cover."
     NeverIdentifiable "never-identifiable" "the regressor never determines theta"
@@ -191,4 +194,22 @@ codes! {
          Measure another signal, or choose a phi with fewer components."
     IdentifiabilityUndecided "identifiability-undecided" "identifiability is neither proved nor refuted"
         "Claim C4 could not be decided; the obstacle says which rank is unknown."
+
+    // Simulation.
+
+    SimulationMissing "simulation-missing" "a model that says nothing about simulation"
+        "To simulate, the model file needs a section `simulation` with duration, step, the states at the start and a \
+         control law for each input, and a section `observer` with the estimator's gains and the filter."
+    SimulationIncomplete "simulation-incomplete" "a simulation lacks something that it needs"
+        "Every parameter needs a value, every state and output a start and a rate, every input a control law, every \
+         unmeasured signal w a course under signals, and the observer its gains and its filter."
+    SimulationTooLong "simulation-too-long" "a simulation has too many samples"
+        "The number of samples, duration over step, and the size of the table that is written are limited, so that a \
+         slip in a power of ten does not run for days."
+    SimulationUnsupported "simulation-unsupported" "a simulation that this version cannot run"
+        "The simulator runs the observer in one of a few fixed sizes, and the estimators of the runtime library. The \
+         message says what is beyond them. The emitted code has no such limit."
+    SimulationFailed "simulation-failed" "a simulation stopped before its end"
+        "The closed loop left the domain of a formula, grew beyond all bounds, or is too stiff for the explicit \
+         integrator. The message says when and where. A shorter step, other gains or another start may help."
 }

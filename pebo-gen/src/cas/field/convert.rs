@@ -89,10 +89,11 @@ impl Field<'_> {
             Function::Log => self.logarithm(argument),
             Function::Sqrt => self.root(argument, &half()),
             Function::Abs => self.absolute(argument),
-            // No relation among these is used beyond sine and cosine of them (see `angle`).
-            Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => {
-                Ok(self.entered(self.tidy_call(expr)?, None, false))
-            }
+            // Beyond the angle that goes in, only sine and cosine of these are used (see `angle`).
+            Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => match self.angle_within(expr)? {
+                Some(angle) => Ok(angle),
+                None => Ok(self.entered(self.tidy_call(expr)?, None, false)),
+            },
         }
     }
 

@@ -16,6 +16,7 @@
 //! nothing here relies on it for a verdict: what refutes is an enclosure (see [`super::zero`]).
 
 mod angle;
+mod branch;
 mod convert;
 mod exponent;
 mod fraction;

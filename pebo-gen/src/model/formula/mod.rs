@@ -19,6 +19,7 @@
 //! function exactly where an opening parenthesis follows.
 
 mod bounds;
+mod complaints;
 mod decimal;
 mod functions;
 mod lexer;

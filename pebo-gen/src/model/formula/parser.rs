@@ -1,9 +1,10 @@
 //! Tokens to formulas, by precedence climbing.
 
 use super::bounds::{Measured, power_degree};
+use super::complaints;
 use super::lexer::{Kind, Lexer, Token};
 use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, Function, LENGTH_LIMIT, Operator, Places, Term};
-use crate::source::{Code, Diagnostic, Span, nearest, quoted};
+use crate::source::{Code, Diagnostic, Span};
 
 /// Whether a formula may hold `hat(x)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,12 +55,14 @@ const PRODUCT: u8 = 2;
 const SIGN: u8 = 3;
 const POWER: u8 = 4;
 
-struct Parser<'a> {
-    lexer: Lexer<'a>,
+/// The state of a parse. Its diagnostics are worded in [`complaints`], out of the way of the recursion,
+/// whose frames on the stack stay small.
+pub(super) struct Parser<'a> {
+    pub(super) lexer: Lexer<'a>,
     estimates: Estimates,
     /// The token to be read next, and the one before it.
-    next: Token,
-    last: Token,
+    pub(super) next: Token,
+    pub(super) last: Token,
     /// Calls of `expression` under way.
     depth: usize,
 }
@@ -90,11 +93,7 @@ impl<'a> Parser<'a> {
     fn expression(&mut self, least: u8) -> Result<Measured, Diagnostic> {
         self.depth += 1;
         if self.depth > DEPTH_LIMIT {
-            let message = format!("the formula has more than {DEPTH_LIMIT} levels");
-            let place = self.lexer.span(self.next);
-            return Err(Diagnostic::error(Code::FormulaTooDeep, place, message)
-                .label("too deep from here on")
-                .help("name parts of it under `define`"));
+            return Err(self.too_deep());
         }
         let mut left = self.operand()?;
         while let Some((operator, level)) = operator(self.next.kind)
@@ -113,29 +112,26 @@ impl<'a> Parser<'a> {
         match self.next.kind {
             Kind::Number => self.number(),
             Kind::Name => self.name(),
-            Kind::Minus => {
-                let sign = self.advance()?;
-                let operand = self.expression(SIGN)?;
-                let (depth, degree) = (operand.depth(), operand.degree());
-                let span = self.lexer.span(sign).to(operand.formula.span);
-                let term = Term::Negative(Box::new(operand.formula));
-                Measured::node(Formula { span, term }, depth, degree)
-            }
-            Kind::Open => {
-                let open = self.advance()?;
-                let mut inner = self.expression(SUM)?;
-                inner.formula.span = self.close(open)?;
-                Ok(inner)
-            }
-            Kind::Plus => Err(self.unexpected("a plus sign needs a left side").help("remove the plus sign")),
-            Kind::End => Err(self
-                .unexpected("the formula ends where an operand is missing")
-                .help("write what follows the operator, or remove the operator")),
-            _ => {
-                let message = format!("{} stands where an operand is missing", quoted(self.lexer.text(self.next)));
-                Err(self.unexpected(&message).help("write a name, a number or a parenthesis here"))
-            }
+            Kind::Minus => self.negative(),
+            Kind::Open => self.group(),
+            _ => Err(self.misplaced()),
         }
+    }
+
+    fn negative(&mut self) -> Result<Measured, Diagnostic> {
+        let sign = self.advance()?;
+        let operand = self.expression(SIGN)?;
+        let (depth, degree) = (operand.depth(), operand.degree());
+        let span = self.lexer.span(sign).to(operand.formula.span);
+        let term = Term::Negative(Box::new(operand.formula));
+        Measured::node(Formula { span, term }, depth, degree)
+    }
+
+    fn group(&mut self) -> Result<Measured, Diagnostic> {
+        let open = self.advance()?;
+        let mut inner = self.expression(SUM)?;
+        inner.formula.span = self.close(open)?;
+        Ok(inner)
     }
 
     fn number(&mut self) -> Result<Measured, Diagnostic> {
@@ -156,16 +152,14 @@ impl<'a> Parser<'a> {
         }
         match Function::named(name) {
             Some(function) => self.call(function, span),
-            None => Err(unknown_function(name, span)),
+            None => Err(complaints::unknown_function(name, span)),
         }
     }
 
     /// `hat(x)`, from the parenthesis on.
     fn estimate(&mut self, hat: Span) -> Result<Measured, Diagnostic> {
         if self.estimates == Estimates::Refused {
-            let message = "there is no estimate in this place".to_owned();
-            return Err(Diagnostic::error(Code::MisplacedEstimate, hat, message)
-                .help("use hat() in the control law and panels of a simulation only"));
+            return Err(complaints::no_estimate(hat));
         }
         let open = self.advance()?;
         if self.next.kind != Kind::Name {
@@ -194,12 +188,7 @@ impl<'a> Parser<'a> {
         }
         let span = name.to(self.close(open)?);
         if arguments.len() != function.arguments {
-            let (name, wanted) = (function.name, function.arguments);
-            let message = format!("`{name}` takes {wanted} and has {}", count(arguments.len()));
-            return Err(Diagnostic::error(Code::ArgumentCount, span, message).help(match wanted {
-                1 => format!("write `{name}(a)`"),
-                _ => format!("write `{name}(a, b)`"),
-            }));
+            return Err(complaints::argument_count(function, arguments.len(), span));
         }
         // A call is one unknown quantity to the algebra, whatever its arguments are.
         Measured::node(Formula { span, term: Term::Call(function, arguments) }, depth, 1.0)
@@ -212,42 +201,8 @@ impl<'a> Parser<'a> {
                 let close = self.advance()?;
                 Ok(self.lexer.span(open).to(self.lexer.span(close)))
             }
-            Kind::End => {
-                let message = "this parenthesis is not closed".to_owned();
-                let span = self.lexer.span(open);
-                Err(Diagnostic::error(Code::UnclosedParenthesis, span, message)
-                    .help("close it; a formula with a comma needs quotes inside { } or [ ]"))
-            }
-            Kind::Relation(_) => Err(self
-                .unexpected("a comparison stands inside parentheses")
-                .help("compare whole formulas, and only under `assume`")),
-            _ => Err(self.trailing()),
+            _ => Err(self.unclosed(open)),
         }
-    }
-
-    /// The formula could end here, and goes on.
-    fn trailing(&self) -> Diagnostic {
-        match self.next.kind {
-            Kind::Number | Kind::Name | Kind::Open => {
-                let (left, right) = (self.lexer.text(self.last), self.lexer.text(self.next));
-                let span = self.lexer.span(self.last).to(self.lexer.span(self.next));
-                let message = "an operator is missing between two factors".to_owned();
-                Diagnostic::error(Code::ImplicitMultiplication, span, message)
-                    .help(format!("write `{left}*{right}` for a product"))
-            }
-            Kind::Close => self.unexpected("this parenthesis closes nothing").help("remove it, or open one before"),
-            Kind::Comma => self
-                .unexpected("a comma separates arguments, and there is no call here")
-                .help("write decimals with a point"),
-            Kind::Equals => self
-                .unexpected("a formula is not an equation")
-                .help("put what is zero by physics under `identities`, inequalities under `assume`"),
-            _ => self.unexpected("the formula goes on in an unexpected way").help("end the formula before this"),
-        }
-    }
-
-    fn unexpected(&self, message: &str) -> Diagnostic {
-        Diagnostic::error(Code::UnexpectedToken, self.lexer.span(self.next), message)
     }
 }
 
@@ -272,21 +227,4 @@ fn binary(operator: Operator, left: Measured, right: Measured) -> Result<Measure
     let span = left.formula.span.to(right.formula.span);
     let term = Term::Binary(operator, Box::new(left.formula), Box::new(right.formula));
     Measured::node(Formula { span, term }, depth, degree)
-}
-
-fn unknown_function(name: &str, span: Span) -> Diagnostic {
-    let message = format!("{} is not a function", quoted(name));
-    let diagnostic = Diagnostic::error(Code::UnknownFunction, span, message);
-    match nearest(name, Function::names()) {
-        Some(near) => diagnostic.suggest(Some(near)),
-        None => diagnostic.help(format!("write `{name}*(` for a product")),
-    }
-    .note("a name before a parenthesis is a call")
-}
-
-fn count(arguments: usize) -> String {
-    match arguments {
-        0 => "none".to_owned(),
-        n => n.to_string(),
-    }
 }

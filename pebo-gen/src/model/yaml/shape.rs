@@ -105,7 +105,7 @@ impl Fitter<'_> {
         let mut by_class = false;
         for (name, node) in entries {
             let Some(key) = keys.iter().find(|key| key.name == name.text) else {
-                self.diagnostics.push(unknown_key(&name.text, name.span, keys));
+                self.diagnostics.push_with(|| unknown_key(&name.text, name.span, keys));
                 continue;
             };
             self.example = key.example;

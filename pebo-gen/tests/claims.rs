@@ -1,0 +1,144 @@
+//! Small plants for every verdict on every claim.
+
+use pebo_gen::analysis::{Class, Excitation, Outcome, RegressionKind, Verdict};
+use pebo_gen::source::{Code, Source};
+use pebo_gen::{Derived, derive};
+
+fn derived(lines: &str) -> Derived {
+    let text = format!("model: m\n{lines}\n");
+    derive(&Source::new("m", text.as_str()).expect("a text")).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message))
+}
+
+/// What is expected of a plant: every claim proved, or the code of the first refusal.
+enum Answer {
+    Accepted(&'static str),
+    Rejected(Code),
+    Undecided(Code),
+}
+use Answer::{Accepted, Rejected, Undecided};
+
+/// The class of an accepted derivation in a few words.
+fn class(derived: &Derived) -> String {
+    let derivation = &derived.derivation;
+    let regression = derivation.regression.result.as_ref().expect("a regression");
+    let kind = match regression.kind {
+        RegressionKind::Dynamic => "dynamic",
+        RegressionKind::Static => "static",
+        RegressionKind::Implicit => "implicit",
+    };
+    let linear = if regression.is_linear(&derived.plant) { "linear" } else { "over-parameterised" };
+    let cascade = if derivation.class == Class::Pebo { "" } else { "gpebo " };
+    let excitation = match derivation.identifiability.result.as_ref().expect("identifiability").kind {
+        Excitation::Instant => "instant",
+        Excitation::Excitation => "excitation",
+        Excitation::Never => "never",
+    };
+    format!("{cascade}{kind} {linear} {excitation}")
+}
+
+const TABLE: &[(&str, &str, Answer)] = &[
+    // Rates of the output as functions of z = x, with x' = u.
+    ("affine", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 2*x + y}\nphi: [x]", Accepted("dynamic linear instant")),
+    ("product with an input", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x}\nphi: [x]", Accepted("dynamic linear instant")),
+    ("square", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
+    ("sine", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: sin(x)}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
+    ("sine and cosine", "x: [x]\ny: [a, b]\nu: [u]\nf_x: {x: u}\nf_y: {a: cos(x), b: sin(x)}\nphi: [x]", Accepted("dynamic over-parameterised instant")),
+    ("exponential", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(x)}\nphi: [x]", Accepted("dynamic over-parameterised instant")),
+    ("hyperbolic", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: cosh(x)}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
+    ("polynomial times exponential", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x*exp(x)}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
+    ("tanh", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: tanh(x)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
+    ("gaussian", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(-x^2)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
+    ("rational", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/(1 + x^2)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
+    ("reciprocal", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/x}\nphi: [x]\nassume: [x > 0]", Rejected(Code::RegressionNonlinear)),
+    ("root", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: sqrt(x)}\nphi: [x]\nassume: [x > 0]", Rejected(Code::RegressionNonlinear)),
+    ("absolute value", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: abs(x)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
+    ("absolute value of known sign", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: abs(x)}\nphi: [x]\nassume: [x > 0]", Accepted("dynamic linear instant")),
+    ("nothing to estimate from", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
+    // Transforms and their inverses.
+    ("coupled", "x: [a, b]\ny: [c, d]\nu: [u]\nf_x: {a: u, b: c}\nf_y: {c: a + b, d: a - b}\nphi: [a + b, a - b]", Accepted("dynamic linear instant")),
+    ("logarithm", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*x}\nf_y: {y: y*log(x)}\nphi: [log(x)]\nassume: [x > 0]", Accepted("dynamic linear instant")),
+    ("exponential transform", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*exp(-x)}\nf_y: {y: exp(x)}\nphi: [exp(x)]", Accepted("dynamic linear instant")),
+    ("even transform", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]", Rejected(Code::LeftInverseRefuted)),
+    ("even transform, positive state", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x > 0]", Accepted("dynamic linear instant")),
+    ("even transform, negative state", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x < 0]", Accepted("dynamic linear instant")),
+    ("root of either sign", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/(3*x^2)}\nf_y: {y: x^3}\nphi: [x^3]\nphi_left: {x: z1^(1/3)}", Undecided(Code::LeftInverseUndecided)),
+    ("sine on its branch", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/cos(x)}\nf_y: {y: sin(x)}\nphi: [sin(x)]\nassume: [-pi/2 < x < pi/2]", Accepted("dynamic linear instant")),
+    ("sine off its branch", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/cos(x)}\nf_y: {y: sin(x)}\nphi: [sin(x)]\nphi_left: {x: asin(z1)}", Rejected(Code::LeftInverseRefuted)),
+    ("tangent on its branch", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*cos(x)^2}\nf_y: {y: tan(x)}\nphi: [tan(x)]\nassume: [-pi/2 < x < pi/2]", Accepted("dynamic linear instant")),
+    ("angle", "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nangles: {q: 2*pi}", Accepted("dynamic linear instant")),
+    ("angle on one turn", "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nassume: [-pi < q < pi]", Accepted("dynamic linear instant")),
+    ("too few components", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: u}\nf_y: {y: a + b}\nphi: [a + b]", Rejected(Code::LeftInverseRefuted)),
+    ("partial observer", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: -b}\nf_y: {y: a}\nphi: [a]\nphi_left: {a: z1}", Accepted("dynamic linear instant")),
+    ("wrong left inverse", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x}\nphi: [2*x]\nphi_left: {x: z1}", Rejected(Code::LeftInverseRefuted)),
+    // The cascade.
+    ("rate depends on x", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x}\nf_y: {y: x}\nphi: [x]", Rejected(Code::CascadeRefuted)),
+    ("rate depends on an unmeasured signal", "x: [x]\ny: [y]\nu: [u]\nw: [w]\nf_x: {x: u + w}\nf_y: {y: x}\nphi: [x]", Rejected(Code::CascadeRefuted)),
+    ("cancels by trigonometry", "x: [x]\ny: [q]\nu: [u]\nf_x: {x: u + x*(sin(2*q) - 2*sin(q)*cos(q))}\nf_y: {q: x}\nphi: [x]", Accepted("dynamic linear instant")),
+    ("polar coordinates", "x: [p, l]\ny: [r, q]\nu: [u, v]\nparameters: {m: null}\nassume: [r > 0, m > 0]\nf_x: {p: l^2/(m*r^3) + u, l: v}\nf_y: {r: p/m, q: l/(m*r^2)}\nphi: [p*cos(q) - l*sin(q)/r, p*sin(q) + l*cos(q)/r]", Accepted("dynamic linear instant")),
+    ("rotating frame", "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]", Accepted("gpebo dynamic linear excitation")),
+    ("growing frame", "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: w*a}\nf_y: {y: a}\nphi: [a, b]", Rejected(Code::CascadeRefuted)),
+    // Identifiability.
+    ("two unknowns, one output", "x: [a, b]\ny: [y]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {y: u*a + v*b}\nphi: [a, b]", Accepted("dynamic linear excitation")),
+    ("regressor moved by the output", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: -u*y}\nf_y: {y: a + y*b}\nphi: [a, b]", Accepted("dynamic linear excitation")),
+    ("sum of unknowns", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: 0}\nf_y: {y: u*(a + b)}\nphi: [a, b]", Rejected(Code::NeverIdentifiable)),
+    ("unseen state", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: y + u}\nphi: [x]", Rejected(Code::NeverIdentifiable)),
+    ("static", "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nidentities: [(a - c)^2 + (b - d)^2 - 4]", Accepted("static over-parameterised excitation")),
+];
+
+#[test]
+fn verdicts() {
+    let mut wrong = Vec::new();
+    for (what, lines, answer) in TABLE {
+        let derived = derived(lines);
+        let derivation = &derived.derivation;
+        let has = |code: &Code| derivation.diagnostics.iter().any(|d| d.code == *code);
+        let right = match answer {
+            Accepted(words) => derivation.outcome == Outcome::Accepted && class(&derived) == *words,
+            Rejected(code) => derivation.outcome == Outcome::Rejected && has(code),
+            Undecided(code) => derivation.outcome == Outcome::Undecided && has(code),
+        };
+        if !right {
+            let found: Vec<&str> = derivation.diagnostics.iter().map(|d| d.code.name()).collect();
+            let class = if derivation.outcome == Outcome::Accepted { class(&derived) } else { String::new() };
+            wrong.push(format!("{what}: {:?} {class} {found:?}", derivation.outcome));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_refusal_says_what_and_how_to_mend_it() {
+    for (what, lines, answer) in TABLE {
+        if matches!(answer, Accepted(_)) {
+            continue;
+        }
+        for diagnostic in &derived(lines).derivation.diagnostics {
+            assert!(diagnostic.help.is_some(), "{what}: {}", diagnostic.message);
+            assert!(!diagnostic.primary.text.is_empty() || !diagnostic.notes.is_empty(), "{what}: {}", diagnostic.message);
+        }
+    }
+}
+
+#[test]
+fn a_witness_is_a_point_where_the_residual_is_not_zero() {
+    let plant = derived("x: [x]\ny: [y]\nu: [u]\nparameters: {g: 3}\nf_x: {x: u - g*x^2}\nf_y: {y: u}\nphi: [x]");
+    let cascade = plant.derivation.cascade.result.as_ref().expect("a residual");
+    let witness = cascade.witness.as_ref().expect("a witness");
+    let value = |name: &str| {
+        let symbol = plant.plant.arena.symbol(name);
+        witness.point.iter().find(|(s, _)| *s == symbol).expect("a coordinate").1.to_f64()
+    };
+    assert_eq!(plant.plant.arena.print(cascade.residual[0]), "-g*x^2");
+    let again = -value("g") * value("x") * value("x");
+    // A product of small rationals, up to the rounding of two multiplications.
+    assert!((again - witness.bounds.0).abs() < 1e-12 && (again - witness.bounds.1).abs() < 1e-12);
+    assert!((value("g") - 3.0).abs() < f64::EPSILON);
+}
+
+#[test]
+fn what_builds_on_a_failed_claim_is_skipped() {
+    let plant = derived("x: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x}\nf_y: {y: x*y}\nphi: [x*y]");
+    assert_eq!(plant.derivation.cascade.verdict, Verdict::Refuted);
+    assert_eq!(plant.derivation.regression.verdict, Verdict::Skipped);
+    assert_eq!(plant.derivation.identifiability.verdict, Verdict::Skipped);
+}

@@ -1,0 +1,181 @@
+//! The command line: exit status, what goes to which stream, files whole or not at all, and hostile input.
+#![cfg(all(feature = "cli", feature = "simulate"))]
+
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const CUK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/cuk.yaml");
+
+/// Far above what any of these takes, and far below what a person would call a hang.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A folder that goes with the test.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        let path = self.path(name);
+        std::fs::write(&path, content).expect("a file");
+        path.display().to_string()
+    }
+}
+
+fn run(arguments: &[&str]) -> Output {
+    let started = Instant::now();
+    let output = Command::new(env!("CARGO_BIN_EXE_pebo-gen"))
+        .args(arguments)
+        .env("NO_COLOR", "1")
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program runs");
+    assert!(started.elapsed() < PATIENCE, "{arguments:?} took {:?}", started.elapsed());
+    output
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A small model with one line replaced.
+fn model(key: &str, line: &str) -> String {
+    let base = [
+        ("model", "model: m"),
+        ("parameters", "parameters: {a: 2}"),
+        ("x", "x: [x1]"),
+        ("y", "y: [y1]"),
+        ("u", "u: [u1]"),
+        ("f_x", "f_x: {x1: u1}"),
+        ("f_y", "f_y: {y1: a*x1}"),
+        ("phi", "phi: [x1]"),
+    ];
+    base.iter().map(|(k, l)| if *k == key { line } else { *l }).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+#[test]
+fn emits_to_standard_output_and_the_verdict_to_standard_error() {
+    let output = run(&[CUK]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("pub struct Cuk"));
+    assert!(text(&output.stderr).starts_with("cuk: accepted"));
+}
+
+#[test]
+fn output_is_the_same_every_time() {
+    assert_eq!(run(&[CUK]).stdout, run(&[CUK]).stdout);
+    assert_eq!(run(&["check", CUK, "--format", "json"]).stdout, run(&["check", CUK, "--format", "json"]).stdout);
+}
+
+#[test]
+fn a_refused_model_exits_with_1_and_writes_nothing() {
+    let folder = Folder::new();
+    let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));
+    let target = folder.path("out.rs");
+    let output = run(&[&refused, "-o", &target.display().to_string()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!target.exists());
+    assert!(output.stdout.is_empty());
+    assert!(text(&output.stderr).contains("error[cascade-refuted]"));
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_file() {
+    let folder = Folder::new();
+    let target = folder.path("no-such-folder").join("out.rs");
+    let output = run(&[CUK, "-o", &target.display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("error[cannot-write]"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn several_models_in_one_call_end_with_the_worst_status() {
+    let folder = Folder::new();
+    let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));
+    let output = run(&["check", CUK, &refused, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let lines = text(&output.stdout);
+    let verdicts: Vec<&str> = lines.lines().filter_map(|l| l.split("\"verdict\":\"").nth(1)?.split('"').next()).collect();
+    assert_eq!(verdicts, ["accepted", "rejected"]);
+}
+
+#[test]
+fn json_has_an_object_for_a_malformed_model_too() {
+    let folder = Folder::new();
+    let malformed = folder.file("m.yaml", "model: [");
+    let output = run(&["check", &malformed, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stdout).starts_with("{\"schema\":1,\"model\":\"m\",\"verdict\":\"rejected\""));
+}
+
+#[test]
+fn explains_every_code() {
+    let output = run(&["explain", "cascade-refuted"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).contains("Claim C1"));
+    let output = run(&["explain", "cascade-refused"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("did you mean `cascade-refuted`?"));
+}
+
+/// Mistakes and attacks: what is written, the code, and what the message must name.
+#[test]
+fn hostile_input_ends_in_a_diagnostic() {
+    let folder = Folder::new();
+    let deep = format!("phi: [{}x1{}]", "(".repeat(10_000), ")".repeat(10_000));
+    let bomb = "a: &a [1,1,1,1,1,1,1,1]\nb: &b [*a,*a,*a,*a,*a,*a,*a,*a]\nc: &c [*b,*b,*b,*b,*b,*b,*b,*b]\nmodel: *c\n";
+    let table: Vec<(&str, Vec<u8>, &str, &str)> = vec![
+        ("unknown key", model("u", "u: [u1]\nphi_lefd: {x1: z1}").into(), "unknown-key", "phi_left"),
+        ("duplicate key", model("u", "u: [u1]\nx: [x1]").into(), "duplicate-key", "x"),
+        ("unknown name", model("f_y", "f_y: {y1: a*x2}").into(), "unknown-name", "did you mean `x1`?"),
+        ("huge power", model("f_y", "f_y: {y1: x1^1000000000}").into(), "exponent-too-large", "64"),
+        ("huge number", model("parameters", "parameters: {a: 1e999999999}").into(), "number-too-large", "308"),
+        ("huge number in a formula", model("f_y", "f_y: {y1: 1e999999999*x1}").into(), "number-too-large", "308"),
+        ("parentheses", model("phi", &deep).into(), "formula-too-deep", ""),
+        ("alias bomb", bomb.into(), "yaml-feature", ""),
+        ("empty", Vec::new(), "empty-file", ""),
+        ("binary", vec![0, 159, 146, 150, 255], "not-text", "UTF-8"),
+        ("ten megabytes", vec![b'a'; 10 << 20], "file-too-large", ""),
+        ("division by zero", model("f_y", "f_y: {y1: x1/(a - a)}").into(), "division-by-zero", "zero"),
+        ("reserved", model("x", "x: [z1]").into(), "reserved-name", "z1"),
+        ("missing rate", model("f_x", "f_x: {}").into(), "missing-entry", "x1"),
+        ("control characters", b"model: m\x00\x01\n".to_vec(), "yaml-syntax", ""),
+        ("no yaml", b"{{{{{{".to_vec(), "yaml-syntax", ""),
+    ];
+    for (what, content, code, named) in table {
+        let path = folder.file("m.yaml", content);
+        let output = run(&["check", &path]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{what}: {message}");
+        assert!(message.contains(&format!("error[{code}]")), "{what}: {message}");
+        assert!(message.contains(named), "{what} does not name {named}: {message}");
+        assert!(message.contains("help: "), "{what} has no help: {message}");
+        assert!(!message.contains("panicked"), "{what}: {message}");
+    }
+    let output = run(&["check", &folder.path("none.yaml").display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("error[cannot-read]"));
+}
+
+/// Names that other tools stumble over are just names.
+#[test]
+fn difficult_names_are_accepted() {
+    let folder = Folder::new();
+    for (what, content) in [
+        ("a parameter named like a function", "model: m\nparameters: {sin: 2}\nx: [x1]\ny: [y1]\nf_x: {x1: sin(sin*y1)}\nf_y: {y1: sin*x1}\nphi: [x1]\n"),
+        ("a state named E", "model: m\nx: [E]\ny: [I]\nf_x: {E: I^2}\nf_y: {I: E + I}\nphi: [E]\n"),
+        ("a Rust keyword", "model: type\nparameters: {fn: 2}\nx: [match]\ny: [self]\nu: [gen]\nf_x: {match: gen}\nf_y: {self: fn*match}\nphi: [match]\n"),
+        ("names that differ in case", "model: m\nparameters: {l: 2, L: 3}\nx: [x]\ny: [X]\nf_x: {x: X/l}\nf_y: {X: L*x}\nphi: [x]\n"),
+    ] {
+        let path = folder.file("m.yaml", content);
+        let output = run(&[&path]);
+        assert_eq!(output.status.code(), Some(0), "{what}: {}", text(&output.stderr));
+    }
+}
