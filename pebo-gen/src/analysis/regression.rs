@@ -20,6 +20,9 @@ use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Ver
 use super::separation::{self, Separated};
 use super::tidy::{shortest, shortest_equal};
 
+const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
+    polynomials, exponentials, sines and cosines of z go";
+
 /// One output as an affine function of the transform.
 struct Row {
     /// The part free of x.
@@ -55,13 +58,21 @@ pub(super) fn prove(
         return Claim { verdict: Verdict::Proved, result: Some(regression) };
     }
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
+    let mut stands_against = NO_SEPARATION.to_owned();
     if cascade.lambda.is_none() && let Some(left_inverse) = left_inverse {
         let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| plant.arena.substitute(*rate, &inverse)).collect();
-        if let Ok(Some(separated)) = separation::separate(plant, domain, &rates)
-            && let Some(result) = over_parameterised(plant, domain, rows.iter().map(|r| r.0).collect(), separated, found)
-        {
-            return Claim { verdict: Verdict::Proved, result: Some(result) };
+        match separation::separate(plant, domain, &rates) {
+            Ok(Some(separated)) => {
+                let eta: Vec<String> = separated.eta.iter().map(|e| plant.arena.print(*e)).collect();
+                let outputs = rows.iter().map(|r| r.0).collect();
+                if let Some(result) = over_parameterised(plant, domain, outputs, separated, found) {
+                    return Claim { verdict: Verdict::Proved, result: Some(result) };
+                }
+                stands_against = format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
+            }
+            Ok(None) => {}
+            Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
         }
     }
     if !plant.identities.is_empty() {
@@ -72,8 +83,10 @@ pub(super) fn prove(
     }
     let mut verdict = Verdict::Refuted;
     for (index, rate, span, obstacle) in obstacles {
-        match nonlinear(plant, domain, rate, left_inverse) {
-            Some(witness) => found.push(refuted(plant, index, span, &witness)),
+        // What was given up is not refuted: it may be linear in functions of theta all the same.
+        let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
+        match bend {
+            Some(witness) => found.push(refuted(plant, index, span, &witness, &stands_against)),
             None => {
                 verdict = Verdict::Undecided;
                 found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));
@@ -282,7 +295,7 @@ fn nonlinear(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: Option<&L
     })
 }
 
-fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness) -> Diagnostic {
+fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness, stands_against: &str) -> Diagnostic {
     let arena = &plant.arena;
     let output = arena.name(plant.y[index].symbol);
     Diagnostic::error(
@@ -292,8 +305,7 @@ fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness) -> Diagno
     )
     .label("not an affine function of phi with coefficients in y and u")
     .note(format!("as a function of z it bends: {}", witness.sentence(arena)))
-    .note("it is no sum of products of functions of theta with known signals either, as far as polynomials, \
-           exponentials, sines and cosines of z go")
+    .note(stands_against)
     .help("choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
            an identity under `identities`")
 }

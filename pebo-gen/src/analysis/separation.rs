@@ -10,7 +10,7 @@ use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::poly::Monomial;
 use crate::cas::rational::Rational;
-use crate::cas::zero::decide;
+use crate::cas::zero::{Answer, decide};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
@@ -81,7 +81,8 @@ pub(super) fn separate(plant: &Plant, domain: &Domain, in_z: &[Expr]) -> Result<
             .map(|c| arena.multiply(&Rational::ONE, c.iter().map(|&(k, e)| (field.kernel(k), Rational::from(e)))))
             .collect(),
     };
-    Ok(proved(plant, domain, &exprs, &separated).then_some(separated))
+    prove(plant, domain, &exprs, &separated)?;
+    Ok(Some(separated))
 }
 
 /// Kernels with their exponents, ascending, no exponent zero.
@@ -100,14 +101,19 @@ fn product(a: &Powers, b: &Powers) -> Powers {
     total.into_iter().filter(|p| p.1 != 0).collect()
 }
 
-/// Whether the separation is an identity.
-fn proved(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) -> bool {
+/// Proves that the separation is an identity.
+fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) -> Result<(), Obstacle> {
     let arena = &plant.arena;
-    exprs.iter().zip(separated.known.iter().zip(&separated.factors)).all(|(expr, (known, factors))| {
+    for (expr, (known, factors)) in exprs.iter().zip(separated.known.iter().zip(&separated.factors)) {
         let products = factors.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e));
         let rebuilt = arena.add(*known, arena.sum(products));
-        decide(arena, arena.sub(*expr, rebuilt), domain).is_zero()
-    })
+        match decide(arena, arena.sub(*expr, rebuilt), domain) {
+            Answer::Zero => {}
+            Answer::Open(obstacle) => return Err(obstacle),
+            Answer::NonZero(_) => return Err(Obstacle::NoWitness),
+        }
+    }
+    Ok(())
 }
 
 /// Joins all functions of theta whose factors are constants of the plant into one, together with the
