@@ -1,20 +1,26 @@
 //! Proves parameter-estimation-based observers and emits them as Rust.
 //!
 //! ```text
-//! Source -> Model -> Plant -> Derivation -> Programs -> text
+//! Source -> Model -> Plant -> Derivation -> Emitted
 //! ```
 //!
 //! A model file describes a plant and a candidate transform (Ortega, Bobtsov, Pyrkin and Aranovskiy
-//! 2015). [`derive()`] says what is proved of it, claim by claim.
+//! 2015). [`derive()`] says what is proved of it, claim by claim; [`Derived::emit`] writes the observer
+//! if everything is.
 
 pub mod analysis;
 pub mod cas;
+pub mod emit;
 pub mod model;
 pub mod plant;
+pub mod program;
 pub mod report;
+#[cfg(feature = "simulate")]
+pub mod simulate;
 pub mod source;
 
 use analysis::Derivation;
+use emit::{EmitError, Emitted, Scalar};
 use model::Model;
 use plant::Plant;
 use source::{Diagnostic, Source};
@@ -36,4 +42,19 @@ pub fn derive(source: &Source) -> Result<Derived, Vec<Diagnostic>> {
     let plant = Plant::resolve(&model)?;
     let derivation = Derivation::derive(&plant);
     Ok(Derived { model, plant, derivation })
+}
+
+impl Derived {
+    /// Writes the observer as Rust, and proves that the written code computes what was derived.
+    pub fn emit(&self, scalar: Scalar) -> Result<Emitted, EmitError> {
+        let domain = self.plant.domain();
+        let is_zero = |arena: &cas::Arena, expr| cas::zero::decide(arena, expr, &domain).is_zero();
+        emit::emit(&self.plant, &self.derivation, scalar, is_zero)
+    }
+
+    /// The closed loop that the model file describes, ready to be run.
+    #[cfg(feature = "simulate")]
+    pub fn scenario(&self, overrides: &simulate::Overrides) -> Result<simulate::Scenario, Vec<Diagnostic>> {
+        simulate::Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides)
+    }
 }

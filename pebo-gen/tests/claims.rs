@@ -39,50 +39,206 @@ fn class(derived: &Derived) -> String {
 const TABLE: &[(&str, &str, Answer)] = &[
     // Rates of the output as functions of z = x, with x' = u.
     ("affine", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 2*x + y}\nphi: [x]", Accepted("dynamic linear instant")),
-    ("product with an input", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x}\nphi: [x]", Accepted("dynamic linear instant")),
-    ("square", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
-    ("sine", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: sin(x)}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
-    ("sine and cosine", "x: [x]\ny: [a, b]\nu: [u]\nf_x: {x: u}\nf_y: {a: cos(x), b: sin(x)}\nphi: [x]", Accepted("dynamic over-parameterised instant")),
-    ("exponential", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(x)}\nphi: [x]", Accepted("dynamic over-parameterised instant")),
-    ("hyperbolic", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: cosh(x)}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
-    ("polynomial times exponential", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x*exp(x)}\nphi: [x]", Accepted("dynamic over-parameterised excitation")),
+    (
+        "product with an input",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x}\nphi: [x]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "square",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    (
+        "sine",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: sin(x)}\nphi: [x]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    (
+        "sine and cosine",
+        "x: [x]\ny: [a, b]\nu: [u]\nf_x: {x: u}\nf_y: {a: cos(x), b: sin(x)}\nphi: [x]",
+        Accepted("dynamic over-parameterised instant"),
+    ),
+    (
+        "exponential",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(x)}\nphi: [x]",
+        Accepted("dynamic over-parameterised instant"),
+    ),
+    (
+        "hyperbolic",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: cosh(x)}\nphi: [x]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    (
+        "polynomial times exponential",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x*exp(x)}\nphi: [x]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
     ("tanh", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: tanh(x)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
-    ("gaussian", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(-x^2)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
-    ("rational", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/(1 + x^2)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
-    ("reciprocal", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/x}\nphi: [x]\nassume: [x > 0]", Rejected(Code::RegressionNonlinear)),
-    ("root", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: sqrt(x)}\nphi: [x]\nassume: [x > 0]", Rejected(Code::RegressionNonlinear)),
-    ("absolute value", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: abs(x)}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
-    ("absolute value of known sign", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: abs(x)}\nphi: [x]\nassume: [x > 0]", Accepted("dynamic linear instant")),
+    (
+        "gaussian",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(-x^2)}\nphi: [x]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "rational",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/(1 + x^2)}\nphi: [x]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "reciprocal",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/x}\nphi: [x]\nassume: [x > 0]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "root",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: sqrt(x)}\nphi: [x]\nassume: [x > 0]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "absolute value",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: abs(x)}\nphi: [x]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "absolute value of known sign",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: abs(x)}\nphi: [x]\nassume: [x > 0]",
+        Accepted("dynamic linear instant"),
+    ),
     ("nothing to estimate from", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
     // Transforms and their inverses.
-    ("coupled", "x: [a, b]\ny: [c, d]\nu: [u]\nf_x: {a: u, b: c}\nf_y: {c: a + b, d: a - b}\nphi: [a + b, a - b]", Accepted("dynamic linear instant")),
-    ("logarithm", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*x}\nf_y: {y: y*log(x)}\nphi: [log(x)]\nassume: [x > 0]", Accepted("dynamic linear instant")),
-    ("exponential transform", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*exp(-x)}\nf_y: {y: exp(x)}\nphi: [exp(x)]", Accepted("dynamic linear instant")),
-    ("even transform", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]", Rejected(Code::LeftInverseRefuted)),
-    ("even transform, positive state", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x > 0]", Accepted("dynamic linear instant")),
-    ("even transform, negative state", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x < 0]", Accepted("dynamic linear instant")),
-    ("root of either sign", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/(3*x^2)}\nf_y: {y: x^3}\nphi: [x^3]\nphi_left: {x: z1^(1/3)}", Undecided(Code::LeftInverseUndecided)),
-    ("sine on its branch", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/cos(x)}\nf_y: {y: sin(x)}\nphi: [sin(x)]\nassume: [-pi/2 < x < pi/2]", Accepted("dynamic linear instant")),
-    ("sine off its branch", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/cos(x)}\nf_y: {y: sin(x)}\nphi: [sin(x)]\nphi_left: {x: asin(z1)}", Rejected(Code::LeftInverseRefuted)),
-    ("tangent on its branch", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*cos(x)^2}\nf_y: {y: tan(x)}\nphi: [tan(x)]\nassume: [-pi/2 < x < pi/2]", Accepted("dynamic linear instant")),
-    ("angle", "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nangles: {q: 2*pi}", Accepted("dynamic linear instant")),
-    ("angle on one turn", "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nassume: [-pi < q < pi]", Accepted("dynamic linear instant")),
-    ("too few components", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: u}\nf_y: {y: a + b}\nphi: [a + b]", Rejected(Code::LeftInverseRefuted)),
-    ("partial observer", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: -b}\nf_y: {y: a}\nphi: [a]\nphi_left: {a: z1}", Accepted("dynamic linear instant")),
-    ("wrong left inverse", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x}\nphi: [2*x]\nphi_left: {x: z1}", Rejected(Code::LeftInverseRefuted)),
+    (
+        "coupled",
+        "x: [a, b]\ny: [c, d]\nu: [u]\nf_x: {a: u, b: c}\nf_y: {c: a + b, d: a - b}\nphi: [a + b, a - b]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "logarithm",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*x}\nf_y: {y: y*log(x)}\nphi: [log(x)]\nassume: [x > 0]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "exponential transform",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*exp(-x)}\nf_y: {y: exp(x)}\nphi: [exp(x)]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "even transform",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]",
+        Rejected(Code::LeftInverseRefuted),
+    ),
+    (
+        "even transform, positive state",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x > 0]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "even transform, negative state",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x < 0]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "root of either sign",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/(3*x^2)}\nf_y: {y: x^3}\nphi: [x^3]\nphi_left: {x: z1^(1/3)}",
+        Undecided(Code::LeftInverseUndecided),
+    ),
+    (
+        "sine on its branch",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/cos(x)}\nf_y: {y: sin(x)}\nphi: [sin(x)]\nassume: [-pi/2 < x < pi/2]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "sine off its branch",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/cos(x)}\nf_y: {y: sin(x)}\nphi: [sin(x)]\nphi_left: {x: asin(z1)}",
+        Rejected(Code::LeftInverseRefuted),
+    ),
+    (
+        "tangent on its branch",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u*cos(x)^2}\nf_y: {y: tan(x)}\nphi: [tan(x)]\nassume: [-pi/2 < x < pi/2]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "angle",
+        "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nangles: {q: 2*pi}",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "angle on one turn",
+        "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nassume: [-pi < q < pi]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "too few components",
+        "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: u}\nf_y: {y: a + b}\nphi: [a + b]",
+        Rejected(Code::LeftInverseRefuted),
+    ),
+    (
+        "partial observer",
+        "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: -b}\nf_y: {y: a}\nphi: [a]\nphi_left: {a: z1}",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "wrong left inverse",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x}\nphi: [2*x]\nphi_left: {x: z1}",
+        Rejected(Code::LeftInverseRefuted),
+    ),
     // The cascade.
-    ("rate depends on x", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x}\nf_y: {y: x}\nphi: [x]", Rejected(Code::CascadeRefuted)),
-    ("rate depends on an unmeasured signal", "x: [x]\ny: [y]\nu: [u]\nw: [w]\nf_x: {x: u + w}\nf_y: {y: x}\nphi: [x]", Rejected(Code::CascadeRefuted)),
-    ("cancels by trigonometry", "x: [x]\ny: [q]\nu: [u]\nf_x: {x: u + x*(sin(2*q) - 2*sin(q)*cos(q))}\nf_y: {q: x}\nphi: [x]", Accepted("dynamic linear instant")),
-    ("polar coordinates", "x: [p, l]\ny: [r, q]\nu: [u, v]\nparameters: {m: null}\nassume: [r > 0, m > 0]\nf_x: {p: l^2/(m*r^3) + u, l: v}\nf_y: {r: p/m, q: l/(m*r^2)}\nphi: [p*cos(q) - l*sin(q)/r, p*sin(q) + l*cos(q)/r]", Accepted("dynamic linear instant")),
-    ("rotating frame", "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]", Accepted("gpebo dynamic linear excitation")),
-    ("growing frame", "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: w*a}\nf_y: {y: a}\nphi: [a, b]", Rejected(Code::CascadeRefuted)),
+    (
+        "rate depends on x",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x}\nf_y: {y: x}\nphi: [x]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "rate depends on an unmeasured signal",
+        "x: [x]\ny: [y]\nu: [u]\nw: [w]\nf_x: {x: u + w}\nf_y: {y: x}\nphi: [x]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "cancels by trigonometry",
+        "x: [x]\ny: [q]\nu: [u]\nf_x: {x: u + x*(sin(2*q) - 2*sin(q)*cos(q))}\nf_y: {q: x}\nphi: [x]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "polar coordinates",
+        "x: [p, l]\ny: [r, q]\nu: [u, v]\nparameters: {m: null}\nassume: [r > 0, m > 0]\nf_x: {p: l^2/(m*r^3) + u, l: v}\nf_y: {r: p/m, q: l/(m*r^2)}\nphi: [p*cos(q) - l*sin(q)/r, p*sin(q) + l*cos(q)/r]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "rotating frame",
+        "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]",
+        Accepted("gpebo dynamic linear excitation"),
+    ),
+    (
+        "growing frame",
+        "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: w*a}\nf_y: {y: a}\nphi: [a, b]",
+        Rejected(Code::CascadeRefuted),
+    ),
     // Identifiability.
-    ("two unknowns, one output", "x: [a, b]\ny: [y]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {y: u*a + v*b}\nphi: [a, b]", Accepted("dynamic linear excitation")),
-    ("regressor moved by the output", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: -u*y}\nf_y: {y: a + y*b}\nphi: [a, b]", Accepted("dynamic linear excitation")),
-    ("sum of unknowns", "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: 0}\nf_y: {y: u*(a + b)}\nphi: [a, b]", Rejected(Code::NeverIdentifiable)),
-    ("unseen state", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: y + u}\nphi: [x]", Rejected(Code::NeverIdentifiable)),
-    ("static", "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nidentities: [(a - c)^2 + (b - d)^2 - 4]", Accepted("static over-parameterised excitation")),
+    (
+        "two unknowns, one output",
+        "x: [a, b]\ny: [y]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {y: u*a + v*b}\nphi: [a, b]",
+        Accepted("dynamic linear excitation"),
+    ),
+    (
+        "regressor moved by the output",
+        "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: -u*y}\nf_y: {y: a + y*b}\nphi: [a, b]",
+        Accepted("dynamic linear excitation"),
+    ),
+    (
+        "sum of unknowns",
+        "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: 0}\nf_y: {y: u*(a + b)}\nphi: [a, b]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "unseen state",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: y + u}\nphi: [x]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "static",
+        "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nidentities: [(a - c)^2 + (b - d)^2 - 4]",
+        Accepted("static over-parameterised excitation"),
+    ),
 ];
 
 #[test]
@@ -114,7 +270,11 @@ fn a_refusal_says_what_and_how_to_mend_it() {
         }
         for diagnostic in &derived(lines).derivation.diagnostics {
             assert!(diagnostic.help.is_some(), "{what}: {}", diagnostic.message);
-            assert!(!diagnostic.primary.text.is_empty() || !diagnostic.notes.is_empty(), "{what}: {}", diagnostic.message);
+            assert!(
+                !diagnostic.primary.text.is_empty() || !diagnostic.notes.is_empty(),
+                "{what}: {}",
+                diagnostic.message
+            );
         }
     }
 }

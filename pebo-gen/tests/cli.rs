@@ -102,7 +102,8 @@ fn several_models_in_one_call_end_with_the_worst_status() {
     let output = run(&["check", CUK, &refused, "--format", "json"]);
     assert_eq!(output.status.code(), Some(1));
     let lines = text(&output.stdout);
-    let verdicts: Vec<&str> = lines.lines().filter_map(|l| l.split("\"verdict\":\"").nth(1)?.split('"').next()).collect();
+    let verdicts: Vec<&str> =
+        lines.lines().filter_map(|l| l.split("\"verdict\":\"").nth(1)?.split('"').next()).collect();
     assert_eq!(verdicts, ["accepted", "rejected"]);
 }
 
@@ -169,10 +170,19 @@ fn hostile_input_ends_in_a_diagnostic() {
 fn difficult_names_are_accepted() {
     let folder = Folder::new();
     for (what, content) in [
-        ("a parameter named like a function", "model: m\nparameters: {sin: 2}\nx: [x1]\ny: [y1]\nf_x: {x1: sin(sin*y1)}\nf_y: {y1: sin*x1}\nphi: [x1]\n"),
+        (
+            "a parameter named like a function",
+            "model: m\nparameters: {sin: 2}\nx: [x1]\ny: [y1]\nf_x: {x1: sin(sin*y1)}\nf_y: {y1: sin*x1}\nphi: [x1]\n",
+        ),
         ("a state named E", "model: m\nx: [E]\ny: [I]\nf_x: {E: I^2}\nf_y: {I: E + I}\nphi: [E]\n"),
-        ("a Rust keyword", "model: type\nparameters: {fn: 2}\nx: [match]\ny: [self]\nu: [gen]\nf_x: {match: gen}\nf_y: {self: fn*match}\nphi: [match]\n"),
-        ("names that differ in case", "model: m\nparameters: {l: 2, L: 3}\nx: [x]\ny: [X]\nf_x: {x: X/l}\nf_y: {X: L*x}\nphi: [x]\n"),
+        (
+            "a Rust keyword",
+            "model: type\nparameters: {fn: 2}\nx: [match]\ny: [self]\nu: [gen]\nf_x: {match: gen}\nf_y: {self: fn*match}\nphi: [match]\n",
+        ),
+        (
+            "names that differ in case",
+            "model: m\nparameters: {l: 2, L: 3}\nx: [x]\ny: [X]\nf_x: {x: X/l}\nf_y: {X: L*x}\nphi: [x]\n",
+        ),
     ] {
         let path = folder.file("m.yaml", content);
         let output = run(&[&path]);

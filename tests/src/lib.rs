@@ -1,1 +1,69 @@
-//! Shared parts of the tests.
+//! Every model of the project as emitted code, ready to be called. Does without `std`, as firmware does.
+#![no_std]
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+use pebo_runtime::{Extension as _, Model, Real};
+
+/// Where to evaluate the functions of a model: values of each argument, as many as it takes.
+#[derive(Clone, Copy)]
+pub struct Point<'a> {
+    /// The extension at its start.
+    pub chi: &'a [f64],
+    /// The outputs.
+    pub y: &'a [f64],
+    /// The inputs.
+    pub u: &'a [f64],
+    /// The unknowns of the regression.
+    pub eta: &'a [f64],
+    /// The coordinates of the transform.
+    pub z: &'a [f64],
+    /// Where results go: `h`, `lambda`, `phi_0`, `phi_1` by rows, `theta`, `phi_left`.
+    pub results: &'a dyn Fn(&str, usize, f64),
+}
+
+/// Calls every function of one emitted model.
+pub type Evaluate = fn(Point<'_>);
+
+/// Calls every function of a model at a point.
+pub fn evaluate<
+    M,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+>(
+    model: &M,
+    point: Point<'_>,
+) where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+{
+    let chi = vector::<M::Scalar, NZ>(point.chi);
+    let (y, u) = (vector::<M::Scalar, NY>(point.y), vector::<M::Scalar, NU>(point.u));
+    let extension = M::Extension::new(chi);
+    let report = |name: &str, values: &[M::Scalar]| {
+        for (index, value) in values.iter().enumerate() {
+            (point.results)(name, index, value.to_f64());
+        }
+    };
+    report("h", model.h(&y, &u).as_slice());
+    report("lambda", model.lambda(&y, &u).transpose().as_slice());
+    report("phi_0", model.phi_0(&extension, &y, &u).as_slice());
+    report("phi_1", rows(&model.phi_1(&extension, &y, &u)).as_slice());
+    report("theta", model.theta(&vector(point.eta)).as_slice());
+    report("phi_left", model.phi_left(&vector(point.z), &y).as_slice());
+}
+
+fn rows<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> SMatrix<S, C, R> {
+    matrix.transpose()
+}
+
+fn vector<S: Real, const N: usize>(values: &[f64]) -> SVector<S, N> {
+    SVector::from_fn(|row, _| Real::from_f64(values.get(row).copied().unwrap_or(f64::NAN)))
+}
+
+/// The emitted modules, and a table of them: model, scalar, evaluation.
+pub mod emitted {
+    include!(concat!(env!("OUT_DIR"), "/emitted.rs"));
+}

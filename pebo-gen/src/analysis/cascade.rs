@@ -1,6 +1,6 @@
 //! Claim 1, the cascade: the transform moves by known signals.
 //!
-//! In: the plant. Out: h(y, u) with d(phi)/dx f_x + d(phi)/dy f_y = h, or, where that fails, what keeps
+//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, what keeps
 //! the derivative from being free of x, a point that shows it, and a mended transform if adding
 //! multiples of the outputs makes one (Ortega et al. 2015, eq. 3).
 
@@ -45,7 +45,8 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         }
         return (Class::Pebo, Claim { verdict: Verdict::Undecided, result: None });
     }
-    let mends: Vec<Option<Expr>> = lie.iter().zip(&plant.phi).map(|(rate, phi)| mend(plant, domain, *rate, phi.expr)).collect();
+    let mends: Vec<Option<Expr>> =
+        lie.iter().zip(&plant.phi).map(|(rate, phi)| mend(plant, domain, *rate, phi.expr)).collect();
     let mendable = components.iter().zip(&mends).all(|(c, m)| matches!(c, Component::Free(_)) || m.is_some());
     if !mendable && let Some(result) = gpebo::generalised(plant, domain, &lie) {
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
@@ -164,7 +165,10 @@ fn refuted(
     let diagnostic = Diagnostic::error(
         Code::CascadeRefuted,
         plant.phi[index].span,
-        format!("the derivative of phi component {component} is not free of {}", listed(names.iter().map(String::as_str))),
+        format!(
+            "the derivative of phi component {component} is not free of {}",
+            listed(names.iter().map(String::as_str))
+        ),
     )
     .label(format!("its derivative keeps the term `{shown}`"))
     .note(format!("d(phi)/dt must be a function of y and u alone, but `{shown}` survives in z{component}'"))
@@ -194,8 +198,11 @@ impl Witness {
 
     /// What the witness shows, as a reader would say it: `-G*v4/C4 = 9 where C4 = 1, ..`.
     pub fn sentence(&self, arena: &Arena) -> String {
-        let entries: Vec<String> =
-            self.point.iter().map(|(s, v)| format!("{} = {}", arena.name(*s), arena.print(arena.number(v.clone())))).collect();
+        let entries: Vec<String> = self
+            .point
+            .iter()
+            .map(|(s, v)| format!("{} = {}", arena.name(*s), arena.print(arena.number(v.clone()))))
+            .collect();
         let (low, high) = self.bounds;
         // Bounds that agree to nine digits read better as one number.
         let value = if (high - low).abs() <= 1e-9 * low.abs().max(high.abs()) {
@@ -211,5 +218,9 @@ impl Witness {
 /// A few significant digits.
 fn short(value: f64) -> String {
     let magnitude = value.abs();
-    if magnitude >= 1e-3 && magnitude < 1e6 { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.4e}") }
+    if (1e-3..1e6).contains(&magnitude) {
+        format!("{}", (value * 1e6).round() / 1e6)
+    } else {
+        format!("{value:.4e}")
+    }
 }

@@ -100,7 +100,7 @@ pub enum RegressionKind {
     Dynamic,
     /// `Phi_0` = `Phi_1` eta.
     Static,
-    /// d/dt(p_0 + p_1 eta) = `Phi_0` + `Phi_1` eta.
+    /// `d/dt(p_0 + p_1 eta)` = `Phi_0` + `Phi_1` eta.
     Implicit,
 }
 

@@ -35,9 +35,12 @@ pub(super) fn generalised(plant: &Plant, domain: &Domain, rates: &[Expr]) -> Opt
         h.push(row[0]);
         lambda.push(row[1..].to_vec());
     }
-    dissipative(arena, domain, &lambda)
-        .ok()?
-        .then_some(Cascade { h, lambda: Some(lambda), residual: Vec::new(), witness: None })
+    dissipative(arena, domain, &lambda).ok()?.then_some(Cascade {
+        h,
+        lambda: Some(lambda),
+        residual: Vec::new(),
+        witness: None,
+    })
 }
 
 /// Whether a quadratic form with a constant positive diagonal P never grows: P Lambda + Lambda' P is

@@ -192,9 +192,13 @@ pub(super) fn null_vectors(
 
 fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Claim<Identifiability> {
     found.push(
-        Diagnostic::error(Code::IdentifiabilityUndecided, at_phi(plant), "it could not be decided whether the unknowns can be told apart")
-            .note(format!("obstacle: {obstacle}"))
-            .help("give the parameters values, or state signs under `assume`"),
+        Diagnostic::error(
+            Code::IdentifiabilityUndecided,
+            at_phi(plant),
+            "it could not be decided whether the unknowns can be told apart",
+        )
+        .note(format!("obstacle: {obstacle}"))
+        .help("give the parameters values, or state signs under `assume`"),
     );
     Claim { verdict: Verdict::Undecided, result: None }
 }

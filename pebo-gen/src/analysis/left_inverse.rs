@@ -2,7 +2,7 @@
 //!
 //! In: the plant. Out: `phi_left` with `phi_left(phi(x, y), y) = x` proved for each state that it
 //! recovers, modulo the period for declared angles; the author's formula where there is one, else one
-//! that solves the transform (Ortega et al. 2015, Assumption 1 (i), with n_x components).
+//! that solves the transform (Ortega et al. 2015, Assumption 1 (i), with `n_x` components).
 
 use std::collections::BTreeMap;
 
@@ -60,14 +60,13 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
                 verdict = Verdict::Refuted;
                 ambiguous.push(state);
             }
-            // Any other was a wrong branch, which says nothing about the claim.
-            Answer::NonZero(_) => {}
             Answer::Open(obstacle) if origin == Origin::Given => {
                 found.push(undecided(plant, state, span, &obstacle));
                 result.x.push((state, formula));
                 verdict = verdict.max_doubt();
             }
-            Answer::Open(_) => {}
+            // Any other candidate was a wrong branch, which says nothing about the claim.
+            Answer::NonZero(_) | Answer::Open(_) => {}
         }
     }
     let recovered: Vec<Symbol> = result.x.iter().map(|(s, _)| *s).collect();
@@ -141,17 +140,18 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) 
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let other = BTreeMap::from([(state, arena.substitute(formula, &transform))]);
     let facts = domain.facts.iter().all(|(fact, _)| !arena.symbols_of(&[fact]).contains(&state));
-    facts && plant.transform().iter().all(|phi| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), domain).is_zero())
+    facts
+        && plant
+            .transform()
+            .iter()
+            .all(|phi| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), domain).is_zero())
 }
 
 /// A direction of x that the transform does not see anywhere, if there is one.
 fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
-    let slopes: Vec<Vec<Expr>> = plant
-        .phi
-        .iter()
-        .map(|phi| plant.x.iter().map(|s| arena.derivative(phi.expr, s.symbol)).collect())
-        .collect();
+    let slopes: Vec<Vec<Expr>> =
+        plant.phi.iter().map(|phi| plant.x.iter().map(|s| arena.derivative(phi.expr, s.symbol)).collect()).collect();
     null_vectors(arena, domain, &slopes, plant.x.len()).ok()?.into_iter().next()
 }
 
@@ -218,15 +218,13 @@ pub(super) fn is_whole_turns(arena: &Arena, domain: &Domain, angle: Expr) -> boo
 fn refuted(plant: &Plant, domain: &Domain, state: Symbol, span: Span, witness: &Witness) -> Diagnostic {
     let arena = &plant.arena;
     let name = arena.name(state);
-    let mut diagnostic = Diagnostic::error(
-        Code::LeftInverseRefuted,
-        span,
-        format!("phi_left does not give back {name}"),
-    )
-    .label(format!("with z = phi(x, y) this is not {name}"))
-    .note(witness.sentence(arena));
+    let mut diagnostic =
+        Diagnostic::error(Code::LeftInverseRefuted, span, format!("phi_left does not give back {name}"))
+            .label(format!("with z = phi(x, y) this is not {name}"))
+            .note(witness.sentence(arena));
     if let Some(period) = plant.period(state) {
-        diagnostic = diagnostic.note(format!("that is not zero, so it fails also up to whole periods of {}", arena.print(period)));
+        diagnostic = diagnostic
+            .note(format!("that is not zero, so it fails also up to whole periods of {}", arena.print(period)));
     }
     let mend = derived(plant, domain).ok().and_then(|all| {
         let (_, formula, _) = all.into_iter().find(|(s, ..)| *s == state)?;
@@ -251,8 +249,12 @@ fn not_injective(plant: &Plant, state: Symbol, formula: Expr, witness: &Witness)
 
 fn degenerate(plant: &Plant, direction: &[Expr]) -> Diagnostic {
     let arena = &plant.arena;
-    let entries: Vec<String> =
-        plant.x.iter().zip(direction).map(|(s, d)| format!("{}' = {}", arena.name(s.symbol), arena.print(*d))).collect();
+    let entries: Vec<String> = plant
+        .x
+        .iter()
+        .zip(direction)
+        .map(|(s, d)| format!("{}' = {}", arena.name(s.symbol), arena.print(*d)))
+        .collect();
     Diagnostic::error(Code::LeftInverseRefuted, at_phi(plant), "phi does not determine x")
         .label(format!("z does not change along {}", entries.join(", ")))
         .help("add components to phi, or give `phi_left` for the states that it determines: a partial observer")

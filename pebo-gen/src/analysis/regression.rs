@@ -59,7 +59,9 @@ pub(super) fn prove(
     }
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
     let mut stands_against = NO_SEPARATION.to_owned();
-    if cascade.lambda.is_none() && let Some(left_inverse) = left_inverse {
+    if cascade.lambda.is_none()
+        && let Some(left_inverse) = left_inverse
+    {
         let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| plant.arena.substitute(*rate, &inverse)).collect();
         match separation::separate(plant, domain, &rates) {
@@ -69,7 +71,8 @@ pub(super) fn prove(
                 if let Some(result) = over_parameterised(plant, domain, outputs, separated, found) {
                     return Claim { verdict: Verdict::Proved, result: Some(result) };
                 }
-                stands_against = format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
+                stands_against =
+                    format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
             }
             Ok(None) => {}
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
@@ -85,12 +88,11 @@ pub(super) fn prove(
     for (index, rate, span, obstacle) in obstacles {
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
-        match bend {
-            Some(witness) => found.push(refuted(plant, index, span, &witness, &stands_against)),
-            None => {
-                verdict = Verdict::Undecided;
-                found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));
-            }
+        if let Some(witness) = bend {
+            found.push(refuted(plant, index, span, &witness, &stands_against));
+        } else {
+            verdict = Verdict::Undecided;
+            found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));
         }
     }
     Claim { verdict, result: None }
@@ -146,13 +148,14 @@ fn linear(
     let mut phi_0 = Vec::new();
     let mut phi_1 = Vec::new();
     for (row, output) in affine.iter().zip(&rows) {
-        let known = arena.add(
-            row.known,
-            arena.sum(row.factors.iter().zip(&chi).map(|(factor, chi)| arena.mul(*factor, *chi))),
-        );
+        let known =
+            arena.add(row.known, arena.sum(row.factors.iter().zip(&chi).map(|(factor, chi)| arena.mul(*factor, *chi))));
         let written = plant.y[*output].rate.map(|rate| arena.substitute(rate.expr, &states));
-        let candidates: Vec<Expr> =
-            written.into_iter().filter(|w| !arena.depends_on(*w, &plant.hidden())).chain([shortest(arena, domain, known)]).collect();
+        let candidates: Vec<Expr> = written
+            .into_iter()
+            .filter(|w| !arena.depends_on(*w, &plant.hidden()))
+            .chain([shortest(arena, domain, known)])
+            .collect();
         phi_0.push(shortest_equal(arena, domain, known, &candidates));
         phi_1.push(match &cascade.lambda {
             None => row.factors.clone(),

@@ -90,7 +90,12 @@ type Powers = Vec<(u32, i64)>;
 
 /// The powers of a monomial, to a common exponent.
 fn powers(monomial: &Monomial, exponent: i64) -> Powers {
-    monomial.powers().iter().map(|&(kernel, times)| (kernel, exponent * i64::from(times))).filter(|p| p.1 != 0).collect()
+    monomial
+        .powers()
+        .iter()
+        .map(|&(kernel, times)| (kernel, exponent * i64::from(times)))
+        .filter(|p| p.1 != 0)
+        .collect()
 }
 
 fn product(a: &Powers, b: &Powers) -> Powers {

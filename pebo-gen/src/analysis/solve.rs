@@ -77,7 +77,8 @@ fn eliminated(
         for inverted in invert(arena, domain, &known) {
             match arena.as_symbol(inverted.formula) {
                 Some(symbol) if open.contains(&symbol) => {
-                    progress |= found.insert(symbol, inverted.value).is_none();
+                    progress = true;
+                    found.entry(symbol).or_insert(inverted.value);
                 }
                 _ => inner.push(arena.sub(inverted.formula, inverted.value)),
             }
@@ -179,8 +180,7 @@ fn eliminate(
     for (pivot, row) in echelon.rows() {
         let alone = row[..columns.len()].iter().enumerate().all(|(column, entry)| column == pivot || entry.is_zero());
         if alone {
-            let factors =
-                columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
+            let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
             let formula = arena.multiply(&Rational::ONE, factors);
             known.push(Equation { formula, value: field.show(&row[columns.len()]) });
         }
@@ -201,13 +201,15 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
             },
             Node::Call(function, arguments) => {
                 let inside = arguments[0];
-                let partner = match function {
-                    Function::Cos => beside(arena, known, Function::Sin, inside),
-                    _ => None,
-                };
-                match partner {
-                    Some(sin) => Some(Equation { formula: inside, value: arena.call(Function::Atan2, &[sin, value]) }),
-                    None => inverse(function).map(|f| Equation { formula: inside, value: arena.call(f, &[value]) }),
+                let alone = || inverse(function).map(|f| Equation { formula: inside, value: arena.call(f, &[value]) });
+                match function {
+                    Function::Cos => match beside(arena, known, Function::Sin, inside) {
+                        Some(sin) => Some(Equation { formula: inside, value: angle_of(arena, domain, sin, value) }),
+                        None => alone(),
+                    },
+                    // With its cosine known, the angle comes from both.
+                    Function::Sin if beside(arena, known, Function::Cos, inside).is_some() => None,
+                    _ => alone(),
                 }
             }
             _ => None,
@@ -232,6 +234,22 @@ fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, valu
     let even = exponent.numerator().trailing_zeros() > 0;
     let negative = even && field.is_positive(&fraction.opposite()).ok()?;
     Some(Equation { formula: base, value: if negative { arena.neg(root) } else { root } })
+}
+
+/// The angle with this sine and cosine, a common positive denominator left out.
+fn angle_of(arena: &Arena, domain: &Domain, sin: Expr, cos: Expr) -> Expr {
+    let scaled = || -> Result<Option<[Expr; 2]>, Obstacle> {
+        let field = Field::over(arena, &domain.facts, &[sin, cos])?;
+        let (y, x) = (field.fraction(sin)?, field.fraction(cos)?);
+        let common = y.denominator().lcm(x.denominator(), field.limit())?;
+        let common = field.of_polynomial(&common)?;
+        if !field.is_positive(&common)? {
+            return Ok(None);
+        }
+        Ok(Some([field.show(&field.mul(&y, &common)?), field.show(&field.mul(&x, &common)?)]))
+    };
+    let arguments = scaled().ok().flatten().unwrap_or([sin, cos]);
+    arena.call(Function::Atan2, &arguments)
 }
 
 /// The value that is known for another function of the same argument.

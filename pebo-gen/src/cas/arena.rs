@@ -4,7 +4,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
-use std::hash::{BuildHasher, Hash, Hasher};
+use std::hash::BuildHasher;
 
 use hashbrown::HashTable;
 use rustc_hash::{FxBuildHasher, FxHashMap};
@@ -152,7 +152,5 @@ impl Arena {
 }
 
 fn hash_of(node: &Node) -> u64 {
-    let mut hasher = FxBuildHasher.build_hasher();
-    node.hash(&mut hasher);
-    hasher.finish()
+    FxBuildHasher.hash_one(node)
 }

@@ -102,7 +102,9 @@ fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
     match arena.node(expr) {
         Node::Symbol(symbol) => Some((symbol, Rational::ONE, Rational::ZERO)),
         Node::Product(product) => match product.factors.as_slice() {
-            [(base, exponent)] if exponent.is_one() => Some((unit(*base)?, product.coefficient.clone(), Rational::ZERO)),
+            [(base, exponent)] if exponent.is_one() => {
+                Some((unit(*base)?, product.coefficient.clone(), Rational::ZERO))
+            }
             _ => None,
         },
         Node::Sum(sum) => match sum.terms.as_slice() {

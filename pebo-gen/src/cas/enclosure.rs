@@ -51,9 +51,9 @@ impl Arena {
 
     /// The enclosure that excludes zero, at the least precision that shows it.
     pub fn separated_from_zero(&self, expr: Expr, point: &Point) -> Option<Interval> {
-        PRECISIONS.iter().find_map(|&bits| {
-            self.enclose(expr, point, Precision::new(bits)).filter(|value| !value.contains_zero())
-        })
+        PRECISIONS
+            .iter()
+            .find_map(|&bits| self.enclose(expr, point, Precision::new(bits)).filter(|value| !value.contains_zero()))
     }
 
     /// Whether the expression provably has a value at the point.

@@ -17,7 +17,11 @@ impl Echelon {
     ///
     /// The result's rows span the same space as the given ones, apart from rows that are zero on the
     /// first columns, which come back separately.
-    pub fn of(field: &Field<'_>, rows: Vec<Vec<Fraction>>, columns: usize) -> Result<(Self, Vec<Vec<Fraction>>), Obstacle> {
+    pub fn of(
+        field: &Field<'_>,
+        rows: Vec<Vec<Fraction>>,
+        columns: usize,
+    ) -> Result<(Self, Vec<Vec<Fraction>>), Obstacle> {
         let mut rest = rows;
         let mut done: Vec<(usize, Vec<Fraction>)> = Vec::new();
         loop {
@@ -26,9 +30,11 @@ impl Echelon {
                 .iter()
                 .enumerate()
                 .flat_map(|(index, row)| {
-                    row.iter().take(columns).enumerate().filter(|(_, entry)| !entry.is_zero()).map(move |(column, entry)| {
-                        (entry.weight() + entry.variables().count(), column, index)
-                    })
+                    row.iter()
+                        .take(columns)
+                        .enumerate()
+                        .filter(|(_, entry)| !entry.is_zero())
+                        .map(move |(column, entry)| (entry.weight() + entry.variables().count(), column, index))
                 })
                 .min();
             let Some((_, column, index)) = pivot else { break };

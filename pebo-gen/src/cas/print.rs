@@ -47,7 +47,7 @@ impl Arena {
                 Node::Pi => Text::new("pi", Binding::Atom),
                 Node::Symbol(symbol) => Text::new(self.name(symbol), Binding::Atom),
                 Node::Sum(sum) => self.print_sum(&sum, &known),
-                Node::Product(product) => self.print_product(&product, &known),
+                Node::Product(product) => print_product(&product, &known),
                 Node::Call(function, arguments) => {
                     let inner: Vec<&str> = arguments.iter().map(|a| known[a].text.as_str()).collect();
                     Text::new(format!("{}({})", function.row().name, inner.join(", ")), Binding::Atom)
@@ -65,13 +65,12 @@ impl Arena {
             let scaled = match self.node(*term) {
                 Node::Product(product) => {
                     let scaled = Product { coefficient: coefficient.abs(), factors: product.factors.clone() };
-                    self.print_product(&scaled, known)
+                    print_product(&scaled, known)
                 }
                 _ if coefficient.abs().is_one() => known[term].clone(),
                 _ => {
-                    let scaled =
-                        Product { coefficient: coefficient.abs(), factors: vec![(*term, Rational::ONE)] };
-                    self.print_product(&scaled, known)
+                    let scaled = Product { coefficient: coefficient.abs(), factors: vec![(*term, Rational::ONE)] };
+                    print_product(&scaled, known)
                 }
             };
             summands.push((coefficient.is_negative(), scaled.within(Binding::Product)));
@@ -98,40 +97,40 @@ impl Arena {
         }
         Text::new(text, Binding::Sum)
     }
+}
 
-    fn print_product(&self, product: &Product, known: &FxHashMap<Expr, Text>) -> Text {
-        let coefficient = product.coefficient.abs();
-        let mut above: Vec<String> = Vec::new();
-        let mut below: Vec<String> = Vec::new();
-        if as_fraction(&coefficient) {
-            let (n, d) = (coefficient.numerator(), coefficient.denominator());
-            if !n.is_one() {
-                above.push(n.to_string());
-            }
-            if !d.is_one() {
-                below.push(d.to_string());
-            }
-        } else {
-            above.push(number(&coefficient).text);
+fn print_product(product: &Product, known: &FxHashMap<Expr, Text>) -> Text {
+    let coefficient = product.coefficient.abs();
+    let mut above: Vec<String> = Vec::new();
+    let mut below: Vec<String> = Vec::new();
+    if as_fraction(&coefficient) {
+        let (n, d) = (coefficient.numerator(), coefficient.denominator());
+        if !n.is_one() {
+            above.push(n.to_string());
         }
-        for (base, exponent) in &product.factors {
-            let text = power(&known[base], &exponent.abs());
-            if exponent.is_negative() { below.push(text) } else { above.push(text) }
+        if !d.is_one() {
+            below.push(d.to_string());
         }
-        let single = above.len() + below.len() == 1 && below.is_empty();
-        let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
-        match below.as_slice() {
-            [] => {}
-            [one] => text = format!("{text}/{one}"),
-            several => text = format!("{text}/({})", several.join("*")),
-        }
-        if product.coefficient.is_negative() {
-            Text::new(format!("-{text}"), Binding::Negation)
-        } else if single && product.factors.len() == 1 && !product.factors[0].1.is_one() {
-            Text::new(text, Binding::Power)
-        } else {
-            Text::new(text, Binding::Product)
-        }
+    } else {
+        above.push(number(&coefficient).text);
+    }
+    for (base, exponent) in &product.factors {
+        let text = power(&known[base], &exponent.abs());
+        if exponent.is_negative() { below.push(text) } else { above.push(text) }
+    }
+    let single = above.len() + below.len() == 1 && below.is_empty();
+    let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
+    match below.as_slice() {
+        [] => {}
+        [one] => text = format!("{text}/{one}"),
+        several => text = format!("{text}/({})", several.join("*")),
+    }
+    if product.coefficient.is_negative() {
+        Text::new(format!("-{text}"), Binding::Negation)
+    } else if single && product.factors.len() == 1 && !product.factors[0].1.is_one() {
+        Text::new(text, Binding::Power)
+    } else {
+        Text::new(text, Binding::Product)
     }
 }
 

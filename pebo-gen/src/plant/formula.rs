@@ -48,7 +48,12 @@ pub(super) fn exact(decimal: &Decimal, span: Span) -> Result<Rational, Diagnosti
     })
 }
 
-fn binary(arena: &Arena, operator: Operator, (a, left): (Expr, Span), (b, right): (Expr, Span)) -> Result<Expr, Diagnostic> {
+fn binary(
+    arena: &Arena,
+    operator: Operator,
+    (a, left): (Expr, Span),
+    (b, right): (Expr, Span),
+) -> Result<Expr, Diagnostic> {
     match operator {
         Operator::Add => Ok(arena.add(a, b)),
         Operator::Subtract => Ok(arena.sub(a, b)),

@@ -67,7 +67,7 @@ pub struct Parameter {
 pub struct State {
     /// Its symbol.
     pub symbol: Symbol,
-    /// Its time derivative f_x.
+    /// Its time derivative `f_x`.
     pub rate: Formula,
 }
 
@@ -76,7 +76,7 @@ pub struct State {
 pub struct Output {
     /// Its symbol.
     pub symbol: Symbol,
-    /// Its time derivative f_y, unless nothing needs it.
+    /// Its time derivative `f_y`, unless nothing needs it.
     pub rate: Option<Formula>,
     /// Where it is declared.
     pub span: Span,

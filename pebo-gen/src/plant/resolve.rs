@@ -22,11 +22,17 @@ impl Plant {
         // In this order, so that results print parameters before states before inputs.
         let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
         let names = |list: &[Spanned<String>]| -> Vec<Symbol> {
-            list.iter().map(|name| arena.as_symbol(arena.variable(&name.value))).collect::<Option<_>>().unwrap_or_default()
+            list.iter()
+                .map(|name| arena.as_symbol(arena.variable(&name.value)))
+                .collect::<Option<_>>()
+                .unwrap_or_default()
         };
         let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
         let indexed = |letter: &str| -> Vec<Symbol> {
-            (1..=model.phi.len()).map(|i| format!("{letter}{i}")).filter_map(|n| arena.as_symbol(arena.variable(&n))).collect()
+            (1..=model.phi.len())
+                .map(|i| format!("{letter}{i}"))
+                .filter_map(|n| arena.as_symbol(arena.variable(&n)))
+                .collect()
         };
         let (z, chi, theta, xi) = (indexed("z"), indexed("chi"), indexed("theta"), indexed("xi"));
         let psi = (1..=model.phi.len()).map(|row| indexed(&format!("Psi{row}"))).collect();
@@ -50,9 +56,12 @@ impl Plant {
             confined(&arena, expr, formula.span, allowed, place)
         };
 
-        let states = model.x.iter().zip(&model.f_x).zip(&x).map(|((_, rate), symbol)| {
-            Ok(State { symbol: *symbol, rate: resolved(&arena, &scope, &rate.value)? })
-        });
+        let states = model
+            .x
+            .iter()
+            .zip(&model.f_x)
+            .zip(&x)
+            .map(|((_, rate), symbol)| Ok(State { symbol: *symbol, rate: resolved(&arena, &scope, &rate.value)? }));
         let states = problems.all(states);
         let outputs = model.y.iter().zip(&y).map(|(name, symbol)| {
             let rate = model.f_y.iter().find(|entry| entry.name.value == name.value);
@@ -169,9 +178,13 @@ fn rates_of_transform(arena: &Arena, phi: &[Formula], outputs: &[Output], proble
         for output in outputs.iter().filter(|o| o.rate.is_none() && used.contains(&o.symbol)) {
             let name = arena.name(output.symbol);
             problems.push(
-                Diagnostic::error(Code::MissingRate, component.span, format!("phi uses {name}, whose rate is not given"))
-                    .also(output.span, "declared here")
-                    .help(format!("give the rate of {name} under `f_y`")),
+                Diagnostic::error(
+                    Code::MissingRate,
+                    component.span,
+                    format!("phi uses {name}, whose rate is not given"),
+                )
+                .also(output.span, "declared here")
+                .help(format!("give the rate of {name} under `f_y`")),
             );
         }
     }

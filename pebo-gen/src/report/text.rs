@@ -1,8 +1,6 @@
 //! The verdict as a person reads it.
 
-use crate::analysis::{
-    Claim, Class, Derivation, Excitation, Origin, Outcome, Regression, RegressionKind, Verdict,
-};
+use crate::analysis::{Claim, Class, Derivation, Excitation, Origin, Outcome, Regression, RegressionKind, Verdict};
 use crate::plant::Plant;
 use crate::source::listed;
 
@@ -19,7 +17,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     let mut text = format!("{}: {outcome}\n", plant.name);
     claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));
     claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
-    claim(&mut text, "regression", &derivation.regression, |r| regression(plant, derivation, r));
+    claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
         let mut lines = vec![
             match r.kind {
@@ -48,11 +46,8 @@ fn claim<T>(text: &mut String, name: &str, claim: &Claim<T>, lines: impl Fn(&T) 
         (Some(result), Verdict::Proved | Verdict::Refuted) => lines(result),
         _ => Vec::new(),
     };
-    text.push_str(&format!("  {name:<16} {verdict:<9}"));
-    if shown.is_empty() {
-        text.truncate(text.trim_end().len());
-    }
-    text.push_str(&shown.join(&format!("\n{INDENT}")));
+    let line = format!("  {name:<16} {verdict:<9}{}", shown.join(&format!("\n{INDENT}")));
+    text.push_str(line.trim_end());
     text.push('\n');
 }
 
@@ -64,7 +59,9 @@ fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
         return kept.map(|(i, e)| format!("z{}' keeps the term {}", i + 1, arena.print(*e))).collect();
     }
     let mut lines: Vec<String> = match derivation.class {
-        Class::Pebo => cascade.h.iter().enumerate().map(|(i, h)| format!("z{}' = {}", i + 1, arena.print(*h))).collect(),
+        Class::Pebo => {
+            cascade.h.iter().enumerate().map(|(i, h)| format!("z{}' = {}", i + 1, arena.print(*h))).collect()
+        }
         Class::Gpebo => {
             let mut lines: Vec<String> =
                 cascade.h.iter().enumerate().map(|(i, h)| format!("h{} = {}", i + 1, arena.print(*h))).collect();
@@ -109,14 +106,11 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     lines
 }
 
-fn regression(plant: &Plant, derivation: &Derivation, regression: &Regression) -> Vec<String> {
+fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let arena = &plant.arena;
     let linear = regression.is_linear(plant);
     let unknown = |index: usize| -> String {
-        match (linear, derivation.class) {
-            (true, _) => arena.name(plant.theta[index]),
-            (false, _) => format!("eta{}", index + 1),
-        }
+        if linear { arena.name(plant.theta[index]) } else { format!("eta{}", index + 1) }
     };
     let mut lines = Vec::new();
     for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
@@ -131,7 +125,8 @@ fn regression(plant: &Plant, derivation: &Derivation, regression: &Regression) -
             RegressionKind::Static => format!("{} = {sum}", arena.print(*known)),
             RegressionKind::Dynamic | RegressionKind::Implicit => {
                 let output = regression.rows.get(index).map_or_else(String::new, |o| arena.name(plant.y[*o].symbol));
-                let known = if arena.is_zero(*known) && !terms.is_empty() { Vec::new() } else { vec![arena.print(*known)] };
+                let known =
+                    if arena.is_zero(*known) && !terms.is_empty() { Vec::new() } else { vec![arena.print(*known)] };
                 format!("{output}' = {}", known.into_iter().chain(terms).collect::<Vec<_>>().join(" + "))
             }
         });

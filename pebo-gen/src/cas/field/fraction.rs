@@ -70,6 +70,7 @@ impl Fraction {
     }
 
     /// `-self`
+    #[must_use]
     pub fn opposite(&self) -> Self {
         negated(self)
     }

@@ -68,7 +68,9 @@ impl fmt::Display for Obstacle {
             Self::DivisionByZero => f.write_str("a denominator is zero everywhere"),
             Self::Kernel(what) => write!(f, "no rule decides {what}"),
             Self::NoPoint => f.write_str("no point of the assumed domain was found where the formula has a value"),
-            Self::NoWitness => f.write_str("the normal form is not zero, yet no point was found where it provably differs"),
+            Self::NoWitness => {
+                f.write_str("the normal form is not zero, yet no point was found where it provably differs")
+            }
         }
     }
 }

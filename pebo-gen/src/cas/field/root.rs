@@ -112,8 +112,8 @@ impl Field<'_> {
             // which the sign of f shows.
             let size = match self.sign(&factor)? {
                 Some(Sign::Positive | Sign::NonNegative) => Some(factor.clone()),
-                Some(Sign::Negative) if degree % 2 == 0 => Some(-&factor),
-                _ if degree % 2 == 0 && times % 2 == 0 => Some(factor.clone()),
+                Some(Sign::Negative) if degree.is_multiple_of(2) => Some(-&factor),
+                _ if degree.is_multiple_of(2) && times.is_multiple_of(2) => Some(factor.clone()),
                 _ => None,
             };
             let taken = factor.pow(times * degree, self.limit())?;

@@ -58,10 +58,8 @@ impl Field<'_> {
             .iter()
             .map(|&(variable, times)| (self.kernel(variable), Rational::from(exponent * i64::from(times))))
             .collect();
-        let rest: Terms = poly
-            .terms()
-            .map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient.clone()))
-            .collect();
+        let rest: Terms =
+            poly.terms().map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient.clone())).collect();
         factors.push((self.grouped(rest), Rational::from(exponent)));
         factors
     }
@@ -84,7 +82,8 @@ impl Field<'_> {
         for (monomial, _) in &with[1..] {
             content = common(&content, monomial);
         }
-        let inner = with.into_iter().map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient)).collect();
+        let inner =
+            with.into_iter().map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient)).collect();
         let group = self.arena.mul(self.term(&content, &Integer::ONE), self.grouped(inner));
         if without.is_empty() { group } else { self.arena.add(self.grouped(without), group) }
     }

@@ -196,7 +196,7 @@ impl Field<'_> {
                     continue;
                 }
                 for (sign, oriented) in [(Sign::Positive, form.clone()), (Sign::Negative, -&form)] {
-                    if let Some(rest) = self.without(&oriented, fact)? {
+                    if let Some(rest) = self.without(&oriented, fact) {
                         let known = match rest {
                             Sign::Positive => sign,
                             _ if *compared == Compared::Positive => sign,
@@ -212,7 +212,7 @@ impl Field<'_> {
     }
 
     /// The sign of `poly - k * fact` for the k > 0 that cancels a term, if it is not negative.
-    fn without(&self, poly: &Poly, fact: &Poly) -> Result<Option<Sign>, Obstacle> {
+    fn without(&self, poly: &Poly, fact: &Poly) -> Option<Sign> {
         for (monomial, wanted) in fact.terms() {
             let Some((_, present)) = poly.terms().find(|(candidate, _)| *candidate == monomial) else { continue };
             if wanted.is_negative() != present.is_negative() {
@@ -221,10 +221,10 @@ impl Field<'_> {
             // |wanted| * poly - |present| * fact
             let rest = &poly.scale(&wanted.abs()) - &fact.scale(&present.abs());
             if let Some(sign) = self.plain_sign(&rest).filter(|sign| sign.is_positive_or_zero()) {
-                return Ok(Some(sign));
+                return Some(sign);
             }
         }
-        Ok(None)
+        None
     }
 
     /// The polynomial, and the same with squared cosines replaced by squared sines.
@@ -260,9 +260,7 @@ impl Field<'_> {
     }
 
     /// Whether the polynomial is known to be zero nowhere, whatever is assumed.
-    pub fn never_zero(&self, poly: &Poly) -> Result<bool, Obstacle> {
-        let by_nature = poly.term_count() == 1
-            && poly.variables().iter().all(|v| self.kernels.borrow()[*v as usize].positive);
-        Ok(by_nature)
+    pub fn never_zero(&self, poly: &Poly) -> bool {
+        poly.term_count() == 1 && poly.variables().iter().all(|v| self.kernels.borrow()[*v as usize].positive)
     }
 }

@@ -1,0 +1,92 @@
+//! What the command line takes.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Proves parameter-estimation-based observers and emits them as Rust.
+#[derive(Parser)]
+#[command(
+    version,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true,
+    after_help = "Exit status: 0 accepted, 1 a claim is refuted or undecided, 2 the input or the call is malformed."
+)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+    #[command(flatten)]
+    pub(super) generate: GenerateOptions,
+}
+
+#[derive(Subcommand)]
+pub(super) enum Command {
+    /// Say what is proved of models, and emit nothing
+    Check(CheckOptions),
+    /// Close the loop of plant, control law and observer
+    Simulate(SimulateOptions),
+    /// Tell the longer story of a diagnostic's code
+    Explain(ExplainOptions),
+}
+
+#[derive(Args)]
+pub(super) struct GenerateOptions {
+    /// The model file to check and turn into Rust; `-` reads standard input
+    #[arg(required = true)]
+    pub(super) model: Option<PathBuf>,
+    /// Write the Rust code here instead of to standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// The floating-point type of the emitted code
+    #[arg(long, value_enum, default_value_t = ScalarName::F64)]
+    pub(super) scalar: ScalarName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(super) enum ScalarName {
+    F64,
+    F32,
+}
+
+#[derive(Args)]
+pub(super) struct CheckOptions {
+    /// The model files; `-` reads standard input
+    #[arg(required = true, value_name = "MODEL")]
+    pub(super) models: Vec<PathBuf>,
+    /// For people, or one JSON object a line and model
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(super) format: Format,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    Human,
+    Json,
+}
+
+#[derive(Args)]
+pub(super) struct SimulateOptions {
+    /// The model file, with a `simulation` section; `-` reads standard input
+    pub(super) model: PathBuf,
+    /// Draw the figure into this SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) plot: Option<PathBuf>,
+    /// Write the time series into this CSV file; `-` is standard output
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) csv: Option<PathBuf>,
+    /// Seconds between rows of the output; by default a thousandth of the duration
+    #[arg(long, value_name = "SECONDS")]
+    pub(super) every: Option<f64>,
+    /// The sampling period, instead of the model file's
+    #[arg(long, value_name = "SECONDS")]
+    pub(super) step: Option<f64>,
+    /// Whose estimates the control law uses: observer, truth, or a baseline's name
+    #[arg(long, value_name = "NAME")]
+    pub(super) feedback: Option<String>,
+}
+
+#[derive(Args)]
+pub(super) struct ExplainOptions {
+    /// A code as diagnostics show it, such as cascade-refuted
+    pub(super) code: String,
+}

@@ -1,0 +1,208 @@
+//! The functions of the runtime's `Model` as the derivation defines them.
+//!
+//! In: an accepted derivation. Out: for each function its arguments and its entries.
+
+use Argument::{Eta, Extension, U, Y, Z};
+
+use super::error::EmitError;
+use crate::analysis::{Class, Derivation, LeftInverse, Outcome, Regression, RegressionKind};
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::Plant;
+
+/// An argument of a function of `Model`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Argument {
+    Extension,
+    Y,
+    U,
+    Z,
+    Eta,
+}
+
+impl Argument {
+    /// Its name in the runtime's trait.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Extension => "extension",
+            Self::Y => "y",
+            Self::U => "u",
+            Self::Z => "z",
+            Self::Eta => "eta",
+        }
+    }
+}
+
+/// A vector or matrix that an argument holds: by columns, and the method that gives it.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    pub(super) access: Option<&'static str>,
+    pub(super) columns: Vec<Vec<Symbol>>,
+}
+
+/// A size of the module: the name of its constant, its value, and what it counts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    pub(super) name: &'static str,
+    pub(super) value: usize,
+}
+
+/// What a function returns.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Shape {
+    /// A vector of this size.
+    Vector(&'static str),
+    /// A matrix of so many rows and columns.
+    Matrix(&'static str, &'static str),
+}
+
+/// One function.
+#[derive(Clone, Debug)]
+pub(super) struct Definition {
+    pub(super) name: &'static str,
+    pub(super) arguments: Vec<Argument>,
+    pub(super) shape: Shape,
+    /// The entries by rows; a vector has one in each.
+    pub(super) rows: Vec<Vec<Expr>>,
+}
+
+/// The functions of a model, and the symbols that their arguments hold.
+#[derive(Clone, Debug)]
+pub(super) struct Definitions<'a> {
+    pub(super) functions: Vec<Definition>,
+    pub(super) regression: &'a Regression,
+    pub(super) left_inverse: &'a LeftInverse,
+    pub(super) class: Class,
+    y: Vec<Symbol>,
+    u: Vec<Symbol>,
+    z: Vec<Symbol>,
+    /// chi of an integrator, xi of a fundamental solution.
+    pub(super) chi: Vec<Symbol>,
+    /// The columns of Psi, for a fundamental solution.
+    pub(super) psi: Vec<Vec<Symbol>>,
+}
+
+impl<'a> Definitions<'a> {
+    /// Collects what an accepted derivation found.
+    pub(super) fn of(plant: &Plant, derivation: &'a Derivation) -> Result<Self, EmitError> {
+        if derivation.outcome != Outcome::Accepted {
+            return Err(EmitError::NotAccepted);
+        }
+        let cascade = derivation.cascade.result.as_ref().ok_or(EmitError::Missing("cascade"))?;
+        let left_inverse = derivation.left_inverse.result.as_ref().ok_or(EmitError::Missing("left inverse"))?;
+        let regression = derivation.regression.result.as_ref().ok_or(EmitError::Missing("regression"))?;
+        if regression.kind == RegressionKind::Implicit {
+            return Err(EmitError::Implicit);
+        }
+        let arena = &plant.arena;
+        let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
+        let (chi, psi) = match derivation.class {
+            Class::Pebo => (plant.chi.clone(), Vec::new()),
+            Class::Gpebo => (plant.xi.clone(), columns(&plant.psi)),
+        };
+
+        let vector = |name, arguments: &[Argument], size, entries: Vec<Expr>| Definition {
+            name,
+            arguments: arguments.to_vec(),
+            shape: Shape::Vector(size),
+            rows: entries.into_iter().map(|entry| vec![entry]).collect(),
+        };
+        let matrix = |name, arguments: &[Argument], rows, columns, entries: &[Vec<Expr>]| Definition {
+            name,
+            arguments: arguments.to_vec(),
+            shape: Shape::Matrix(rows, columns),
+            rows: entries.to_vec(),
+        };
+        let mut functions = vec![vector("h", &[Y, U], "NZ", cascade.h.clone())];
+        if derivation.class == Class::Gpebo {
+            let lambda = cascade.lambda.as_ref().ok_or(EmitError::Missing("lambda"))?;
+            functions.push(matrix("lambda", &[Y, U], "NZ", "NZ", lambda));
+        }
+        functions.push(vector("phi_0", &[Extension, Y, U], "NR", regression.phi_0.clone()));
+        functions.push(matrix("phi_1", &[Extension, Y, U], "NR", "NE", &regression.phi_1));
+        if regression.kind == RegressionKind::Dynamic {
+            let rows = regression.rows.iter().map(|&row| y.get(row).map(|&s| arena.of_symbol(s)));
+            let outputs: Option<Vec<Expr>> = rows.collect();
+            let outputs = outputs.ok_or(EmitError::Missing("row of the regression"))?;
+            functions.push(vector("primitive_0", &[Extension, Y], "NR", outputs));
+        }
+        functions.push(vector("theta", &[Eta], "NZ", regression.theta.clone()));
+        let states = left_inverse.x.iter().map(|state| state.1).collect();
+        functions.push(vector("phi_left", &[Z, Y], "NX", states));
+        Ok(Self {
+            functions,
+            regression,
+            left_inverse,
+            class: derivation.class,
+            y,
+            u: plant.u.clone(),
+            z: plant.z.clone(),
+            chi,
+            psi,
+        })
+    }
+
+    /// What an argument holds.
+    pub(super) fn parts(&self, argument: Argument) -> Vec<Part> {
+        let column = |access, symbols: &[Symbol]| Part { access, columns: vec![symbols.to_vec()] };
+        match (argument, self.class) {
+            (Argument::Y, _) => vec![column(None, &self.y)],
+            (Argument::U, _) => vec![column(None, &self.u)],
+            (Argument::Z, _) => vec![column(None, &self.z)],
+            (Argument::Eta, _) => vec![column(None, &self.regression.eta_symbols)],
+            (Argument::Extension, Class::Pebo) => vec![column(Some("chi"), &self.chi)],
+            (Argument::Extension, Class::Gpebo) => {
+                vec![column(Some("xi"), &self.chi), Part { access: Some("psi"), columns: self.psi.clone() }]
+            }
+        }
+    }
+
+    /// The symbols that an argument holds, column by column.
+    pub(super) fn symbols(&self, argument: Argument) -> Vec<Symbol> {
+        self.parts(argument).into_iter().flat_map(|part| part.columns.concat()).collect()
+    }
+
+    /// The constant generics of the model, in the order of the runtime's trait.
+    pub(super) fn sizes(&self) -> [Size; 6] {
+        [
+            Size { name: "NX", value: self.left_inverse.x.len() },
+            Size { name: "NY", value: self.y.len() },
+            Size { name: "NU", value: self.u.len() },
+            Size { name: "NZ", value: self.z.len() },
+            Size { name: "NR", value: self.regression.phi_0.len() },
+            Size { name: "NE", value: self.regression.eta_symbols.len() },
+        ]
+    }
+
+    /// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase`): the
+    /// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
+    /// not move. None where the unknowns are not theta itself.
+    pub(super) fn rebase_residuals(&self, arena: &Arena) -> Option<Vec<Expr>> {
+        let unknowns = self.regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
+        if unknowns.ne(self.regression.theta.iter().copied()) {
+            return None;
+        }
+        let mut residuals = Vec::new();
+        for (phi_0, phi_1) in self.regression.phi_0.iter().zip(&self.regression.phi_1) {
+            let slopes: Vec<Expr> = self.chi.iter().map(|&chi| arena.derivative(*phi_0, chi)).collect();
+            for (column, &entry) in phi_1.iter().enumerate() {
+                let slope = match self.psi.get(column) {
+                    None => slopes[column],
+                    Some(psi) => {
+                        arena.sum(slopes.iter().zip(psi).map(|(&slope, &psi)| arena.mul(slope, arena.of_symbol(psi))))
+                    }
+                };
+                residuals.push(match self.regression.kind {
+                    RegressionKind::Static => arena.add(slope, entry),
+                    RegressionKind::Dynamic | RegressionKind::Implicit => arena.sub(slope, entry),
+                });
+                residuals.extend(self.chi.iter().map(|&chi| arena.derivative(entry, chi)));
+            }
+        }
+        Some(residuals)
+    }
+}
+
+/// The columns of a square table of rows.
+fn columns(rows: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
+    (0..rows.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect()
+}

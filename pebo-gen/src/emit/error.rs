@@ -1,0 +1,62 @@
+//! Why nothing was emitted.
+
+use std::fmt;
+
+use crate::cas::rational::Rational;
+
+/// The reason for which a derivation was not emitted.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum EmitError {
+    /// A claim is refuted or undecided.
+    NotAccepted,
+    /// The derivation is accepted, but lacks this result.
+    Missing(&'static str),
+    /// The regression has unknowns under the derivative.
+    Implicit,
+    /// A function depends on a symbol that it does not get.
+    Undeclared {
+        /// The symbol.
+        symbol: String,
+    },
+    /// The target scalar cannot represent a number of the model.
+    OutOfRange {
+        /// The number.
+        number: Rational,
+    },
+    /// The emitted code contains something that cannot be read back.
+    Unreadable {
+        /// The code.
+        code: String,
+    },
+    /// The emitted code does not compute what was derived.
+    Differs {
+        /// The function.
+        function: String,
+        /// The row of its result, from 1.
+        row: usize,
+        /// The column of its result, from 1.
+        column: usize,
+    },
+}
+
+impl fmt::Display for EmitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotAccepted => f.write_str("not every claim is proved"),
+            Self::Missing(what) => write!(f, "the derivation lacks its {what}"),
+            Self::Implicit => f.write_str("regressions with unknowns under the derivative are not emitted yet"),
+            Self::Undeclared { symbol } => {
+                write!(f, "`{symbol}` occurs in a function that does not know it")
+            }
+            Self::OutOfRange { number } => {
+                write!(f, "the target scalar cannot represent {number}")
+            }
+            Self::Unreadable { code } => write!(f, "the emitted code cannot be read back: {code}"),
+            Self::Differs { function, row, column } => {
+                write!(f, "the emitted `{function}` differs from the derived one in row {row}, column {column}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for EmitError {}

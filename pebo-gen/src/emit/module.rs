@@ -1,0 +1,219 @@
+//! The module as tokens: definitions and their programs in, items out.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote;
+
+use super::definition::{Argument, Definitions};
+use super::describe::describe;
+use super::document;
+use super::error::EmitError;
+use super::expression::{self, Body, Piece, ident, render};
+use super::literal::{Scalar, literal, whole};
+use super::names::{Names, camel};
+use super::permission;
+use crate::analysis::{Class, Derivation, RegressionKind};
+use crate::cas::Symbol;
+use crate::cas::rational::Rational;
+use crate::plant::Plant;
+use crate::program::{Constant, Program, Staged};
+
+/// What the items are made of.
+pub(super) struct Module<'a> {
+    pub(super) plant: &'a Plant,
+    pub(super) derivation: &'a Derivation,
+    pub(super) definitions: &'a Definitions<'a>,
+    pub(super) staged: &'a Staged,
+    pub(super) scalar: Scalar,
+    /// Whether the model may be re-based.
+    pub(super) rebase: bool,
+}
+
+/// The names of the module.
+pub(super) struct Scope {
+    /// Of parameters and arguments; all functions share them, so that a name means one thing.
+    pub(super) locals: BTreeMap<Symbol, String>,
+    /// Of the constants.
+    pub(super) fields: Vec<String>,
+    names: Names,
+    /// Numbers without a literal, with the names of their constants.
+    ratios: BTreeMap<Rational, String>,
+}
+
+impl Module<'_> {
+    /// The items.
+    pub(super) fn tokens(&self) -> Result<TokenStream, EmitError> {
+        self.check_numbers()?;
+        let mut scope = self.scope();
+        let model = self.model(&mut scope);
+        let functions: Vec<TokenStream> = self
+            .definitions
+            .functions
+            .iter()
+            .zip(&self.staged.programs)
+            .map(|(definition, program)| self.function(definition, program, &mut scope))
+            .collect();
+        let parameters = self.parameters(&mut scope);
+        let ratios = self.ratios(&scope);
+
+        let lines = document::module(self.plant, self.derivation, self.definitions, self.staged, self.scalar);
+        let lines = lines.iter().map(|line| spaced(line));
+        let uses = self.uses();
+        let sizes = self.definitions.sizes().into_iter().map(|size| {
+            let doc = doc(&document::size(self.plant, self.definitions, size.name));
+            let (name, value) = (ident(size.name), proc_macro2::Literal::usize_unsuffixed(size.value));
+            quote!(#doc pub const #name: usize = #value;)
+        });
+        let (type_name, scalar) = (ident(&camel(&self.plant.name)), ident(self.scalar.name()));
+        let extension = ident(self.extension());
+        let regression = ident(match self.definitions.regression.kind {
+            RegressionKind::Static => "Static",
+            RegressionKind::Dynamic | RegressionKind::Implicit => "Dynamic",
+        });
+        let precision = permission::for_numbers(self.scalar, self.staged.programs.iter().flat_map(numbers));
+        let rebase = self.rebase.then(|| {
+            quote! {
+                /// `phi_0` is affine in the extension with the factor `phi_1`: the observer may move a
+                /// shift from the extension into `theta`.
+                impl Rebase<NX, NY, NU, NZ, NR> for #type_name {}
+            }
+        });
+        Ok(quote! {
+            #(#![doc = #lines])*
+            #uses
+            #(#sizes)*
+            #ratios
+            #parameters
+            #model
+            #precision
+            impl Model<NX, NY, NU, NZ, NR, NE> for #type_name {
+                type Scalar = #scalar;
+                type Extension = #extension<#scalar, NZ>;
+                const REGRESSION: Regression = Regression::#regression;
+                #(#functions)*
+            }
+            #rebase
+            /// The observer of this model, with the gradient estimator unless another is named.
+            pub type Observer<E = Gradient<#scalar, NE>> =
+                pebo_runtime::Observer<#type_name, E, NX, NY, NU, NZ, NR, NE>;
+        })
+    }
+
+    fn extension(&self) -> &'static str {
+        match self.definitions.class {
+            Class::Pebo => "Integrator",
+            Class::Gpebo => "Fundamental",
+        }
+    }
+
+    fn programs(&self) -> impl Iterator<Item = &Program> {
+        std::iter::once(&self.staged.setup).chain(&self.staged.programs)
+    }
+
+    fn scope(&self) -> Scope {
+        let mut names = Names::default();
+        let arena = &self.plant.arena;
+        let parameters = self.plant.parameters.iter().map(|parameter| parameter.symbol);
+        let arguments = [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta];
+        let arguments = arguments.into_iter().flat_map(|argument| self.definitions.symbols(argument));
+        let locals: BTreeMap<Symbol, String> =
+            parameters.chain(arguments).map(|symbol| (symbol, names.claim(&arena.name(symbol)))).collect();
+        let mut fields = Names::default();
+        let constants = self.staged.constants.iter().map(|(_, formula)| match describe(arena, *formula, &locals) {
+            Some(name) => fields.claim(&name),
+            None => fields.number("k"),
+        });
+        let fields = constants.collect();
+        Scope { locals, fields, names, ratios: BTreeMap::new() }
+    }
+
+    fn uses(&self) -> TokenStream {
+        let real = self.programs().any(expression::calls).then(|| quote!(Real,));
+        let rebase = self.rebase.then(|| quote!(Rebase,));
+        let extension = ident(self.extension());
+        let scalar = ident(self.scalar.name());
+        let pi = self.programs().any(|program| program.constants.contains(&Constant::Pi));
+        let pi = pi.then(|| quote!(use core::#scalar::consts::PI;));
+        // In alphabetical order, as rustfmt has them.
+        let first = match self.definitions.class {
+            Class::Pebo => quote!(Gradient, #extension),
+            Class::Gpebo => quote!(#extension, Gradient),
+        };
+        quote! {
+            #pi
+            use pebo_runtime::nalgebra::{SMatrix, SVector};
+            use pebo_runtime::{#first, Model, #real #rebase Regression};
+        }
+    }
+
+    /// Refuses numbers that the scalar cannot represent.
+    fn check_numbers(&self) -> Result<(), EmitError> {
+        let constants = self.programs().flat_map(|program| &program.constants);
+        let numbers = constants.filter_map(|constant| match constant {
+            Constant::Number(value) => Some(value),
+            Constant::Pi => None,
+        });
+        let values = self.plant.parameters.iter().filter_map(|parameter| parameter.value.as_ref());
+        for value in numbers.chain(values) {
+            let parts = [value.clone(), value.numerator().into(), value.denominator().into()];
+            let written = if literal(value).is_some() { &parts[..1] } else { &parts[..] };
+            if let Some(number) = written.iter().find(|part| !self.scalar.holds(part)) {
+                return Err(EmitError::OutOfRange { number: number.clone() });
+            }
+        }
+        Ok(())
+    }
+
+    /// The constants for numbers without a literal.
+    fn ratios(&self, scope: &Scope) -> TokenStream {
+        let scalar = ident(self.scalar.name());
+        let items = scope.ratios.iter().map(|(value, name)| {
+            let doc = doc(&format!("`{value}`."));
+            let name = ident(name);
+            let [above, below] = [value.numerator(), value.denominator()]
+                .map(|part| syn::LitFloat::new(&whole(&part), Span::call_site()));
+            quote!(#doc const #name: #scalar = #above / #below;)
+        });
+        items.collect()
+    }
+}
+
+impl Scope {
+    /// A program's statements and results, with local variables that differ from all arguments.
+    pub(super) fn render(&mut self, program: &Program, inputs: &[Piece]) -> Body {
+        let mut names = self.names.clone();
+        render(program, inputs, &mut |value| self.ratio(value), &mut names)
+    }
+
+    /// The constant for a positive number without a literal.
+    pub(super) fn ratio(&mut self, value: &Rational) -> Piece {
+        const LONGEST: usize = 16;
+        let next = self.ratios.len() + 1;
+        let name = self.ratios.entry(value.clone()).or_insert_with(|| {
+            let telling = format!("RATIO_{}_{}", value.numerator(), value.denominator());
+            if telling.len() <= LONGEST { telling } else { format!("RATIO_{next}") }
+        });
+        let constant = ident(name);
+        Piece::atom(quote!(#constant), name.len(), None)
+    }
+}
+
+/// Numbers of a program, for the question whether they are long.
+pub(super) fn numbers(program: &Program) -> impl Iterator<Item = Rational> {
+    program.constants.iter().filter_map(|constant| match constant {
+        Constant::Number(value) => Some(value.clone()),
+        Constant::Pi => None,
+    })
+}
+
+/// A line of documentation.
+pub(super) fn doc(line: &str) -> TokenStream {
+    let line = spaced(line);
+    quote!(#[doc = #line])
+}
+
+/// A line as it stands behind `///`.
+fn spaced(line: &str) -> String {
+    if line.is_empty() { String::new() } else { format!(" {line}") }
+}

@@ -1,0 +1,222 @@
+//! Rust names for the author's names.
+//!
+//! In: any name of a model. Out: a name that rustc takes without a warning, different from every
+//! other of its scope. The rules, in order:
+//!
+//! 1. lower case, with `_` where a capital follows a small letter or a digit: `L1` is `l1`, `nP` is `n_p`;
+//! 2. what no Rust name may contain becomes `_`, and `_` neither leads, trails nor repeats;
+//! 3. more than [`LONGEST`] characters are cut off;
+//! 4. a keyword, and a name that the emitted code uses itself (`y`, `self`), gets a trailing `_`: `type_`;
+//! 5. a name that is taken gets the first free number from 2: `v` and `V` are `v` and `v_2`.
+
+use std::collections::BTreeSet;
+
+/// No name is longer, so that every statement fits its line.
+pub(super) const LONGEST: usize = 20;
+
+/// The same for the model's type.
+const LONGEST_TYPE: usize = 40;
+
+/// Strict and reserved keywords of the 2024 edition, and the names that functions of the runtime's
+/// `Model` give their arguments.
+const RESERVED: [&str; 61] = [
+    "abstract",
+    "as",
+    "async",
+    "await",
+    "become",
+    "box",
+    "break",
+    "const",
+    "continue",
+    "crate",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "eta",
+    "extension",
+    "extern",
+    "f32",
+    "f64",
+    "false",
+    "final",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "impl",
+    "in",
+    "let",
+    "loop",
+    "macro",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "override",
+    "parameters",
+    "priv",
+    "pub",
+    "ref",
+    "return",
+    "self",
+    "static",
+    "struct",
+    "super",
+    "trait",
+    "true",
+    "try",
+    "type",
+    "typeof",
+    "u",
+    "union",
+    "unsafe",
+    "unsized",
+    "use",
+    "usize",
+    "virtual",
+    "where",
+    "while",
+    "y",
+    "yield",
+    "z",
+];
+
+/// Types that an emitted module declares or imports.
+const TYPES: [&str; 13] = [
+    "Default",
+    "Fundamental",
+    "Gradient",
+    "Integrator",
+    "Model",
+    "Observer",
+    "Parameters",
+    "Real",
+    "Rebase",
+    "Regression",
+    "SMatrix",
+    "SVector",
+    "Self",
+];
+
+/// The names of one scope.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Names {
+    taken: BTreeSet<String>,
+}
+
+impl Names {
+    /// A name like the wanted one that nothing else in the scope has.
+    pub(super) fn claim(&mut self, wanted: &str) -> String {
+        let base = snake(wanted);
+        let reserved = RESERVED.contains(&base.as_str());
+        let first = if reserved { format!("{base}_") } else { base.clone() };
+        if self.taken.insert(first.clone()) { first } else { self.first_free(&format!("{base}_"), 2) }
+    }
+
+    /// The stem with the first free number.
+    pub(super) fn number(&mut self, stem: &str) -> String {
+        self.first_free(stem, 1)
+    }
+
+    fn first_free(&mut self, stem: &str, from: usize) -> String {
+        let mut number = from;
+        loop {
+            let name = format!("{stem}{number}");
+            if self.taken.insert(name.clone()) {
+                return name;
+            }
+            number += 1;
+        }
+    }
+}
+
+/// The name in snake case, cut to the greatest length.
+pub(super) fn snake(name: &str) -> String {
+    cut(name, LONGEST)
+}
+
+fn cut(name: &str, longest: usize) -> String {
+    let mut snake = String::with_capacity(name.len() + 2);
+    let mut before = '_';
+    for c in name.chars() {
+        let starts_word = c.is_uppercase() && (before.is_lowercase() || before.is_numeric());
+        if starts_word {
+            snake.push('_');
+        }
+        if c.is_alphanumeric() {
+            snake.extend(c.to_lowercase().filter(|lower| lower.is_alphanumeric()));
+        } else if !snake.ends_with('_') {
+            snake.push('_');
+        }
+        before = c;
+    }
+    let cut: String = snake.trim_matches('_').chars().take(longest).collect();
+    let cut = cut.trim_end_matches('_');
+    if cut.is_empty() {
+        "it".to_owned()
+    } else if cut.starts_with(char::is_numeric) {
+        format!("n{cut}")
+    } else {
+        cut.to_owned()
+    }
+}
+
+/// The name of the model's type: camel case, and never the name of another type in the module.
+pub(super) fn camel(name: &str) -> String {
+    let mut camel = String::with_capacity(name.len());
+    for word in cut(name, LONGEST_TYPE).split('_') {
+        let mut letters = word.chars();
+        camel.extend(letters.next().into_iter().flat_map(char::to_uppercase));
+        camel.extend(letters);
+    }
+    if TYPES.contains(&camel.as_str()) { format!("{camel}Plant") } else { camel }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_snake_case() {
+        for (name, expected) in [
+            ("L1", "l1"),
+            ("nP", "n_p"),
+            ("R_s", "r_s"),
+            ("__x", "x"),
+            ("_", "it"),
+            ("LambdaM", "lambda_m"),
+            ("iL1", "i_l1"),
+            ("E", "e"),
+            ("a__b", "a_b"),
+            ("a_name_that_goes_on_and_on", "a_name_that_goes_on"),
+        ] {
+            assert_eq!(snake(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn keywords_and_clashes_get_suffixes() {
+        let mut names = Names::default();
+        let claimed = ["v", "V", "type", "Type", "gen", "y", "self", "fn", "v_2"];
+        let claimed = claimed.map(|name| names.claim(name));
+        assert_eq!(claimed, ["v", "v_2", "type_", "type_2", "gen_", "y_", "self_", "fn_", "v_2_2"]);
+    }
+
+    #[test]
+    fn every_claimed_name_is_an_identifier() {
+        let mut names = Names::default();
+        for reserved in RESERVED {
+            assert!(syn::parse_str::<syn::Ident>(&names.claim(reserved)).is_ok(), "{reserved}");
+        }
+    }
+
+    #[test]
+    fn type_names_are_camel_case() {
+        assert_eq!(camel("cuk"), "Cuk");
+        assert_eq!(camel("cuk_case2"), "CukCase2");
+        assert_eq!(camel("observer"), "ObserverPlant");
+        assert_eq!(camel("PMSM"), "Pmsm");
+    }
+}

@@ -1,0 +1,104 @@
+//! The parameters of the plant, and the model that is made of them.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::expression::{Piece, ident, number};
+use super::module::{Module, Scope, doc, numbers};
+use super::names::camel;
+use super::permission;
+use crate::cas::rational::Rational;
+
+impl Module<'_> {
+    /// The parameters as a type, with the model's values if each has one.
+    pub(super) fn parameters(&self, scope: &mut Scope) -> TokenStream {
+        let arena = &self.plant.arena;
+        let scalar = ident(self.scalar.name());
+        let parameters = &self.plant.parameters;
+        if parameters.is_empty() {
+            return quote! {
+                /// The plant has no parameters.
+                #[derive(Clone, Debug, Default, PartialEq)]
+                pub struct Parameters;
+            };
+        }
+        let fields = parameters.iter().map(|parameter| {
+            let name = arena.name(parameter.symbol);
+            let line = match &parameter.value {
+                Some(value) => format!("`{name}`, {} in the model.", arena.print(arena.number(value.clone()))),
+                None => format!("`{name}`, without a value in the model."),
+            };
+            let (doc, field) = (doc(&line), ident(&scope.locals[&parameter.symbol]));
+            quote!(#doc pub #field: #scalar,)
+        });
+        let fields: Vec<TokenStream> = fields.collect();
+        let values: Option<Vec<&Rational>> = parameters.iter().map(|parameter| parameter.value.as_ref()).collect();
+        let default = values.map(|values| {
+            let precision = permission::for_numbers(self.scalar, values.iter().map(|&value| value.clone()));
+            let entries: Vec<TokenStream> = parameters
+                .iter()
+                .zip(values)
+                .map(|(parameter, value)| {
+                    let field = ident(&scope.locals[&parameter.symbol]);
+                    let value = number(value, &mut |ratio| scope.ratio(ratio)).tokens;
+                    quote!(#field: #value)
+                })
+                .collect();
+            quote! {
+                /// The values of the model.
+                #precision
+                impl Default for Parameters {
+                    fn default() -> Self {
+                        Self { #(#entries),* }
+                    }
+                }
+            }
+        });
+        quote! {
+            /// The constants of the plant, in the units of the model.
+            #[derive(Clone, Debug, PartialEq)]
+            pub struct Parameters { #(#fields)* }
+            #default
+        }
+    }
+
+    /// The type of the model, and its constructor.
+    pub(super) fn model(&self, scope: &mut Scope) -> TokenStream {
+        let arena = &self.plant.arena;
+        let (type_name, scalar) = (ident(&camel(&self.plant.name)), ident(self.scalar.name()));
+        let read = self.plant.parameters.iter().map(|parameter| {
+            let name = &scope.locals[&parameter.symbol];
+            let field = ident(name);
+            Piece::atom(quote!(parameters.#field), "parameters.".len() + name.len(), Some(name.clone()))
+        });
+        let inputs: Vec<Piece> = read.collect();
+        let body = scope.render(&self.staged.setup, &inputs);
+        let fields: Vec<_> = scope.fields.iter().map(|field| ident(field)).collect();
+        let summary = doc("The functions of the model, with what depends on the parameters alone computed once.");
+        let unread = self.plant.parameters.is_empty() || fields.is_empty();
+        let argument = ident(if unread { "_parameters" } else { "parameters" });
+        let precision = permission::for_numbers(self.scalar, numbers(&self.staged.setup));
+        let (declaration, value) = if fields.is_empty() {
+            (quote!(pub struct #type_name;), quote!(Self))
+        } else {
+            let docs = self.staged.constants.iter().map(|constant| doc(&format!("`{}`.", arena.print(constant.1))));
+            let values = body.outputs.iter().map(|output| &output.tokens);
+            (quote!(pub struct #type_name { #(#docs #fields: #scalar,)* }), quote!(Self { #(#fields: #values),* }))
+        };
+        let statements = &body.statements;
+        quote! {
+            #summary
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            #declaration
+            #precision
+            impl #type_name {
+                /// The model with these parameters.
+                #[must_use]
+                pub fn new(#argument: &Parameters) -> Self {
+                    #(#statements)*
+                    #value
+                }
+            }
+        }
+    }
+}

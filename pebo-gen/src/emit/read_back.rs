@@ -1,0 +1,274 @@
+//! The emitted tokens, read again as algebra.
+//!
+//! In: tokens, and the plant for the meaning of positions: the first field of `Parameters` is the
+//! first parameter, the first entry of `y` the first output. Nothing else of the emitter is used: no
+//! table of names, no program. Out: the value of each function as expressions. What the reader does
+//! not know, an undeclared name among it, is an error.
+
+use std::collections::BTreeMap;
+
+use proc_macro2::TokenStream;
+use quote::ToTokens;
+use syn::{FnArg, ImplItem, Item, Pat, Stmt};
+
+use super::definition::{Argument, Definitions};
+use super::error::EmitError;
+use super::literal::Scalar;
+use super::value::{Scope, Value, expression, unreadable};
+use crate::analysis::RegressionKind;
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::Plant;
+
+/// Confirms that the tokens compute what is defined.
+pub(super) fn confirm(
+    plant: &Plant,
+    definitions: &Definitions,
+    scalar: Scalar,
+    tokens: &TokenStream,
+    is_zero: impl Fn(&Arena, Expr) -> bool,
+) -> Result<(), EmitError> {
+    let arena = &plant.arena;
+    let read = read(plant, definitions, tokens)?;
+    let expected = [
+        ("Scalar", scalar.name()),
+        ("Extension", if definitions.psi.is_empty() { "Integrator" } else { "Fundamental" }),
+        (
+            "REGRESSION",
+            match definitions.regression.kind {
+                RegressionKind::Static => "Static",
+                RegressionKind::Dynamic | RegressionKind::Implicit => "Dynamic",
+            },
+        ),
+    ];
+    for (name, value) in expected {
+        if read.choices.get(name).map(String::as_str) != Some(value) {
+            return Err(EmitError::Unreadable { code: format!("{name} is not {value}") });
+        }
+    }
+    let values: Option<Vec<Rational>> = plant.parameters.iter().map(|parameter| parameter.value.clone()).collect();
+    if !plant.parameters.is_empty() && read.default != values {
+        return Err(EmitError::Unreadable { code: "the values of the parameters".to_owned() });
+    }
+    if read.functions.len() != definitions.functions.len() {
+        return Err(EmitError::Unreadable { code: "another set of functions".to_owned() });
+    }
+    for definition in &definitions.functions {
+        let columns = read.functions.get(definition.name).ok_or(EmitError::Missing("function"))?;
+        for (row, entries) in definition.rows.iter().enumerate() {
+            for (column, &entry) in entries.iter().enumerate() {
+                let emitted = columns.get(column).and_then(|column| column.get(row));
+                let equal =
+                    emitted.is_some_and(|&emitted| emitted == entry || is_zero(arena, arena.sub(emitted, entry)));
+                let same_size = columns.len() == entries.len()
+                    && columns.iter().all(|column| column.len() == definition.rows.len());
+                if !equal || !same_size {
+                    let function = definition.name.to_owned();
+                    return Err(EmitError::Differs { function, row: row + 1, column: column + 1 });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What the tokens say.
+#[derive(Debug, Default)]
+struct Read {
+    default: Option<Vec<Rational>>,
+    /// Associated types and constants, by the last segment of their values.
+    choices: BTreeMap<String, String>,
+    /// The columns of each function's value.
+    functions: BTreeMap<String, Vec<Vec<Expr>>>,
+}
+
+fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Result<Read, EmitError> {
+    let arena = &plant.arena;
+    let file: syn::File =
+        syn::parse2(tokens.clone()).map_err(|error| EmitError::Unreadable { code: error.to_string() })?;
+    let mut read = Read::default();
+    let mut globals = Scope::default();
+    let mut fields: BTreeMap<String, Expr> = BTreeMap::new();
+    let mut stored: BTreeMap<String, Expr> = BTreeMap::new();
+    for item in &file.items {
+        match item {
+            Item::Use(item) => globals.import(arena, &item.to_token_stream().to_string()),
+            Item::Const(item) if is_size(&item.ty) => {
+                let name = item.ident.to_string();
+                let size = definitions.sizes().into_iter().find(|size| name == size.name);
+                if size.map(|size| size.value.to_string()) != Some(item.expr.to_token_stream().to_string()) {
+                    return Err(unreadable(item));
+                }
+            }
+            Item::Const(item) => {
+                let value = expression(arena, &item.expr, &globals)?;
+                globals.declare(&item.ident.to_string(), value);
+            }
+            Item::Struct(item) if item.ident == "Parameters" => {
+                let names: Vec<String> =
+                    item.fields.iter().filter_map(|field| Some(field.ident.as_ref()?.to_string())).collect();
+                if names.len() != plant.parameters.len() {
+                    return Err(unreadable(item));
+                }
+                let symbols = plant.parameters.iter().map(|p| arena.of_symbol(p.symbol));
+                fields = names.into_iter().zip(symbols).collect();
+            }
+            Item::Struct(_) | Item::Type(_) => {}
+            Item::Impl(item) => match trait_name(item).as_deref() {
+                Some("Default") => {
+                    let values = structure(arena, only_function(item)?, &globals)?;
+                    let declared = plant.parameters.iter().map(|p| arena.of_symbol(p.symbol));
+                    let value = |symbol: Expr| {
+                        let (name, _) = fields.iter().find(|field| *field.1 == symbol)?;
+                        arena.as_number(*values.get(name)?)
+                    };
+                    read.default = declared.map(value).collect();
+                }
+                Some("Rebase") if item.items.is_empty() => {}
+                Some("Model") => model(plant, definitions, item, &globals, &stored, &mut read)?,
+                None => {
+                    let mut scope = globals.clone();
+                    let function = only_function(item)?;
+                    let [FnArg::Typed(argument)] = function.sig.inputs.iter().collect::<Vec<_>>()[..] else {
+                        return Err(unreadable(function));
+                    };
+                    scope.declare(&name_of(&argument.pat)?, Value::Fields(fields.clone()));
+                    stored = structure(arena, function, &scope)?;
+                }
+                Some(_) => return Err(unreadable(item)),
+            },
+            other => return Err(unreadable(other)),
+        }
+    }
+    Ok(read)
+}
+
+/// The functions of the trait: arguments by their position, as the runtime defines them.
+fn model(
+    plant: &Plant,
+    definitions: &Definitions,
+    item: &syn::ItemImpl,
+    globals: &Scope,
+    stored: &BTreeMap<String, Expr>,
+    read: &mut Read,
+) -> Result<(), EmitError> {
+    let arena = &plant.arena;
+    for entry in &item.items {
+        match entry {
+            ImplItem::Type(entry) => {
+                read.choices.insert(entry.ident.to_string(), last_segment(&entry.ty)?);
+            }
+            ImplItem::Const(entry) => {
+                let syn::Expr::Path(path) = &entry.expr else {
+                    return Err(unreadable(entry));
+                };
+                let last = path.path.segments.last().ok_or_else(|| unreadable(entry))?;
+                read.choices.insert(entry.ident.to_string(), last.ident.to_string());
+            }
+            ImplItem::Fn(function) => {
+                let mut scope = globals.clone();
+                scope.declare("self", Value::Fields(stored.clone()));
+                let arguments = signature(&function.sig.ident.to_string()).ok_or_else(|| unreadable(&function.sig))?;
+                let mut typed = function.sig.inputs.iter().skip(1);
+                for &argument in arguments {
+                    let Some(FnArg::Typed(input)) = typed.next() else {
+                        return Err(unreadable(&function.sig));
+                    };
+                    scope.declare(&name_of(&input.pat)?, of_argument(arena, definitions, argument));
+                }
+                let value = body(arena, function, scope)?;
+                let columns = value.columns().ok_or_else(|| unreadable(&function.block))?;
+                read.functions.insert(function.sig.ident.to_string(), columns);
+            }
+            other => return Err(unreadable(other)),
+        }
+    }
+    Ok(())
+}
+
+/// The arguments that the runtime's trait gives its functions.
+fn signature(function: &str) -> Option<&'static [Argument]> {
+    use Argument::{Eta, Extension, U, Y, Z};
+    Some(match function {
+        "h" | "lambda" => &[Y, U],
+        "phi_0" | "phi_1" => &[Extension, Y, U],
+        "primitive_0" => &[Extension, Y],
+        "theta" => &[Eta],
+        "phi_left" => &[Z, Y],
+        _ => return None,
+    })
+}
+
+fn of_argument(arena: &Arena, definitions: &Definitions, argument: Argument) -> Value {
+    let columns = |columns: &[Vec<Symbol>]| {
+        let column = |column: &Vec<Symbol>| column.iter().map(|&s| arena.of_symbol(s)).collect();
+        columns.iter().map(column).collect::<Vec<Vec<Expr>>>()
+    };
+    let parts = definitions.parts(argument);
+    match parts.as_slice() {
+        [part] if part.access.is_none() => Value::Matrix(columns(&part.columns)),
+        parts => Value::Parts(
+            parts.iter().filter_map(|part| Some((part.access?.to_owned(), columns(&part.columns)))).collect(),
+        ),
+    }
+}
+
+/// The value of a function: its statements in order, then its last expression.
+fn body(arena: &Arena, function: &syn::ImplItemFn, mut scope: Scope) -> Result<Value, EmitError> {
+    let (last, statements) = function.block.stmts.split_last().ok_or_else(|| unreadable(&function.sig))?;
+    for statement in statements {
+        let Stmt::Local(local) = statement else {
+            return Err(unreadable(statement));
+        };
+        let Some(init) = &local.init else {
+            return Err(unreadable(statement));
+        };
+        let value = expression(arena, &init.expr, &scope)?;
+        scope.bind(&local.pat, value)?;
+    }
+    match last {
+        Stmt::Expr(value, None) => expression(arena, value, &scope),
+        other => Err(unreadable(other)),
+    }
+}
+
+/// The fields of the structure that a function returns.
+fn structure(arena: &Arena, function: &syn::ImplItemFn, scope: &Scope) -> Result<BTreeMap<String, Expr>, EmitError> {
+    match body(arena, function, scope.clone())? {
+        Value::Fields(fields) => Ok(fields),
+        _ => Err(unreadable(&function.block)),
+    }
+}
+
+fn only_function(item: &syn::ItemImpl) -> Result<&syn::ImplItemFn, EmitError> {
+    match item.items.as_slice() {
+        [ImplItem::Fn(function)] => Ok(function),
+        _ => Err(unreadable(item)),
+    }
+}
+
+fn trait_name(item: &syn::ItemImpl) -> Option<String> {
+    let implemented = item.trait_.as_ref()?;
+    Some(implemented.0.segments.last()?.ident.to_string())
+}
+
+fn is_size(ty: &syn::Type) -> bool {
+    ty.to_token_stream().to_string() == "usize"
+}
+
+fn last_segment(ty: &syn::Type) -> Result<String, EmitError> {
+    match ty {
+        syn::Type::Path(path) => {
+            let last = path.path.segments.last().ok_or_else(|| unreadable(ty))?;
+            Ok(last.ident.to_string())
+        }
+        _ => Err(unreadable(ty)),
+    }
+}
+
+fn name_of(pattern: &Pat) -> Result<String, EmitError> {
+    match pattern {
+        Pat::Ident(ident) => Ok(ident.ident.to_string()),
+        _ => Err(unreadable(pattern)),
+    }
+}

@@ -1,0 +1,204 @@
+//! What is emitted, and what is refused.
+
+pub(crate) mod fixtures;
+
+use fixtures::{CUK, CUK_CASE2, PENDULUM, PMSM, Sketch, vanishes};
+
+use super::*;
+use crate::analysis::Outcome;
+use crate::cas::Node;
+
+fn emitted(sketch: Sketch) -> String {
+    emitted_as(sketch, Scalar::F64)
+}
+
+fn emitted_as(sketch: Sketch, scalar: Scalar) -> String {
+    let (plant, derivation) = sketch.build();
+    emit(&plant, &derivation, scalar, vanishes).unwrap().text
+}
+
+/// The code of one function, without its documentation.
+fn function(text: &str, name: &str) -> String {
+    let start = text.find(&format!("fn {name}(")).unwrap();
+    let length = text[start..].find("\n    }").unwrap();
+    text[start..start + length].to_owned()
+}
+
+/// One line of `phi_0`, for a formula in v2, v4, d, chi1, chi2 and the parameters.
+fn line(formula: &'static str) -> String {
+    let row: &'static [&'static str] = Box::leak(Box::new([formula, "0.0"]));
+    let (plant, derivation) = Sketch { phi_0: row, ..CUK }.build();
+    let text = emit(&plant, &derivation, Scalar::F64, vanishes).unwrap().text;
+    let code = function(&text, "phi_0");
+    let (_, rest) = code.split_once("SVector::from([").unwrap();
+    rest.trim().trim_end_matches("])").trim_end_matches(", 0.0").to_owned()
+}
+
+#[test]
+fn every_fixture_is_emitted_for_both_scalars() {
+    for sketch in [CUK, CUK_CASE2, PMSM, PENDULUM] {
+        for scalar in [Scalar::F32, Scalar::F64] {
+            let text = emitted_as(sketch, scalar);
+            assert!(text.lines().all(|line| line.chars().count() <= 100 || line.starts_with("//!")));
+            assert_eq!(text, emitted_as(sketch, scalar), "deterministic");
+        }
+    }
+}
+
+#[test]
+fn parentheses_keep_the_value() {
+    assert_eq!(line("(-chi1)*(-chi1)"), "chi1 * chi1");
+    assert_eq!(line("v2/(v4*d)"), "v2 / (d * v4)");
+    assert_eq!(line("-(v2 + v4)*d"), "-(d * (v2 + v4))");
+    assert_eq!(line("v2 - (v4 - d)"), "d + v2 - v4");
+    assert_eq!(line("v2/v4 - d"), "v2 / v4 - d");
+    assert_eq!(line("(v2 - v4)*(v2 + v4)"), "(v2 - v4) * (v2 + v4)");
+    assert_eq!(line("1.0/(1.0/v2 + v4)"), "1.0 / (v4 + 1.0 / v2)");
+}
+
+#[test]
+fn powers_are_products_and_reciprocals_divisions() {
+    let text = line("v2*v2*v2 + 1.0/d/d");
+    assert!(!text.contains("pow"), "{text}");
+    assert_eq!(text, "v2 * v2 * v2 + 1.0 / (d * d)");
+    let all = emitted(Sketch { phi_0: &["v2*v2*v2*Real::sqrt(d)*d/v4", "1.0/v2/v2/v2"], ..CUK });
+    assert!(!all.contains("pow") && !all.contains("mul_add") && !all.contains("unsafe"), "{all}");
+}
+
+#[test]
+fn a_parameter_named_e_is_a_parameter() {
+    let text = emitted(CUK);
+    assert!(text.contains("/// `E`, 12 in the model.\n    pub e: f64,"), "{text}");
+    assert!(text.contains("e: 12.0,"), "{text}");
+    assert!(!text.contains("exp") && !text.contains("consts::E"));
+}
+
+#[test]
+fn names_that_differ_only_in_case_stay_apart() {
+    let sketch = Sketch {
+        parameters: &[("V", "3"), ("v", "5")],
+        phi_0: &["V*chi1 - v*chi2", "V/v*D"],
+        y: &[("v2", "0.0"), ("D", "0.0")],
+        x: &[("i1", "0.0"), ("i3", "0.0")],
+        h: &["0.0", "D"],
+        phi_1: &[&["d", "D"], &["0.0", "V"]],
+        assume: &[],
+        ..CUK
+    };
+    let text = emitted(sketch);
+    assert!(text.contains("pub v: f64") && text.contains("pub v_2: f64"), "{text}");
+    assert!(function(&text, "phi_1").contains("let [[d_2]] = u.data.0;"), "{text}");
+}
+
+#[test]
+fn keywords_are_no_names() {
+    let (mut plant, mut derivation) = CUK.build();
+    let arena = &plant.arena;
+    let (type_, gen_) = (arena.variable("type"), arena.variable("gen"));
+    let (own, y) = (arena.symbol("self"), arena.symbol("y"));
+    plant.parameters[0].symbol = arena.symbol("type");
+    plant.parameters[1].symbol = arena.symbol("gen");
+    plant.y[0].symbol = own;
+    plant.y[1].symbol = y;
+    derivation.cascade.result.as_mut().unwrap().h =
+        vec![arena.div(arena.of_symbol(own), type_), arena.mul(arena.of_symbol(y), gen_)];
+    let regression = derivation.regression.result.as_mut().unwrap();
+    regression.phi_0 = vec![arena.of_symbol(own), arena.zero()];
+    regression.phi_1 = vec![vec![arena.one(), arena.zero()], vec![arena.zero(), arena.one()]];
+    let text = emit(&plant, &derivation, Scalar::F64, vanishes).unwrap().text;
+    assert!(text.contains("pub type_: f64") && text.contains("pub gen_: f64"), "{text}");
+    assert!(text.contains("let [[self_, y_]] = y.data.0;"), "{text}");
+}
+
+#[test]
+fn an_undeclared_symbol_is_an_error() {
+    let (plant, derivation) = Sketch { phi_0: &["i1", "0.0"], ..CUK }.build();
+    let error = emit(&plant, &derivation, Scalar::F64, vanishes).unwrap_err();
+    assert_eq!(error, EmitError::Undeclared { symbol: "i1".to_owned() });
+}
+
+#[test]
+fn only_accepted_derivations_are_emitted() {
+    let (plant, mut derivation) = CUK.build();
+    derivation.outcome = Outcome::Undecided;
+    let error = emit(&plant, &derivation, Scalar::F64, vanishes).unwrap_err();
+    assert_eq!(error, EmitError::NotAccepted);
+}
+
+#[test]
+fn there_is_no_default_without_values() {
+    let text = emitted(PENDULUM);
+    assert!(!text.contains("impl Default"), "{text}");
+    assert!(text.contains("`ell`, without a value in the model."));
+}
+
+#[test]
+fn numbers_without_a_decimal_are_exact_quotients() {
+    let text = emitted(PMSM);
+    assert!(text.contains("const RATIO_1_3000: f64 = 1.0 / 3000.0;"), "{text}");
+    assert!(text.contains("l: RATIO_1_3000,"), "{text}");
+}
+
+#[test]
+fn a_number_out_of_range_is_an_error() {
+    let sketch =
+        Sketch { parameters: &[("L1", "1e-60"), ("C2", "1"), ("L3", "1"), ("C4", "1"), ("G", "1"), ("E", "1")], ..CUK };
+    let (plant, derivation) = sketch.build();
+    assert!(emit(&plant, &derivation, Scalar::F64, vanishes).is_ok());
+    let error = emit(&plant, &derivation, Scalar::F32, vanishes).unwrap_err();
+    assert!(matches!(error, EmitError::OutOfRange { .. }), "{error}");
+}
+
+#[test]
+fn tampered_tokens_are_refused() {
+    let (plant, derivation) = CUK.build();
+    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let text = emitted(CUK);
+    let confirm = |text: &str| {
+        let tokens = text.parse().unwrap();
+        read_back::confirm(&plant, &definitions, Scalar::F64, &tokens, vanishes)
+    };
+    assert_eq!(confirm(&text), Ok(()));
+    for (from, to) in [
+        ("1.0 - d", "1.0 + d"),
+        ("let [[v2, v4]] = y", "let [[v4, v2]] = y"),
+        ("1.0 / parameters.c2", "1.0 / parameters.c4"),
+        ("[column_1, column_2]", "[column_2, column_1]"),
+        ("let [[chi1, chi2]]", "let [[_, chi2]]"),
+        ("e: 12.0", "e: 12.5"),
+        ("Regression::Dynamic", "Regression::Static"),
+        ("NX: usize = 2", "NX: usize = 3"),
+        ("pub l1: f64", "pub c2: f64"),
+        ("SVector::from(", "SVector::of("),
+    ] {
+        assert!(text.contains(from), "{from}");
+        assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
+    }
+}
+
+#[test]
+fn an_unconfirmed_emission_is_refused() {
+    // Equal to 1 only by sin^2 + cos^2 = 1.
+    const ROWS: &[&str] = &["Real::sin(d)*Real::sin(d) + Real::cos(d)*Real::cos(d)", "0.0"];
+    let (plant, derivation) = Sketch { phi_0: ROWS, ..CUK }.build();
+    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let tokens = emitted(Sketch { phi_0: &["1.0", "0.0"], ..CUK }).parse().unwrap();
+    let confirm =
+        |is_zero: fn(&Arena, Expr) -> bool| read_back::confirm(&plant, &definitions, Scalar::F64, &tokens, is_zero);
+    assert_eq!(confirm(vanishes), Ok(()));
+    let refused = confirm(|arena, expr| {
+        let call = |&inner: &Expr| matches!(arena.node(inner), Node::Call(..));
+        vanishes(arena, expr) && !arena.postorder(&[expr]).iter().any(call)
+    });
+    let function = "phi_0".to_owned();
+    assert_eq!(refused, Err(EmitError::Differs { function, row: 1, column: 1 }));
+}
+
+#[test]
+fn linear_regressions_may_be_rebased() {
+    for (sketch, rebase) in [(CUK, true), (CUK_CASE2, true), (PENDULUM, true), (PMSM, false)] {
+        assert_eq!(emitted(sketch).contains("impl Rebase"), rebase, "{}", sketch.name);
+    }
+    let wrong_sign = Sketch { phi_0: &["-((1.0 - d)*chi1 + d*chi2)/C2", "chi2/C4"], ..CUK };
+    assert!(!emitted(wrong_sign).contains("impl Rebase"));
+}

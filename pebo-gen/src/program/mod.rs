@@ -1,0 +1,27 @@
+//! Straight-line code: how the derived formulas are computed.
+//!
+//! ```text
+//! Expr -> stage (what depends on parameters alone, apart) -> factor -> lower -> Program -> cost, interpret, emit
+//! ```
+//!
+//! In: expressions of the algebra. Out: a [`Program`], whose value is that of the expressions up to
+//! rounding, in an order of operations that depends on the expressions alone.
+
+mod cost;
+mod factor;
+mod interpret;
+mod lower;
+mod product;
+mod sharing;
+mod signs;
+mod stage;
+mod straight;
+
+#[cfg(test)]
+mod tests;
+
+pub use cost::Cost;
+pub use interpret::Interpreter;
+pub use lower::{Undeclared, lower};
+pub use stage::{Staged, Task, stage};
+pub use straight::{Constant, Operand, Operation, Program};

@@ -1,0 +1,315 @@
+//! Programs against direct evaluation of the expression tree, and their shape.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Function, Node, Symbol};
+
+/// A value and a bound of what rounding in any order of the same operations can change.
+#[derive(Clone, Copy, Debug)]
+struct Rounded {
+    value: f64,
+    error: f64,
+}
+
+/// Direct evaluation of the tree, with the running error bound of each operation.
+fn evaluate(arena: &Arena, expr: Expr, point: &BTreeMap<Symbol, f64>) -> Rounded {
+    let mut known: BTreeMap<Expr, Rounded> = BTreeMap::new();
+    for e in arena.postorder(&[expr]) {
+        let exact = |value: f64| Rounded { value, error: f64::EPSILON * value.abs() };
+        let rounded = match arena.node(e) {
+            Node::Number(value) => exact(value.to_f64()),
+            Node::Pi => exact(std::f64::consts::PI),
+            Node::Symbol(symbol) => Rounded { value: point[&symbol], error: 0.0 },
+            Node::Sum(sum) => {
+                let constant = exact(sum.constant.to_f64());
+                let (mut total, mut size) = (constant, constant.value.abs());
+                for (term, coefficient) in &sum.terms {
+                    let (term, c) = (known[term], coefficient.to_f64());
+                    total.value += c * term.value;
+                    total.error += c.abs() * term.error;
+                    size += (c * term.value).abs();
+                }
+                let operations = f64::from(u32::try_from(sum.terms.len()).unwrap()) + 2.0;
+                total.error += operations * f64::EPSILON * size;
+                total
+            }
+            Node::Product(product) => {
+                let mut total = exact(product.coefficient.to_f64());
+                for (base, exponent) in &product.factors {
+                    let (base, k) = (known[base], exponent.to_f64());
+                    let value = base.value.powf(k);
+                    let slope = (k * base.value.powf(k - 1.0)).abs();
+                    let error = slope * base.error + (k.abs() + 2.0) * f64::EPSILON * value.abs();
+                    total.error = total.error * value.abs() + total.value.abs() * error;
+                    total.value *= value;
+                    total.error += f64::EPSILON * total.value.abs();
+                }
+                total
+            }
+            Node::Call(function, arguments) => {
+                let a = known[&arguments[0]];
+                let (value, slope) = match function {
+                    Function::Sin => (a.value.sin(), 1.0),
+                    Function::Cos => (a.value.cos(), 1.0),
+                    Function::Tanh => (a.value.tanh(), 1.0),
+                    Function::Abs => (a.value.abs(), 1.0),
+                    Function::Exp => (a.value.exp(), a.value.exp()),
+                    Function::Atan2 => {
+                        let b = known[&arguments[1]];
+                        (a.value.atan2(b.value), 2.0 / a.value.hypot(b.value))
+                    }
+                    other => panic!("{other:?} is not generated"),
+                };
+                let second = arguments.get(1).map_or(0.0, |b| known[b].error);
+                Rounded { value, error: slope * (a.error + second) + 2.0 * f64::EPSILON * value.abs() }
+            }
+        };
+        known.insert(e, rounded);
+    }
+    known[&expr]
+}
+
+/// One construction step: what to do, and with which expressions of the pool.
+type Step = (u8, u8, u8);
+
+const NAMES: [&str; 5] = ["p", "q", "x", "y", "E"];
+
+/// Expressions built step by step; a step whose value is out of proportion at the point is left out.
+fn grow(arena: &Arena, point: &BTreeMap<Symbol, f64>, steps: &[Step]) -> Vec<Expr> {
+    let mut pool: Vec<Expr> = NAMES.iter().map(|name| arena.variable(name)).collect();
+    pool.push(arena.number(Rational::new(2, 3).unwrap()));
+    pool.push(arena.number(-3));
+    pool.push(arena.pi());
+    let count = pool.len();
+    for &(kind, a, b) in steps {
+        let (a, b) = (pool[usize::from(a) % pool.len()], pool[usize::from(b) % pool.len()]);
+        let positive = arena.add(arena.one(), arena.mul(a, a));
+        let fraction = |n: i64, d: i64| Rational::new(n, d).unwrap();
+        let grown = match kind % 14 {
+            0 | 1 => arena.add(a, b),
+            2 | 3 => arena.sub(a, b),
+            4 | 5 => arena.mul(a, b),
+            6 => arena.div(b, positive),
+            7 => arena.power(a, &fraction(3, 1)),
+            8 => arena.power(positive, &fraction(-3, 2)),
+            9 => arena.power(positive, &fraction(1, 3)),
+            10 => arena.call(Function::Sin, &[a]),
+            11 => arena.call(Function::Cos, &[a]),
+            12 => arena.call(Function::Atan2, &[b, positive]),
+            _ => arena.neg(arena.call(Function::Tanh, &[a])),
+        };
+        let value = evaluate(arena, grown, point).value;
+        if value.is_finite() && value.abs() < 1e6 {
+            pool.push(grown);
+        }
+    }
+    pool.split_off(count)
+}
+
+fn point(arena: &Arena, values: [f64; 5]) -> BTreeMap<Symbol, f64> {
+    NAMES.iter().map(|name| arena.symbol(name)).zip(values).collect()
+}
+
+fn run(program: &Program, point: &BTreeMap<Symbol, f64>) -> Vec<f64> {
+    let inputs: Vec<f64> = program.inputs.iter().map(|symbol| point[symbol]).collect();
+    let mut outputs = vec![0.0; program.outputs.len()];
+    Interpreter::new(program).run(&inputs, &mut outputs);
+    outputs
+}
+
+/// Factors are regrouped and divisions turned into multiplications by reciprocals: each adds roundings
+/// of the size of those that the running error counts already.
+const REGROUPED: f64 = 8.0;
+
+fn assert_close(arena: &Arena, exprs: &[Expr], values: &[f64], point: &BTreeMap<Symbol, f64>) {
+    for (&expr, &value) in exprs.iter().zip(values) {
+        let direct = evaluate(arena, expr, point);
+        let difference = (value - direct.value).abs();
+        assert!(
+            difference <= REGROUPED * direct.error + f64::MIN_POSITIVE,
+            "{}: {value} against {}, bound {}",
+            arena.print(expr),
+            direct.value,
+            direct.error
+        );
+    }
+}
+
+fn steps() -> impl Strategy<Value = Vec<Step>> {
+    proptest::collection::vec(any::<Step>(), 1..30)
+}
+
+proptest! {
+    #[test]
+    fn a_program_has_the_value_of_its_expressions(
+        steps in steps(),
+        values in proptest::array::uniform5(-2.0..2.0_f64),
+    ) {
+        let arena = Arena::new();
+        let point = point(&arena, values);
+        let exprs = grow(&arena, &point, &steps);
+        let inputs: Vec<Symbol> = point.keys().copied().collect();
+        let program = lower(&arena, &inputs, &exprs).unwrap();
+        assert_close(&arena, &exprs, &run(&program, &point), &point);
+        prop_assert_eq!(&program, &lower(&arena, &inputs, &exprs).unwrap());
+        prop_assert!(program.uses().iter().all(|&uses| uses > 0));
+    }
+
+    #[test]
+    fn staging_changes_no_value(
+        steps in steps(),
+        values in proptest::array::uniform5(-2.0..2.0_f64),
+    ) {
+        let arena = Arena::new();
+        let mut point = point(&arena, values);
+        let exprs = grow(&arena, &point, &steps);
+        let parameters = [arena.symbol("p"), arena.symbol("q"), arena.symbol("E")];
+        let arguments = vec![arena.symbol("x"), arena.symbol("y")];
+        let (first, second) = exprs.split_at(exprs.len() / 2);
+        let task = |outputs: &[Expr]| Task { arguments: arguments.clone(), outputs: outputs.to_vec() };
+        let staged = stage(&arena, &parameters, &[task(first), task(second)]).unwrap();
+        let stored = run(&staged.setup, &point);
+        point.extend(staged.constants.iter().map(|constant| constant.0).zip(stored));
+        for (program, outputs) in staged.programs.iter().zip([first, second]) {
+            assert_close(&arena, outputs, &run(program, &point), &point);
+        }
+    }
+}
+
+/// The cost of lowering one formula in x, y, d (arguments) and L, C (parameters).
+fn staged(build: impl FnOnce(&Arena) -> Vec<Expr>) -> (Arena, Staged) {
+    let arena = Arena::new();
+    let parameters = ["L", "C"].map(|name| arena.symbol(name));
+    let arguments = ["x", "y", "d"].map(|name| arena.symbol(name)).to_vec();
+    let outputs = build(&arena);
+    let staged = stage(&arena, &parameters, &[Task { arguments, outputs }]).unwrap();
+    (arena, staged)
+}
+
+fn cost(build: impl FnOnce(&Arena) -> Vec<Expr>) -> String {
+    let (_, staged) = staged(build);
+    Cost::of(&staged.programs[0]).to_string()
+}
+
+fn formulas(build: impl FnOnce(&Arena) -> Vec<Expr>) -> Vec<String> {
+    let (arena, staged) = staged(build);
+    staged.constants.iter().map(|constant| arena.print(constant.1)).collect()
+}
+
+#[test]
+fn small_powers_are_multiplications() {
+    let power = |n: i64, d: i64| cost(move |a| vec![a.power(a.variable("x"), &Rational::new(n, d).unwrap())]);
+    assert_eq!(power(2, 1), "1 mul");
+    assert_eq!(power(3, 1), "2 mul");
+    assert_eq!(power(4, 1), "2 mul");
+    assert_eq!(power(7, 1), "4 mul");
+    assert_eq!(power(-1, 1), "1 div");
+    assert_eq!(power(-2, 1), "1 mul, 1 div");
+    assert_eq!(power(1, 2), "1 sqrt");
+    assert_eq!(power(3, 2), "1 mul, 1 sqrt");
+    assert_eq!(power(-1, 2), "1 div, 1 sqrt");
+    assert_eq!(power(1, 3), "1 call");
+    assert_eq!(power(1_000_000_000, 1), "1 call");
+}
+
+#[test]
+fn several_denominators_are_one_division() {
+    let quotient = cost(|a| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        vec![a.div(a.div(x, y), a.add(a.one(), d))]
+    });
+    assert_eq!(quotient, "1 add, 1 mul, 1 div");
+}
+
+#[test]
+fn a_shared_denominator_is_divided_by_once() {
+    let shared = cost(|a| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        let below = a.add(a.one(), a.mul(d, d));
+        vec![a.div(x, below), a.div(y, below)]
+    });
+    assert_eq!(shared, "1 add, 3 mul, 1 div");
+}
+
+#[test]
+fn a_division_by_parameters_is_a_multiplication() {
+    let build = |a: &Arena| {
+        let [x, d, l, c] = ["x", "d", "L", "C"].map(|name| a.variable(name));
+        vec![a.div(a.mul(x, d), a.mul(l, c)), a.neg(a.div(d, a.mul(l, c)))]
+    };
+    assert_eq!(formulas(build), ["1/(L*C)"]);
+    assert_eq!(cost(build), "1 add, 2 mul");
+}
+
+#[test]
+fn a_coefficient_joins_its_parameters() {
+    let build = |a: &Arena| {
+        let [x, y, l] = ["x", "y", "L"].map(|name| a.variable(name));
+        vec![a.sub(y, a.scale(a.div(x, l), &Rational::from(2)))]
+    };
+    assert_eq!(formulas(build), ["2/L"]);
+    assert_eq!(cost(build), "1 add, 1 mul");
+}
+
+#[test]
+fn factors_of_several_summands_leave_the_sum() {
+    let build = |a: &Arena| {
+        let [x, y, l, c] = ["x", "y", "L", "C"].map(|name| a.variable(name));
+        vec![a.sum([a.mul(x, l), a.neg(a.mul(x, c)), a.mul(y, a.sub(l, c))])]
+    };
+    assert_eq!(formulas(build), ["L - C"]);
+    assert_eq!(cost(build), "1 add, 1 mul");
+}
+
+#[test]
+fn signs_end_in_subtractions() {
+    let negated =
+        |build: fn(&Arena, [Expr; 3]) -> Expr| cost(|a| vec![build(a, ["x", "y", "d"].map(|name| a.variable(name)))]);
+    assert_eq!(negated(|a, [x, y, d]| a.sub(x, a.sub(y, d))), "2 add");
+    assert_eq!(negated(|a, [x, y, d]| a.neg(a.mul(a.sub(x, y), d))), "1 add, 1 mul");
+    assert_eq!(negated(|a, [x, y, _]| a.sub(x, a.mul(a.sub(y, a.one()), y))), "2 add, 1 mul");
+    assert_eq!(negated(|a, [x, ..]| a.scale(x, &Rational::from(-2))), "1 mul");
+    assert_eq!(negated(|a, [x, y, _]| a.neg(a.add(x, y))), "2 add");
+}
+
+#[test]
+fn a_sign_never_costs_a_second_division() {
+    let quotients = cost(|a| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        let below = a.add(a.one(), a.mul(d, d));
+        vec![a.div(x, below), a.neg(a.div(y, below))]
+    });
+    assert_eq!(quotients, "2 add, 3 mul, 1 div");
+}
+
+#[test]
+fn both_signs_of_a_difference_are_one_value() {
+    let both = cost(|a| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        let difference = a.sub(a.one(), d);
+        vec![a.add(x, a.mul(y, difference)), a.add(y, a.mul(x, a.sub(d, a.one())))]
+    });
+    assert_eq!(both, "3 add, 2 mul");
+}
+
+#[test]
+fn irrational_numbers_are_computed_once() {
+    let build = |a: &Arena| {
+        let x = a.variable("x");
+        vec![a.mul(x, a.sqrt(a.number(2))), a.mul(x, a.pi())]
+    };
+    assert_eq!(cost(build), "2 mul");
+    assert_eq!(formulas(build), ["sqrt(2)"]);
+}
+
+#[test]
+fn an_undeclared_symbol_is_an_error() {
+    let arena = Arena::new();
+    let (x, w) = (arena.symbol("x"), arena.symbol("w"));
+    let sum = arena.add(arena.of_symbol(x), arena.of_symbol(w));
+    assert_eq!(lower(&arena, &[x], &[sum]), Err(Undeclared(w)));
+}

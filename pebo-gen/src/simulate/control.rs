@@ -1,0 +1,54 @@
+//! The control law: which estimates it sees, and what it does with them.
+
+use crate::cas::Expr;
+use crate::source::{Code, Diagnostic, Diagnostics, listed, nearest};
+
+use super::Overrides;
+use super::layout::rival_estimate;
+use super::scope::{Estimates, Names, Sight, View};
+
+/// The estimates that the control law sees, unless told otherwise.
+pub(super) const OBSERVER: &str = "observer";
+
+/// The unmeasured states themselves, as the control law may see them in a simulation.
+const TRUTH: &str = "truth";
+
+/// Whose estimates the control law sees.
+pub(super) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diagnostics) -> Option<String> {
+    let simulation = names.simulation;
+    let written = simulation.feedback.as_ref();
+    let name = overrides.feedback.as_deref().or(written.map(|feedback| feedback.value.as_str())).unwrap_or(OBSERVER);
+    let baselines = simulation.baselines.iter().map(|entry| entry.name.value.as_str());
+    let choices: Vec<&str> = [OBSERVER, TRUTH].into_iter().chain(baselines).collect();
+    if choices.contains(&name) {
+        return Some(name.to_owned());
+    }
+    let span = written.map_or_else(|| names.section(), |feedback| feedback.span);
+    let diagnostic = Diagnostic::error(Code::WrongChoice, span, format!("`{name}` gives no estimates"));
+    problems.push(match nearest(name, choices.iter().copied()) {
+        Some(near) => diagnostic.suggest(Some(near)),
+        None => diagnostic.help(format!("choose one of {}", listed(choices))),
+    });
+    None
+}
+
+/// What `hat(x)` is in the control law.
+fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
+    let arena = &names.plant.arena;
+    match feedback {
+        OBSERVER => hats.clone(),
+        TRUTH => names.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol))).collect(),
+        name => {
+            let baseline = names.simulation.baselines.iter().find(|entry| entry.name.value == name);
+            let estimates = baseline.into_iter().flat_map(|entry| &entry.value.estimate);
+            let estimates = estimates.map(|entry| entry.name.value.clone());
+            estimates.map(|x| (x.clone(), arena.of_symbol(rival_estimate(arena, name, &x)))).collect()
+        }
+    }
+}
+
+/// The inputs in outputs, estimates and signals.
+pub(super) fn law(names: &Names, feedback: &str, hats: &Estimates, problems: &mut Diagnostics) -> Vec<Expr> {
+    let scope = names.scope(&View { sight: Sight::Outputs, hats: seen(names, feedback, hats), ..View::default() });
+    names.entries(&scope, &names.plant.u, ("control", &names.simulation.control), problems)
+}

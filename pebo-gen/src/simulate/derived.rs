@@ -1,0 +1,252 @@
+//! The runtime library's observer on a derived model that is interpreted.
+//!
+//! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of
+//! a few sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
+//! target, but for the functions of the model.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::marker::PhantomData;
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+use pebo_runtime::{Extension, Fault, Filter, Fundamental, Gradient, Integrator, Model, Observer, Regression};
+
+use crate::program::{Interpreter, Program};
+
+use super::observer::Design;
+
+/// The largest size.
+pub(super) const LARGEST: usize = 16;
+
+/// An observer of some size.
+pub(super) trait Estimation: fmt::Debug {
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates.
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+
+    /// The coordinates z that a value of theta gives with the extension as it is.
+    #[cfg(test)]
+    fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
+}
+
+/// The observer of a design.
+pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    match design.size() {
+        0..=4 => of_size::<4>(design),
+        5..=8 => of_size::<8>(design),
+        _ => of_size::<LARGEST>(design),
+    }
+}
+
+fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    Ok(match (&design.lambda, design.is_static) {
+        (None, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (None, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
+        (Some(_), false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (Some(_), true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
+    })
+}
+
+/// The kind of a regression, as a type.
+trait Kind: fmt::Debug + 'static {
+    const REGRESSION: Regression;
+}
+
+#[derive(Debug)]
+struct Dynamic;
+#[derive(Debug)]
+struct Static;
+
+impl Kind for Dynamic {
+    const REGRESSION: Regression = Regression::Dynamic;
+}
+
+impl Kind for Static {
+    const REGRESSION: Regression = Regression::Static;
+}
+
+/// An extension that shows what the regression depends on.
+trait Known<const N: usize>: Extension<f64, N> + 'static {
+    /// Writes the first `n` coordinates of the extension, and of its fundamental matrix by rows.
+    fn write(&self, n: usize, known: &mut Vec<f64>);
+}
+
+impl<const N: usize> Known<N> for Integrator<f64, N> {
+    fn write(&self, n: usize, known: &mut Vec<f64>) {
+        known.extend(&self.chi().as_slice()[..n]);
+    }
+}
+
+impl<const N: usize> Known<N> for Fundamental<f64, N> {
+    fn write(&self, n: usize, known: &mut Vec<f64>) {
+        known.extend(&self.xi().as_slice()[..n]);
+        known.extend((0..n * n).map(|k| self.psi()[(k / n, k % n)]));
+    }
+}
+
+/// A function of the model, with room for its arguments and values.
+#[derive(Debug)]
+struct Function {
+    interpreter: Interpreter,
+    arguments: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Function {
+    fn new(program: &Program) -> RefCell<Self> {
+        RefCell::new(Self {
+            interpreter: Interpreter::new(program),
+            arguments: Vec::with_capacity(program.inputs.len()),
+            values: vec![0.0; program.outputs.len()],
+        })
+    }
+
+    /// The values for the arguments that `fill` writes.
+    fn call(&mut self, fill: impl FnOnce(&mut Vec<f64>)) -> &[f64] {
+        self.arguments.clear();
+        fill(&mut self.arguments);
+        self.interpreter.run(&self.arguments, &mut self.values);
+        &self.values
+    }
+}
+
+/// The model of a design. The trait's methods take `&self`, an interpreter's table does not: hence the cells.
+#[derive(Debug)]
+struct Derived<X, K, const N: usize> {
+    ny: usize,
+    nu: usize,
+    nz: usize,
+    ne: usize,
+    rows: Vec<usize>,
+    h: RefCell<Function>,
+    lambda: Option<RefCell<Function>>,
+    phi_0: RefCell<Function>,
+    phi_1: RefCell<Function>,
+    theta: RefCell<Function>,
+    phi_left: RefCell<Function>,
+    kind: PhantomData<(X, K)>,
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
+    fn new(design: &Design) -> Self {
+        Self {
+            ny: design.outputs,
+            nu: design.inputs,
+            nz: design.coordinates,
+            ne: design.gains.len(),
+            rows: design.rows.clone(),
+            h: Function::new(&design.h),
+            lambda: design.lambda.as_ref().map(Function::new),
+            phi_0: Function::new(&design.phi_0),
+            phi_1: Function::new(&design.phi_1),
+            theta: Function::new(&design.theta),
+            phi_left: Function::new(&design.phi_left),
+            kind: PhantomData,
+        }
+    }
+
+    fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
+        arguments.extend(&y.as_slice()[..self.ny]);
+        arguments.extend(&u.as_slice()[..self.nu]);
+    }
+}
+
+fn pad<const N: usize>(values: &[f64]) -> SVector<f64, N> {
+    let mut padded = SVector::<f64, N>::zeros();
+    padded.as_mut_slice()[..values.len()].copy_from_slice(values);
+    padded
+}
+
+fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N> {
+    let mut padded = SMatrix::zeros();
+    for (k, &value) in values.iter().enumerate() {
+        padded[(k / columns, k % columns)] = value;
+    }
+    padded
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
+    type Scalar = f64;
+    type Extension = X;
+    const REGRESSION: Regression = K::REGRESSION;
+
+    fn h(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SVector<f64, N> {
+        pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)))
+    }
+
+    fn lambda(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        match &self.lambda {
+            Some(lambda) => pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz),
+            None => SMatrix::zeros(),
+        }
+    }
+
+    fn phi_0(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SVector<f64, N> {
+        pad(self.phi_0.borrow_mut().call(|arguments| {
+            extension.write(self.nz, arguments);
+            self.sampled(arguments, y, u);
+        }))
+    }
+
+    fn phi_1(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        let mut function = self.phi_1.borrow_mut();
+        let values = function.call(|arguments| {
+            extension.write(self.nz, arguments);
+            self.sampled(arguments, y, u);
+        });
+        pad_rows(values, self.ne)
+    }
+
+    fn primitive_0(&self, _: &X, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut used = SVector::zeros();
+        for (row, &output) in self.rows.iter().enumerate() {
+            used[row] = y[output];
+        }
+        used
+    }
+
+    fn theta(&self, eta: &SVector<f64, N>) -> SVector<f64, N> {
+        pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
+    }
+
+    fn phi_left(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        pad(self.phi_left.borrow_mut().call(|arguments| {
+            arguments.extend(&z.as_slice()[..self.nz]);
+            arguments.extend(&y.as_slice()[..self.ny]);
+        }))
+    }
+}
+
+type Inner<X, K, const N: usize> = Observer<Derived<X, K, N>, Gradient<f64, N>, N, N, N, N, N, N>;
+
+/// The runtime's observer at size N.
+struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
+
+impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
+    fn new(design: &Design) -> Result<Self, Fault> {
+        // A gain of a padded unknown has no effect, but must be one.
+        let mut gains = SVector::<f64, N>::repeat(1.0);
+        gains.as_mut_slice()[..design.gains.len()].copy_from_slice(&design.gains);
+        let gradient = Gradient::diagonal(&gains)?;
+        let filter = Filter::new(design.filter, design.hold)?;
+        Ok(Self(Observer::new(Derived::new(design), gradient, filter, pad(&design.chi_0))?))
+    }
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Padded").field(self.0.model()).finish()
+    }
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+        let estimate = self.0.step(&pad(y), &pad(u), dt)?;
+        hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
+        Ok(())
+    }
+
+    #[cfg(test)]
+    fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
+        self.0.extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
+    }
+}

@@ -1,0 +1,116 @@
+//! One panel: frame, grid, curves, marks, legend.
+
+use super::super::label::Label;
+use super::super::panel::Panel;
+use super::axis::Axis;
+use super::line::thinned;
+use super::svg::{Anchor, Drawing};
+use super::{LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
+use crate::model::Scale;
+
+/// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008), each with dashes
+/// that tell it apart in grey.
+const STYLES: &[(&str, &str)] = &[
+    ("#0072b2", ""),
+    ("#d55e00", "6 3"),
+    ("#009e73", "1.5 2.5"),
+    ("#cc79a7", "8 2.5 1.5 2.5"),
+    ("#000000", "3 1.5"),
+    ("#e69f00", "10 3"),
+];
+
+/// Length of a legend's line, with the space behind it.
+pub(super) const SAMPLE: f64 = 28.0;
+
+/// From line to line of a legend.
+const SPACING: f64 = 17.0;
+
+/// A panel and where it goes.
+#[derive(Debug)]
+pub(super) struct Plot<'a> {
+    pub(super) panel: &'a Panel,
+    pub(super) curves: &'a [Vec<(f64, f64)>],
+    pub(super) time: &'a Axis,
+    /// Units of the time axis in a second.
+    pub(super) factor: f64,
+    pub(super) left: f64,
+    /// The upper edge of the frame; the heading is above.
+    pub(super) top: f64,
+}
+
+impl Plot<'_> {
+    /// Draws the panel; returns its lower edge.
+    pub(super) fn draw(&self, drawing: &mut Drawing) -> f64 {
+        let rows = self.panel.curves.iter().fold(0.0, |rows, _| rows + 1.0);
+        let height = PLOT_HEIGHT.max(SPACING * rows);
+        let values = || self.curves.iter().flatten().map(|point| point.1);
+        let axis = match self.panel.scale {
+            Scale::Linear => Axis::linear(values()),
+            Scale::Log => Axis::logarithmic(values()),
+        };
+        let bottom = self.top + height;
+        drawing.label((self.left, self.top - 7.0), Anchor::Start, TEXT, &self.heading(&axis));
+        for mark in &axis.marks {
+            let y = bottom - mark.place * height;
+            drawing.grid_line((self.left, y), (self.left + PLOT_WIDTH, y));
+            drawing.label((self.left - 6.0, y + 4.0), Anchor::End, TEXT, &mark.label);
+        }
+        for mark in &self.time.marks {
+            let x = self.left + mark.place * PLOT_WIDTH;
+            drawing.grid_line((x, self.top), (x, bottom));
+        }
+        for (number, curve) in self.curves.iter().enumerate() {
+            let place = |(t, value): &(f64, f64)| {
+                let x = self.left + self.time.place(t * self.factor) * PLOT_WIDTH;
+                (x, bottom - axis.place(*value) * height)
+            };
+            // What is not finite, or too small for a logarithmic axis, is a gap in the line.
+            let parts = curve.split(|point| !point.1.is_finite() || axis.place(point.1) < 0.0);
+            let parts: Vec<_> = parts.map(|part| thinned(&part.iter().map(place).collect::<Vec<_>>())).collect();
+            drawing.line(&parts, style(number));
+        }
+        drawing.frame((self.left, self.top), (PLOT_WIDTH, height));
+        self.legend(drawing);
+        bottom
+    }
+
+    /// The title with unit and power of ten.
+    fn heading(&self, axis: &Axis) -> Label {
+        let title = Label::text(&self.panel.title);
+        let unit = self.panel.unit.as_deref();
+        match (axis.exponent, unit) {
+            (0, None) => title,
+            (0, Some(unit)) => title.then(Label::text(&format!(" in {unit}"))),
+            (exponent, unit) => {
+                let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+                title.then(Label::text(" in ")).then(Label::power_of_ten(exponent)).then(Label::text(&unit))
+            }
+        }
+    }
+
+    fn legend(&self, drawing: &mut Drawing) {
+        let x = self.left + PLOT_WIDTH + MARGIN;
+        let mut y = self.top + 9.0;
+        for (number, label) in self.panel.curves.iter().enumerate() {
+            drawing.line(&[vec![(x, y), (x + SAMPLE - 6.0, y)]], style(number));
+            drawing.label((x + SAMPLE, y + 4.0), Anchor::Start, TEXT, label);
+            y += SPACING;
+        }
+    }
+}
+
+/// The marks and the name of the time axis under the last panel, whose lower edge is `y`.
+pub(super) fn time_axis(drawing: &mut Drawing, time: &Axis, y: f64, name: &Label) {
+    for mark in &time.marks {
+        drawing.label((LEFT + mark.place * PLOT_WIDTH, y + 15.0), Anchor::Middle, TEXT, &mark.label);
+    }
+    let name = match time.exponent {
+        0 => name.clone(),
+        exponent => name.clone().then(Label::text(" · ")).then(Label::power_of_ten(exponent)),
+    };
+    drawing.label((LEFT + PLOT_WIDTH / 2.0, y + 31.0), Anchor::Middle, TEXT, &name);
+}
+
+fn style(number: usize) -> (&'static str, &'static str) {
+    STYLES[number % STYLES.len()]
+}

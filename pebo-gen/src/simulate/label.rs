@@ -1,0 +1,223 @@
+//! Formulas as a person writes them beside a curve: `hat(i1) - i1` becomes an i with a hat and a
+//! subscript, a minus sign, an i with a subscript.
+
+use crate::model::formula::{Formula, Operator, Term};
+
+/// A label: pieces of text in a row.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Label {
+    pub(super) runs: Vec<Run>,
+}
+
+/// A piece of a label.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    pub(super) text: String,
+    /// Variables are slanted; numbers, functions and signs are not.
+    pub(super) italic: bool,
+    pub(super) height: Height,
+}
+
+/// Where a piece stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Height {
+    Line,
+    Below,
+    Above,
+}
+
+// How tightly the outermost operation of a formula binds.
+const SUM: u8 = 1;
+const PRODUCT: u8 = 2;
+const POWER: u8 = 3;
+const ATOM: u8 = 4;
+
+impl Label {
+    /// The label of a formula.
+    pub(super) fn formula(formula: &Formula) -> Self {
+        let mut label = Self::default();
+        label.write(formula, SUM);
+        label
+    }
+
+    /// The label of a name.
+    pub(super) fn name(name: &str) -> Self {
+        let mut label = Self::default();
+        label.write_name(name, false);
+        label
+    }
+
+    /// Ten to some power.
+    pub(super) fn power_of_ten(exponent: i32) -> Self {
+        let mut label = Self::default();
+        label.upright("10");
+        label.push(&exponent.to_string().replace('-', "−"), false, Height::Above);
+        label
+    }
+
+    /// The label of a plain text.
+    pub(super) fn text(text: &str) -> Self {
+        let mut label = Self::default();
+        label.upright(text);
+        label
+    }
+
+    /// The label with another one behind it.
+    pub(super) fn then(mut self, other: Self) -> Self {
+        for run in other.runs {
+            self.push(&run.text, run.italic, run.height);
+        }
+        self
+    }
+
+    /// The label of a state's estimate less the state.
+    pub(super) fn error(state: &str) -> Self {
+        let mut label = Self::default();
+        label.write_name(state, true);
+        label.upright(" − ");
+        label.write_name(state, false);
+        label
+    }
+
+    /// The label with a remark in parentheses.
+    pub(super) fn remark(mut self, remark: &str) -> Self {
+        self.upright(&format!(" ({remark})"));
+        self
+    }
+
+    fn write(&mut self, formula: &Formula, least: u8) {
+        let binding = binding(formula);
+        if binding < least {
+            self.upright("(");
+            self.write(formula, SUM);
+            self.upright(")");
+            return;
+        }
+        match &formula.term {
+            Term::Number(number) => self.upright(number.text()),
+            Term::Name(name) => self.write_name(name, false),
+            Term::Estimate(name) => self.write_name(name, true),
+            Term::Negative(operand) => {
+                self.upright("−");
+                self.write(operand, PRODUCT);
+            }
+            Term::Binary(Operator::Power, base, exponent) => {
+                self.write(base, ATOM);
+                if let Term::Number(number) = &exponent.term {
+                    self.push(number.text(), false, Height::Above);
+                } else {
+                    self.upright("^");
+                    self.write(exponent, ATOM);
+                }
+            }
+            Term::Binary(operator, left, right) => {
+                let (sign, least) = match operator {
+                    Operator::Add => (" + ", PRODUCT),
+                    Operator::Subtract => (" − ", PRODUCT),
+                    Operator::Multiply => ("\u{2009}", POWER),
+                    Operator::Divide | Operator::Power => ("/", POWER),
+                };
+                self.write(left, binding);
+                self.upright(sign);
+                self.write(right, least);
+            }
+            Term::Call(function, arguments) => {
+                self.upright(function.name);
+                self.upright("(");
+                for (index, argument) in arguments.iter().enumerate() {
+                    if index > 0 {
+                        self.upright(", ");
+                    }
+                    self.write(argument, SUM);
+                }
+                self.upright(")");
+            }
+        }
+    }
+
+    /// A name: its letter, its index below. A word gets no hat above, which would stand on its first letter.
+    fn write_name(&mut self, name: &str, hat: bool) {
+        let (base, index) = parts(name);
+        let base = greek(base).map_or_else(|| base.to_owned(), String::from);
+        let is_letter = base.chars().count() == 1;
+        match (hat, is_letter) {
+            (true, true) => self.push(&hatted(&base), true, Height::Line),
+            (true, false) => {
+                self.upright("hat(");
+                self.push(&base, true, Height::Line);
+            }
+            (false, _) => self.push(&base, true, Height::Line),
+        }
+        if !index.is_empty() {
+            self.push(index, false, Height::Below);
+        }
+        if hat && !is_letter {
+            self.upright(")");
+        }
+    }
+
+    fn upright(&mut self, text: &str) {
+        self.push(text, false, Height::Line);
+    }
+
+    fn push(&mut self, text: &str, italic: bool, height: Height) {
+        match self.runs.last_mut() {
+            Some(last) if last.italic == italic && last.height == height => last.text.push_str(text),
+            _ => self.runs.push(Run { text: text.to_owned(), italic, height }),
+        }
+    }
+}
+
+fn binding(formula: &Formula) -> u8 {
+    match &formula.term {
+        Term::Number(_) | Term::Name(_) | Term::Estimate(_) | Term::Call(..) => ATOM,
+        Term::Negative(_) | Term::Binary(Operator::Add | Operator::Subtract, ..) => SUM,
+        Term::Binary(Operator::Multiply | Operator::Divide, ..) => PRODUCT,
+        Term::Binary(Operator::Power, ..) => POWER,
+    }
+}
+
+/// A name's letter and its index: what follows an underscore, or digits at the end.
+fn parts(name: &str) -> (&str, &str) {
+    if let Some((base, index)) = name.split_once('_')
+        && !base.is_empty()
+    {
+        return (base, index);
+    }
+    let base = name.trim_end_matches(|character: char| character.is_ascii_digit());
+    name.split_at(if base.is_empty() { name.len() } else { base.len() })
+}
+
+/// The letter with a hat: one character where there is one, for not every font can combine.
+fn hatted(letter: &str) -> String {
+    const PLAIN: &str = "aceghijosuwyzACEGHIJOSUWYZ";
+    const HATTED: &str = "âĉêĝĥîĵôŝûŵŷẑÂĈÊĜĤÎĴÔŜÛŴŶẐ";
+    let found = PLAIN.chars().zip(HATTED.chars()).find(|(plain, _)| letter.starts_with(*plain));
+    found.map_or_else(|| format!("{letter}\u{302}"), |(_, hatted)| hatted.to_string())
+}
+
+/// The Greek letter of that name.
+fn greek(name: &str) -> Option<char> {
+    const LETTERS: &[(&str, char)] = &[
+        ("alpha", 'α'),
+        ("beta", 'β'),
+        ("gamma", 'γ'),
+        ("delta", 'δ'),
+        ("epsilon", 'ε'),
+        ("zeta", 'ζ'),
+        ("eta", 'η'),
+        ("theta", 'θ'),
+        ("kappa", 'κ'),
+        ("lambda", 'λ'),
+        ("mu", 'μ'),
+        ("xi", 'ξ'),
+        ("rho", 'ρ'),
+        ("sigma", 'σ'),
+        ("tau", 'τ'),
+        ("phi", 'φ'),
+        ("chi", 'χ'),
+        ("psi", 'ψ'),
+        ("omega", 'ω'),
+    ];
+    LETTERS.iter().find(|(word, _)| *word == name).map(|(_, letter)| *letter)
+}

@@ -1,0 +1,114 @@
+//! The parts of the figure: those that the model file describes, or errors, outputs and inputs.
+//!
+//! A curve that shows estimates of the observer is drawn once more for each baseline that estimates
+//! the same states, with the baseline's name beside it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::{Expr, Symbol};
+use crate::model::Scale;
+use crate::plant::lower;
+use crate::source::Diagnostics;
+
+use super::label::Label;
+use super::layout::{estimate, rival_estimate};
+use super::rival::Rival;
+use super::scope::{Estimates, Names, Sight, View};
+
+/// A part of the figure.
+#[derive(Debug)]
+pub(super) struct Panel {
+    pub(super) title: String,
+    pub(super) unit: Option<String>,
+    pub(super) scale: Scale,
+    /// The labels of its curves.
+    pub(super) curves: Vec<Label>,
+}
+
+/// The panels, and the values of their curves one after the other.
+#[derive(Debug, Default)]
+pub(super) struct Panels {
+    pub(super) panels: Vec<Panel>,
+    pub(super) values: Vec<Expr>,
+}
+
+impl Panels {
+    /// The panels of the model file, else the usual ones.
+    pub(super) fn resolve(
+        names: &Names,
+        hats: &Estimates,
+        errors: &[Expr],
+        rivals: &[Rival],
+        problems: &mut Diagnostics,
+    ) -> Self {
+        let mut pass = Pass { names, hats, rivals, found: Self::default() };
+        if names.simulation.panels.is_empty() {
+            pass.usual(errors);
+        } else {
+            pass.written(problems);
+        }
+        pass.found
+    }
+}
+
+struct Pass<'a> {
+    names: &'a Names<'a>,
+    hats: &'a Estimates,
+    rivals: &'a [Rival],
+    found: Panels,
+}
+
+impl Pass<'_> {
+    fn written(&mut self, problems: &mut Diagnostics) {
+        let arena = &self.names.plant.arena;
+        let scope = self.names.scope(&View { sight: Sight::Everything, own: None, hats: self.hats.clone() });
+        for panel in &self.names.simulation.panels {
+            let curves = panel.curves.iter();
+            let curves: Vec<(Label, Expr)> =
+                curves.filter_map(|f| Some((Label::formula(f), problems.keep(lower(arena, &scope, f))?))).collect();
+            let unit = panel.unit.as_ref().map(|unit| unit.value.clone());
+            self.add((&panel.title.value, unit, panel.scale), curves);
+        }
+    }
+
+    /// Errors on a logarithmic axis, which alone shows those of all units and sizes; outputs; inputs.
+    fn usual(&mut self, errors: &[Expr]) {
+        let plant = self.names.plant;
+        let arena = &plant.arena;
+        let named = |symbol: Symbol| (Label::name(&arena.name(symbol)), arena.of_symbol(symbol));
+        let errors = self.hats.iter().zip(errors).map(|((state, _), error)| (Label::error(state), *error)).collect();
+        let outputs = plant.y.iter().map(|output| named(output.symbol)).collect();
+        let inputs: Vec<_> = plant.u.iter().map(|input| named(*input)).collect();
+        self.add(("Estimation errors", None, Scale::Log), errors);
+        self.add(("Outputs", None, Scale::Linear), outputs);
+        if !inputs.is_empty() {
+            self.add(("Inputs", None, Scale::Linear), inputs);
+        }
+    }
+
+    fn add(&mut self, (title, unit, scale): (&str, Option<String>, Scale), curves: Vec<(Label, Expr)>) {
+        let mut labels = Vec::new();
+        for (label, value) in curves {
+            labels.push(label.clone());
+            self.found.values.push(value);
+            for rival in self.rivals {
+                if let Some(other) = through(self.names, self.hats, value, rival) {
+                    labels.push(label.clone().remark(&rival.name));
+                    self.found.values.push(other);
+                }
+            }
+        }
+        self.found.panels.push(Panel { title: title.to_owned(), unit, scale, curves: labels });
+    }
+}
+
+/// The value with a baseline's estimates in place of the observer's, if there are any in it and it has them all.
+fn through(names: &Names, hats: &Estimates, value: Expr, rival: &Rival) -> Option<Expr> {
+    let arena = &names.plant.arena;
+    let symbols: BTreeSet<Symbol> = hats.iter().filter_map(|(_, hat)| arena.as_symbol(*hat)).collect();
+    let own: BTreeMap<Symbol, Expr> = (rival.estimates.iter())
+        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(rival_estimate(arena, &rival.name, state))))
+        .collect();
+    let replaced = arena.substitute(value, &own);
+    (arena.depends_on(value, &symbols) && !arena.depends_on(replaced, &symbols)).then_some(replaced)
+}

@@ -1,0 +1,202 @@
+//! The loop, sample by sample.
+//!
+//! ```text
+//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, told of u_0 -> u_1 -> ..
+//! ```
+
+use crate::program::{Interpreter, Program};
+
+use super::curve::Curve;
+use super::derived::{Estimation, observer};
+use super::failure::Failure;
+use super::flow::Flow;
+use super::layout::TIME;
+use super::scenario::Scenario;
+use super::signal::Course;
+use super::timing::real;
+use super::trace::Trace;
+
+/// How often progress is reported.
+const REPORTS: u64 = 500;
+
+impl Scenario {
+    /// Runs the loop from its start to its end; `progress` is told now and then which part is done, 0 to 1.
+    pub fn run(&self, progress: &mut dyn FnMut(f64)) -> Result<Trace, Failure> {
+        let mut machine = Machine::start(self)?;
+        let mut record = Record::new(self);
+        let samples = self.timing.samples;
+        let stride = (samples / REPORTS).max(1);
+        for sample in 0..=samples {
+            if sample > 0 {
+                machine.advance(sample)?;
+            }
+            machine.control()?;
+            record.take(sample, &machine.table);
+            if sample % stride == 0 {
+                progress(real(sample) / real(samples));
+            }
+        }
+        Ok(record.finish())
+    }
+}
+
+/// A program with room for its values.
+#[derive(Debug)]
+struct Formulas {
+    interpreter: Interpreter,
+    values: Vec<f64>,
+}
+
+impl Formulas {
+    fn new(program: &Program) -> Self {
+        Self { interpreter: Interpreter::new(program), values: vec![0.0; program.outputs.len()] }
+    }
+
+    fn of(&mut self, table: &[f64]) -> &[f64] {
+        self.interpreter.run(table, &mut self.values);
+        &self.values
+    }
+}
+
+/// The loop at one sample.
+#[derive(Debug)]
+pub(super) struct Machine<'a> {
+    scenario: &'a Scenario,
+    /// All values, see [`Layout`](super::layout::Layout).
+    pub(super) table: Vec<f64>,
+    pub(super) observer: Box<dyn Estimation>,
+    flow: Flow,
+    signals: Vec<Course>,
+    rivals: Formulas,
+    control: Formulas,
+}
+
+impl<'a> Machine<'a> {
+    /// The loop at its first sample, before the first control.
+    pub(super) fn start(scenario: &'a Scenario) -> Result<Self, Failure> {
+        let layout = &scenario.layout;
+        let refused = |fault| Failure::Refused { at: 0.0, fault };
+        let positions = layout.signals.clone().zip(&scenario.signals);
+        let mut machine = Self {
+            scenario,
+            table: vec![0.0; layout.symbols.len()],
+            observer: observer(&scenario.design).map_err(refused)?,
+            flow: Flow::new(
+                &scenario.rates,
+                layout.state.clone(),
+                &positions.collect::<Vec<_>>(),
+                scenario.timing.slack(),
+            ),
+            signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
+            rivals: Formulas::new(&scenario.rivals),
+            control: Formulas::new(&scenario.control),
+        };
+        machine.read_signals();
+        let mut start = Formulas::new(&scenario.start);
+        let state = start.of(&machine.table);
+        machine.table[layout.state.clone()].copy_from_slice(state);
+        machine.estimate()?;
+        Ok(machine)
+    }
+
+    /// Goes on to this sample, with the inputs held.
+    pub(super) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
+        let (from, to) = (self.table[TIME], self.scenario.timing.at(sample));
+        let stuck = |stuck: super::flow::Stuck| Failure::Stuck { at: from, steps: stuck.0 };
+        self.flow.advance(&mut self.table, from, to).map_err(stuck)?;
+        self.table[TIME] = to;
+        self.read_signals();
+        self.estimate()
+    }
+
+    /// Sets the inputs for the interval to come.
+    pub(super) fn control(&mut self) -> Result<(), Failure> {
+        let inputs = self.control.of(&self.table);
+        let place = self.scenario.layout.u.clone();
+        self.table[place.clone()].copy_from_slice(inputs);
+        self.admit(place)
+    }
+
+    fn read_signals(&mut self) {
+        let t = self.table[TIME];
+        for (position, signal) in self.scenario.layout.signals.clone().zip(&mut self.signals) {
+            signal.select(t + self.scenario.timing.slack());
+            self.table[position] = signal.value(t);
+        }
+    }
+
+    /// Lets all observers have the outputs of now and the inputs of the interval before.
+    fn estimate(&mut self) -> Result<(), Failure> {
+        let layout = &self.scenario.layout;
+        self.admit(layout.state.clone())?;
+        let estimates = self.rivals.of(&self.table);
+        self.table[layout.rivals.clone()].copy_from_slice(estimates);
+        // The observer's first call gives its inputs and its step no effect.
+        let (before, after) = self.table.split_at_mut(layout.hat.start);
+        let hat = &mut after[..layout.hat.len()];
+        self.observer
+            .sample(&before[layout.y.clone()], &before[layout.u.clone()], self.scenario.timing.step, hat)
+            .map_err(|fault| Failure::Refused { at: before[TIME], fault })
+    }
+
+    /// Whether the values at these positions are finite.
+    fn admit(&self, range: std::ops::Range<usize>) -> Result<(), Failure> {
+        match range.into_iter().find(|position| !self.table[*position].is_finite()) {
+            None => Ok(()),
+            Some(position) => {
+                Err(Failure::NotFinite { name: self.scenario.names[position].clone(), at: self.table[TIME] })
+            }
+        }
+    }
+}
+
+/// What is kept of a run.
+#[derive(Debug)]
+struct Record<'a> {
+    scenario: &'a Scenario,
+    trace: Trace,
+    next_row: u64,
+    errors: Formulas,
+    values: Formulas,
+    curves: Vec<Curve>,
+}
+
+impl<'a> Record<'a> {
+    fn new(scenario: &'a Scenario) -> Self {
+        Self {
+            scenario,
+            trace: Trace::new(scenario.columns.clone()),
+            next_row: 0,
+            errors: Formulas::new(&scenario.errors),
+            values: Formulas::new(&scenario.curves),
+            curves: vec![Curve::default(); scenario.curves.outputs.len()],
+        }
+    }
+
+    fn take(&mut self, sample: u64, table: &[f64]) {
+        let timing = &self.scenario.timing;
+        for (curve, value) in self.curves.iter_mut().zip(self.values.of(table)) {
+            curve.add(sample, timing.samples, (table[TIME], *value));
+        }
+        if sample != timing.sample_of_row(self.next_row) {
+            return;
+        }
+        self.next_row += 1;
+        let layout = &self.scenario.layout;
+        let measured = [layout.x.clone(), layout.y.clone(), layout.u.clone()];
+        self.trace.push(table[TIME]);
+        measured.into_iter().flatten().for_each(|position| self.trace.push(table[position]));
+        for (hat, error) in table[layout.hat.clone()].iter().zip(self.errors.of(table)) {
+            self.trace.push(*hat);
+            self.trace.push(*error);
+        }
+        table[layout.rivals.clone()].iter().for_each(|estimate| self.trace.push(*estimate));
+    }
+
+    fn finish(mut self) -> Trace {
+        let mut curves = self.curves.into_iter().map(Curve::finish);
+        let panels = self.scenario.panels.iter();
+        self.trace.curves = panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect();
+        self.trace
+    }
+}

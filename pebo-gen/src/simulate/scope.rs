@@ -1,0 +1,183 @@
+//! What each place of the section `simulation` can see.
+//!
+//! Parameters are numbers here. A definition is lowered in each place anew, so that `hat(x)` in it is
+//! the estimate of the place that uses it; where it needs what is hidden, the definition is hidden too.
+
+use std::collections::BTreeMap;
+
+use crate::cas::{Expr, Symbol};
+use crate::model::{Baseline, Entry, Formula, Model, Simulation};
+use crate::plant::{Plant, Scope, lower};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::layout::{rival_state, time};
+
+/// Estimates by the state's name.
+pub(super) type Estimates = Vec<(String, Expr)>;
+
+/// How much a place sees besides parameters; each more than the one before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Sight {
+    /// Nothing that varies.
+    #[default]
+    Constants,
+    /// Time and signals, and the definitions.
+    Signals,
+    /// Outputs.
+    Outputs,
+    /// Inputs.
+    Inputs,
+    /// Unmeasured states and signals.
+    Everything,
+}
+
+/// What is visible in a place.
+#[derive(Clone, Debug, Default)]
+pub(super) struct View<'a> {
+    pub(super) sight: Sight,
+    /// The states of this baseline are visible.
+    pub(super) own: Option<&'a Entry<Baseline>>,
+    /// What `hat(x)` stands for.
+    pub(super) hats: Estimates,
+}
+
+/// The names of a model and its simulation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Names<'a> {
+    pub(super) model: &'a Model,
+    pub(super) simulation: &'a Simulation,
+    pub(super) plant: &'a Plant,
+}
+
+impl<'a> Names<'a> {
+    /// Where the simulation is described: its first line, for what is missing there.
+    pub(super) fn section(&self) -> Span {
+        let Simulation { duration, step, initial, signals, control, feedback, .. } = self.simulation;
+        let numbers = [duration, step].into_iter().flatten().map(|number| number.span);
+        let entries = initial.iter().chain(control).map(|entry| entry.name.span);
+        let signals = signals.iter().map(|entry| entry.name.span);
+        let feedback = feedback.iter().map(|feedback| feedback.span);
+        numbers.chain(entries).chain(signals).chain(feedback).min().unwrap_or(self.model.name.span)
+    }
+
+    /// The values of the parameters that have one.
+    pub(super) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
+        let given = self.plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.clone()?)));
+        given.map(|(symbol, value)| (symbol, self.plant.arena.number(value))).collect()
+    }
+
+    /// The names of a place with their meanings.
+    pub(super) fn scope(&self, view: &View) -> Scope {
+        let (plant, arena) = (self.plant, &self.plant.arena);
+        let mut scope = Scope::new();
+        let numbers = self.numbers();
+        for parameter in &plant.parameters {
+            let symbol = parameter.symbol;
+            let value = numbers.get(&symbol).copied().unwrap_or_else(|| arena.of_symbol(symbol));
+            scope.define(arena.name(symbol), value);
+        }
+        let mut show = |symbols: Vec<Symbol>, needed: Sight, reason: &str| {
+            for symbol in symbols {
+                if view.sight >= needed {
+                    scope.define(arena.name(symbol), arena.of_symbol(symbol));
+                } else {
+                    scope.bar(arena.name(symbol), reason);
+                }
+            }
+        };
+        let signals = self.simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
+        show(signals.chain([time(arena)]).collect(), Sight::Signals, "varies in time");
+        show(
+            plant.x.iter().map(|state| state.symbol).collect(),
+            Sight::Everything,
+            "not measured: only hat(..) of it is",
+        );
+        show(plant.y.iter().map(|output| output.symbol).collect(), Sight::Outputs, "an output, which varies in time");
+        show(plant.u.clone(), Sight::Inputs, "an input, which is not known here");
+        // After the signals, which give w its course.
+        show(plant.w.clone(), Sight::Everything, "not measured");
+        if let Some(baseline) = view.own {
+            for state in &baseline.value.state {
+                let symbol = rival_state(arena, &baseline.name.value, &state.name.value);
+                scope.define(&state.name.value, arena.of_symbol(symbol));
+            }
+        }
+        for (state, estimate) in &view.hats {
+            scope.define_estimate(state, *estimate);
+        }
+        if view.sight >= Sight::Signals {
+            for definition in self.definitions() {
+                let name = &definition.name.value;
+                match lower(arena, &scope, &definition.value) {
+                    Ok(meaning) => scope.define(name, meaning),
+                    Err(_) => scope.bar(name, "defined by what is not known here"),
+                }
+            }
+        }
+        scope
+    }
+
+    /// The formula of each name; a name without one is reported.
+    pub(super) fn entries(
+        &self,
+        scope: &Scope,
+        wanted: &[Symbol],
+        (section, written): (&str, &[Entry<Formula>]),
+        problems: &mut Diagnostics,
+    ) -> Vec<Expr> {
+        let arena = &self.plant.arena;
+        let mut found = Vec::new();
+        for symbol in wanted {
+            let name = arena.name(*symbol);
+            let entry = written.iter().find(|entry| entry.name.value == name);
+            let lowered = match entry {
+                Some(entry) => lower(arena, scope, &entry.value),
+                None => Err(Diagnostic::error(
+                    Code::SimulationIncomplete,
+                    self.section(),
+                    format!("`{section}` has no entry for `{name}`"),
+                )
+                .help(format!("add `{name}: 0`, or what it is, under `{section}`"))),
+            };
+            found.extend(problems.keep(lowered));
+        }
+        found
+    }
+
+    fn definitions(&self) -> impl Iterator<Item = &'a Entry<Formula>> {
+        self.model.define.iter().chain(&self.simulation.define)
+    }
+
+    /// Reports definitions that have no meaning anywhere, and parameters without a value.
+    pub(super) fn check(&self, problems: &mut Diagnostics) {
+        let arena = &self.plant.arena;
+        let truth = self.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol)));
+        let everything = View { sight: Sight::Everything, own: None, hats: truth.collect() };
+        let scope = self.scope(&everything);
+        for definition in &self.simulation.define {
+            problems.keep(lower(arena, &scope, &definition.value));
+        }
+        for parameter in self.plant.parameters.iter().filter(|parameter| parameter.value.is_none()) {
+            let name = arena.name(parameter.symbol);
+            problems.push(
+                Diagnostic::error(
+                    Code::SimulationIncomplete,
+                    parameter.span,
+                    format!("the parameter `{name}` has no value"),
+                )
+                .also(self.section(), "which this needs")
+                .help(format!("write its value: `{name}: 1`")),
+            );
+        }
+        for unmeasured in &self.plant.w {
+            let name = arena.name(*unmeasured);
+            if !self.simulation.signals.iter().any(|signal| signal.name.value == name) {
+                let message = format!("the unmeasured signal `{name}` has no course");
+                problems.push(
+                    Diagnostic::error(Code::SimulationIncomplete, self.section(), message)
+                        .help(format!("give it under `signals`, as `{name}: 0`")),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+use crate::simulate::{Failure, Overrides, Scenario};
+use crate::source::{Code, Diagnostic, Source};
+
+use super::{CUK, CUK_CASE_2, SPRING, resolve, with};
+
+/// Model, part, replacement, code, what the message says, what is underlined.
+const MISTAKES: &[(&str, &str, &str, Code, &str, &str)] = &[
+    (SPRING, "{k: 4}", "[k]", Code::SimulationIncomplete, "parameter `k`", "k"),
+    (SPRING, "duration: 10, ", "", Code::SimulationIncomplete, "no duration", "0.01"),
+    (SPRING, "step: 0.01, ", "", Code::SimulationIncomplete, "no step", "10"),
+    (SPRING, "step: 0.01", "step: 1e-30", Code::SimulationTooLong, "1.000e31 samples", "10"),
+    (SPRING, "{v: 0, q: 1}", "{v: 0}", Code::SimulationIncomplete, "no entry for `q`", "10"),
+    (SPRING, "v: 0, q: 1", "v: q, q: 1", Code::UnknownName, "`q`", "q"),
+    (SPRING, "gain: 50, ", "", Code::SimulationIncomplete, "gain", "10"),
+    (SPRING, "gain: 50, filter: 5", "gain: 50", Code::SimulationIncomplete, "filter", "10"),
+    (SPRING, "gain: 50", "gain: [1, 2]", Code::WrongShape, "2 values", "1, 2"),
+    (SPRING, "gain: 50", "estimator: kalman, gain: 50", Code::WrongChoice, "kalman", "kalman"),
+    (CUK, "d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: d", Code::UnknownName, "`d`", "d"),
+    (CUK, "d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: V_d/40 + i1", Code::UnknownName, "`i1`", "i1"),
+    (CUK, "d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: V_e/40", Code::UnknownName, "`V_e`", "V_e"),
+    (CUK, "d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: hat(v2)/40", Code::UnknownName, "`v2`", "hat(v2)"),
+    (CUK, "hat(i3) - hat(i1))", "hat(i3) - i2)", Code::UnknownName, "`i2`", "i2"),
+    (CUK, "V_d: {0: 25", "V_d: {0.1: 25", Code::SimulationIncomplete, "no value before 0.1 s", "0.1"),
+    (CUK, "V_d: {0: 25", "V_d: {0: 25*v2", Code::UnknownName, "`v2`", "v2"),
+    (CUK, "curves: [d]", "curves: [duty]", Code::UnknownName, "`duty`", "duty"),
+    (CUK_CASE_2, "d*v2 + hat(v4))\n", "d*v2 + v4)\n", Code::UnknownName, "`v4`", "v4"),
+    (CUK_CASE_2, "i1: zeta_1 + C2*gamma_1*v2", "i1: zeta_1 + hat(v4)", Code::UnknownName, "`v4`", "hat(v4)"),
+    (CUK_CASE_2, "zeta_2: L3*gamma_2*i3", "zeta_2: zeta_1", Code::UnknownName, "`zeta_1`", "zeta_1"),
+];
+
+fn refusals(text: &str) -> Vec<Diagnostic> {
+    resolve(text, &Overrides::default()).err().unwrap_or_default()
+}
+
+#[test]
+fn a_section_that_does_not_say_enough_is_refused_with_help() {
+    for (text, part, other, code, message, underlined) in MISTAKES {
+        let text = with(text, part, other);
+        let found = refusals(&text);
+        let source = Source::new("test", text.as_str()).unwrap();
+        let hit = found.iter().find(|diagnostic| diagnostic.code == *code && diagnostic.message.contains(message));
+        let hit = hit.unwrap_or_else(|| panic!("{other}: {found:#?}"));
+        assert_eq!(source.slice(hit.primary.span), *underlined, "{other}");
+        assert!(hit.help.is_some(), "{other}");
+    }
+}
+
+#[test]
+fn a_model_without_the_section_is_told_so() {
+    let text = with(SPRING, "simulation: {duration: 10, step: 0.01, initial: {v: 0, q: 1}}", "");
+    let found = refusals(&text);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].code, Code::SimulationMissing);
+}
+
+#[test]
+fn a_refuted_derivation_is_not_simulated() {
+    let found = refusals(&with(SPRING, "{v: -k*q}", "{v: -k*q - v^2}"));
+    assert!(found.iter().any(|diagnostic| diagnostic.code == Code::CascadeRefuted), "{found:?}");
+}
+
+#[test]
+fn settings_of_a_call_are_refused_too() {
+    let ask = |overrides: &Overrides| resolve(SPRING, overrides).err().unwrap_or_default();
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for overrides in [
+            Overrides { step: Some(value), ..Overrides::default() },
+            Overrides { duration: Some(value), ..Overrides::default() },
+            Overrides { every: Some(value), ..Overrides::default() },
+        ] {
+            assert_eq!(ask(&overrides)[0].code, Code::NumberOutOfRange, "{overrides:?}");
+        }
+    }
+    let found = ask(&Overrides { feedback: Some("obsever".to_owned()), ..Overrides::default() });
+    assert_eq!(found[0].code, Code::WrongChoice);
+    assert_eq!(found[0].help.as_deref(), Some("did you mean `observer`?"));
+    let found = ask(&Overrides { step: Some(1e-11), ..Overrides::default() });
+    assert_eq!(found[0].code, Code::SimulationTooLong);
+    let found = ask(&Overrides { step: Some(1e-6), every: Some(1e-6), ..Overrides::default() });
+    assert_eq!(found[0].code, Code::SimulationTooLong);
+}
+
+fn failure(scenario: &Scenario) -> Failure {
+    let failure = scenario.run(&mut |_| {}).unwrap_err();
+    let diagnostic = scenario.explain(&failure);
+    assert_eq!(diagnostic.code, Code::SimulationFailed);
+    assert!(diagnostic.help.is_some());
+    failure
+}
+
+#[test]
+fn a_run_that_cannot_go_on_says_where_and_when() {
+    // The control law leaves its domain as soon as V_d is below 25.
+    let text = with(CUK, "d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: sqrt(V_d - 25)/10");
+    let scenario = resolve(&text, &Overrides { step: Some(1e-4), ..Overrides::default() }).unwrap();
+    assert_eq!(failure(&scenario), Failure::NotFinite { name: "d".to_owned(), at: 0.4 });
+    // An escape to infinity at t = 1.
+    let text = with(&with(SPRING, "{v: -k*q}", "{v: q^2*k}"), "{q: v}", "{q: v + q^3}");
+    let Failure::Stuck { at, .. } = failure(&resolve(&text, &Overrides::default()).unwrap()) else { panic!() };
+    assert!(at > 0.1 && at < 1.0, "{at}");
+}

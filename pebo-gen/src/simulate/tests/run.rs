@@ -1,0 +1,219 @@
+use crate::analysis::Derivation;
+use crate::plant::Plant;
+use crate::simulate::run::Machine;
+use crate::simulate::{Overrides, Scenario, Trace};
+use crate::source::Code;
+
+use super::{CUK, CUK_CASE_2, SPRING, read, resolve, run, with};
+
+fn short(duration: f64) -> Overrides {
+    Overrides { duration: Some(duration), ..Overrides::default() }
+}
+
+#[test]
+fn the_table_has_the_columns_of_the_interface() {
+    let trace = run(CUK_CASE_2, &short(0.01));
+    let header = "t,i1,v4,v2,i3,d,i1_hat,i1_error,v4_hat,v4_error,immersion.i1_hat,immersion.v4_hat";
+    let csv = trace.csv();
+    assert_eq!(csv.lines().next(), Some(header));
+    assert_eq!(trace.rows().count(), 1001);
+    assert_eq!(csv.lines().count(), 1002);
+    let mut previous = -1.0;
+    for (line, row) in csv.lines().skip(1).zip(trace.rows()) {
+        let read: Vec<f64> = line.split(',').map(|number| number.parse().unwrap()).collect();
+        assert_eq!(read, row);
+        assert!(row[0] > previous);
+        previous = row[0];
+        // error = estimate - truth
+        assert_eq!((row[7], row[9]), (row[6] - row[1], row[8] - row[2]));
+    }
+    assert!(csv.lines().last().unwrap().starts_with("0.01,"));
+}
+
+#[test]
+fn rows_are_on_the_grid_that_was_asked_for() {
+    let overrides = Overrides { every: Some(0.05), ..short(1.0) };
+    let t = run(SPRING, &overrides).column("t").unwrap();
+    let expected: Vec<f64> = (0..=20).map(|row| f64::from(row) / 20.0).collect();
+    assert_eq!(t, expected);
+    // A grid finer than the samples is the samples.
+    let overrides = Overrides { every: Some(1e-9), ..short(0.1) };
+    assert_eq!(run(SPRING, &overrides).column("t").unwrap().len(), 11);
+}
+
+#[test]
+fn a_run_can_be_repeated() {
+    let scenario = resolve(CUK_CASE_2, &short(0.01)).unwrap();
+    let mut reports = Vec::new();
+    let first = scenario.run(&mut |part| reports.push(part)).unwrap().csv();
+    assert_eq!(first, scenario.run(&mut |_| {}).unwrap().csv());
+    assert_eq!((reports.first(), reports.last()), (Some(&0.0), Some(&1.0)));
+    assert!(reports.is_sorted() && reports.len() < 1000);
+}
+
+#[test]
+fn the_coordinates_are_extension_and_theta_all_along() {
+    // The trapezoidal rule errs by dt^2/12 times the change of h', 5e6 A/s^2: 2e-16 A at this step.
+    let overrides = Overrides { step: Some(2e-8), ..short(1e-4) };
+    let scenario = resolve(CUK, &overrides).unwrap();
+    let mut machine = Machine::start(&scenario).unwrap();
+    // phi = (i1, i3), chi(0) = 0.
+    let theta = [0.5, -1.0];
+    for sample in 1..=scenario.samples() {
+        machine.control().unwrap();
+        machine.advance(sample).unwrap();
+        let truth = &machine.table[scenario.layout.x.clone()];
+        for (z, x) in machine.observer.coordinates(&theta).iter().zip(truth) {
+            assert!((z - x).abs() < 1e-9 * x.abs().max(1e-3), "{sample}: {z} {x}");
+        }
+    }
+}
+
+/// The control signal at the first row and at the last.
+fn control(trace: &Trace) -> (f64, f64) {
+    let d = trace.column("d").unwrap();
+    (d[0], d[d.len() - 1])
+}
+
+#[test]
+fn the_control_law_sees_the_estimates_that_were_asked_for() {
+    let fed = |name: &str| {
+        let overrides = Overrides { feedback: Some(name.to_owned()), ..short(0.02) };
+        control(&run(CUK_CASE_2, &overrides))
+    };
+    let law = |i1: f64| {
+        let s = 0.0447 * 25.0 * 10.0 + 12.0 * (-1.0 - i1);
+        25.0 / 37.0 + 0.1 * (12.0 / 37.0) * s / (1.0 + s * s)
+    };
+    let (observer, truth, immersion) = (fed("observer"), fed("truth"), fed("immersion"));
+    // Both observers start at 0, the truth at 0.5 A.
+    assert!((observer.0 - law(0.0)).abs() < 1e-15 && (immersion.0 - law(0.0)).abs() < 1e-15);
+    assert!((truth.0 - law(0.5)).abs() < 1e-15);
+    assert!((observer.1 - immersion.1).abs() > 1e-4 && (observer.1 - truth.1).abs() > 1e-6);
+    // The file says so too.
+    let text = with(CUK_CASE_2, "feedback: observer", "feedback: truth");
+    assert_eq!(control(&run(&text, &short(0.02))), truth);
+}
+
+#[test]
+fn estimates_converge_at_every_size_and_in_every_class() {
+    let error = |text: &str, duration: f64, names: &[&str]| {
+        let trace = run(text, &short(duration));
+        let errors = names.iter().map(|name| *trace.column(&format!("{name}_error")).unwrap().last().unwrap());
+        errors.map(f64::abs).fold(0.0, f64::max)
+    };
+    assert!(error(SPRING, 10.0, &["v"]) < 1e-2);
+    // Nine masses: padded to 16.
+    let list = |entry: &dyn Fn(u32) -> String| (1..=9).map(entry).collect::<Vec<_>>().join(", ");
+    let masses = format!(
+        "model: masses\nx: [{}]\ny: [{}]\nf_x: {{{}}}\nf_y: {{{}}}\nphi: [{}]\nobserver: {{gain: 50, filter: 5}}\n\
+         simulation: {{duration: 3, step: 0.01, initial: {{{}, {}}}}}\n",
+        list(&|i| format!("a{i}")),
+        list(&|i| format!("q{i}")),
+        list(&|i| format!("a{i}: -q{i}")),
+        list(&|i| format!("q{i}: a{i}")),
+        list(&|i| format!("a{i}")),
+        list(&|i| format!("a{i}: {i}")),
+        list(&|i| format!("q{i}: 0")),
+    );
+    assert!(error(&masses, 3.0, &["a1", "a9"]) < 1e-2);
+    assert!(error(ROTATION, 20.0, &["a", "b"]) < 1e-2);
+    assert!(error(ROTOR, 1.0, &["q"]) < 1e-2);
+}
+
+/// A generalised cascade: a vector that turns with a known speed.
+const ROTATION: &str = "
+model: rotation
+x: [a, b]
+y: [q]
+u: [omega]
+f_x: {a: omega*b, b: -omega*a}
+f_y: {q: a}
+phi: [a, b]
+observer: {gain: 1, filter: 5}
+simulation: {duration: 20, step: 0.01, initial: {a: 1, b: -2, q: 0}, control: {omega: 2 + sin(t)}}
+";
+
+/// A motor, whose angle is known modulo its period only.
+const ROTOR: &str = "
+model: rotor
+x: [q]
+y: [i1, i2]
+u: [v1, v2, omega]
+parameters: {R: 8.875, L: 0.04003, n_p: 5, lambda_m: 0.2086}
+f_x: {q: omega}
+f_y:
+  i1: (v1 - R*i1)/L + n_p*omega*lambda_m/L*sin(n_p*q)
+  i2: (v2 - R*i2)/L - n_p*omega*lambda_m/L*cos(n_p*q)
+phi: [L*i1 + lambda_m*cos(n_p*q), L*i2 + lambda_m*sin(n_p*q)]
+phi_left: {q: \"atan2(z2 - L*i2, z1 - L*i1)/n_p\"}
+angles: {q: 2*pi/n_p}
+assume: [L > 0, lambda_m > 0, n_p > 0]
+observer: {gain: 10, filter: 20}
+simulation:
+  duration: 2
+  step: 1e-4
+  initial: {q: 1, i1: 0, i2: 0}
+  control: {v1: cos(40*t), v2: sin(40*t), omega: 3}
+";
+
+/// The same motor with its flux for a state, its speed unknown to the observer: a static regression.
+const FLUX: &str = "
+model: flux
+x: [l1, l2]
+y: [i1, i2]
+u: [v1, v2]
+w: [omega]
+parameters: {R: 8.875, L: 0.04003, n_p: 5, lambda_m: 0.2086}
+f_x: {l1: v1 - R*i1, l2: v2 - R*i2}
+f_y:
+  i1: (v1 - R*i1 + n_p*omega*(l2 - L*i2))/L
+  i2: (v2 - R*i2 - n_p*omega*(l1 - L*i1))/L
+phi: [l1, l2]
+identities: [\"(l1 - L*i1)^2 + (l2 - L*i2)^2 - lambda_m^2\"]
+observer: {gain: 30, filter: 100}
+simulation:
+  duration: 10
+  step: 1e-4
+  signals: {speed: {0: 10, 0.5: 20}}
+  initial: {l1: lambda_m, l2: 0, i1: 0, i2: 0}
+  control: {v1: 10*cos(40*t), v2: 10*sin(40*t)}
+";
+
+#[test]
+fn an_unmeasured_signal_runs_its_course() {
+    let without = resolve(FLUX, &Overrides::default()).unwrap_err();
+    assert_eq!(without[0].code, Code::SimulationIncomplete);
+    assert!(without[0].message.contains("`omega`"));
+
+    let mut model = read(FLUX).unwrap();
+    model.simulation.as_mut().unwrap().signals[0].name.value = "omega".to_owned();
+    let plant = Plant::resolve(&model).unwrap();
+    let derivation = Derivation::derive(&plant);
+    let scenario = Scenario::resolve(&model, &plant, &derivation, &Overrides::default()).unwrap();
+    let trace = scenario.run(&mut |_| {}).unwrap();
+    let column = |name: &str| trace.column(name).unwrap();
+    for ((l1, l2), (i1, i2)) in column("l1").iter().zip(column("l2")).zip(column("i1").iter().zip(column("i2"))) {
+        // The magnet keeps its flux: what the regression is made of.
+        let flux = (l1 - 0.04003 * i1).hypot(l2 - 0.04003 * i2);
+        assert!((flux - 0.2086).abs() < 1e-7, "{flux}");
+    }
+    for name in ["l1_error", "l2_error"] {
+        let errors = column(name);
+        assert!(errors.last().unwrap().abs() < 1e-3, "{name} {:?}", errors.last());
+    }
+}
+
+#[test]
+fn the_error_of_an_angle_is_the_shorter_way_round() {
+    let trace = run(ROTOR, &short(2.0));
+    let column = |name: &str| trace.column(name).unwrap();
+    let period = std::f64::consts::TAU / 5.0;
+    for ((q, hat), error) in column("q").iter().zip(column("q_hat")).zip(column("q_error")) {
+        assert!(error.abs() <= period / 2.0 + 1e-12);
+        let turns = (hat - q - error) / period;
+        assert!((turns - turns.round()).abs() < 1e-9, "{q} {hat} {error}");
+    }
+    // The angle itself has turned several periods by then.
+    assert!(column("q").last().unwrap() > &6.9 && column("q_hat").last().unwrap() < &0.7);
+}

@@ -1,0 +1,118 @@
+//! When the loop is sampled, and which samples are written.
+
+use crate::cas::rational::Rational;
+use crate::model::{Simulation, Spanned};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::Overrides;
+
+/// A run of that many samples takes minutes; one of more, hours.
+pub(super) const MOST_SAMPLES: f64 = 2e8;
+
+/// Rows of the table, unless asked otherwise.
+const ROWS: f64 = 1000.0;
+
+/// The instants of a run.
+#[derive(Clone, Debug)]
+pub(super) struct Timing {
+    /// The sampling period in seconds.
+    pub(super) step: f64,
+    /// The number of intervals.
+    pub(super) samples: u64,
+    /// The period as a fraction, so that instants are rounded once.
+    fraction: (f64, f64),
+    /// Intervals between two rows, at least 1; not a whole number as a rule.
+    stride: f64,
+}
+
+impl Timing {
+    /// The instants that the section and the call ask for.
+    pub(super) fn resolve(
+        simulation: &Simulation,
+        overrides: &Overrides,
+        span: Span,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let duration = setting("duration", simulation.duration.as_ref(), overrides.duration, span);
+        let step = setting("step", simulation.step.as_ref(), overrides.step, span);
+        let every = overrides.every.map(|every| exact("every", every, span)).transpose();
+        let (duration, step, every) = (problems.keep(duration), problems.keep(step), problems.keep(every));
+        let (duration, step, every) = (duration?, step?, every?);
+        let intervals = duration.checked_div(&step)?.to_f64();
+        if intervals > MOST_SAMPLES {
+            let message = format!("the simulation has {intervals:.3e} samples");
+            problems.push(
+                Diagnostic::error(Code::SimulationTooLong, span, message)
+                    .help(format!("choose a longer step or a shorter duration: at most {MOST_SAMPLES:.0e} samples")),
+            );
+            return None;
+        }
+        // A last interval that is a rounding error of a division is none.
+        let samples = (intervals - 1e-9).ceil().max(1.0);
+        let stride = match every {
+            Some(every) => every.checked_div(&step)?.to_f64(),
+            None => intervals / ROWS,
+        };
+        let fraction = (step.numerator().to_f64(), step.denominator().to_f64());
+        Some(Self { step: step.to_f64(), samples: whole(samples), fraction, stride: stride.max(1.0) })
+    }
+
+    /// The instant of a sample.
+    pub(super) fn at(&self, sample: u64) -> f64 {
+        real(sample) * self.fraction.0 / self.fraction.1
+    }
+
+    /// The sample of a row.
+    pub(super) fn sample_of_row(&self, row: u64) -> u64 {
+        whole((real(row) * self.stride).round())
+    }
+
+    /// The number of rows.
+    pub(super) fn rows(&self) -> u64 {
+        whole((real(self.samples) / self.stride + 1e-9).floor()) + 1
+    }
+
+    /// Two instants closer than this are the same.
+    pub(super) fn slack(&self) -> f64 {
+        1e-6 * self.step
+    }
+}
+
+/// A setting of the call, else of the file.
+fn setting(
+    name: &str,
+    written: Option<&Spanned<crate::model::Decimal>>,
+    called: Option<f64>,
+    span: Span,
+) -> Result<Rational, Diagnostic> {
+    match (called, written) {
+        (Some(value), _) => exact(name, value, span),
+        (None, Some(written)) => positive(name, Rational::from_decimal(written.value.text()).ok(), written.span),
+        (None, None) => {
+            Err(Diagnostic::error(Code::SimulationIncomplete, span, format!("the simulation has no {name}"))
+                .help(format!("add `{name}:` in seconds under `simulation`")))
+        }
+    }
+}
+
+/// A setting of the call as the decimal that was meant.
+fn exact(name: &str, value: f64, span: Span) -> Result<Rational, Diagnostic> {
+    positive(name, Rational::from_decimal(&format!("{value:e}")).ok(), span)
+}
+
+fn positive(name: &str, value: Option<Rational>, span: Span) -> Result<Rational, Diagnostic> {
+    value.filter(|value| value.signum() > 0).ok_or_else(|| {
+        Diagnostic::error(Code::NumberOutOfRange, span, format!("`{name}` must be positive"))
+            .help("write a number of seconds above zero")
+    })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "samples are fewer than 2^53")]
+pub(super) fn real(count: u64) -> f64 {
+    count as f64
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts are positive and far below 2^53")]
+fn whole(count: f64) -> u64 {
+    count as u64
+}

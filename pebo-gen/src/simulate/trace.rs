@@ -1,0 +1,67 @@
+//! The course of a run: a table on a grid of instants, and the curves of the figure.
+
+use std::fmt::Write as _;
+
+/// What a run gives.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    columns: Vec<String>,
+    /// Row by row.
+    values: Vec<f64>,
+    /// The points of each panel's curves.
+    pub(super) curves: Vec<Vec<Vec<(f64, f64)>>>,
+}
+
+impl Trace {
+    pub(super) fn new(columns: Vec<String>) -> Self {
+        Self { columns, values: Vec::new(), curves: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, value: f64) {
+        self.values.push(value);
+    }
+
+    /// The names of the columns: `t`, states of x and y, inputs, `<x>_hat` and `<x>_error` for each recovered state,
+    /// `<baseline>.<x>_hat`.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// The rows, from the first instant to the last.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.values.chunks_exact(self.columns.len())
+    }
+
+    /// The values of the column of that name.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let position = self.columns.iter().position(|column| column == name)?;
+        Some(self.rows().map(|row| row[position]).collect())
+    }
+
+    /// The table as CSV: a header row, then numbers with as many digits as it takes to read the same number back.
+    pub fn csv(&self) -> String {
+        let mut text = self.columns.join(",");
+        text.push('\n');
+        for row in self.rows() {
+            for (position, value) in row.iter().enumerate() {
+                let separator = if position + 1 == row.len() { '\n' } else { ',' };
+                let written = write_number(&mut text, *value);
+                debug_assert!(written.is_ok(), "a string takes everything");
+                text.push(separator);
+            }
+        }
+        text
+    }
+}
+
+/// The shortest text that reads back as the same number; an exponent where that is shorter than zeros.
+fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        text.write_char('0')
+    } else if (1e-5..1e16).contains(&magnitude) {
+        write!(text, "{value}")
+    } else {
+        write!(text, "{value:e}")
+    }
+}

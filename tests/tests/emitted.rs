@@ -1,0 +1,155 @@
+//! Emitted code: its text, and its values against exact enclosures of the derived formulas.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use pebo_gen::analysis::Class;
+use pebo_gen::cas::interval::{Interval, Precision};
+use pebo_gen::cas::rational::Rational;
+use pebo_gen::cas::{Expr, Symbol};
+use pebo_gen::emit::Scalar;
+use pebo_gen::source::Source;
+use pebo_gen::{Derived, derive};
+use tests::{Point, emitted};
+
+fn models() -> Vec<PathBuf> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = Vec::new();
+    for folder in ["../models", "models"] {
+        let entries = std::fs::read_dir(here.join(folder)).expect("a folder of models");
+        paths.extend(entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "yaml")));
+    }
+    paths.sort();
+    paths
+}
+
+fn derived(path: &Path) -> Derived {
+    let text = std::fs::read_to_string(path).expect("a model");
+    derive(&Source::new("model", text).expect("a text")).expect("a model of the project")
+}
+
+#[test]
+fn text_of_every_model() {
+    for path in models() {
+        let derived = derived(&path);
+        for (scalar, suffix) in [(Scalar::F64, "f64"), (Scalar::F32, "f32")] {
+            let name = format!("{}_{suffix}", derived.plant.name);
+            let text = derived.emit(scalar).expect("an accepted model").text;
+            insta::with_settings!({ omit_expression => true, prepend_module_to_snapshot => false }, {
+                insta::assert_snapshot!(name, text);
+            });
+        }
+    }
+}
+
+/// Faults seen in the Rust of other generators.
+#[test]
+fn text_is_free_of_known_faults() {
+    for path in models() {
+        let text = derived(&path).emit(Scalar::F64).expect("an accepted model").text;
+        let code: String = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+        for fault in ["powi", "mul_add", "unwrap", "expect(", "unsafe", "std::", "panic", "vec!", "consts::E"] {
+            assert!(!code.contains(fault), "{} contains {fault}", path.display());
+        }
+    }
+}
+
+/// Reproducible values between 1/8 and 2: positive, so that roots exist, and of one size, so that a
+/// tolerance relative to the largest intermediate value makes sense.
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // Sixteenths are exact in both scalars.
+        let sixteenths = u32::try_from(2 + (self.0 >> 33) % 31).expect("a small number");
+        f64::from(sixteenths) / 16.0
+    }
+
+    fn values(&mut self, count: usize) -> Vec<f64> {
+        (0..count).map(|_| self.next()).collect()
+    }
+}
+
+#[test]
+fn values_of_every_model() {
+    let paths = models();
+    let mut compared = 0;
+    for (model, scalar, evaluate) in emitted::ALL {
+        let derived = paths.iter().map(|p| derived(p)).find(|d| d.plant.name == *model).expect("its model");
+        // An operation rounds by half a unit in the last place; a function of the runtime's `libm` by one.
+        // The formulas here have fewer than 64 operations, and values grow by at most the largest of them.
+        let unit = if *scalar == "f32" { f64::from(f32::EPSILON) } else { f64::EPSILON };
+        for trial in 0..20 {
+            compared += compare(&derived, *evaluate, 64.0 * unit, trial);
+        }
+    }
+    assert!(compared > 1000, "only {compared} values were compared");
+}
+
+/// Compares every value that the emitted functions return with an enclosure of the derived formula.
+fn compare(derived: &Derived, evaluate: tests::Evaluate, tolerance: f64, trial: u64) -> usize {
+    let plant = &derived.plant;
+    let derivation = &derived.derivation;
+    let mut draw = Draw(trial);
+    let regression = derivation.regression.result.as_ref().expect("a regression");
+    let (chi, y, u) = (draw.values(plant.z.len()), draw.values(plant.y.len()), draw.values(plant.u.len()));
+    let (eta, z) = (draw.values(regression.eta.len()), draw.values(plant.z.len()));
+    let found: RefCell<BTreeMap<String, Vec<f64>>> = RefCell::default();
+    let results = |name: &str, _: usize, value: f64| found.borrow_mut().entry(name.to_owned()).or_default().push(value);
+    evaluate(Point { chi: &chi, y: &y, u: &u, eta: &eta, z: &z, results: &results });
+
+    let generalised = derivation.class == Class::Gpebo;
+    let mut values: Vec<(Symbol, f64)> = Vec::new();
+    values.extend((if generalised { &plant.xi } else { &plant.chi }).iter().copied().zip(chi));
+    values.extend(plant.y.iter().map(|o| o.symbol).zip(y));
+    values.extend(plant.u.iter().copied().zip(u));
+    values.extend(regression.eta_symbols.iter().copied().zip(eta));
+    values.extend(plant.z.iter().copied().zip(z));
+    for (row, line) in plant.psi.iter().enumerate() {
+        values.extend(line.iter().enumerate().map(|(column, s)| (*s, f64::from(u8::from(row == column)))));
+    }
+    let precision = Precision::new(128);
+    let mut exact: BTreeMap<Symbol, Interval> = BTreeMap::new();
+    for (symbol, value) in values {
+        let value = Rational::from_f64_exact(value).expect("a finite value");
+        exact.insert(symbol, Interval::from_rational(&value, precision).expect("an enclosure"));
+    }
+    for parameter in &plant.parameters {
+        let value = parameter.value.as_ref().expect("models of the project have values");
+        exact.insert(parameter.symbol, Interval::from_rational(value, precision).expect("an enclosure"));
+    }
+
+    let cascade = derivation.cascade.result.as_ref().expect("a cascade");
+    let inverse = derivation.left_inverse.result.as_ref().expect("a left inverse");
+    let mut expected: Vec<(&str, Vec<Expr>)> = vec![
+        ("h", cascade.h.clone()),
+        ("phi_0", regression.phi_0.clone()),
+        ("phi_1", regression.phi_1.concat()),
+        ("theta", regression.theta.clone()),
+        ("phi_left", inverse.x.iter().map(|(_, e)| *e).collect()),
+    ];
+    expected.extend(cascade.lambda.iter().map(|lambda| ("lambda", lambda.concat())));
+    let mut compared = 0;
+    for (name, exprs) in expected {
+        let found = found.borrow();
+        let found = &found[name];
+        assert_eq!(found.len(), exprs.len(), "{} {name}", plant.name);
+        for (expr, value) in exprs.iter().zip(found) {
+            // The value, and those of all its parts: where these cancel, their rounding is what is left.
+            let parts = plant.arena.postorder(&[*expr]);
+            let Some(parts) = plant.arena.enclose_over(&parts, &exact, precision) else { continue };
+            let Some(whole) = parts.last() else { continue };
+            let size = parts.iter().map(|p| p.hi().abs().max(p.lo().abs())).fold(1.0, f64::max);
+            let slack = tolerance * size;
+            assert!(
+                *value >= whole.lo() - slack && *value <= whole.hi() + slack,
+                "{} {name}: {value} is not {whole}, trial {trial}",
+                plant.name
+            );
+            compared += 1;
+        }
+    }
+    compared
+}
