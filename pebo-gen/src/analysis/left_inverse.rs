@@ -10,7 +10,7 @@ use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::zero::{Answer, decide};
-use crate::cas::{Arena, Expr, Function, Symbol};
+use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 
@@ -105,6 +105,9 @@ fn defined(
     /// Enough that an enclosure next to the end of a domain is the exception.
     const PRECISION: Precision = Precision::new(256);
     let arena = &plant.arena;
+    if arena.postorder(&[formula]).iter().all(|part| is_total(arena, *part)) {
+        return true;
+    }
     let mut given = plant.transform();
     given.extend(plant.rates().into_values());
     // The formula as it stands, over enclosures of z: substituting would simplify its domain away.
@@ -132,6 +135,15 @@ fn defined(
         .help("state the domain under `assume`, as `x > 0`"),
     );
     false
+}
+
+/// Whether an operation has a value at almost all operands: all but roots, logarithms and the like.
+fn is_total(arena: &Arena, part: Expr) -> bool {
+    match arena.node(part) {
+        Node::Product(product) => product.factors.iter().all(|(_, exponent)| exponent.is_integer()),
+        Node::Call(function, _) => !matches!(function, Function::Log | Function::Asin | Function::Acos),
+        _ => true,
+    }
 }
 
 /// Whether the candidate state has the same transform as the true one, identically.

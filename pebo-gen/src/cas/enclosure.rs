@@ -19,6 +19,16 @@ pub type Point = BTreeMap<Symbol, Rational>;
 /// Working precisions that are tried in turn, in bits.
 const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
 
+/// What rational arithmetic says of a value.
+enum Exact {
+    /// It is this number.
+    Value(Rational),
+    /// It does not exist: something is divided by zero.
+    Undefined,
+    /// It takes more than rational arithmetic.
+    Irrational,
+}
+
 impl Arena {
     /// Encloses several expressions at a point, none where one of them has no value there.
     pub fn enclose_all(&self, exprs: &[Expr], point: &Point, precision: Precision) -> Option<Vec<Interval>> {
@@ -49,8 +59,46 @@ impl Arena {
         self.enclose_all(&[expr], point, precision)?.pop()
     }
 
+    /// The value at a point, where it takes nothing but rational arithmetic: much cheaper than an enclosure.
+    fn rational_at(&self, expr: Expr, point: &Point) -> Exact {
+        let mut known: FxHashMap<Expr, Rational> = FxHashMap::default();
+        for e in self.postorder(&[expr]) {
+            let value = match self.node(e) {
+                Node::Number(value) => Some(value),
+                Node::Symbol(symbol) => point.get(&symbol).cloned(),
+                Node::Sum(sum) => {
+                    Some(sum.terms.iter().fold(sum.constant.clone(), |total, (t, c)| &total + &(&known[t] * c)))
+                }
+                Node::Product(product) => {
+                    let mut total = product.coefficient.clone();
+                    for (base, exponent) in &product.factors {
+                        let Some(exponent) = exponent.to_i64().and_then(|e| i32::try_from(e).ok()) else {
+                            return Exact::Irrational;
+                        };
+                        if exponent < 0 && known[base].is_zero() {
+                            return Exact::Undefined;
+                        }
+                        let Some(power) = known[base].pow(exponent) else { return Exact::Irrational };
+                        total = &total * &power;
+                    }
+                    Some(total)
+                }
+                Node::Pi | Node::Call(..) => None,
+            };
+            let Some(value) = value else { return Exact::Irrational };
+            known.insert(e, value);
+        }
+        known.remove(&expr).map_or(Exact::Irrational, Exact::Value)
+    }
+
     /// The enclosure that excludes zero, at the least precision that shows it.
     pub fn separated_from_zero(&self, expr: Expr, point: &Point) -> Option<Interval> {
+        match self.rational_at(expr, point) {
+            Exact::Value(value) if value.is_zero() => return None,
+            Exact::Value(value) => return Interval::from_rational(&value, Precision::new(PRECISIONS[0])),
+            Exact::Undefined => return None,
+            Exact::Irrational => {}
+        }
         PRECISIONS
             .iter()
             .find_map(|&bits| self.enclose(expr, point, Precision::new(bits)).filter(|value| !value.contains_zero()))
@@ -58,6 +106,11 @@ impl Arena {
 
     /// Whether the expression provably has a value at the point.
     pub fn exists_at(&self, expr: Expr, point: &Point) -> bool {
+        match self.rational_at(expr, point) {
+            Exact::Value(_) => return true,
+            Exact::Undefined => return false,
+            Exact::Irrational => {}
+        }
         PRECISIONS.iter().any(|&bits| self.enclose(expr, point, Precision::new(bits)).is_some())
     }
 

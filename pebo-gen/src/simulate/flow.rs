@@ -25,6 +25,9 @@ const ABSOLUTE: f64 = 1e-12;
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
+/// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
+const MOST_STEPS_IN_ALL: u64 = 400_000_000;
+
 /// A step that is this small a part of the interval will not get anywhere.
 const SHORTEST: f64 = 1e-12;
 
@@ -44,6 +47,8 @@ pub(super) struct Flow {
     jumps: Vec<f64>,
     next_jump: usize,
     slack: f64,
+    /// The steps that may still be taken.
+    left: u64,
 }
 
 /// The right side as the library calls it: through a shared reference.
@@ -77,7 +82,7 @@ impl Flow {
             formulas: Interpreter::new(rates),
             values: vec![0.0; rates.outputs.len()],
         };
-        Self { rates: Equation(RefCell::new(inner)), state, jumps, next_jump: 0, slack }
+        Self { rates: Equation(RefCell::new(inner)), state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
     }
 
     /// Moves the state in `table` from the instant `from` to `to`, all other values held.
@@ -102,16 +107,20 @@ impl Flow {
         }
         let state = &mut table[self.state.clone()];
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
-        match state.len() {
-            0..=4 => solve::<4>(&self.rates, state, to - from),
-            5..=8 => solve::<8>(&self.rates, state, to - from),
-            9..=16 => solve::<16>(&self.rates, state, to - from),
-            _ => solve::<LARGEST>(&self.rates, state, to - from),
-        }
+        let most = self.left.min(MOST_STEPS);
+        let steps = match state.len() {
+            0..=4 => solve::<4>(&self.rates, state, to - from, most),
+            5..=8 => solve::<8>(&self.rates, state, to - from, most),
+            9..=16 => solve::<16>(&self.rates, state, to - from, most),
+            _ => solve::<LARGEST>(&self.rates, state, to - from, most),
+        }?;
+        self.left -= steps;
+        Ok(())
     }
 }
 
-fn solve<const N: usize>(rates: &Equation, state: &mut [f64], length: f64) -> Result<(), Stuck> {
+/// Moves the state on by `length` seconds in at most so many steps; gives their number.
+fn solve<const N: usize>(rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck> {
     let mut start = [0.0; N];
     start[..state.len()].copy_from_slice(state);
     let mut method = ExplicitRungeKutta::dopri5().rtol(RELATIVE).atol(ABSOLUTE).h0(length).max_steps(usize::MAX);
@@ -122,7 +131,7 @@ fn solve<const N: usize>(rates: &Equation, state: &mut [f64], length: f64) -> Re
         if rest <= SHORTEST * length {
             break;
         }
-        if steps == MOST_STEPS || method.h().is_nan() || method.h() <= SHORTEST * length {
+        if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
             return Err(Stuck(steps));
         }
         if method.h() > rest {
@@ -132,7 +141,7 @@ fn solve<const N: usize>(rates: &Equation, state: &mut [f64], length: f64) -> Re
         steps += 1;
     }
     state.copy_from_slice(&method.y()[..state.len()]);
-    Ok(())
+    Ok(steps)
 }
 
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {

@@ -165,6 +165,9 @@ impl Field<'_> {
 
     /// `a ^ exponent` for an integer exponent.
     pub fn pow(&self, a: &Fraction, exponent: i64) -> Result<Fraction, Obstacle> {
+        if exponent == 1 {
+            return Ok(a.clone());
+        }
         let times = u32::try_from(exponent.unsigned_abs()).map_err(|_| Obstacle::TooLarge)?;
         let num = self.power_of(&a.num, times)?;
         let den = self.power_of(&a.den, times)?;
