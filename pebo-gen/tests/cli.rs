@@ -146,7 +146,8 @@ fn hostile_input_ends_in_a_diagnostic() {
         ("ten megabytes", vec![b'a'; 10 << 20], "file-too-large", ""),
         ("division by zero", model("f_y", "f_y: {y1: x1/(a - a)}").into(), "division-by-zero", "zero"),
         ("reserved", model("x", "x: [z1]").into(), "reserved-name", "z1"),
-        ("missing rate", model("f_x", "f_x: {}").into(), "missing-entry", "x1"),
+        ("missing rate", model("x", "x: [x1, x2]").into(), "missing-entry", "x2"),
+        ("empty map", model("f_x", "f_x: {}").into(), "empty-list", "f_x"),
         ("control characters", b"model: m\x00\x01\n".to_vec(), "yaml-syntax", ""),
         ("no yaml", b"{{{{{{".to_vec(), "yaml-syntax", ""),
     ];

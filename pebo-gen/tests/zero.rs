@@ -10,7 +10,7 @@ use pebo_gen::cas::domain::Domain;
 use pebo_gen::cas::facts::Relation;
 use pebo_gen::cas::function::{Function, Value};
 use pebo_gen::cas::zero::{Answer, decide};
-use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
+use pebo_gen::model::formula::{Estimates, FUNCTIONS, Formula, Operator, Places, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
 const NAMES: [&str; 12] = ["a", "b", "c", "x", "y", "z", "p", "q", "u", "v", "n", "E"];
@@ -206,4 +206,15 @@ fn every_function_takes_part_in_an_identity() {
         let call = format!("{}(", row.name);
         assert!(ZERO.iter().any(|(text, _)| text.contains(&call)), "no identity with {}", row.name);
     }
+}
+
+/// The parser, which knows no algebra, and the algebra list the same functions.
+#[test]
+fn the_language_and_the_algebra_agree_on_functions() {
+    let written: Vec<(&str, usize)> = FUNCTIONS.iter().map(|f| (f.name, f.arguments)).collect();
+    for (name, arguments) in &written {
+        let row = Function::named(name).expect(name).row();
+        assert_eq!((row.name, row.arity), (*name, *arguments));
+    }
+    assert_eq!(written.len(), Function::table().len());
 }

@@ -41,7 +41,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.positive(Some(gain), "a gain");
     }
     if let Some(simulation) = &model.simulation {
-        pass.simulation(simulation, &scope);
+        pass.simulation(simulation, &scope, &model.w);
     }
 }
 
@@ -117,10 +117,12 @@ impl Pass<'_> {
         }
     }
 
-    fn simulation(&mut self, simulation: &Simulation, model: &Scope<'_>) {
+    fn simulation(&mut self, simulation: &Simulation, model: &Scope<'_>, w: &[Spanned<String>]) {
         self.positive(simulation.duration.as_ref(), "the duration");
         self.positive(simulation.step.as_ref(), "the step");
+        // The course of a signal of `w` is given here, under the name that it has already.
         let signals = simulation.signals.iter().map(|entry| &entry.name);
+        let signals = signals.filter(|name| w.iter().all(|known| known.value != name.value));
         let define = simulation.define.iter().map(|entry| &entry.name);
         let own = self.declare(signals.chain(define), &[model]);
         for signal in &simulation.signals {

@@ -186,8 +186,7 @@ fn an_unmeasured_signal_runs_its_course() {
     assert_eq!(without[0].code, Code::SimulationIncomplete);
     assert!(without[0].message.contains("`omega`"));
 
-    let mut model = read(FLUX).unwrap();
-    model.simulation.as_mut().unwrap().signals[0].name.value = "omega".to_owned();
+    let model = read(&FLUX.replace("speed:", "omega:")).unwrap();
     let plant = Plant::resolve(&model).unwrap();
     let derivation = Derivation::derive(&plant);
     let scenario = Scenario::resolve(&model, &plant, &derivation, &Overrides::default()).unwrap();
