@@ -4,8 +4,8 @@ use crate::analysis::{Claim, Class, Derivation, Excitation, Origin, Outcome, Reg
 use crate::plant::Plant;
 use crate::source::listed;
 
-/// Where the second column starts.
-const INDENT: &str = "                             ";
+/// As wide as the columns of names and verdicts: two spaces, 16, one, and nine.
+const INDENT: &str = "                            ";
 
 /// A few lines: the verdict on the model, then each claim with what was derived.
 pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
