@@ -11,7 +11,8 @@ use pebo_gen::source::Source;
 fn main() {
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let mut root = String::new();
-    let mut table = String::from("/// Model, scalar, evaluation.\npub const ALL: &[(&str, &str, crate::Evaluate)] = &[\n");
+    let mut table =
+        String::from("/// Model, scalar, evaluation.\npub const ALL: &[(&str, &str, crate::Evaluate)] = &[\n");
     for folder in ["../models", "models"] {
         println!("cargo::rerun-if-changed={folder}");
         let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).expect(folder).flatten().map(|e| e.path()).collect();

@@ -26,13 +26,15 @@ pub fn pebo_model(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 }
 
 fn expand(arguments: TokenStream, item: TokenStream) -> Result<TokenStream, Error> {
-    let path: LitStr = syn::parse2(arguments)
-        .map_err(|e| Error::new(e.span(), "the model file's path is missing: write #[pebo_model(\"models/plant.yaml\")]"))?;
+    let path: LitStr = syn::parse2(arguments).map_err(|e| {
+        Error::new(e.span(), "the model file's path is missing: write #[pebo_model(\"models/plant.yaml\")]")
+    })?;
     let module = empty_module(item)?;
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
     let file = folder.join(path.value());
-    let bytes = std::fs::read(&file)
-        .map_err(|e| Error::new(path.span(), format!("cannot read {}: {e}; the path is relative to the crate", path.value())))?;
+    let bytes = std::fs::read(&file).map_err(|e| {
+        Error::new(path.span(), format!("cannot read {}: {e}; the path is relative to the crate", path.value()))
+    })?;
     let refused = |text: String| Error::new(path.span(), format!("{} is refused\n{text}", path.value()));
     let source = Source::from_bytes(path.value(), bytes)
         .map_err(|d| refused(render(&[d], &Source::unread(path.value()), Colour::Never)))?;

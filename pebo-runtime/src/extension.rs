@@ -58,9 +58,7 @@ impl<S: Real, const NZ: usize> Integrator<S, NZ> {
 
 impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
     fn new(start: SVector<S, NZ>) -> Self {
-        Self {
-            chi: Sum::new(start),
-        }
+        Self { chi: Sum::new(start) }
     }
 
     fn coordinates(&self, theta: &SVector<S, NZ>) -> SVector<S, NZ> {
@@ -108,10 +106,7 @@ impl<S: Real, const NZ: usize> Fundamental<S, NZ> {
 
 impl<S: Real, const NZ: usize> Extension<S, NZ> for Fundamental<S, NZ> {
     fn new(start: SVector<S, NZ>) -> Self {
-        Self {
-            xi: Sum::new(start),
-            psi: Sum::new(SMatrix::identity()),
-        }
+        Self { xi: Sum::new(start), psi: Sum::new(SMatrix::identity()) }
     }
 
     fn coordinates(&self, theta: &SVector<S, NZ>) -> SVector<S, NZ> {

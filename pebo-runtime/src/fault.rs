@@ -41,9 +41,7 @@ impl fmt::Display for Fault {
             Self::Filter => f.write_str("the filter's alpha is not positive"),
             Self::Gain => f.write_str("the gain is not symmetric, positive definite and finite"),
             Self::Start => f.write_str("the start value or shift is not finite"),
-            Self::Singular => {
-                f.write_str("the extension cannot be advanced by this step: singular system")
-            }
+            Self::Singular => f.write_str("the extension cannot be advanced by this step: singular system"),
             Self::State => f.write_str("the new state would not be finite"),
             Self::Estimate => f.write_str("the left inverse is not finite here"),
         }

@@ -48,16 +48,8 @@ impl<S: Real> Filter<S> {
     /// [`Fault::Filter`] unless `alpha > 0`.
     pub fn new(alpha: S, hold: Hold) -> Result<Self, Fault> {
         if alpha > S::zero() {
-            let weights = Weights {
-                dt: S::zero(),
-                level: S::zero(),
-                slope: S::zero(),
-            };
-            Ok(Self {
-                alpha,
-                hold,
-                weights,
-            })
+            let weights = Weights { dt: S::zero(), level: S::zero(), slope: S::zero() };
+            Ok(Self { alpha, hold, weights })
         } else {
             Err(Fault::Filter)
         }
@@ -102,9 +94,7 @@ pub struct Filtered<S: Real, const R: usize, const C: usize> {
 impl<S: Real, const R: usize, const C: usize> Filtered<S, R, C> {
     /// A filter whose output stands at `output`.
     pub fn new(output: SMatrix<S, R, C>) -> Self {
-        Self {
-            output: Sum::new(output),
-        }
+        Self { output: Sum::new(output) }
     }
 
     /// The filter's output.
@@ -113,12 +103,7 @@ impl<S: Real, const R: usize, const C: usize> Filtered<S, R, C> {
     }
 
     /// Advances by one step over which the input runs from `start` to `end`.
-    pub fn advance(
-        &mut self,
-        weights: &Weights<S>,
-        start: &SMatrix<S, R, C>,
-        end: &SMatrix<S, R, C>,
-    ) {
+    pub fn advance(&mut self, weights: &Weights<S>, start: &SMatrix<S, R, C>, end: &SMatrix<S, R, C>) {
         let behind = (start - self.output.value()) * weights.level;
         self.output.add(&(behind + (end - start) * weights.slope));
     }

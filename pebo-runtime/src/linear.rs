@@ -12,9 +12,7 @@ pub(crate) fn solve<S: Real, const N: usize, const C: usize>(
     mut matrix: SMatrix<S, N, N>,
     mut right: SMatrix<S, N, C>,
 ) -> Result<SMatrix<S, N, C>, Fault> {
-    let largest = matrix.iter().fold(S::zero(), |largest, &element| {
-        largest.max(Real::abs(element))
-    });
+    let largest = matrix.iter().fold(S::zero(), |largest, &element| largest.max(Real::abs(element)));
     let negligible = S::EPSILON * largest;
     for column in 0..N {
         // The largest entry rises to the diagonal.
@@ -55,11 +53,7 @@ pub(crate) fn solve<S: Real, const N: usize, const C: usize>(
 }
 
 /// Exchanges two rows.
-fn exchange<S: Real, const N: usize, const C: usize>(
-    matrix: &mut SMatrix<S, N, C>,
-    upper: usize,
-    lower: usize,
-) {
+fn exchange<S: Real, const N: usize, const C: usize>(matrix: &mut SMatrix<S, N, C>, upper: usize, lower: usize) {
     for mut column in matrix.column_iter_mut() {
         let above = column[upper];
         column[upper] = column[lower];

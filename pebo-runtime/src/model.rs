@@ -21,15 +21,7 @@ pub enum Regression {
 /// Sizes: `NX` recovered states, `NY` outputs, `NU` inputs, `NZ` coordinates, `NR` equations of the regression, `NE`
 /// unknowns in them. Units are the plant's own, time is in seconds. A function that leaves its domain returns NaN or
 /// infinity; the observer refuses that sample.
-pub trait Model<
-    const NX: usize,
-    const NY: usize,
-    const NU: usize,
-    const NZ: usize,
-    const NR: usize,
-    const NE: usize,
->
-{
+pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize> {
     /// `f32` or `f64`.
     type Scalar: Real;
     /// What is integrated: [`Integrator`](crate::Integrator) (`z = chi + theta`) or
@@ -39,18 +31,10 @@ pub trait Model<
     const REGRESSION: Regression;
 
     /// `h` of the cascade `z' = Lambda z + h(y, u)`.
-    fn h(
-        &self,
-        y: &SVector<Self::Scalar, NY>,
-        u: &SVector<Self::Scalar, NU>,
-    ) -> SVector<Self::Scalar, NZ>;
+    fn h(&self, y: &SVector<Self::Scalar, NY>, u: &SVector<Self::Scalar, NU>) -> SVector<Self::Scalar, NZ>;
 
     /// `Lambda` of the cascade; zero unless the extension is [`Fundamental`](crate::Fundamental).
-    fn lambda(
-        &self,
-        _y: &SVector<Self::Scalar, NY>,
-        _u: &SVector<Self::Scalar, NU>,
-    ) -> SMatrix<Self::Scalar, NZ, NZ> {
+    fn lambda(&self, _y: &SVector<Self::Scalar, NY>, _u: &SVector<Self::Scalar, NU>) -> SMatrix<Self::Scalar, NZ, NZ> {
         SMatrix::zeros()
     }
 
@@ -72,11 +56,7 @@ pub trait Model<
 
     /// What is known under the derivative of a dynamic regression: as a rule the outputs whose equations are used.
     /// Not read if the regression is static.
-    fn primitive_0(
-        &self,
-        _extension: &Self::Extension,
-        _y: &SVector<Self::Scalar, NY>,
-    ) -> SVector<Self::Scalar, NR> {
+    fn primitive_0(&self, _extension: &Self::Extension, _y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NR> {
         SVector::zeros()
     }
 
@@ -94,11 +74,7 @@ pub trait Model<
     fn theta(&self, eta: &SVector<Self::Scalar, NE>) -> SVector<Self::Scalar, NZ>;
 
     /// The left inverse: `x` such that `z = phi(x, y)`.
-    fn phi_left(
-        &self,
-        z: &SVector<Self::Scalar, NZ>,
-        y: &SVector<Self::Scalar, NY>,
-    ) -> SVector<Self::Scalar, NX>;
+    fn phi_left(&self, z: &SVector<Self::Scalar, NZ>, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NX>;
 }
 
 /// A promise: this model can be re-based exactly.
@@ -114,12 +90,7 @@ pub trait Model<
 /// That is so wherever the regression was found as `f_y = A(y, u) + B(y, u) phi`: then `phi_0 = A + B chi`,
 /// `phi_1 = B` (with [`Fundamental`](crate::Fundamental): `A + B xi` and `B Psi`). In both kinds the filtered regressand
 /// then moves by the filtered regressor times `c`, since filtering is linear.
-pub trait Rebase<
-    const NX: usize,
-    const NY: usize,
-    const NU: usize,
-    const NZ: usize,
-    const NR: usize,
->: Model<NX, NY, NU, NZ, NR, NZ>
+pub trait Rebase<const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>:
+    Model<NX, NY, NU, NZ, NR, NZ>
 {
 }

@@ -54,16 +54,8 @@ struct State<S: Real, X, E, const NY: usize, const NR: usize, const NE: usize> {
     estimator: E,
 }
 
-impl<
-    M,
-    E,
-    const NX: usize,
-    const NY: usize,
-    const NU: usize,
-    const NZ: usize,
-    const NR: usize,
-    const NE: usize,
-> Observer<M, E, NX, NY, NU, NZ, NR, NE>
+impl<M, E, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE>
 where
     M: Model<NX, NY, NU, NZ, NR, NE>,
     E: Estimator<M::Scalar, NR, NE>,
@@ -83,16 +75,7 @@ where
         }
         let extension = M::Extension::new(chi_0);
         let regression = FilteredRegression::at_rest();
-        Ok(Self {
-            model,
-            state: State {
-                y: None,
-                extension,
-                filter,
-                regression,
-                estimator,
-            },
-        })
+        Ok(Self { model, state: State { y: None, extension, filter, regression, estimator } })
     }
 
     /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
@@ -135,11 +118,7 @@ where
     ///
     /// # Errors
     /// [`Fault::Start`] unless both are finite; the observer is then exactly as before.
-    pub fn restart(
-        &mut self,
-        chi_0: SVector<M::Scalar, NZ>,
-        eta: &SVector<M::Scalar, NE>,
-    ) -> Result<(), Fault> {
+    pub fn restart(&mut self, chi_0: SVector<M::Scalar, NZ>, eta: &SVector<M::Scalar, NE>) -> Result<(), Fault> {
         if !all_finite(&chi_0) || !all_finite(eta) {
             return Err(Fault::Start);
         }
@@ -237,35 +216,21 @@ impl<S: Real, X, E, const NY: usize, const NR: usize, const NE: usize> State<S, 
         E: Estimator<S, NR, NE>,
     {
         let start = self.extension;
-        let flow = |y| Flow {
-            lambda: model.lambda(y, u),
-            h: model.h(y, u),
-        };
+        let flow = |y| Flow { lambda: model.lambda(y, u), h: model.h(y, u) };
         self.extension.advance(&flow(before), &flow(after), dt)?;
         let end = self.extension;
 
-        let terms = |x, y| Terms {
-            phi_0: model.phi_0(x, y, u),
-            phi_1: model.phi_1(x, y, u),
-        };
+        let terms = |x, y| Terms { phi_0: model.phi_0(x, y, u), phi_1: model.phi_1(x, y, u) };
         let terms = [&terms(&start, before), &terms(&end, after)];
         match M::REGRESSION {
             Regression::Static => self.regression.advance_static(&mut self.filter, terms, dt),
             Regression::Dynamic => {
-                let primitives = |x, y| Primitives {
-                    known: model.primitive_0(x, y),
-                    factor: model.primitive_1(x, y),
-                };
+                let primitives = |x, y| Primitives { known: model.primitive_0(x, y), factor: model.primitive_1(x, y) };
                 let primitives = [&primitives(&start, before), &primitives(&end, after)];
-                self.regression
-                    .advance_dynamic(&mut self.filter, terms, primitives, dt);
+                self.regression.advance_dynamic(&mut self.filter, terms, primitives, dt);
             }
         }
-        self.estimator.advance(
-            self.regression.regressor(),
-            self.regression.regressand(),
-            dt,
-        )
+        self.estimator.advance(self.regression.regressor(), self.regression.regressand(), dt)
     }
 
     /// The estimate of the state that goes with an output.

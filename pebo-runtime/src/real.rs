@@ -9,10 +9,7 @@ use nalgebra::{ComplexField, RealField};
 ///
 /// The functions bear the names of those of [`nalgebra`]: on a generic scalar write `Real::sqrt(x)`, not `x.sqrt()`.
 /// Out of its domain a function returns NaN, which an [`Observer`](crate::Observer) refuses.
-#[allow(
-    clippy::return_self_not_must_use,
-    reason = "nobody calls a sine for its effect"
-)]
+#[allow(clippy::return_self_not_must_use, reason = "nobody calls a sine for its effect")]
 pub trait Real: RealField + Copy {
     /// Distance from 1 to the next larger number.
     const EPSILON: Self;
@@ -100,9 +97,5 @@ macro_rules! real {
     };
 }
 
-real!(
-    f64, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs
-);
-real!(
-    f32, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs
-);
+real!(f64, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs);
+real!(f32, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs);

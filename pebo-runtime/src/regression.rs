@@ -34,10 +34,7 @@ pub(crate) struct Primitives<S: Real, const NR: usize, const NE: usize> {
 impl<S: Real, const NR: usize, const NE: usize> FilteredRegression<S, NR, NE> {
     /// The regression before any sample: `0 = 0 eta`.
     pub(crate) fn at_rest() -> Self {
-        Self {
-            regressand: Filtered::new(SVector::zeros()),
-            regressor: Filtered::new(SMatrix::zeros()),
-        }
+        Self { regressand: Filtered::new(SVector::zeros()), regressor: Filtered::new(SMatrix::zeros()) }
     }
 
     /// The filtered known side, in units of the regression's equations.
@@ -51,12 +48,7 @@ impl<S: Real, const NR: usize, const NE: usize> FilteredRegression<S, NR, NE> {
     }
 
     /// Advances `phi_0 = phi_1 eta` by one step from `start` to `end`.
-    pub(crate) fn advance_static(
-        &mut self,
-        filter: &mut Filter<S>,
-        [start, end]: [&Terms<S, NR, NE>; 2],
-        dt: S,
-    ) {
+    pub(crate) fn advance_static(&mut self, filter: &mut Filter<S>, [start, end]: [&Terms<S, NR, NE>; 2], dt: S) {
         let weights = filter.weights(dt);
         self.regressand.advance(&weights, &start.phi_0, &end.phi_0);
         self.regressor.advance(&weights, &start.phi_1, &end.phi_1);
@@ -73,16 +65,8 @@ impl<S: Real, const NR: usize, const NE: usize> FilteredRegression<S, NR, NE> {
         let weights = filter.weights(dt);
         let known_rate = (after.known - before.known) / dt;
         let factor_rate = (after.factor - before.factor) / dt;
-        self.regressand.advance(
-            &weights,
-            &(known_rate - start.phi_0),
-            &(known_rate - end.phi_0),
-        );
-        self.regressor.advance(
-            &weights,
-            &(start.phi_1 - factor_rate),
-            &(end.phi_1 - factor_rate),
-        );
+        self.regressand.advance(&weights, &(known_rate - start.phi_0), &(known_rate - end.phi_0));
+        self.regressor.advance(&weights, &(start.phi_1 - factor_rate), &(end.phi_1 - factor_rate));
     }
 
     /// Moves `shift` into the unknown: the regression now holds for `eta + shift`.

@@ -20,10 +20,7 @@ pub struct Sum<S: Real, const R: usize, const C: usize> {
 impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
     /// A sum that stands at `value`.
     pub fn new(value: SMatrix<S, R, C>) -> Self {
-        Self {
-            value,
-            carry: SMatrix::zeros(),
-        }
+        Self { value, carry: SMatrix::zeros() }
     }
 
     /// The sum so far, rounded once.
@@ -33,12 +30,7 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
 
     /// Adds `increment`.
     pub fn add(&mut self, increment: &SMatrix<S, R, C>) {
-        for ((value, carry), &increment) in self
-            .value
-            .iter_mut()
-            .zip(self.carry.iter_mut())
-            .zip(increment.iter())
-        {
+        for ((value, carry), &increment) in self.value.iter_mut().zip(self.carry.iter_mut()).zip(increment.iter()) {
             let sum = *value + increment;
             let taken = sum - *value;
             let lost = (*value - (sum - taken)) + (increment - taken);
@@ -55,8 +47,6 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
 }
 
 /// Whether every element is finite.
-pub(crate) fn all_finite<S: Real, const R: usize, const C: usize>(
-    matrix: &SMatrix<S, R, C>,
-) -> bool {
+pub(crate) fn all_finite<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> bool {
     matrix.iter().all(|&element| Real::is_finite(element))
 }

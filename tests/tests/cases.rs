@@ -47,7 +47,9 @@ fn verified_answers() {
             Ok(derived) if agrees(verdict, &derived.plant, &derived.derivation) => {}
             Ok(derived) => wrong.push(format!("{name}: {verdict}, derived {:?}", derived.derivation.outcome)),
             // A case whose formulas use names that stand nowhere in it: nothing can be derived of it.
-            Err(diagnostics) if verdict.starts_with("REJECT") && diagnostics.iter().all(|d| d.code == Code::UnknownName) => {
+            Err(diagnostics)
+                if verdict.starts_with("REJECT") && diagnostics.iter().all(|d| d.code == Code::UnknownName) =>
+            {
                 println!("{name}: malformed, {} names are not declared", diagnostics.len());
             }
             Err(diagnostics) => wrong.push(format!("{name}: {}", diagnostics[0].message)),

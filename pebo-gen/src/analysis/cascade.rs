@@ -218,9 +218,5 @@ impl Witness {
 /// A few significant digits.
 fn short(value: f64) -> String {
     let magnitude = value.abs();
-    if (1e-3..1e6).contains(&magnitude) {
-        format!("{}", (value * 1e6).round() / 1e6)
-    } else {
-        format!("{value:.4e}")
-    }
+    if (1e-3..1e6).contains(&magnitude) { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.4e}") }
 }

@@ -1,7 +1,7 @@
 //! The one table of functions: name, value, derivative, symmetry, Rust path and LaTeX, a row each.
 //!
 //! The parser, the derivative, the enclosure, the printers, the interpreter and the tests all read
-//! this table; a new function is a variant, a row, and its cases in [`super::kernel`].
+//! this table; a new function is a variant, a row, and its cases in [`super::field`].
 
 use super::arena::Arena;
 use super::expr::Expr;

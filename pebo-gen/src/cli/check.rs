@@ -16,7 +16,8 @@ fn one(path: &Path, format: Format) -> Ending {
     let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let source = match files::read(path) {
         Ok(source) => source,
-        Err((source, diagnostic)) => {
+        Err(unread) => {
+            let (source, diagnostic) = *unread;
             if format == Format::Json {
                 print(&report::malformed(&stem, &[diagnostic], &source));
             } else {

@@ -9,22 +9,23 @@ use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
 use super::terminal;
 
 /// Reads a model file, or standard input for `-`; the error comes with a source to show it beside.
-pub(super) fn read(path: &Path) -> Result<Source, (Source, Diagnostic)> {
+pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
     let name = if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() };
     let bytes = bytes_of(path).map_err(|error| {
         let message = format!("cannot read {name}: {}", reason(&error));
         let diagnostic =
             Diagnostic::error(Code::CannotRead, Span::point(0), message).help("check the path and the permissions");
-        (Source::unread(&name), diagnostic)
+        Box::new((Source::unread(&name), diagnostic))
     })?;
-    Source::from_bytes(&name, bytes).map_err(|diagnostic| (Source::unread(&name), diagnostic))
+    Source::from_bytes(&name, bytes).map_err(|diagnostic| Box::new((Source::unread(&name), diagnostic)))
 }
 
 /// Reads and derives a model; what is wrong with it is reported.
 pub(super) fn derive(path: &Path) -> Option<(Source, Derived)> {
     let source = match read(path) {
         Ok(source) => source,
-        Err((source, diagnostic)) => {
+        Err(unread) => {
+            let (source, diagnostic) = *unread;
             terminal::report(&[diagnostic], &source);
             return None;
         }

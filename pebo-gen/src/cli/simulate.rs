@@ -23,12 +23,8 @@ pub(super) fn run(options: &SimulateOptions) -> Ending {
         terminal::report(&derived.derivation.diagnostics, &source);
         return Ending::Refused;
     }
-    let overrides = Overrides {
-        feedback: options.feedback.clone(),
-        duration: None,
-        step: options.step,
-        every: options.every,
-    };
+    let overrides =
+        Overrides { feedback: options.feedback.clone(), duration: None, step: options.step, every: options.every };
     let scenario = match derived.scenario(&overrides) {
         Ok(scenario) => scenario,
         Err(diagnostics) => {

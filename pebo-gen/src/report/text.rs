@@ -109,9 +109,8 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
 fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let arena = &plant.arena;
     let linear = regression.is_linear(plant);
-    let unknown = |index: usize| -> String {
-        if linear { arena.name(plant.theta[index]) } else { format!("eta{}", index + 1) }
-    };
+    let unknown =
+        |index: usize| -> String { if linear { arena.name(plant.theta[index]) } else { format!("eta{}", index + 1) } };
     let mut lines = Vec::new();
     for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
         let terms: Vec<String> = factors

@@ -26,10 +26,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
     /// # Errors
     /// [`Fault::Gain`] unless each gain and its inverse is positive and finite.
     pub fn diagonal(gains: &SVector<S, NE>) -> Result<Self, Fault> {
-        Ok(Self {
-            inertia: Information::from_variances(gains)?,
-            theta: Sum::new(SVector::zeros()),
-        })
+        Ok(Self { inertia: Information::from_variances(gains)?, theta: Sum::new(SVector::zeros()) })
     }
 
     /// A gain matrix `Gamma`, from the estimate 0.
@@ -37,10 +34,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
     /// # Errors
     /// [`Fault::Gain`] unless `Gamma` is symmetric, positive definite and finite.
     pub fn full(gain: &SMatrix<S, NE, NE>) -> Result<Self, Fault> {
-        Ok(Self {
-            inertia: Information::from_covariance(gain)?,
-            theta: Sum::new(SVector::zeros()),
-        })
+        Ok(Self { inertia: Information::from_covariance(gain)?, theta: Sum::new(SVector::zeros()) })
     }
 
     /// The same gains from another estimate.
@@ -48,14 +42,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
     /// # Errors
     /// [`Fault::Start`] unless the estimate is finite.
     pub fn starting_at(self, estimate: &SVector<S, NE>) -> Result<Self, Fault> {
-        if all_finite(estimate) {
-            Ok(Self {
-                theta: Sum::new(*estimate),
-                ..self
-            })
-        } else {
-            Err(Fault::Start)
-        }
+        if all_finite(estimate) { Ok(Self { theta: Sum::new(*estimate), ..self }) } else { Err(Fault::Start) }
     }
 
     /// The estimate.
@@ -65,12 +52,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
 }
 
 impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradient<S, NE> {
-    fn advance(
-        &mut self,
-        regressor: &SMatrix<S, NR, NE>,
-        regressand: &SVector<S, NR>,
-        dt: S,
-    ) -> Result<(), Fault> {
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
         let innovation = regressand - regressor * self.theta.value();
         let mut step = self.inertia;
         for (row, &error) in regressor.row_iter().zip(innovation.iter()) {

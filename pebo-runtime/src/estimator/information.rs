@@ -32,11 +32,7 @@ impl<S: Real, const N: usize> Information<S, N> {
         let weight = variances.map(|variance| S::one() / variance);
         let positive = |&number: &S| number > S::zero() && Real::is_finite(number);
         if variances.iter().all(positive) && weight.iter().all(positive) {
-            Ok(Self {
-                upper: SMatrix::zeros(),
-                weight,
-                target: SVector::zeros(),
-            })
+            Ok(Self { upper: SMatrix::zeros(), weight, target: SVector::zeros() })
         } else {
             Err(Fault::Gain)
         }
@@ -82,11 +78,7 @@ impl<S: Real, const N: usize> Information<S, N> {
                 information.upper[(i, j)] = -inverse;
             }
         }
-        if information.is_finite() {
-            Ok(information)
-        } else {
-            Err(Fault::Gain)
-        }
+        if information.is_finite() { Ok(information) } else { Err(Fault::Gain) }
     }
 
     /// Adds the equation `row * d = value` with a weight, `weight >= 0`.
@@ -126,11 +118,7 @@ impl<S: Real, const N: usize> Information<S, N> {
                 solution[i] -= known;
             }
         }
-        if self.is_finite() && all_finite(&solution) {
-            Ok(solution)
-        } else {
-            Err(Fault::State)
-        }
+        if self.is_finite() && all_finite(&solution) { Ok(solution) } else { Err(Fault::State) }
     }
 
     /// Whether every number of the state is finite.
@@ -141,9 +129,7 @@ impl<S: Real, const N: usize> Information<S, N> {
 
 /// Whether the matrix is its transpose, up to the rounding of a product computed in either order.
 fn is_symmetric<S: Real, const N: usize>(matrix: &SMatrix<S, N, N>) -> bool {
-    let largest = matrix.iter().fold(S::zero(), |largest, &element| {
-        largest.max(Real::abs(element))
-    });
+    let largest = matrix.iter().fold(S::zero(), |largest, &element| largest.max(Real::abs(element)));
     let four: S = Real::from_f64(4.0);
     let tolerance = four * S::EPSILON * largest;
     (0..N).all(|i| (0..i).all(|j| Real::abs(matrix[(i, j)] - matrix[(j, i)]) <= tolerance))

@@ -19,12 +19,7 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
     ///
     /// # Errors
     /// A [`Fault`] if the step cannot be computed; the estimator is then unspecified.
-    fn advance(
-        &mut self,
-        regressor: &SMatrix<S, NR, NE>,
-        regressand: &SVector<S, NR>,
-        dt: S,
-    ) -> Result<(), Fault>;
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault>;
 
     /// The estimate of `eta`.
     fn estimate(&self) -> SVector<S, NE>;

@@ -4,10 +4,7 @@
 //! and `lambda_0 = 0.1`, which the paper does not give.
 
 use pebo_runtime::nalgebra::{Matrix2, SVector, Vector2, Vector4};
-use pebo_runtime::{
-    Fault, Filter, Fundamental, Gradient, Hold, Integrator, Model, Observer, Real, Rebase,
-    Regression,
-};
+use pebo_runtime::{Fault, Filter, Fundamental, Gradient, Hold, Integrator, Model, Observer, Real, Rebase, Regression};
 
 const L1: f64 = 10e-3;
 const C2: f64 = 22e-6;
@@ -42,18 +39,10 @@ impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseOne<S> {
     }
     fn phi_0(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
         let chi = extension.chi();
-        Vector2::new(
-            ((S::one() - u.x) * chi.x + u.x * chi.y) / real(C2),
-            (chi.y - real::<S>(G) * y.y) / real(C4),
-        )
+        Vector2::new(((S::one() - u.x) * chi.x + u.x * chi.y) / real(C2), (chi.y - real::<S>(G) * y.y) / real(C4))
     }
     fn phi_1(&self, _: &Self::Extension, _: &Vector2<S>, u: &Input<S>) -> Matrix2<S> {
-        Matrix2::new(
-            (S::one() - u.x) / real(C2),
-            u.x / real(C2),
-            S::zero(),
-            real(1.0 / C4),
-        )
+        Matrix2::new((S::one() - u.x) / real(C2), u.x / real(C2), S::zero(), real(1.0 / C4))
     }
     fn primitive_0(&self, _: &Self::Extension, y: &Vector2<S>) -> Vector2<S> {
         *y
@@ -88,12 +77,7 @@ impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseTwo<S> {
         )
     }
     fn phi_1(&self, _: &Self::Extension, _: &Vector2<S>, u: &Input<S>) -> Matrix2<S> {
-        Matrix2::new(
-            (S::one() - u.x) / real(C2),
-            S::zero(),
-            S::zero(),
-            real(-1.0 / L3),
-        )
+        Matrix2::new((S::one() - u.x) / real(C2), S::zero(), S::zero(), real(-1.0 / L3))
     }
     fn primitive_0(&self, _: &Self::Extension, y: &Vector2<S>) -> Vector2<S> {
         *y
@@ -125,18 +109,10 @@ impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseTwoGeneralised<S> {
     }
     fn phi_0(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
         let xi = extension.xi();
-        Vector2::new(
-            ((S::one() - u.x) * xi.x + u.x * y.y) / real(C2),
-            -(u.x * y.x + xi.y) / real(L3),
-        )
+        Vector2::new(((S::one() - u.x) * xi.x + u.x * y.y) / real(C2), -(u.x * y.x + xi.y) / real(L3))
     }
     fn phi_1(&self, extension: &Self::Extension, _: &Vector2<S>, u: &Input<S>) -> Matrix2<S> {
-        let through = Matrix2::new(
-            (S::one() - u.x) / real(C2),
-            S::zero(),
-            S::zero(),
-            real(-1.0 / L3),
-        );
+        let through = Matrix2::new((S::one() - u.x) / real(C2), S::zero(), S::zero(), real(-1.0 / L3));
         through * extension.psi()
     }
     fn primitive_0(&self, _: &Self::Extension, y: &Vector2<S>) -> Vector2<S> {
@@ -257,19 +233,8 @@ impl<S: Real, M: Case<S>> Loop<S, M> {
     pub(crate) fn new(alpha: f64, gains: [f64; 2], dt: f64) -> Result<Self, Fault> {
         let circuit = Vector4::new(0.5, 10.0, -1.0, -12.0);
         let gradient = Gradient::diagonal(&Vector2::new(real(gains[0]), real(gains[1])))?;
-        let observer = Observer::new(
-            M::new(),
-            gradient,
-            Filter::new(real(alpha), Hold::First)?,
-            Vector2::zeros(),
-        )?;
-        let mut closed = Self {
-            circuit,
-            observer,
-            steps: 0,
-            dt,
-            d: 0.0,
-        };
+        let observer = Observer::new(M::new(), gradient, Filter::new(real(alpha), Hold::First)?, Vector2::zeros())?;
+        let mut closed = Self { circuit, observer, steps: 0, dt, d: 0.0 };
         closed.sample()?;
         Ok(closed)
     }
@@ -277,9 +242,7 @@ impl<S: Real, M: Case<S>> Loop<S, M> {
     /// Samples the output, updates the estimate, sets the duty cycle for the interval to come.
     fn sample(&mut self) -> Result<(), Fault> {
         let y = M::outputs(&self.circuit);
-        let estimate =
-            self.observer
-                .step(&y.map(real), &Input::new(real(self.d)), real(self.dt))?;
+        let estimate = self.observer.step(&y.map(real), &Input::new(real(self.d)), real(self.dt))?;
         let estimate = estimate.map(Real::to_f64);
         let t = f64::from(self.steps) * self.dt;
         self.d = circuit::duty(circuit::set_point(t), y.x, &M::currents(&y, &estimate));
@@ -316,9 +279,7 @@ impl<S: Real, M: Case<S>> Loop<S, M> {
 
     /// Estimate minus truth.
     pub(crate) fn error(&self) -> Vector2<f64> {
-        let estimate = self
-            .observer
-            .estimate_at(&M::outputs(&self.circuit).map(real));
+        let estimate = self.observer.estimate_at(&M::outputs(&self.circuit).map(real));
         estimate.map(Real::to_f64) - M::unmeasured(&self.circuit)
     }
 }

@@ -50,8 +50,7 @@ proptest! {
 fn shift_by_powers_of_two_is_exact() {
     let chi = Vector2::new(0.75, -3.5);
     let estimate = |shifts: &[Vector2<f64>]| {
-        let mut observer: CukObserver<f64, CaseOne<f64>> =
-            Loop::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
+        let mut observer: CukObserver<f64, CaseOne<f64>> = Loop::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
         observer.restart(chi, &Vector2::new(-0.25, 1.5)).unwrap();
         for shift in shifts {
             observer.rebase(shift).unwrap();
@@ -72,14 +71,10 @@ fn shift_by_powers_of_two_is_exact() {
 fn extension_stays_bounded_under_a_bias() {
     // A sensor offset makes h non-zero in steady state and chi run away; re-based, it stays at what one period adds.
     let drift = |periods: u32, rebase: bool| {
-        let mut observer = Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], 1e-5)
-            .unwrap()
-            .observer;
+        let mut observer = Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
         let (mut largest, mut last) = (0.0_f64, Vector2::zeros());
         for _ in 0..periods * 100 {
-            last = observer
-                .step(&Vector2::new(30.0, -20.0), &[0.7].into(), 1e-5)
-                .unwrap();
+            last = observer.step(&Vector2::new(30.0, -20.0), &[0.7].into(), 1e-5).unwrap();
             largest = largest.max(observer.extension().chi().norm());
             if rebase && observer.extension().chi().norm() > 1.0 {
                 let chi = *observer.extension().chi();
@@ -100,15 +95,8 @@ fn extension_stays_bounded_under_a_bias() {
 fn bad_shift_is_refused() {
     let mut closed = running::<CaseOne<f64>>();
     let before = format!("{:?}", closed.observer);
-    for (shift, fault) in [
-        (f64::NAN, Fault::Start),
-        (f64::INFINITY, Fault::Start),
-        (f64::MAX, Fault::State),
-    ] {
-        assert_eq!(
-            closed.observer.rebase(&Vector2::new(0.0, shift)),
-            Err(fault)
-        );
+    for (shift, fault) in [(f64::NAN, Fault::Start), (f64::INFINITY, Fault::Start), (f64::MAX, Fault::State)] {
+        assert_eq!(closed.observer.rebase(&Vector2::new(0.0, shift)), Err(fault));
         assert_eq!(format!("{:?}", closed.observer), before);
     }
 }

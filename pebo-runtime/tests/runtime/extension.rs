@@ -85,9 +85,7 @@ proptest! {
 
 #[test]
 fn fundamental_is_of_second_order() {
-    let exact = |t: f64| {
-        Vector2::new(1.0, -1.0) + rotation(3.0 * t) * Vector2::new(-1.0, 1.0) * (-0.5 * t).exp()
-    };
+    let exact = |t: f64| Vector2::new(1.0, -1.0) + rotation(3.0 * t) * Vector2::new(-1.0, 1.0) * (-0.5 * t).exp();
     let error = |steps: u32| {
         let mut extension = Fundamental::new(Vector2::zeros());
         advance(&mut extension, &spiral(), steps, 1.0 / f64::from(steps));
@@ -107,15 +105,9 @@ fn rotation(angle: f64) -> Matrix2<f64> {
 #[test]
 fn step_onto_the_pole_is_a_fault() {
     // z' = 2 z with a step of 1 s: I - dt Lambda/2 = 0.
-    let unstable = Flow {
-        lambda: Matrix1::new(2.0),
-        h: Vector1::new(1.0),
-    };
+    let unstable = Flow { lambda: Matrix1::new(2.0), h: Vector1::new(1.0) };
     let mut extension = Fundamental::new(Vector1::new(1.0));
-    assert_eq!(
-        extension.advance(&unstable, &unstable, 1.0),
-        Err(Fault::Singular)
-    );
+    assert_eq!(extension.advance(&unstable, &unstable, 1.0), Err(Fault::Singular));
     // The same behind a row exchange: diag(1, 1) - [[1, 1], [1, 1]] has zeros on its diagonal and is regular; with
     // [[1, 0], [1, 1]] it is singular.
     let regular = flow(Matrix2::new(1.0, 1.0, 1.0, 1.0) * 2.0, Vector2::zeros());
@@ -123,8 +115,5 @@ fn step_onto_the_pole_is_a_fault() {
     extension.advance(&regular, &regular, 1.0).unwrap();
     assert_eq!(*extension.psi(), Matrix2::new(-1.0, -2.0, -2.0, -1.0));
     let singular = flow(Matrix2::new(1.0, 0.0, 1.0, 1.0) * 2.0, Vector2::zeros());
-    assert_eq!(
-        extension.advance(&singular, &singular, 1.0),
-        Err(Fault::Singular)
-    );
+    assert_eq!(extension.advance(&singular, &singular, 1.0), Err(Fault::Singular));
 }

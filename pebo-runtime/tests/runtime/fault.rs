@@ -36,20 +36,13 @@ type NarrowObserver = Observer<Narrow, Gradient<f64, 1>, 1, 1, 1, 1, 1, 1>;
 
 fn narrow(chi_0: f64) -> Result<NarrowObserver, Fault> {
     let gradient = Gradient::diagonal(&Vector1::new(1.0))?;
-    Observer::new(
-        Narrow,
-        gradient,
-        Filter::new(1.0, Hold::First)?,
-        Vector1::new(chi_0),
-    )
+    Observer::new(Narrow, gradient, Filter::new(1.0, Hold::First)?, Vector1::new(chi_0))
 }
 
 /// A step that must be refused and leave no trace: the printed state tells every bit of a finite number.
 fn refused(observer: &mut NarrowObserver, y: f64, u: f64, dt: f64) -> Fault {
     let before = format!("{observer:?}");
-    let fault = observer
-        .step(&Vector1::new(y), &Vector1::new(u), dt)
-        .unwrap_err();
+    let fault = observer.step(&Vector1::new(y), &Vector1::new(u), dt).unwrap_err();
     assert_eq!(format!("{observer:?}"), before);
     fault
 }
@@ -60,43 +53,28 @@ fn every_fault_leaves_the_state_as_it_was() {
     // Before the first sample and after some: the same rules.
     for _ in 0..3 {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert_eq!(
-                refused(&mut observer, bad, 0.0, 0.1),
-                Fault::Output { index: 0 }
-            );
-            assert_eq!(
-                refused(&mut observer, 1.0, bad, 0.1),
-                Fault::Input { index: 0 }
-            );
+            assert_eq!(refused(&mut observer, bad, 0.0, 0.1), Fault::Output { index: 0 });
+            assert_eq!(refused(&mut observer, 1.0, bad, 0.1), Fault::Input { index: 0 });
             assert_eq!(refused(&mut observer, 1.0, 0.0, bad), Fault::Step);
         }
         for bad in [0.0, -0.0, -0.1] {
             assert_eq!(refused(&mut observer, 1.0, 0.0, bad), Fault::Step);
         }
-        observer
-            .step(&Vector1::new(1.0), &Vector1::new(0.0), 0.1)
-            .unwrap();
+        observer.step(&Vector1::new(1.0), &Vector1::new(0.0), 0.1).unwrap();
     }
     // The square root of a negative number, an integral that overflows, a left inverse at its pole.
     assert_eq!(refused(&mut observer, -1.0, 0.0, 0.1), Fault::State);
     assert_eq!(refused(&mut observer, 1.0, 1e200, 1e200), Fault::State);
-    assert_eq!(
-        refused(&mut narrow(0.0).unwrap(), 1.0, 0.0, 0.1),
-        Fault::Estimate
-    );
+    assert_eq!(refused(&mut narrow(0.0).unwrap(), 1.0, 0.0, 0.1), Fault::Estimate);
     assert_eq!(narrow(f64::NAN).unwrap_err(), Fault::Start);
 }
 
 #[test]
 fn index_names_the_bad_channel() {
-    let mut observer: CukObserver<f64, CaseOne<f64>> =
-        Loop::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
+    let mut observer: CukObserver<f64, CaseOne<f64>> = Loop::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
     let fault = observer.step(&Vector2::new(1.0, f64::NAN), &Vector1::new(0.5), 1e-5);
     assert_eq!(fault, Err(Fault::Output { index: 1 }));
-    assert_eq!(
-        Fault::Output { index: 1 }.to_string(),
-        "output sample 1 is not finite"
-    );
+    assert_eq!(Fault::Output { index: 1 }.to_string(), "output sample 1 is not finite");
     let _: &dyn core::error::Error = &Fault::Step;
 }
 
@@ -104,16 +82,10 @@ fn index_names_the_bad_channel() {
 fn step_after_a_refused_one_covers_both_intervals() {
     let (mut seeing, mut blind) = (narrow(1.0).unwrap(), narrow(1.0).unwrap());
     for observer in [&mut seeing, &mut blind] {
-        observer
-            .step(&Vector1::new(4.0), &Vector1::new(0.0), 0.1)
-            .unwrap();
+        observer.step(&Vector1::new(4.0), &Vector1::new(0.0), 0.1).unwrap();
     }
     refused(&mut blind, f64::NAN, 0.5, 0.1);
-    let whole = |observer: &mut NarrowObserver| {
-        observer
-            .step(&Vector1::new(9.0), &Vector1::new(0.5), 0.2)
-            .unwrap()
-    };
+    let whole = |observer: &mut NarrowObserver| observer.step(&Vector1::new(9.0), &Vector1::new(0.5), 0.2).unwrap();
     assert_eq!(whole(&mut blind), whole(&mut seeing));
     assert_eq!(format!("{blind:?}"), format!("{seeing:?}"));
 }
@@ -123,13 +95,8 @@ fn first_sample_only_sets_the_clock() {
     let mut observer = narrow(2.0).unwrap();
     assert_eq!(observer.estimate(), None);
     assert_eq!(observer.estimate_at(&Vector1::new(3.0)), Vector1::new(1.5));
-    let estimate = observer
-        .step(&Vector1::new(3.0), &Vector1::new(1e9), 1e9)
-        .unwrap();
-    assert_eq!(
-        (estimate, observer.estimate()),
-        (Vector1::new(1.5), Some(Vector1::new(1.5)))
-    );
+    let estimate = observer.step(&Vector1::new(3.0), &Vector1::new(1e9), 1e9).unwrap();
+    assert_eq!((estimate, observer.estimate()), (Vector1::new(1.5), Some(Vector1::new(1.5))));
     assert_eq!(*observer.extension().chi(), Vector1::new(2.0));
     assert_eq!(*observer.regression().regressor(), Matrix1::new(0.0));
 }
@@ -139,26 +106,17 @@ fn restart_is_a_new_observer() {
     let mut observer = narrow(1.0).unwrap();
     let new = format!("{:?}", narrow(5.0).unwrap());
     for y in [4.0, 9.0, 1.0] {
-        observer
-            .step(&Vector1::new(y), &Vector1::new(0.5), 0.1)
-            .unwrap();
+        observer.step(&Vector1::new(y), &Vector1::new(0.5), 0.1).unwrap();
     }
-    assert_eq!(
-        observer.restart(Vector1::new(f64::NAN), &Vector1::new(0.0)),
-        Err(Fault::Start)
-    );
-    observer
-        .restart(Vector1::new(5.0), &Vector1::new(0.0))
-        .unwrap();
+    assert_eq!(observer.restart(Vector1::new(f64::NAN), &Vector1::new(0.0)), Err(Fault::Start));
+    observer.restart(Vector1::new(5.0), &Vector1::new(0.0)).unwrap();
     // The filter keeps the weights of its last step: take one to make the two comparable.
     assert_eq!(observer.estimate(), None);
     let mut other = narrow(5.0).unwrap();
     assert_eq!(format!("{other:?}"), new);
     for observer in [&mut observer, &mut other] {
         for y in [4.0, 9.0] {
-            observer
-                .step(&Vector1::new(y), &Vector1::new(0.5), 0.1)
-                .unwrap();
+            observer.step(&Vector1::new(y), &Vector1::new(0.5), 0.1).unwrap();
         }
     }
     assert_eq!(format!("{observer:?}"), format!("{other:?}"));
@@ -197,13 +155,7 @@ where
         } else {
             prop_assert_eq!(format!("{:?}", observer), before);
         }
-        prop_assert!(
-            observer
-                .eta()
-                .iter()
-                .chain(observer.theta().iter())
-                .all(|&x| Real::is_finite(x))
-        );
+        prop_assert!(observer.eta().iter().chain(observer.theta().iter()).all(|&x| Real::is_finite(x)));
     }
     Ok(())
 }

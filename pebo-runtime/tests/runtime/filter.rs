@@ -8,11 +8,7 @@ use proptest::prelude::*;
 fn step<S: Real>(alpha: S, hold: Hold, output: S, inputs: [S; 2], dt: S) -> S {
     let mut filter = Filter::new(alpha, hold).unwrap();
     let mut filtered = Filtered::new(Vector1::new(output));
-    filtered.advance(
-        &filter.weights(dt),
-        &Vector1::new(inputs[0]),
-        &Vector1::new(inputs[1]),
-    );
+    filtered.advance(&filter.weights(dt), &Vector1::new(inputs[0]), &Vector1::new(inputs[1]));
     filtered.value().x
 }
 
@@ -74,36 +70,23 @@ proptest! {
 fn every_step_has_its_own_weights() {
     let mut filter = Filter::new(2.0, Hold::First).unwrap();
     for dt in [0.1, 0.1, 0.3, 0.1] {
-        assert_eq!(
-            filter.weights(dt),
-            Filter::new(2.0, Hold::First).unwrap().weights(dt)
-        );
+        assert_eq!(filter.weights(dt), Filter::new(2.0, Hold::First).unwrap().weights(dt));
     }
 }
 
 #[test]
 fn weights_agree_where_the_series_ends() {
     // Left of a = 1 the slope is a series, right of it the closed form: no jump beyond their own rounding.
-    let [left, right] =
-        [1.0_f64, 1.0 + f64::EPSILON].map(|a| step(1.0, Hold::First, 0.0, [0.0, 1.0], a));
+    let [left, right] = [1.0_f64, 1.0 + f64::EPSILON].map(|a| step(1.0, Hold::First, 0.0, [0.0, 1.0], a));
     assert!((left - (-1.0_f64).exp()).abs() < 2.0 * f64::EPSILON);
     assert!((left - right).abs() < 4.0 * f64::EPSILON);
 }
 
 #[test]
-#[expect(
-    clippy::float_cmp,
-    reason = "a filter without bandwidth limit returns its input to the last bit"
-)]
+#[expect(clippy::float_cmp, reason = "a filter without bandwidth limit returns its input to the last bit")]
 fn infinite_bandwidth_passes_the_signal() {
-    assert_eq!(
-        step(f64::INFINITY, Hold::First, 0.5, [0.25, 0.75], 1e-3),
-        0.75
-    );
-    assert_eq!(
-        step(f64::INFINITY, Hold::Zero, 0.5, [0.25, 0.75], 1e-3),
-        0.25
-    );
+    assert_eq!(step(f64::INFINITY, Hold::First, 0.5, [0.25, 0.75], 1e-3), 0.75);
+    assert_eq!(step(f64::INFINITY, Hold::Zero, 0.5, [0.25, 0.75], 1e-3), 0.25);
     assert_eq!(step(1e300, Hold::First, 0.5, [0.25, 0.75], 1e300), 0.75);
 }
 

@@ -12,9 +12,7 @@ fn entry() -> impl Strategy<Value = f64> {
 
 /// The size of an error in the norm of `Gamma^-1`.
 fn size<const NE: usize>(error: &SVector<f64, NE>, gains: &SVector<f64, NE>) -> f64 {
-    error
-        .zip_map(gains, |error, gain| error / gain.sqrt())
-        .norm()
+    error.zip_map(gains, |error, gain| error / gain.sqrt()).norm()
 }
 
 /// One step on consistent data, in scalar `S`: the size of the error before and after, and what rounding may add.
@@ -27,10 +25,7 @@ fn sizes<S: Real, const NR: usize, const NE: usize>(
 ) -> (f64, f64, f64) {
     let real = |x: f64| -> S { Real::from_f64(x) };
     let (phi, truth) = (regressor.map(real), truth.map(real));
-    let mut gradient = Gradient::diagonal(&gains.map(real))
-        .unwrap()
-        .starting_at(&start.map(real))
-        .unwrap();
+    let mut gradient = Gradient::diagonal(&gains.map(real)).unwrap().starting_at(&start.map(real)).unwrap();
     let error = |gradient: &Gradient<S, NE>| (gradient.estimate() - truth).map(Real::to_f64);
 
     let before = size(&error(&gradient), &gains);
@@ -159,9 +154,7 @@ fn huge_gain_reaches_the_truth_in_one_step() {
     let regressor = Matrix2::new(1.4e4, 3.1e4, 0.0, 4.4e4);
     let truth = Vector2::new(0.5, -1.0);
     let mut gradient = Gradient::diagonal(&Vector2::new(1e12, 1e12)).unwrap();
-    gradient
-        .advance(&regressor, &(regressor * truth), 1e-5)
-        .unwrap();
+    gradient.advance(&regressor, &(regressor * truth), 1e-5).unwrap();
     // 1/(dt gamma |Phi|^2) = 1e-16 remains, and the condition of Phi, about 4, times eps.
     assert!((gradient.estimate() - truth).norm() < 1e-14);
 }
@@ -171,9 +164,7 @@ fn repeated_rows_of_huge_weight_are_one_row() {
     // The Gram matrix of these rows is singular to working precision by 20 digits: a factorisation of it would fail.
     let regressor = Matrix2::new(1e10, 1e10, 1e10, 1e10);
     let mut gradient = Gradient::diagonal(&Vector2::new(1.0, 1.0)).unwrap();
-    gradient
-        .advance(&regressor, &Vector2::new(2e10, 2e10), 1.0)
-        .unwrap();
+    gradient.advance(&regressor, &Vector2::new(2e10, 2e10), 1.0).unwrap();
     // The closest point to 0 on theta1 + theta2 = 2.
     assert!((gradient.estimate() - Vector2::new(1.0, 1.0)).norm() < 1e-15);
 }
@@ -182,20 +173,13 @@ fn repeated_rows_of_huge_weight_are_one_row() {
 fn overflow_is_a_fault() {
     let mut gradient = Gradient::diagonal(&Vector2::new(1.0, 1.0)).unwrap();
     let regressor = Matrix2::new(1e200, 0.0, 0.0, 1.0);
-    assert_eq!(
-        gradient.advance(&regressor, &Vector2::new(1.0, 1.0), 1.0),
-        Err(Fault::State)
-    );
+    assert_eq!(gradient.advance(&regressor, &Vector2::new(1.0, 1.0), 1.0), Err(Fault::State));
 }
 
 #[test]
 fn gains_must_be_positive() {
     for gain in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {
-        assert_eq!(
-            Gradient::diagonal(&Vector2::new(1.0, gain)),
-            Err(Fault::Gain),
-            "{gain}"
-        );
+        assert_eq!(Gradient::diagonal(&Vector2::new(1.0, gain)), Err(Fault::Gain), "{gain}");
     }
     let refused = [
         Matrix2::new(1.0, 0.5, 0.4, 1.0),
@@ -209,10 +193,5 @@ fn gains_must_be_positive() {
         assert_eq!(Gradient::full(&gain), Err(Fault::Gain), "{gain}");
     }
     let start = Vector3::new(0.0, f64::NAN, 0.0);
-    assert_eq!(
-        Gradient::diagonal(&Vector3::new(1.0, 1.0, 1.0))
-            .unwrap()
-            .starting_at(&start),
-        Err(Fault::Start)
-    );
+    assert_eq!(Gradient::diagonal(&Vector3::new(1.0, 1.0, 1.0)).unwrap().starting_at(&start), Err(Fault::Start));
 }

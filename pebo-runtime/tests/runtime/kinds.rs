@@ -22,20 +22,10 @@ impl Model<1, 2, 2, 2, 1, 3> for Motor {
     fn h(&self, i: &Vector2<f64>, u: &Vector2<f64>) -> Vector2<f64> {
         u - i * R
     }
-    fn phi_0(
-        &self,
-        extension: &Self::Extension,
-        i: &Vector2<f64>,
-        _: &Vector2<f64>,
-    ) -> Vector1<f64> {
+    fn phi_0(&self, extension: &Self::Extension, i: &Vector2<f64>, _: &Vector2<f64>) -> Vector1<f64> {
         Vector1::new((extension.chi() - i * L).norm_squared())
     }
-    fn phi_1(
-        &self,
-        extension: &Self::Extension,
-        i: &Vector2<f64>,
-        _: &Vector2<f64>,
-    ) -> Matrix1x3<f64> {
+    fn phi_1(&self, extension: &Self::Extension, i: &Vector2<f64>, _: &Vector2<f64>) -> Matrix1x3<f64> {
         let s = (extension.chi() - i * L) * -2.0;
         Matrix1x3::new(s.x, s.y, 1.0)
     }
@@ -52,9 +42,7 @@ impl Model<1, 2, 2, 2, 1, 3> for Motor {
 fn motor_finds_its_position() {
     let current = |t: f64| Vector2::new((2.0 * t).sin(), 0.5 * (3.0 * t).cos());
     let angle = |t: f64| 0.3 + 4.0 * t;
-    let flux = |t: f64| {
-        current(t) * L + Vector2::new((POLES * angle(t)).cos(), (POLES * angle(t)).sin()) * LAMBDA_M
-    };
+    let flux = |t: f64| current(t) * L + Vector2::new((POLES * angle(t)).cos(), (POLES * angle(t)).sin()) * LAMBDA_M;
 
     let gradient = Gradient::diagonal(&Vector3::new(5.0, 5.0, 5.0)).unwrap();
     let filter = Filter::new(20.0, Hold::First).unwrap();
@@ -74,11 +62,7 @@ fn motor_finds_its_position() {
     let eta = Vector3::new(theta.x, theta.y, LAMBDA_M * LAMBDA_M - theta.norm_squared());
     // The transient has decayed; what is left is the rounding of 40000 steps and, as the filter sees a straight line where
     // the product of signals is curved, nothing: both sides are interpolated, and eta makes them equal at the samples.
-    assert!(
-        (observer.eta() - eta).norm() < 1e-9,
-        "{}",
-        observer.eta() - eta
-    );
+    assert!((observer.eta() - eta).norm() < 1e-9, "{}", observer.eta() - eta);
     let turn = (estimate.x - angle(now)) * POLES / core::f64::consts::TAU;
     assert!((turn - turn.round()).abs() < 1e-9, "{turn}");
 }
@@ -137,11 +121,7 @@ fn implicit_errors(dt: f64) -> [f64; 2] {
         u = Vector2::new(0.5 * f64::cos(0.7 * t), 3.0 * f64::sin(2.0 * t));
         // Exact over the held input: x is straight, and y - u2 decays as a power of x (or exponentially if x rests).
         let after = x + u.x * dt;
-        let decay = if u.x == 0.0 {
-            (-dt / x).exp()
-        } else {
-            (after / x).powf(-1.0 / u.x)
-        };
+        let decay = if u.x == 0.0 { (-dt / x).exp() } else { (after / x).powf(-1.0 / u.x) };
         y = u.y + (y - u.y) * decay;
         x = after;
         t += dt;
@@ -173,24 +153,12 @@ where
     fn h(&self, y: &Vector2<f64>, u: &Vector1<f64>) -> SVector<f64, 4> {
         pad(&self.0.h(y, u))
     }
-    fn phi_0(
-        &self,
-        extension: &Self::Extension,
-        y: &Vector2<f64>,
-        u: &Vector1<f64>,
-    ) -> SVector<f64, 4> {
+    fn phi_0(&self, extension: &Self::Extension, y: &Vector2<f64>, u: &Vector1<f64>) -> SVector<f64, 4> {
         pad(&self.0.phi_0(&narrow(extension), y, u))
     }
-    fn phi_1(
-        &self,
-        extension: &Self::Extension,
-        y: &Vector2<f64>,
-        u: &Vector1<f64>,
-    ) -> SMatrix<f64, 4, 4> {
+    fn phi_1(&self, extension: &Self::Extension, y: &Vector2<f64>, u: &Vector1<f64>) -> SMatrix<f64, 4, 4> {
         let mut padded = SMatrix::<f64, 4, 4>::zeros();
-        padded
-            .fixed_view_mut::<2, 2>(0, 0)
-            .copy_from(&self.0.phi_1(&narrow(extension), y, u));
+        padded.fixed_view_mut::<2, 2>(0, 0).copy_from(&self.0.phi_1(&narrow(extension), y, u));
         padded
     }
     fn primitive_0(&self, extension: &Self::Extension, y: &Vector2<f64>) -> SVector<f64, 4> {
@@ -219,15 +187,11 @@ fn padded_model_is_the_same_observer() {
     let gradient = Gradient::diagonal(&SVector::<f64, 4>::repeat(1e-3)).unwrap();
     let filter = Filter::new(0.5, Hold::First).unwrap();
     let mut padded = Observer::new(model, gradient, filter, SVector::zeros()).unwrap();
-    padded
-        .step(&closed.outputs(), &Vector1::zeros(), 1e-5)
-        .unwrap();
+    padded.step(&closed.outputs(), &Vector1::zeros(), 1e-5).unwrap();
     for _ in 0..1000 {
         let duty = closed.duty();
         closed.advance().unwrap();
-        let estimate = padded
-            .step(&closed.outputs(), &Vector1::new(duty), 1e-5)
-            .unwrap();
+        let estimate = padded.step(&closed.outputs(), &Vector1::new(duty), 1e-5).unwrap();
         assert_eq!(Some(estimate), closed.observer.estimate());
     }
 }

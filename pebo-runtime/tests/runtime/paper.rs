@@ -42,11 +42,7 @@ fn distance<M: Case<f64>>(points: &[Point], alpha: f64, gains: [f64; 2], dt: f64
     for &(t, errors) in points {
         closed.run(t - now).unwrap();
         now = t;
-        worst = worst.sup(
-            &(closed.error() - Vector2::from(errors))
-                .component_div(&initial)
-                .abs(),
-        );
+        worst = worst.sup(&(closed.error() - Vector2::from(errors)).component_div(&initial).abs());
     }
     worst
 }
@@ -58,10 +54,7 @@ fn settling<M: Case<f64>>(alpha: f64, gains: [f64; 2]) -> [f64; 2] {
     let mut settled = [0.0; 2];
     for millisecond in 1..350 {
         closed.run(1e-3).unwrap();
-        for (settled, (error, initial)) in settled
-            .iter_mut()
-            .zip(closed.error().iter().zip(initial.iter()))
-        {
+        for (settled, (error, initial)) in settled.iter_mut().zip(closed.error().iter().zip(initial.iter())) {
             if error.abs() >= 0.01 * initial.abs() {
                 *settled = f64::from(millisecond + 1) * 1e-3;
             }
@@ -82,10 +75,7 @@ fn case_one() {
     // Steepest slopes: i1 loses 40 % in 10 ms around 0.05 s (40/s), i3 65 % in 10 ms (65/s): dt times that.
     let worst = distance::<CaseOne<f64>>(&CASE_ONE, 0.5, [0.001, 0.001], 1e-5);
     assert!(worst.x < 4e-4 && worst.y < 6.5e-4, "{worst}");
-    assert_settling(
-        settling::<CaseOne<f64>>(0.5, [0.001, 0.001]),
-        [0.077, 0.060],
-    );
+    assert_settling(settling::<CaseOne<f64>>(0.5, [0.001, 0.001]), [0.077, 0.060]);
 }
 
 #[test]
@@ -117,8 +107,7 @@ fn generalised_observer_agrees_with_the_cascade_one() {
     // The first state has the same equations in both; the second is found in either way: in the cascade by estimation,
     // in the generalised one by the circuit's own decay G/C4 = 1952/s, long over after 20 ms.
     let mut cascade = Loop::<f64, CaseTwo<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap();
-    let mut generalised =
-        Loop::<f64, CaseTwoGeneralised<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap();
+    let mut generalised = Loop::<f64, CaseTwoGeneralised<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap();
     let initial = generalised.error();
     cascade.run(0.01).unwrap();
     generalised.run(0.01).unwrap();

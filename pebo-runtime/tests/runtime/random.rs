@@ -9,9 +9,7 @@ pub(crate) fn decades(from: i32, to: i32) -> impl Strategy<Value = f64> {
 }
 
 /// A vector of such elements.
-pub(crate) fn vector<const N: usize>(
-    element: impl Strategy<Value = f64>,
-) -> impl Strategy<Value = SVector<f64, N>> {
+pub(crate) fn vector<const N: usize>(element: impl Strategy<Value = f64>) -> impl Strategy<Value = SVector<f64, N>> {
     matrix::<N, 1>(element)
 }
 
@@ -19,6 +17,5 @@ pub(crate) fn vector<const N: usize>(
 pub(crate) fn matrix<const R: usize, const C: usize>(
     element: impl Strategy<Value = f64>,
 ) -> impl Strategy<Value = SMatrix<f64, R, C>> {
-    proptest::collection::vec(element, R * C)
-        .prop_map(|elements| SMatrix::from_column_slice(&elements))
+    proptest::collection::vec(element, R * C).prop_map(|elements| SMatrix::from_column_slice(&elements))
 }

@@ -38,11 +38,6 @@ fn the_rest() {
     assert!((Real::atan2(1.0_f64, 0.0) - core::f64::consts::FRAC_PI_2).abs() < 1e-15);
     assert!((Real::powf(2.0_f64, 0.5) - core::f64::consts::SQRT_2).abs() < 1e-15);
     assert_eq!(<f32 as Real>::EPSILON, f32::EPSILON);
-    assert_eq!(
-        Real::to_f64(<f32 as Real>::from_f64(0.1)),
-        f64::from(0.1_f32)
-    );
-    assert!(
-        Real::is_finite(f64::MAX) && !Real::is_finite(f64::INFINITY) && !Real::is_finite(f64::NAN)
-    );
+    assert_eq!(Real::to_f64(<f32 as Real>::from_f64(0.1)), f64::from(0.1_f32));
+    assert!(Real::is_finite(f64::MAX) && !Real::is_finite(f64::INFINITY) && !Real::is_finite(f64::NAN));
 }

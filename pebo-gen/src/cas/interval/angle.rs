@@ -47,11 +47,7 @@ impl Angle {
     /// 1 - cos x <= x^2/2 < 2^(2 top + 1).
     fn tiny(x: &Dyadic, top: i64, p: Precision) -> Option<Self> {
         let gap = Dyadic::power_of_two(2 * top + 1);
-        let quarter = if x.is_negative() {
-            IBig::NEG_ONE
-        } else {
-            IBig::ZERO
-        };
+        let quarter = if x.is_negative() { IBig::NEG_ONE } else { IBig::ZERO };
         Some(Self {
             sin: Interval::near(x, 2 * top, p)?,
             cos: Interval::new(Dyadic::ONE.sum(&-&gap, p.bits(), Side::Below), Dyadic::ONE)?,

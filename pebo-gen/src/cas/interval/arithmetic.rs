@@ -9,10 +9,7 @@ use super::{Interval, Precision};
 impl Interval {
     /// a + b.
     pub fn add(&self, other: &Self, p: Precision) -> Option<Self> {
-        Self::new(
-            self.lo.sum(&other.lo, p.bits(), Side::Below),
-            self.hi.sum(&other.hi, p.bits(), Side::Above),
-        )
+        Self::new(self.lo.sum(&other.lo, p.bits(), Side::Below), self.hi.sum(&other.hi, p.bits(), Side::Above))
     }
 
     /// a - b.
@@ -22,19 +19,13 @@ impl Interval {
 
     /// -a.
     pub fn neg(&self) -> Self {
-        Self {
-            lo: -&self.hi,
-            hi: -&self.lo,
-        }
+        Self { lo: -&self.hi, hi: -&self.lo }
     }
 
     /// |a|.
     pub fn abs(&self) -> Self {
         if self.lo.is_negative() && self.hi.is_positive() {
-            Self {
-                lo: Dyadic::ZERO,
-                hi: self.hi.clone().max(-&self.lo),
-            }
+            Self { lo: Dyadic::ZERO, hi: self.hi.clone().max(-&self.lo) }
         } else if self.lo.is_negative() {
             self.neg()
         } else {
@@ -58,26 +49,11 @@ impl Interval {
             return Some(self.neg().mul(other, p)?.neg());
         } else {
             // a >= 0: each end point of b goes with the end of a that takes it further out.
-            let least_with = if other.lo.is_negative() {
-                &self.hi
-            } else {
-                &self.lo
-            };
-            let greatest_with = if other.hi.is_negative() {
-                &self.lo
-            } else {
-                &self.hi
-            };
-            (
-                least_with.product(&other.lo),
-                greatest_with.product(&other.hi),
-            )
+            let least_with = if other.lo.is_negative() { &self.hi } else { &self.lo };
+            let greatest_with = if other.hi.is_negative() { &self.lo } else { &self.hi };
+            (least_with.product(&other.lo), greatest_with.product(&other.hi))
         };
-        Self {
-            lo: least,
-            hi: greatest,
-        }
-        .rounded(p)
+        Self { lo: least, hi: greatest }.rounded(p)
     }
 
     /// a / b; none where b contains zero.
@@ -88,16 +64,8 @@ impl Interval {
         if other.is_negative() {
             return Some(self.div(&other.neg(), p)?.neg());
         }
-        let least_by = if self.lo.is_negative() {
-            &other.lo
-        } else {
-            &other.hi
-        };
-        let greatest_by = if self.hi.is_negative() {
-            &other.hi
-        } else {
-            &other.lo
-        };
+        let least_by = if self.lo.is_negative() { &other.lo } else { &other.hi };
+        let greatest_by = if self.hi.is_negative() { &other.hi } else { &other.lo };
         Self::new(
             self.lo.quotient(least_by, p.bits(), Side::Below),
             self.hi.quotient(greatest_by, p.bits(), Side::Above),
@@ -106,10 +74,7 @@ impl Interval {
 
     /// a 2^places, exactly.
     pub(super) fn shifted(&self, places: i64) -> Self {
-        Self {
-            lo: self.lo.shifted(places),
-            hi: self.hi.shifted(places),
-        }
+        Self { lo: self.lo.shifted(places), hi: self.hi.shifted(places) }
     }
 
     /// Whether there are numbers on both sides of zero.

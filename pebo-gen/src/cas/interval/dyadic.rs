@@ -29,11 +29,7 @@ pub(super) struct Dyadic {
 /// floor(m 2^places).
 pub(super) fn scaled(m: &IBig, places: i64) -> IBig {
     let distance = usize::try_from(places.unsigned_abs()).unwrap_or(usize::MAX);
-    if places < 0 {
-        m >> distance
-    } else {
-        m << distance
-    }
+    if places < 0 { m >> distance } else { m << distance }
 }
 
 /// The number of bits of |m|.
@@ -88,11 +84,7 @@ impl Dyadic {
     }
 
     pub(super) fn abs(&self) -> Self {
-        if self.is_negative() {
-            -self
-        } else {
-            self.clone()
-        }
+        if self.is_negative() { -self } else { self.clone() }
     }
 
     /// The nearest multiple of 2^exponent on the side.
@@ -122,11 +114,8 @@ impl Dyadic {
             (_, None) => return self.clone().rounded(bits, side),
             (Some(top), Some(other_top)) => (top, other_top),
         };
-        let (large, large_top, small, small_top) = if top >= other_top {
-            (self, top, other, other_top)
-        } else {
-            (other, other_top, self, top)
-        };
+        let (large, large_top, small, small_top) =
+            if top >= other_top { (self, top, other, other_top) } else { (other, other_top, self, top) };
         let last = large.exponent.min(large_top - bits - 2);
         let (exponent, rest) = if small_top < last {
             let rest = match (side, small.is_negative()) {
@@ -145,10 +134,7 @@ impl Dyadic {
 
     /// x y, exactly.
     pub(super) fn product(&self, other: &Self) -> Self {
-        Self::new(
-            &self.mantissa * &other.mantissa,
-            self.exponent + other.exponent,
-        )
+        Self::new(&self.mantissa * &other.mantissa, self.exponent + other.exponent)
     }
 
     /// x / y, for y > 0.
@@ -190,12 +176,7 @@ impl Dyadic {
         // At most 2^53 in magnitude: exact, as is the product, unless it rounds up to 2^1024.
         let count = self.at_exponent(unit, side).to_f64().value();
         let unit = u64::try_from(unit + 1074).unwrap_or(0);
-        count
-            * f64::from_bits(if unit < 52 {
-                1 << unit
-            } else {
-                (unit - 51) << 52
-            })
+        count * f64::from_bits(if unit < 52 { 1 << unit } else { (unit - 51) << 52 })
     }
 }
 
@@ -217,13 +198,7 @@ impl Ord for Dyadic {
                 aligned(self).cmp(&aligned(other))
             })
         };
-        sign.cmp(&other_sign).then_with(|| {
-            if self.is_negative() {
-                by_magnitude().reverse()
-            } else {
-                by_magnitude()
-            }
-        })
+        sign.cmp(&other_sign).then_with(|| if self.is_negative() { by_magnitude().reverse() } else { by_magnitude() })
     }
 }
 

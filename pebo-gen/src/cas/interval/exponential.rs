@@ -46,10 +46,7 @@ impl Interval {
     /// Between x - |x| 2^k and x + |x| 2^k.
     pub(super) fn near(x: &Dyadic, k: i64, p: Precision) -> Option<Self> {
         let radius = x.abs().shifted(k);
-        Self::new(
-            x.sum(&-&radius, p.bits(), Side::Below),
-            x.sum(&radius, p.bits(), Side::Above),
-        )
+        Self::new(x.sum(&-&radius, p.bits(), Side::Below), x.sum(&radius, p.bits(), Side::Above))
     }
 }
 
@@ -126,10 +123,7 @@ fn tanh_at(x: &Dyadic, p: Precision) -> Option<Interval> {
     }
     let more = p.more(4);
     let d = exp_minus_one_at(&x.shifted(1), more)?;
-    let quotient = d.div(
-        &d.add(&Interval::point(Dyadic::power_of_two(1)), more)?,
-        more,
-    )?;
+    let quotient = d.div(&d.add(&Interval::point(Dyadic::power_of_two(1)), more)?, more)?;
     Some(quotient.rounded(p)?.within_unit())
 }
 

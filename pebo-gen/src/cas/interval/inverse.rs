@@ -18,11 +18,7 @@ impl Interval {
         let scale = p.bits() + 2;
         let floor = pi(scale);
         let ceiling = &floor + IBig::ONE;
-        Self {
-            lo: Dyadic::new(floor, -scale),
-            hi: Dyadic::new(ceiling, -scale),
-        }
-        .rounded(p)
+        Self { lo: Dyadic::new(floor, -scale), hi: Dyadic::new(ceiling, -scale) }.rounded(p)
     }
 
     fn half_pi(p: Precision) -> Option<Self> {

@@ -81,10 +81,7 @@ impl Interval {
     }
 
     fn point(x: Dyadic) -> Self {
-        Self {
-            lo: x.clone(),
-            hi: x,
-        }
+        Self { lo: x.clone(), hi: x }
     }
 
     /// From end points in order, brought into the range of exponents.
@@ -99,10 +96,7 @@ impl Interval {
             }),
             _ => Some(x),
         };
-        Some(Self {
-            lo: limited(lo, Side::Below)?,
-            hi: limited(hi, Side::Above)?,
-        })
+        Some(Self { lo: limited(lo, Side::Below)?, hi: limited(hi, Side::Above)? })
     }
 
     /// The numbers within `error` of `value`, both in units of 2^-scale.
@@ -114,10 +108,7 @@ impl Interval {
     }
 
     fn rounded(self, p: Precision) -> Option<Self> {
-        Self::new(
-            self.lo.rounded(p.bits(), Side::Below),
-            self.hi.rounded(p.bits(), Side::Above),
-        )
+        Self::new(self.lo.rounded(p.bits(), Side::Below), self.hi.rounded(p.bits(), Side::Above))
     }
 
     /// The image under a non-decreasing function, from its enclosures at points.
@@ -131,10 +122,7 @@ impl Interval {
     /// The part between -1 and 1, of an interval that meets it.
     fn within_unit(self) -> Self {
         let minus_one = -&Dyadic::ONE;
-        Self {
-            lo: self.lo.max(minus_one),
-            hi: self.hi.min(Dyadic::ONE),
-        }
+        Self { lo: self.lo.max(minus_one), hi: self.hi.min(Dyadic::ONE) }
     }
 
     fn is_point(&self) -> bool {
@@ -143,10 +131,7 @@ impl Interval {
 
     /// The smallest interval that contains both.
     pub fn hull(&self, other: &Self) -> Self {
-        Self {
-            lo: self.lo.clone().min(other.lo.clone()),
-            hi: self.hi.clone().max(other.hi.clone()),
-        }
+        Self { lo: self.lo.clone().min(other.lo.clone()), hi: self.hi.clone().max(other.hi.clone()) }
     }
 
     /// Whether zero is among the numbers.
@@ -198,10 +183,6 @@ impl fmt::Display for Interval {
         if self.is_point() {
             return Ok(());
         }
-        write!(
-            f,
-            " +- {:.1e}",
-            self.extent().shifted(-1).to_f64(Side::Above)
-        )
+        write!(f, " +- {:.1e}", self.extent().shifted(-1).to_f64(Side::Above))
     }
 }

@@ -52,10 +52,7 @@ impl Interval {
         if self.lo.is_negative() {
             return None;
         }
-        Self::new(
-            self.lo.root(degree, p.bits(), Side::Below),
-            self.hi.root(degree, p.bits(), Side::Above),
-        )
+        Self::new(self.lo.root(degree, p.bits(), Side::Below), self.hi.root(degree, p.bits(), Side::Above))
     }
 
     /// a^q for q not an integer, a >= 0 and, where q < 0, a > 0; as `powi` for an integer.
@@ -81,14 +78,8 @@ impl Interval {
 
 /// Numerator and denominator, where both are small.
 fn radical(exponent: &Rational) -> Option<(i64, u32)> {
-    let power = exponent
-        .numerator()
-        .to_i64()
-        .filter(|n| *n <= LARGEST_POWER)?;
-    let degree = exponent
-        .denominator()
-        .to_i64()
-        .and_then(|d| u32::try_from(d).ok())?;
+    let power = exponent.numerator().to_i64().filter(|n| *n <= LARGEST_POWER)?;
+    let degree = exponent.denominator().to_i64().and_then(|d| u32::try_from(d).ok())?;
     (degree <= LARGEST_DEGREE).then_some((power, degree))
 }
 
@@ -99,7 +90,5 @@ fn power_by_logarithm(x: &Dyadic, exponent: &Rational, p: Precision) -> Option<I
     }
     let more = p.more(24);
     let log = Interval::point(x.clone()).log(more)?;
-    Interval::from_rational(exponent, more)?
-        .mul(&log, more)?
-        .exp(p)
+    Interval::from_rational(exponent, more)?.mul(&log, more)?.exp(p)
 }

@@ -25,11 +25,7 @@ impl Interval {
         let more = p.more(4);
         let at = |angle: &Angle| angle.sin.div(&angle.cos, more)?.rounded(p);
         let first = Angle::at(&self.lo, more)?;
-        let other = if self.is_point() {
-            None
-        } else {
-            Some(Angle::at(&self.hi, more)?)
-        };
+        let other = if self.is_point() { None } else { Some(Angle::at(&self.hi, more)?) };
         let last = other.as_ref().unwrap_or(&first);
         // The multiples of pi/2 that may be in the interval; the odd ones are poles.
         let end = &last.quarters.1;
@@ -43,10 +39,7 @@ impl Interval {
     /// A function that is 1 at the multiples of pi/2 that are `peak` modulo 4, -1 at those two
     /// further on, and monotone between.
     fn wave(&self, peak: u8, at: impl Fn(Angle) -> Self, p: Precision) -> Self {
-        let whole = Self {
-            lo: -&Dyadic::ONE,
-            hi: Dyadic::ONE,
-        };
+        let whole = Self { lo: -&Dyadic::ONE, hi: Dyadic::ONE };
         if self.is_point() {
             return Angle::at(&self.lo, p).map_or(whole, at);
         }

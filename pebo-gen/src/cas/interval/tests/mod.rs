@@ -41,12 +41,7 @@ const fn row(
     value: fn(f64) -> f64,
     domain: (i64, i64),
 ) -> Unary {
-    Unary {
-        name,
-        enclose,
-        value,
-        domain,
-    }
+    Unary { name, enclose, value, domain }
 }
 
 impl Unary {

@@ -13,11 +13,8 @@ fn widened(value: f64) -> (f64, f64) {
 /// The interval, one unit of the precision wider at either end.
 fn loosened(x: &Interval, precision: u32) -> Interval {
     let p = bits(precision);
-    let unit = number(2)
-        .powi(1 - i64::from(precision), p)
-        .expect("in range");
-    x.add(&x.mul(&unit.hull(&unit.neg()), p).expect("in range"), p)
-        .expect("in range")
+    let unit = number(2).powi(1 - i64::from(precision), p).expect("in range");
+    x.add(&x.mul(&unit.hull(&unit.neg()), p).expect("in range"), p).expect("in range")
 }
 
 /// The ends of a part of a domain; some of them a turn or less apart.
