@@ -109,7 +109,7 @@ fn admit(size: usize) -> Result<(), Diagnostic> {
     Err(Diagnostic::error(
         Code::FileTooLarge,
         Span::default(),
-        format!("the file has {size} bytes, more than the limit of {SIZE_LIMIT}"),
+        format!("the file has more than {SIZE_LIMIT} bytes"),
     )
     .help("give a model file; a model needs a few kilobytes"))
 }
