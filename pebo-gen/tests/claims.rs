@@ -1,6 +1,7 @@
 //! Small plants for every verdict on every claim.
 
 use pebo_gen::analysis::{Class, Excitation, Outcome, RegressionKind, Verdict};
+use pebo_gen::cas::facts::Relation;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Derived, derive};
 
@@ -301,4 +302,21 @@ fn what_builds_on_a_failed_claim_is_skipped() {
     assert_eq!(plant.derivation.cascade.verdict, Verdict::Refuted);
     assert_eq!(plant.derivation.regression.verdict, Verdict::Skipped);
     assert_eq!(plant.derivation.identifiability.verdict, Verdict::Skipped);
+}
+
+#[test]
+fn conditions_are_listed_unless_the_assumptions_discharge_them() {
+    let remaining = |assume: &str| {
+        let plant = derived(&format!(
+            "x: [x]\ny: [y, r]\nu: [u]\nparameters: {{m: 2, k: null}}\nassume: [{assume}]\n\
+             f_x: {{x: u/(m*k*r^2)}}\nf_y: {{y: x*sqrt(r) + r/r, r: u}}\nphi: [x]"
+        ));
+        let arena = &plant.plant.arena;
+        let shown = |(e, relation): &(_, Relation)| format!("{} {relation:?}", arena.print(*e));
+        plant.derivation.conditions.iter().map(shown).collect::<Vec<_>>()
+    };
+    // m has a value, so its sign is known; the cancelled r of r/r is remembered.
+    assert_eq!(remaining("k > 0"), ["r NonZero", "r NonNegative"]);
+    assert_eq!(remaining("k != 0, r >= 0"), ["r NonZero"]);
+    assert_eq!(remaining("k < 0, r > 0"), Vec::<String>::new());
 }

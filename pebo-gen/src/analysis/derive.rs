@@ -4,7 +4,7 @@ use crate::plant::Plant;
 use crate::source::Diagnostic;
 
 use super::design::{Claim, Derivation, Outcome, Verdict};
-use super::{cascade, identifiability, left_inverse, regression};
+use super::{cascade, conditions, identifiability, left_inverse, regression};
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
@@ -34,6 +34,7 @@ impl Derivation {
             left_inverse,
             regression,
             identifiability,
+            conditions: conditions::remaining(plant, &domain),
             diagnostics: found,
         }
     }

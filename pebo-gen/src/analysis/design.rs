@@ -1,5 +1,6 @@
 //! What was derived of a plant: each claim with its verdict.
 
+use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
@@ -168,6 +169,9 @@ pub struct Derivation {
     pub regression: Claim<Regression>,
     /// Claim 4.
     pub identifiability: Claim<Identifiability>,
+    /// What the proofs rest on besides the assumptions: expressions that must compare so with zero for
+    /// the formulas to have values.
+    pub conditions: Vec<(Expr, Relation)>,
     /// What to tell the author.
     pub diagnostics: Vec<Diagnostic>,
 }

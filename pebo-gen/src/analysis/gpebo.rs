@@ -5,11 +5,11 @@
 //! provably stays bounded (Ortega, Bobtsov, Nikolaev, Schiffer, Dochain 2021). Without that, Psi would
 //! amplify whatever error the extension has, and the transform is not accepted.
 
+use crate::cas::Expr;
 use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::zero::decide;
-use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 
 use super::design::Cascade;
@@ -35,7 +35,7 @@ pub(super) fn generalised(plant: &Plant, domain: &Domain, rates: &[Expr]) -> Opt
         h.push(row[0]);
         lambda.push(row[1..].to_vec());
     }
-    dissipative(arena, domain, &lambda).ok()?.then_some(Cascade {
+    dissipative(plant, domain, &lambda).ok()?.then_some(Cascade {
         h,
         lambda: Some(lambda),
         residual: Vec::new(),
@@ -45,7 +45,8 @@ pub(super) fn generalised(plant: &Plant, domain: &Domain, rates: &[Expr]) -> Opt
 
 /// Whether a quadratic form with a constant positive diagonal P never grows: P Lambda + Lambda' P is
 /// diagonal without a positive entry. For circuits and mechanisms P is the stored energy.
-fn dissipative(arena: &Arena, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<bool, Obstacle> {
+fn dissipative(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<bool, Obstacle> {
+    let arena = &plant.arena;
     let roots: Vec<Expr> = lambda.iter().flatten().copied().collect();
     let field = Field::over(arena, &domain.facts, &roots)?;
     let entries = lambda
@@ -72,7 +73,7 @@ fn dissipative(arena: &Arena, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<b
                 }
                 // P_j = -P_i Lambda_ij / Lambda_ji
                 let other = field.div(&field.mul(&weight, out)?, &back.opposite())?;
-                if !field.is_positive(&other)? || !is_constant(arena, domain, field.show(&other)) {
+                if !field.is_positive(&other)? || !is_constant(plant, field.show(&other)) {
                     return Ok(false);
                 }
                 match &weights[j] {
@@ -94,7 +95,7 @@ fn dissipative(arena: &Arena, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<b
     Ok(true)
 }
 
-/// Whether the expression consists of given constants alone.
-fn is_constant(arena: &Arena, domain: &Domain, expr: Expr) -> bool {
-    arena.symbols_of(&[expr]).iter().all(|symbol| domain.fixed.contains_key(symbol))
+/// Whether the expression consists of parameters alone, their values known or not.
+fn is_constant(plant: &Plant, expr: Expr) -> bool {
+    plant.arena.symbols_of(&[expr]).iter().all(|symbol| plant.parameters.iter().any(|p| p.symbol == *symbol))
 }

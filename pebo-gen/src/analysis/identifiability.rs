@@ -41,12 +41,12 @@ pub(super) fn prove(
         result: Some(Identifiability { kind, singular_where, direction }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
-        let singular = singular_where(plant, domain, &regression.phi_1);
+        let singular = singular_where(plant, domain, &without_psi(plant, &regression.phi_1));
         return answer(Excitation::Instant, singular, None, Verdict::Proved);
     }
     let mut flow = Flow::new(plant, cascade);
     let mut latest = stack.clone();
-    let mut unseen = match null_vectors(arena, domain, &stack, unknowns) {
+    let mut unseen = match unseen_by(arena, domain, &stack, unknowns) {
         Ok(unseen) => unseen,
         Err(obstacle) => return open(plant, &obstacle, found),
     };
@@ -57,7 +57,7 @@ pub(super) fn prove(
             return answer(Excitation::Excitation, Vec::new(), None, Verdict::Proved);
         }
         flow.advance(plant);
-        let next = match null_vectors(arena, domain, &stack, unknowns) {
+        let next = match unseen_by(arena, domain, &stack, unknowns) {
             Ok(next) => next,
             Err(obstacle) => return open(plant, &obstacle, found),
         };
@@ -161,6 +161,29 @@ fn eliminates(mut rows: Vec<Vec<Interval>>, columns: usize, p: Precision) -> Opt
 
 fn size(value: &Interval) -> f64 {
     value.lo().abs().min(value.hi().abs())
+}
+
+/// The regressor with the fundamental matrix at its initial value: being invertible at all times, it takes
+/// nothing from the rank.
+fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let arena = &plant.arena;
+    let identity: BTreeMap<Symbol, Expr> = plant
+        .psi
+        .iter()
+        .enumerate()
+        .flat_map(|(i, row)| row.iter().enumerate().map(move |(j, symbol)| (*symbol, arena.number(i64::from(i == j)))))
+        .collect();
+    phi_1.iter().map(|row| arena.substitute_all(row, &identity)).collect()
+}
+
+/// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
+/// parameters where these values are nothing special.
+fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Vec<Vec<Expr>>, Obstacle> {
+    let values: BTreeMap<Symbol, Expr> = domain.fixed.iter().map(|(s, v)| (*s, arena.number(v.clone()))).collect();
+    let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &values)).collect();
+    let special = null_vectors(arena, domain, &valued, columns)?;
+    let general = null_vectors(arena, domain, rows, columns)?;
+    Ok(if special.len() > general.len() { special } else { general })
 }
 
 /// Vectors that every row provably annihilates.

@@ -8,6 +8,7 @@
 //! point with a rigorous enclosure or by an exact null vector; everything else is undecided and says why.
 
 mod cascade;
+mod conditions;
 mod derive;
 mod design;
 mod gpebo;
@@ -18,6 +19,9 @@ mod separation;
 mod singular;
 mod solve;
 mod tidy;
+
+#[cfg(test)]
+mod tests;
 
 pub use design::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,

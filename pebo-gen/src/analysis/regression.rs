@@ -5,7 +5,7 @@
 //! where substituting the left inverse would hide it), else one in functions of theta
 //! ([`super::separation`]), else a static one from an identity (Ortega et al. 2015, eqs. 16 and 28).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
@@ -17,7 +17,8 @@ use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict, Witness};
-use super::separation::{self, Separated};
+use super::left_inverse::is_whole_turns;
+use super::separation::{self, Recovered, Separated};
 use super::tidy::{shortest, shortest_equal};
 
 const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
@@ -39,19 +40,30 @@ pub(super) fn prove(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
-    let rows: Vec<(usize, Expr, Span)> =
+    let mut rows: Vec<(usize, Expr, Span)> =
         plant.y.iter().enumerate().filter_map(|(i, o)| o.rate.map(|rate| (i, rate.expr, rate.span))).collect();
     if rows.is_empty() {
         return from_identities(plant, domain, left_inverse, found);
     }
+    let unmeasured: BTreeSet<Symbol> = plant.w.iter().copied().collect();
     let mut affine = Vec::new();
     let mut obstacles = Vec::new();
+    let mut veiled = Vec::new();
     for (index, rate, span) in &rows {
         match decompose(plant, domain, *rate) {
             Ok(Some(row)) => affine.push(row),
+            Ok(None) | Err(_) if plant.arena.depends_on(*rate, &unmeasured) => veiled.push((*index, *rate, *span)),
             Ok(None) => obstacles.push((*index, *rate, *span, None)),
             Err(obstacle) => obstacles.push((*index, *rate, *span, Some(obstacle))),
         }
+    }
+    // Nothing can be learnt from a rate that an unmeasured signal moves; the others have to do.
+    rows.retain(|row| !veiled.contains(row));
+    if rows.is_empty() {
+        if plant.identities.is_empty() {
+            return hidden_by_signals(plant, domain, &veiled, found);
+        }
+        return from_identities(plant, domain, left_inverse, found);
     }
     if obstacles.is_empty() {
         let regression = linear(plant, domain, cascade, left_inverse, rows.iter().map(|r| r.0).collect(), &affine);
@@ -59,17 +71,17 @@ pub(super) fn prove(
     }
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
     let mut stands_against = NO_SEPARATION.to_owned();
-    if cascade.lambda.is_none()
-        && let Some(left_inverse) = left_inverse
-    {
+    let mut unsought = false;
+    if let Some(left_inverse) = left_inverse {
         let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| plant.arena.substitute(*rate, &inverse)).collect();
         match separation::separate(plant, domain, &rates) {
+            Ok(Some(_)) if cascade.lambda.is_some() => unsought = true,
             Ok(Some(separated)) => {
                 let eta: Vec<String> = separated.eta.iter().map(|e| plant.arena.print(*e)).collect();
                 let outputs = rows.iter().map(|r| r.0).collect();
-                if let Some(result) = over_parameterised(plant, domain, outputs, separated, found) {
-                    return Claim { verdict: Verdict::Proved, result: Some(result) };
+                if let Some(claim) = over_parameterised(plant, domain, left_inverse, outputs, separated, found) {
+                    return claim;
                 }
                 stands_against =
                     format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
@@ -86,6 +98,11 @@ pub(super) fn prove(
     }
     let mut verdict = Verdict::Refuted;
     for (index, rate, span, obstacle) in obstacles {
+        if unsought {
+            verdict = Verdict::Undecided;
+            found.push(not_sought(plant, index, span));
+            continue;
+        }
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         if let Some(witness) = bend {
@@ -182,21 +199,144 @@ fn linear(
 fn over_parameterised(
     plant: &Plant,
     domain: &Domain,
+    left_inverse: &LeftInverse,
     rows: Vec<usize>,
     separated: Separated,
     found: &mut Vec<Diagnostic>,
-) -> Option<Regression> {
-    let (theta, turns) = separation::recover(plant, domain, &separated.eta)?;
-    found.extend(turns.then(|| up_to_turns(plant)));
-    Some(Regression {
+) -> Option<Claim<Regression>> {
+    // The fewer functions, if they are enough.
+    let joined = separation::join_proportional(plant, domain, &separated).ok().and_then(|joined| {
+        let recovered = separation::recover(plant, domain, &joined.eta)?;
+        Some((joined, recovered))
+    });
+    let (separated, recovered) = match joined {
+        Some(found) => found,
+        None => {
+            let recovered = separation::recover(plant, domain, &separated.eta)?;
+            (separated, recovered)
+        }
+    };
+    if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
+        return Some(refusal);
+    }
+    let result = Regression {
         kind: RegressionKind::Dynamic,
         rows,
         phi_0: separated.known,
         phi_1: separated.factors,
         eta_symbols: plant.eta(separated.eta.len()),
         eta: separated.eta,
-        theta,
-    })
+        theta: recovered.theta,
+    };
+    Some(Claim { verdict: Verdict::Proved, result: Some(result) })
+}
+
+/// The refusal, where theta is determined only up to whole turns and a state is lost by that: one that does
+/// not move by a constant, or an angle that moves by a part of its period. Else at most a warning.
+fn turned_away(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: &LeftInverse,
+    eta: &[Expr],
+    recovered: &Recovered,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let arena = &plant.arena;
+    let turn = arena.mul(arena.number(2), arena.pi());
+    for &index in &recovered.turning {
+        let turned = |expr: Expr, symbol: Symbol| {
+            let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
+            shortest(arena, domain, arena.sub(arena.substitute(expr, &moved), expr))
+        };
+        for &(state, formula) in &left_inverse.x {
+            let shift = turned(formula, plant.z[index]);
+            let kept = match plant.period(state) {
+                Some(period) => is_whole_turns(arena, domain, arena.div(arena.mul(shift, turn), period)),
+                None => arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s)),
+            };
+            if kept {
+                continue;
+            }
+            // Whether the outputs themselves are blind to the turn, or only the formula for theta.
+            let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index]), domain).is_zero());
+            found.push(lost_by_turns(plant, index, state, shift));
+            let verdict = if blind { Verdict::Refuted } else { Verdict::Undecided };
+            return Some(Claim { verdict, result: None });
+        }
+    }
+    found.extend((!recovered.turning.is_empty()).then(|| up_to_turns(plant)));
+    None
+}
+
+/// What a turn of an unknown does to a state.
+fn lost_by_turns(plant: &Plant, index: usize, state: Symbol, shift: Expr) -> Diagnostic {
+    let arena = &plant.arena;
+    let name = arena.name(state);
+    let diagnostic = Diagnostic::error(
+        Code::UnknownUpToTurns,
+        plant.phi[index].span,
+        format!("{name} is not determined: theta{} is known only up to whole turns", index + 1),
+    )
+    .label(format!("a turn of this component moves {name} by `{}`", arena.print(shift)))
+    .note("the outputs see this component through its sine and cosine alone");
+    match plant.period(state) {
+        Some(period) => diagnostic.help(format!(
+            "declare a period under `angles` that divides this, instead of `{}`, or measure another output",
+            arena.print(period)
+        )),
+        None => diagnostic
+            .help("choose a phi in which the other states do not need this component, or measure another output"),
+    }
+}
+
+/// Every rate that is given depends on a signal that nobody knows.
+fn hidden_by_signals(
+    plant: &Plant,
+    domain: &Domain,
+    veiled: &[(usize, Expr, Span)],
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    let mut verdict = Verdict::Refuted;
+    for (index, rate, span) in veiled {
+        let seen = plant.w.iter().find_map(|w| {
+            let slope = arena.derivative(*rate, *w);
+            refute(arena, slope, domain).map(|point| (*w, Witness::of(slope, &point)))
+        });
+        let Some((signal, witness)) = seen else {
+            verdict = Verdict::Undecided;
+            found.push(undecided(plant, *index, *span, &Obstacle::NoWitness));
+            continue;
+        };
+        let (output, signal) = (arena.name(plant.y[*index].symbol), arena.name(signal));
+        found.push(
+            Diagnostic::error(
+                Code::RegressionNonlinear,
+                *span,
+                format!("the rate of {output} depends on the unmeasured signal {signal}"),
+            )
+            .label(format!("nothing can be learnt from {output} while {signal} is unknown"))
+            .note(format!("its derivative in {signal}: {}", witness.sentence(arena)))
+            .help(format!(
+                "declare {signal} under `u` if it is measured, give `f_y` for an output whose rate is free of it, or an \
+                 identity under `identities`"
+            )),
+        );
+    }
+    Claim { verdict, result: None }
+}
+
+/// A generalised cascade whose outputs may be linear in functions of theta.
+fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic {
+    let output = plant.arena.name(plant.y[index].symbol);
+    Diagnostic::error(
+        Code::RegressionUndecided,
+        span,
+        format!("it could not be decided whether the rate of {output} is linear in functions of theta"),
+    )
+    .label("not an affine function of phi with coefficients in y and u")
+    .note("obstacle: functions of theta are not sought for a generalised cascade, z = xi + Psi theta")
+    .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
 }
 
 /// What to know where theta enters through sine and cosine alone.
@@ -230,8 +370,10 @@ fn from_identities(
     match separation::separate(plant, domain, &identities) {
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
-            if let Some((theta, turns)) = separation::recover(plant, domain, &separated.eta) {
-                found.extend(turns.then(|| up_to_turns(plant)));
+            if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
+                if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
+                    return refusal;
+                }
                 // identity = known + factors eta = 0, so known = -factors eta
                 let negated = |row: &Vec<Expr>| row.iter().map(|e| shortest(arena, domain, arena.neg(*e))).collect();
                 let result = Regression {
@@ -241,7 +383,7 @@ fn from_identities(
                     phi_0: separated.known,
                     eta_symbols: plant.eta(separated.eta.len()),
                     eta: separated.eta,
-                    theta,
+                    theta: recovered.theta,
                 };
                 return Claim { verdict: Verdict::Proved, result: Some(result) };
             }

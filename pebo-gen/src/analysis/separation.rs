@@ -152,9 +152,71 @@ pub(super) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separa
     Separated { known: vec![known], factors: vec![row], eta }
 }
 
-/// theta as functions of the eta symbols, each proved, and whether some are determined only up to
-/// whole turns, as from sine and cosine of theta.
-pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<(Vec<Expr>, bool)> {
+/// Joins functions of theta whose factors differ by a constant of the plant: these cannot be told apart,
+/// but their sum can, as `theta1 + theta2^2` in a rate `a + b^2`.
+pub(super) fn join_proportional(plant: &Plant, domain: &Domain, separated: &Separated) -> Result<Separated, Obstacle> {
+    let arena = &plant.arena;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let entries: Vec<Expr> = separated.factors.iter().flatten().copied().collect();
+    let field = Field::over(arena, &domain.facts, &entries)?;
+    let column =
+        |j: usize| separated.factors.iter().map(|row| field.fraction(row[j])).collect::<Result<Vec<Fraction>, _>>();
+    let mut kept: Vec<(usize, Vec<Fraction>, Expr)> = Vec::new();
+    for (j, &eta) in separated.eta.iter().enumerate() {
+        let own = column(j)?;
+        let mut joined = false;
+        for (_, other, sum) in &mut kept {
+            if let Some(ratio) = ratio(&field, &own, other)? {
+                let ratio = field.show(&ratio);
+                if arena.symbols_of(&[ratio]).is_subset(&constants) {
+                    *sum = arena.add(*sum, arena.mul(ratio, eta));
+                    joined = true;
+                    break;
+                }
+            }
+        }
+        if !joined {
+            kept.push((j, own, eta));
+        }
+    }
+    let result = Separated {
+        known: separated.known.clone(),
+        factors: separated.factors.iter().map(|row| kept.iter().map(|(j, ..)| row[*j]).collect()).collect(),
+        eta: kept.into_iter().map(|(.., sum)| sum).collect(),
+    };
+    let rows = separated.factors.iter().zip(&separated.known);
+    let exprs: Vec<Expr> = rows
+        .map(|(row, known)| {
+            arena.add(*known, arena.sum(row.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e))))
+        })
+        .collect();
+    prove(plant, domain, &exprs, &result)?;
+    Ok(result)
+}
+
+/// c with `column = c * other`, if there is one.
+fn ratio(field: &Field<'_>, column: &[Fraction], other: &[Fraction]) -> Result<Option<Fraction>, Obstacle> {
+    let Some(pivot) = other.iter().position(|entry| !entry.is_zero()) else { return Ok(None) };
+    let ratio = field.div(&column[pivot], &other[pivot])?;
+    for (entry, base) in column.iter().zip(other) {
+        if !field.sub(entry, &field.mul(&ratio, base)?)?.is_zero() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(ratio))
+}
+
+/// theta as functions of eta, each proved.
+#[derive(Clone, Debug)]
+pub(super) struct Recovered {
+    /// An entry for each theta, in the eta symbols.
+    pub theta: Vec<Expr>,
+    /// Positions of those that are determined only up to whole turns, as from sine and cosine of theta.
+    pub turning: Vec<usize>,
+}
+
+/// theta from its functions, if they determine it at least up to whole turns.
+pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Recovered> {
     let arena = &plant.arena;
     let symbols = plant.eta(eta.len());
     let equations: Vec<Equation> =
@@ -168,15 +230,14 @@ pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<(V
     let mut solved = if rest.is_empty() { BTreeMap::new() } else { solve(arena, domain, &equations, &rest).ok()? };
     solved.extend(direct.into_iter().map(|(symbol, value)| (symbol, vec![value])));
     let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
-    let mut turns = false;
-    let mut formulas = Vec::new();
-    for theta in &plant.theta {
+    let mut recovered = Recovered { theta: Vec::new(), turning: Vec::new() };
+    for (index, theta) in plant.theta.iter().enumerate() {
         let candidates = solved.get(theta)?;
         let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
         let exact = candidates.iter().find(|f| decide(arena, difference(**f), domain).is_zero());
-        turns |= exact.is_none();
+        recovered.turning.extend(exact.is_none().then_some(index));
         let formula = exact.or_else(|| candidates.iter().find(|f| is_whole_turns(arena, domain, difference(**f))));
-        formulas.push(*formula?);
+        recovered.theta.push(*formula?);
     }
-    Some((formulas, turns))
+    Some(recovered)
 }

@@ -11,6 +11,10 @@ use super::expr::Expr;
 use super::field::{Field, Obstacle};
 use super::interval::Interval;
 
+/// Points of the domain that a search looks at: an analytic expression that vanishes at so many, or has
+/// no value there, is not one that more of them would help with.
+const MOST_POINTS: usize = 64;
+
 /// The answer to whether an expression is zero.
 #[derive(Clone, Debug)]
 pub enum Answer {
@@ -56,7 +60,7 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
 
 /// Looks for a point of the domain at which the expression provably is not zero.
 pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
-    domain.points(arena, &[expr]).find_map(|point| {
+    domain.points(arena, &[expr]).take(MOST_POINTS).find_map(|point| {
         let value = arena.separated_from_zero(expr, &point)?;
         Some(Witness { point, value })
     })
@@ -64,5 +68,5 @@ pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
 
 /// Looks for a point of the domain at which the expression provably has a value.
 pub fn point_of(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Point> {
-    domain.points(arena, &[expr]).find(|point| arena.exists_at(expr, point))
+    domain.points(arena, &[expr]).take(MOST_POINTS).find(|point| arena.exists_at(expr, point))
 }

@@ -1,5 +1,6 @@
 //! `pebo-gen check`: the verdict on each model.
 
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use pebo_gen::analysis::Outcome;
@@ -9,47 +10,59 @@ use super::arguments::{CheckOptions, Format};
 use super::{Ending, files, terminal};
 
 pub(super) fn run(options: &CheckOptions) -> Ending {
-    options.models.iter().map(|model| one(model, options.format)).max().unwrap_or(Ending::Malformed)
+    options
+        .models
+        .iter()
+        .map(|model| {
+            one(model, options.format).unwrap_or_else(|unwritten| {
+                terminal::say(&format!("error[cannot-write]: cannot write to standard output: {unwritten}\n"));
+                Ending::Malformed
+            })
+        })
+        .max()
+        .unwrap_or(Ending::Malformed)
 }
 
-fn one(path: &Path, format: Format) -> Ending {
+fn one(path: &Path, format: Format) -> io::Result<Ending> {
     let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let source = match files::read(path) {
         Ok(source) => source,
         Err(unread) => {
             let (source, diagnostic) = *unread;
             if format == Format::Json {
-                print(&report::malformed(&stem, &[diagnostic], &source));
+                print(&report::malformed(&stem, &[diagnostic], &source))?;
             } else {
                 terminal::report(&[diagnostic], &source);
             }
-            return Ending::Malformed;
+            return Ok(Ending::Malformed);
         }
     };
     match pebo_gen::derive(&source) {
         Ok(derived) => {
             let (plant, derivation) = (&derived.plant, &derived.derivation);
             if format == Format::Json {
-                print(&report::check(plant, derivation, &source));
+                print(&report::check(plant, derivation, &source))?;
             } else {
-                print(report::summary(plant, derivation).trim_end());
+                print(report::summary(plant, derivation).trim_end())?;
                 terminal::report(&derivation.diagnostics, &source);
             }
-            if derivation.outcome == Outcome::Accepted { Ending::Accepted } else { Ending::Refused }
+            Ok(if derivation.outcome == Outcome::Accepted { Ending::Accepted } else { Ending::Refused })
         }
         Err(diagnostics) => {
             if format == Format::Json {
-                print(&report::malformed(&stem, &diagnostics, &source));
+                print(&report::malformed(&stem, &diagnostics, &source))?;
             } else {
                 terminal::report(&diagnostics, &source);
             }
-            Ending::Malformed
+            Ok(Ending::Malformed)
         }
     }
 }
 
 /// A line to standard output; a reader that went away is no error of ours.
-fn print(line: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stdout().lock(), "{line}");
+fn print(line: &str) -> io::Result<()> {
+    match writeln!(io::stdout().lock(), "{line}").and_then(|()| io::stdout().flush()) {
+        Err(gone) if gone.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written,
+    }
 }

@@ -172,20 +172,21 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         }
         lines.push(format!("{line}."));
     }
-    if !plant.assumptions.is_empty() {
-        let assumptions: Vec<String> = plant
-            .assumptions
-            .iter()
-            .map(|assumption| {
-                let relation = match assumption.relation {
-                    Relation::Positive => "> 0",
-                    Relation::NonNegative => ">= 0",
-                    Relation::NonZero => "!= 0",
-                };
-                format!("`{} {relation}`", arena.print(assumption.expr))
-            })
-            .collect();
-        lines.extend([String::new(), format!("Assumed: {}.", assumptions.join(", "))]);
+    let compared = |expr: Expr, relation: Relation| {
+        let relation = match relation {
+            Relation::Positive => "> 0",
+            Relation::NonNegative => ">= 0",
+            Relation::NonZero => "!= 0",
+        };
+        format!("`{} {relation}`", arena.print(expr))
+    };
+    let assumed: Vec<String> = plant.assumptions.iter().map(|a| compared(a.expr, a.relation)).collect();
+    if !assumed.is_empty() {
+        lines.extend([String::new(), format!("Assumed: {}.", assumed.join(", "))]);
+    }
+    let conditions: Vec<String> = derivation.conditions.iter().map(|(e, relation)| compared(*e, *relation)).collect();
+    if !conditions.is_empty() {
+        lines.extend([String::new(), format!("For the formulas to have values: {}.", conditions.join(", "))]);
     }
     if !plant.parameters.is_empty() {
         lines.extend([

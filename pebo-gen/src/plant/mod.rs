@@ -7,6 +7,7 @@
 //! Holds after: every name in a formula is declared where it may stand, every formula has a value as far
 //! as its constants tell, and each equation keeps the span of its source.
 
+mod conditions;
 mod formula;
 #[allow(clippy::module_inception)]
 mod plant;

@@ -39,6 +39,8 @@ pub struct Plant {
     pub angles: Vec<(Symbol, Formula)>,
     /// The domain that the author assumes.
     pub assumptions: Vec<Assumption>,
+    /// What the formulas ask of their parts to have values: denominators, radicands and the like.
+    pub conditions: Vec<Assumption>,
     /// The coordinates z1.. of the transform.
     pub z: Vec<Symbol>,
     /// The states chi1.. of the dynamic extension.

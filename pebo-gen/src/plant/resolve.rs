@@ -10,6 +10,7 @@ use crate::cas::{Arena, Expr, Symbol};
 use crate::model::{self, Comparison, Entry, Model, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::conditions;
 use super::formula::{exact, lower};
 use super::plant::{Assumption, Formula, Output, Parameter, Plant, State};
 use super::scope::Scope;
@@ -87,6 +88,13 @@ impl Plant {
             Ok((arena.symbol(&entry.name.value), formula))
         }));
         let assumptions = problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c)));
+        let mut conditions = Vec::new();
+        let written = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value);
+        let written = written.chain(&model.phi).chain(&model.identities).chain(model.define.iter().map(|d| &d.value));
+        for formula in written {
+            // What fails here was reported where the formula itself was lowered.
+            let _ = conditions::collect(&arena, &scope, formula, &mut conditions);
+        }
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
         problems.propagate()?;
         Ok(Self {
@@ -102,6 +110,7 @@ impl Plant {
             phi_left: (!phi_left.is_empty()).then_some(phi_left),
             identities,
             angles,
+            conditions,
             assumptions: assumptions.into_iter().flatten().collect(),
             z,
             chi,

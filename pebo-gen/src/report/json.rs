@@ -7,6 +7,7 @@ use crate::analysis::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
     RegressionKind, Verdict, Witness,
 };
+use super::conditions;
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Located, Source};
@@ -22,6 +23,8 @@ struct Report<'a> {
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
     identifiability: Option<IdentifiabilityReport>,
+    /// What the proofs rest on besides the assumptions, as comparisons with zero.
+    conditions: Vec<String>,
     diagnostics: Vec<Located<'a>>,
 }
 
@@ -91,6 +94,7 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
         left_inverse: Some(left_inverse(plant, &derivation.left_inverse)),
         regression: Some(regression(plant, &derivation.regression)),
         identifiability: Some(identifiability(arena, &derivation.identifiability)),
+        conditions: conditions(arena, &derivation.conditions),
         diagnostics: located(&derivation.diagnostics, source),
     };
     line(&report)
@@ -107,6 +111,7 @@ pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Str
         left_inverse: None,
         regression: None,
         identifiability: None,
+        conditions: Vec::new(),
         diagnostics: located(diagnostics, source),
     })
 }

@@ -6,5 +6,23 @@
 mod json;
 mod text;
 
+use crate::cas::facts::Relation;
+use crate::cas::{Arena, Expr};
+
 pub use json::{check, malformed};
 pub use text::summary;
+
+/// Comparisons with zero, as a reader would write them.
+fn conditions(arena: &Arena, conditions: &[(Expr, Relation)]) -> Vec<String> {
+    conditions
+        .iter()
+        .map(|(expr, relation)| {
+            let sign = match relation {
+                Relation::Positive => ">",
+                Relation::NonNegative => ">=",
+                Relation::NonZero => "!=",
+            };
+            format!("{} {sign} 0", arena.print(*expr))
+        })
+        .collect()
+}

@@ -32,6 +32,10 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         }
         lines
     });
+    let conditions = super::conditions(&plant.arena, &derivation.conditions);
+    if !conditions.is_empty() && derivation.outcome == Outcome::Accepted {
+        text.push_str(&format!("  where {}\n", conditions.join(", ")));
+    }
     text
 }
 

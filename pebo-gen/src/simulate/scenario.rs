@@ -117,6 +117,10 @@ impl Resolution<'_> {
         let Names { simulation, plant, .. } = names;
         let (arena, span) = (&plant.arena, names.section());
         names.check(problems);
+        if plant.parameters.iter().any(|parameter| parameter.value.is_none()) {
+            // That was reported; every formula with the parameter would be reported again.
+            return None;
+        }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
         let design = Design::resolve(&names, derivation, &numbers, problems);

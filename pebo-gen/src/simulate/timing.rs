@@ -38,6 +38,16 @@ impl Timing {
         let every = overrides.every.map(|every| exact("every", every, span)).transpose();
         let (duration, step, every) = (problems.keep(duration), problems.keep(step), problems.keep(every));
         let (duration, step, every) = (duration?, step?, every?);
+        for (name, period) in [("step", Some(&step)), ("every", every.as_ref())] {
+            if period.is_some_and(|period| (&duration - period).is_negative()) {
+                let message = format!("`{name}` is longer than the duration of {} s", duration.to_f64());
+                problems.push(
+                    Diagnostic::error(Code::NumberOutOfRange, span, message)
+                        .help(format!("choose a shorter `{name}`, or a longer `duration`")),
+                );
+                return None;
+            }
+        }
         let intervals = duration.checked_div(&step)?.to_f64();
         if intervals > MOST_SAMPLES {
             let message = format!("the simulation has {intervals:.3e} samples");

@@ -259,6 +259,11 @@ impl Field<'_> {
         Ok(self.sign_of(fraction)? == Some(Sign::Positive))
     }
 
+    /// Whether the fraction is known to be positive or zero throughout the domain.
+    pub fn is_not_negative(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
+        Ok(self.sign_of(fraction)?.is_some_and(Sign::is_positive_or_zero))
+    }
+
     /// Whether the polynomial is known to be zero nowhere, whatever is assumed.
     pub fn never_zero(&self, poly: &Poly) -> bool {
         poly.term_count() == 1 && poly.variables().iter().all(|v| self.kernels.borrow()[*v as usize].positive)

@@ -147,6 +147,7 @@ impl Sketch {
         let rows = |rows: &[&[&str]]| -> Vec<Vec<Expr>> { rows.iter().map(|row| formulas(row)).collect() };
         let eta: Vec<Symbol> = (1..=self.eta.len()).map(|index| arena.symbol(&format!("eta{index}"))).collect();
         let derivation = Derivation {
+            conditions: Vec::new(),
             outcome: Outcome::Accepted,
             class: if self.lambda.is_some() { Class::Gpebo } else { Class::Pebo },
             cascade: proved(Cascade {
@@ -178,6 +179,7 @@ impl Sketch {
             diagnostics: Vec::new(),
         };
         let plant = Plant {
+            conditions: Vec::new(),
             name: self.name.to_owned(),
             title: Some(self.title.to_owned()),
             reference: Some("Ortega et al. 2015, Section 5".to_owned()),

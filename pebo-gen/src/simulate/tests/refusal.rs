@@ -8,6 +8,7 @@ const MISTAKES: &[(&str, &str, &str, Code, &str, &str)] = &[
     (SPRING, "{k: 4}", "[k]", Code::SimulationIncomplete, "parameter `k`", "k"),
     (SPRING, "duration: 10, ", "", Code::SimulationIncomplete, "no duration", "0.01"),
     (SPRING, "step: 0.01, ", "", Code::SimulationIncomplete, "no step", "10"),
+    (SPRING, "step: 0.01", "step: 11", Code::NumberOutOfRange, "`step` is longer than the duration of 10 s", "10"),
     (SPRING, "step: 0.01", "step: 1e-30", Code::SimulationTooLong, "1.000e31 samples", "10"),
     (SPRING, "{v: 0, q: 1}", "{v: 0}", Code::SimulationIncomplete, "no entry for `q`", "10"),
     (SPRING, "v: 0, q: 1", "v: q, q: 1", Code::UnknownName, "`q`", "q"),
@@ -46,6 +47,11 @@ fn a_section_that_does_not_say_enough_is_refused_with_help() {
 }
 
 #[test]
+fn a_parameter_without_a_value_is_reported_once() {
+    assert_eq!(refusals(&with(SPRING, "{k: 4}", "[k]")).len(), 1);
+}
+
+#[test]
 fn a_model_without_the_section_is_told_so() {
     let text = with(SPRING, "simulation: {duration: 10, step: 0.01, initial: {v: 0, q: 1}}", "");
     let found = refusals(&text);
@@ -74,6 +80,8 @@ fn settings_of_a_call_are_refused_too() {
     let found = ask(&Overrides { feedback: Some("obsever".to_owned()), ..Overrides::default() });
     assert_eq!(found[0].code, Code::WrongChoice);
     assert_eq!(found[0].help.as_deref(), Some("did you mean `observer`?"));
+    let found = ask(&Overrides { every: Some(11.0), ..Overrides::default() });
+    assert_eq!(found[0].code, Code::NumberOutOfRange);
     let found = ask(&Overrides { step: Some(1e-11), ..Overrides::default() });
     assert_eq!(found[0].code, Code::SimulationTooLong);
     let found = ask(&Overrides { step: Some(1e-6), every: Some(1e-6), ..Overrides::default() });

@@ -1,0 +1,52 @@
+//! The conditions under which the formulas have values, less those that the assumptions discharge.
+//!
+//! In: what the plant's formulas ask of their parts. Out: what remains to be seen to, by factors: the
+//! proofs hold wherever these hold.
+
+use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
+use crate::cas::field::Field;
+use crate::cas::{Arena, Expr, Node};
+use crate::plant::Plant;
+
+/// What the proofs rest on besides the assumptions, each once.
+pub(super) fn remaining(plant: &Plant, domain: &Domain) -> Vec<(Expr, Relation)> {
+    let arena = &plant.arena;
+    let mut remaining: Vec<(Expr, Relation)> = Vec::new();
+    for condition in &plant.conditions {
+        let parts = match condition.relation {
+            Relation::NonZero => factors(arena, condition.expr),
+            _ => vec![condition.expr],
+        };
+        for part in parts {
+            let entry = (part, condition.relation);
+            if !remaining.contains(&entry) && !discharged(arena, domain, entry) {
+                remaining.push(entry);
+            }
+        }
+    }
+    remaining
+}
+
+/// The factors of a product that must not vanish.
+fn factors(arena: &Arena, expr: Expr) -> Vec<Expr> {
+    match arena.node(expr) {
+        Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
+        _ => vec![expr],
+    }
+}
+
+/// Whether the facts show the condition.
+fn discharged(arena: &Arena, domain: &Domain, (expr, relation): (Expr, Relation)) -> bool {
+    let shown = || {
+        let field = Field::over(arena, &domain.facts, &[expr])?;
+        let fraction = field.fraction(expr)?;
+        match relation {
+            Relation::Positive => field.is_positive(&fraction),
+            Relation::NonNegative => field.is_not_negative(&fraction),
+            Relation::NonZero => Ok(field.is_positive(&fraction)? || field.is_positive(&fraction.opposite())?),
+        }
+    };
+    // What cannot be decided stays a condition.
+    domain.facts.iter().any(|fact| fact == (expr, relation)) || shown().unwrap_or(false)
+}

@@ -1,0 +1,92 @@
+//! Verdicts that were wrong once, each on the smallest plant that showed it.
+
+use super::{Derivation, Excitation, Outcome, Verdict};
+use crate::model::Model;
+use crate::plant::Plant;
+use crate::source::{Code, Source};
+
+fn derive(lines: &str) -> (Plant, Derivation) {
+    let text = format!("model: m\n{lines}\n");
+    let model = Model::parse(&Source::new("m", text.as_str()).unwrap()).unwrap();
+    let plant = Plant::resolve(&model).unwrap();
+    let derivation = Derivation::derive(&plant);
+    (plant, derivation)
+}
+
+fn codes(derivation: &Derivation) -> Vec<Code> {
+    derivation.diagnostics.iter().map(|diagnostic| diagnostic.code).collect()
+}
+
+#[test]
+fn an_angle_that_is_seen_up_to_half_its_period_is_not_determined() {
+    let lines = "x: [q]\ny: [a]\nu: [w]\nf_x: {q: w}\nf_y: {a: sin(2*q)}\nphi: [2*q]";
+    let (_, half) = derive(&format!("{lines}\nangles: {{q: 2*pi}}"));
+    assert_eq!((half.outcome, codes(&half)), (Outcome::Rejected, vec![Code::UnknownUpToTurns]));
+    let (_, whole) = derive(&format!("{lines}\nangles: {{q: pi}}"));
+    assert_eq!(whole.outcome, Outcome::Accepted);
+}
+
+#[test]
+fn a_state_that_a_turn_of_another_moves_is_not_determined() {
+    let (_, derivation) = derive(
+        "x: [q, p]\ny: [a, b]\nu: [w, v]\nf_x: {q: w, p: 2*q*w + v}\nf_y: {a: sin(q), b: p - q^2}\n\
+         phi: [q, p - q^2]\nangles: {q: 2*pi}",
+    );
+    assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Rejected, vec![Code::UnknownUpToTurns]));
+}
+
+#[test]
+fn functions_of_theta_with_proportional_factors_are_one_unknown() {
+    let (plant, derivation) = derive("x: [a, b]\ny: [y]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {y: a + b^2}\nphi: [a, b]");
+    assert_eq!(derivation.outcome, Outcome::Accepted);
+    let eta = &derivation.regression.result.as_ref().unwrap().eta;
+    let eta: Vec<String> = eta.iter().map(|e| plant.arena.print(*e)).collect();
+    assert_eq!(eta, ["theta1 + theta2^2", "theta2"]);
+}
+
+#[test]
+fn a_rate_that_an_unmeasured_signal_moves_is_not_used() {
+    let lines = "x: [a]\ny: [y, s]\nu: [u]\nw: [w]\nf_x: {a: u + w}\nphi: [a - s]";
+    let (_, other) = derive(&format!("{lines}\nf_y: {{y: a + s, s: w}}"));
+    assert_eq!(other.outcome, Outcome::Accepted);
+    assert_eq!(other.regression.result.unwrap().rows, [0]);
+    let (_, none) = derive(&format!("{lines}\nf_y: {{y: a + w, s: w}}"));
+    assert_eq!((none.outcome, none.regression.verdict), (Outcome::Rejected, Verdict::Refuted));
+    assert!(none.diagnostics[0].message.contains("unmeasured signal w"), "{}", none.diagnostics[0].message);
+}
+
+#[test]
+fn a_generalised_cascade_with_a_nonlinear_output_is_not_refuted() {
+    let (_, derivation) =
+        derive("x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a^2}\nphi: [a, b]");
+    assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Undecided, vec![Code::RegressionUndecided]));
+}
+
+#[test]
+fn the_energy_of_a_generalised_cascade_may_hold_parameters_without_values() {
+    let (_, derivation) = derive(
+        "x: [i, v]\ny: [s]\nu: [d, e]\nparameters: [L, C]\nassume: [L > 0, C > 0]\n\
+         f_x: {i: (e - (1 - d)*v)/L, v: (1 - d)*i/C}\nf_y: {s: i}\nphi: [i, v]",
+    );
+    assert_eq!(derivation.outcome, Outcome::Accepted);
+}
+
+#[test]
+fn the_fundamental_matrix_is_never_singular() {
+    let (_, derivation) =
+        derive("x: [c, s]\ny: [p, q]\nu: [v, w]\nf_x: {c: -w*s, s: w*c}\nf_y: {p: v*c, q: v*s}\nphi: [c, s]");
+    assert_eq!(derivation.identifiability.result.unwrap().singular_where, ["v = 0"]);
+}
+
+#[test]
+fn values_of_parameters_that_hide_an_unknown_are_refuted() {
+    let (_, zero) = derive("x: [a]\ny: [y]\nu: [u]\nparameters: {k: 0}\nf_x: {a: u}\nf_y: {y: k*a}\nphi: [a]");
+    let (_, equal) = derive(
+        "x: [a, b]\ny: [y, s]\nu: [u]\nparameters: {k: 2, l: 2}\nf_x: {a: u, b: u}\n\
+         f_y: {y: a + k*b, s: a + l*b}\nphi: [a, b]",
+    );
+    for derivation in [zero, equal] {
+        assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Rejected, vec![Code::NeverIdentifiable]));
+        assert_eq!(derivation.identifiability.result.unwrap().kind, Excitation::Never);
+    }
+}

@@ -1,0 +1,132 @@
+"""Checks the verdicts of the zero test's campaign with SymPy and mpmath.
+
+Write the cases, then read them (the second number is how many to sample, all if left out):
+
+    PEBO_CASES=/tmp/cases.tsv cargo test --release -p pebo-gen --test campaign
+    python3 tests/oracle/zero_oracle.py /tmp/cases.tsv 5000
+
+Needs SymPy and mpmath. What decides is the value at random points of the domain, with 50 digits: a
+case called zero must be below 1e-30 wherever it has a real value, one called nonzero must exceed that
+somewhere. `simplify` is asked of short open cases only, for information. Exits with 1 on a wrong verdict.
+"""
+
+import random
+import sys
+from collections import Counter
+
+import mpmath
+import sympy
+
+mpmath.mp.dps = 50
+TINY = mpmath.mpf(10) ** -30
+NAMES = "x y z a b p q r t w".split()
+SYMBOLS = {name: sympy.Symbol(name, real=True) for name in NAMES}
+LOCALS = SYMBOLS | {"abs": sympy.Abs, "atan2": sympy.atan2, "pi": sympy.pi}
+
+
+def real(function, allowed=None):
+    """The real function: not a number outside its real domain."""
+
+    def value(*arguments):
+        if allowed and not allowed(*arguments):
+            raise ValueError
+        return function(*arguments)
+
+    return value
+
+
+def power(base, exponent):
+    if exponent == int(exponent):
+        return base ** int(exponent)
+    if base < 0:
+        raise ValueError
+    return base**exponent
+
+
+
+
+FUNCTIONS = {name: getattr(mpmath, name) for name in "sin cos tan sinh cosh tanh exp atan atan2".split()} | {
+    "abs": abs,
+    "pi": mpmath.pi,
+    "sqrt": real(mpmath.sqrt, lambda a: a >= 0),
+    "log": real(mpmath.log, lambda a: a > 0),
+    "asin": real(mpmath.asin, lambda a: abs(a) <= 1),
+    "acos": real(mpmath.acos, lambda a: abs(a) <= 1),
+    "atan2": real(mpmath.atan2, lambda a, b: (a, b) != (0, 0)),
+    "power": power,
+    "num": mpmath.mpf,
+}
+
+
+def compiled(text):
+    """The formula as Python code over exact decimals, with real powers as calls."""
+    import ast
+
+    class Rewrite(ast.NodeTransformer):
+        def visit_BinOp(self, node):
+            self.generic_visit(node)
+            if isinstance(node.op, ast.Pow):
+                return ast.Call(ast.Name("power", ast.Load()), [node.left, node.right], [])
+            return node
+
+        def visit_Constant(self, node):
+            return ast.Call(ast.Name("num", ast.Load()), [ast.Constant(repr(node.value))], [])
+
+    tree = Rewrite().visit(ast.parse(text.replace("^", "**"), mode="eval"))
+    return compile(ast.fix_missing_locations(tree), "case", "eval")
+
+
+def points(random_source):
+    ranges = {"p": (0.05, 2.5), "q": (0.05, 2.5), "r": (0.05, 2.5), "t": (-0.95, 0.95), "w": (0.05, 1.5)}
+    while True:
+        yield {n: mpmath.mpf(random_source.uniform(*ranges.get(n, (-2.5, 2.5)))) for n in NAMES}
+
+
+def largest(text, random_source, times=12):
+    """The largest magnitude over some points, and how many of them had a value."""
+    code, best, seen = compiled(text), mpmath.mpf(0), 0
+    for _, point in zip(range(times), points(random_source)):
+        try:
+            value = eval(code, FUNCTIONS, point)
+        except (ValueError, ZeroDivisionError, OverflowError):
+            continue
+        seen += 1
+        best = max(best, abs(value))
+    return best, seen
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as file:
+        rows = [line.rstrip("\n").split("\t") for line in file if not line.startswith("#")]
+    source = random.Random(1)
+    if len(sys.argv) > 2 and int(sys.argv[2]) < len(rows):
+        rows = source.sample(rows, int(sys.argv[2]))
+    counts, wrong = Counter(), []
+    for group, said, text in rows:
+        value, seen = largest(text, source)
+        if not seen:
+            counts[group, said, "no value"] += 1
+        elif said == "open":
+            counts[group, said, "is zero" if value < TINY else "is not"] += 1
+        elif (value < TINY) == (said == "zero"):
+            counts[group, said, "confirmed"] += 1
+        else:
+            if said == "nonzero" and largest(text, source, 2000)[0] >= TINY:
+                # Differs on a small part of the domain only.
+                counts[group, said, "confirmed"] += 1
+                continue
+            counts[group, said, "WRONG"] += 1
+            wrong.append((said, text, mpmath.nstr(value, 5)))
+    simplified = 0
+    for group, said, text in [row for row in rows if row[1] == "zero" and len(row[2]) < 60][:40]:
+        simplified += sympy.simplify(sympy.sympify(text.replace("^", "**"), locals=LOCALS)) == 0
+    for key in sorted(counts):
+        print("{:<15} {:<8} {:<10} {:>7}".format(*key, counts[key]))
+    print(f"of at most 40 short proofs, SymPy's simplify follows {simplified}")
+    for said, text, value in wrong[:50]:
+        print(f"WRONG {said}: {text}  (largest value {value})")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
