@@ -183,6 +183,21 @@ const TABLE: &[(&str, &str, Answer)] = &[
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x}\nphi: [2*x]\nphi_left: {x: z1}",
         Rejected(Code::LeftInverseRefuted),
     ),
+    (
+        "angle of too short a period",
+        "x: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: -w*sin(q), b: w*cos(q)}\nphi: [a - cos(q), b - sin(q)]\nangles: {q: pi}",
+        Rejected(Code::LeftInverseRefuted),
+    ),
+    (
+        "inverse sine of what may exceed one",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x}\nphi: [x]\nphi_left: {x: 1000*sin(asin(z1/1000))}",
+        Undecided(Code::LeftInverseUndecided),
+    ),
+    (
+        "identity beside an output that sees nothing",
+        "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {c: v}\nphi: [a, b]\nidentities: [(a - c)^2 + (b - d)^2 - 4]",
+        Accepted("static over-parameterised excitation"),
+    ),
     // The cascade.
     (
         "rate depends on x",

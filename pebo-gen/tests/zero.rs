@@ -130,6 +130,19 @@ const ZERO: &[(&str, &[&str])] = &[
     ("E*(1 - u) + E*u - E", &[]),
     ("0.1 + 0.2 - 0.3", &[]),
     ("x^y*x^z - x^(y + z)", &["x"]),
+    ("atan(x) + atan(1/x) - pi/2", &["x"]),
+    ("asin(x) + acos(x) - pi/2", &["x", "1 - x"]),
+    ("acos(-x) + acos(x) - pi", &["x", "1 - x"]),
+    ("atan(x - y) + atan(y - x)", &[]),
+    ("atan2(y, x) - atan(y/x)", &["x"]),
+    ("atan2(y, x) + atan(x/y) + pi/2", &["-y"]),
+    ("atan2(2*y, 2*x) - atan2(y, x)", &["x"]),
+    ("abs(x - y) - abs(y - x)", &[]),
+    ("abs(2*x*y) - 2*abs(x)*abs(y)", &[]),
+    ("abs(abs(x)) - abs(x)", &[]),
+    ("abs(x^3) - abs(x)^3", &[]),
+    ("log(x*sqrt(y)) - log(x) - log(y)/2", &["x", "y"]),
+    ("log((x + y)^2) - 2*log(x + y)", &["x", "y"]),
 ];
 
 const NON_ZERO: &[(&str, &[&str])] = &[
@@ -147,6 +160,11 @@ const NON_ZERO: &[(&str, &[&str])] = &[
     ("exp(x*y) - exp(x)*exp(y)", &[]),
     ("atan(tan(x)) - x", &[]),
     ("atan2(sin(x), cos(x)) - x", &[]),
+    ("atan2(y, x) - atan(y/x)", &[]),
+    ("atan2(y, x) + atan(x/y) - pi/2", &[]),
+    ("atan(x) + atan(1/x) - pi/2", &["-x"]),
+    ("atan(x) + atan(1/x) - pi/2", &[]),
+    ("abs(x*y) - x*abs(y)", &[]),
     ("asin(sin(x)) - x", &[]),
     ("sqrt(2) - 1.414213562373095048801688724209698", &[]),
     ("pi - 3.14159265358979323846264338327950288", &[]),
@@ -164,8 +182,7 @@ const OPEN: &[(&str, &[&str])] = &[
     ("1/(sqrt(x^2) - abs(x))", &[]),
     ("log(-x^2) - 1", &[]),
     ("sqrt(x)", &["-x"]),
-    ("atan(x) + atan(1/x) - pi/2", &["x"]),
-    ("asin(x) + acos(x) - pi/2", &["x", "1 - x"]),
+    ("cos(pi/5) - (1 + sqrt(5))/4", &[]),
 ];
 
 #[test]

@@ -20,7 +20,7 @@ pub(super) fn remaining(plant: &Plant, domain: &Domain) -> Vec<(Expr, Relation)>
         };
         for part in parts {
             let entry = (part, condition.relation);
-            if !remaining.contains(&entry) && !discharged(arena, domain, entry) {
+            if !remaining.contains(&entry) && !domain.shows(arena, part, condition.relation) {
                 remaining.push(entry);
             }
         }
@@ -36,17 +36,19 @@ fn factors(arena: &Arena, expr: Expr) -> Vec<Expr> {
     }
 }
 
-/// Whether the facts show the condition.
-fn discharged(arena: &Arena, domain: &Domain, (expr, relation): (Expr, Relation)) -> bool {
-    let shown = || {
-        let field = Field::over(arena, &domain.facts, &[expr])?;
-        let fraction = field.fraction(expr)?;
-        match relation {
-            Relation::Positive => field.is_positive(&fraction),
-            Relation::NonNegative => field.is_not_negative(&fraction),
-            Relation::NonZero => Ok(field.is_positive(&fraction)? || field.is_positive(&fraction.opposite())?),
-        }
-    };
-    // What cannot be decided stays a condition.
-    domain.facts.iter().any(|fact| fact == (expr, relation)) || shown().unwrap_or(false)
+impl Domain {
+    /// Whether the facts show that the expression compares so with zero, wherever it has a value.
+    pub(super) fn shows(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        let shown = || {
+            let field = Field::over(arena, &self.facts, &[expr])?;
+            let fraction = field.fraction(expr)?;
+            match relation {
+                Relation::Positive => field.is_positive(&fraction),
+                Relation::NonNegative => field.is_not_negative(&fraction),
+                Relation::NonZero => Ok(field.is_positive(&fraction)? || field.is_positive(&fraction.opposite())?),
+            }
+        };
+        // What cannot be decided is not shown.
+        self.facts.iter().any(|fact| fact == (expr, relation)) || shown().unwrap_or(false)
+    }
 }

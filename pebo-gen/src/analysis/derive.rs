@@ -1,7 +1,7 @@
 //! The order of the claims: what each builds on.
 
 use crate::plant::Plant;
-use crate::source::Diagnostic;
+use crate::source::{Code, Diagnostic};
 
 use super::design::{Claim, Derivation, Outcome, Verdict};
 use super::{cascade, conditions, identifiability, left_inverse, regression};
@@ -25,6 +25,27 @@ impl Derivation {
                 identifiability::prove(plant, &domain, cascade, result, inverse, &mut found)
             }
             _ => Claim::skipped(),
+        };
+        let (regression, identifiability) = match &cascade.result {
+            // What the outputs' rates do not show, an identity may.
+            Some(result) if identifiability.verdict == Verdict::Refuted && !plant.identities.is_empty() => {
+                let mut others = Vec::new();
+                let other = regression::from_identities(plant, &domain, inverse, &mut others);
+                let seen = other
+                    .result
+                    .as_ref()
+                    .map(|r| identifiability::prove(plant, &domain, result, r, inverse, &mut others))
+                    .filter(|seen| seen.verdict == Verdict::Proved);
+                match seen {
+                    Some(seen) => {
+                        found.retain(|d| d.code != Code::NeverIdentifiable);
+                        found.extend(others);
+                        (other, seen)
+                    }
+                    None => (regression, identifiability),
+                }
+            }
+            _ => (regression, identifiability),
         };
         let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
         Self {

@@ -7,8 +7,8 @@
 use std::collections::BTreeMap;
 
 use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
-use crate::cas::interval::{Interval, Precision};
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::plant::Plant;
@@ -91,7 +91,10 @@ impl Verdict {
     }
 }
 
-/// Whether the formula has a value wherever the plant has; where not, says so.
+/// Whether the formula provably has a value wherever the plant has; where not, says so.
+///
+/// What stands under roots and logarithms is read off the formula as it stands, since substituting
+/// would simplify its domain away, and must have its sign by the facts.
 fn defined(
     plant: &Plant,
     domain: &Domain,
@@ -100,49 +103,42 @@ fn defined(
     span: Span,
     found: &mut Vec<Diagnostic>,
 ) -> bool {
-    /// Points that are looked at: a root or logarithm of something of changing sign shows in a few.
-    const POINTS: usize = 24;
-    /// Enough that an enclosure next to the end of a domain is the exception.
-    const PRECISION: Precision = Precision::new(256);
     let arena = &plant.arena;
-    if arena.postorder(&[formula]).iter().all(|part| is_total(arena, *part)) {
-        return true;
-    }
-    let mut given = plant.transform();
-    given.extend(plant.rates().into_values());
-    // The formula as it stands, over enclosures of z: substituting would simplify its domain away.
-    let missing = domain.points(arena, &given).take(POINTS).find(|point| {
-        let Some(mut values) = arena.enclose_all(&given, point, PRECISION) else { return false };
-        values.truncate(plant.z.len());
-        let mut known: BTreeMap<Symbol, Interval> = plant.z.iter().copied().zip(values).collect();
-        known.extend(point.iter().filter_map(|(s, v)| Some((*s, Interval::from_rational(v, PRECISION)?))));
-        arena.enclose_over(&[formula], &known, PRECISION).is_none()
-    });
-    let Some(point) = missing else { return true };
-    let place: Vec<String> = arena
-        .symbols_of(&given[..plant.z.len()])
-        .iter()
-        .filter_map(|s| Some(format!("{} = {}", arena.name(*s), arena.print(arena.number(point.get(s)?.clone())))))
-        .collect();
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    let unproved =
+        arena.postorder(&[formula]).into_iter().flat_map(|part| asked(arena, part)).find(|(part, relation)| {
+            let at_phi = arena.substitute(*part, &transform);
+            arena.as_number(at_phi).is_none() && !domain.shows(arena, at_phi, *relation)
+        });
+    let Some((part, relation)) = unproved else { return true };
+    let sign = if relation == Relation::Positive { "> 0" } else { ">= 0" };
+    let at_phi = arena.print(arena.substitute(part, &transform));
     found.push(
         Diagnostic::error(
             Code::LeftInverseUndecided,
             span,
             format!("phi_left gives back {} only where it has a value", arena.name(state)),
         )
-        .label("this state is recovered only in a part of the assumed domain")
-        .note(format!("`{}` has no real value that could be enclosed where {}", arena.print(formula), place.join(", ")))
-        .help("state the domain under `assume`, as `x > 0`"),
+        .label(format!("this needs {} {sign}", arena.print(part)))
+        .note(format!("at z = phi(x, y) that is `{at_phi} {sign}`, which the assumptions do not show"))
+        .help(format!("if it holds, write `{at_phi} {sign}` under `assume`")),
     );
     false
 }
 
-/// Whether an operation has a value at almost all operands: all but roots, logarithms and the like.
-fn is_total(arena: &Arena, part: Expr) -> bool {
+/// What an operation asks of its operand: a root and a logarithm a sign, an inverse sine a bound.
+fn asked(arena: &Arena, part: Expr) -> Vec<(Expr, Relation)> {
     match arena.node(part) {
-        Node::Product(product) => product.factors.iter().all(|(_, exponent)| exponent.is_integer()),
-        Node::Call(function, _) => !matches!(function, Function::Log | Function::Asin | Function::Acos),
-        _ => true,
+        Node::Product(product) => {
+            let roots = product.factors.iter().filter(|(_, exponent)| !exponent.is_integer());
+            roots.map(|(base, _)| (*base, Relation::NonNegative)).collect()
+        }
+        Node::Call(Function::Log, inside) => vec![(inside[0], Relation::Positive)],
+        Node::Call(Function::Asin | Function::Acos, inside) => {
+            let room = arena.sub(arena.one(), arena.mul(inside[0], inside[0]));
+            vec![(room, Relation::NonNegative)]
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -207,8 +203,24 @@ fn check(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) -> (Expr,
     if plain.is_zero() {
         return (difference, plain);
     }
+    let unlike = unlike_after(plant, domain, state, period);
+    if let Some(answer) = unlike {
+        return answer;
+    }
     let turn = arena.div(arena.mul(arena.number(2), arena.pi()), period);
     turns(arena, domain, arena.mul(difference, turn))
+}
+
+/// A rate that is not the same a period further on: then the state is no angle of that period, and
+/// knowing it up to the period is not knowing it.
+fn unlike_after(plant: &Plant, domain: &Domain, state: Symbol, period: Expr) -> Option<(Expr, Answer)> {
+    let arena = &plant.arena;
+    let turned = BTreeMap::from([(state, arena.add(arena.of_symbol(state), period))]);
+    plant.rates().into_values().find_map(|rate| {
+        let change = arena.sub(arena.substitute(rate, &turned), rate);
+        let answer = decide(arena, change, domain);
+        (!answer.is_zero()).then_some((change, answer))
+    })
 }
 
 /// Decides whether an angle is a whole number of turns: its sine is 0 and its cosine 1.

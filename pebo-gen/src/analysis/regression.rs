@@ -209,12 +209,11 @@ fn over_parameterised(
         let recovered = separation::recover(plant, domain, &joined.eta)?;
         Some((joined, recovered))
     });
-    let (separated, recovered) = match joined {
-        Some(found) => found,
-        None => {
-            let recovered = separation::recover(plant, domain, &separated.eta)?;
-            (separated, recovered)
-        }
+    let (separated, recovered) = if let Some(both) = joined {
+        both
+    } else {
+        let recovered = separation::recover(plant, domain, &separated.eta)?;
+        (separated, recovered)
     };
     if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
         return Some(refusal);
@@ -348,7 +347,7 @@ fn up_to_turns(plant: &Plant) -> Diagnostic {
 }
 
 /// A static regression `Phi_0 = Phi_1 eta` from the identities.
-fn from_identities(
+pub(super) fn from_identities(
     plant: &Plant,
     domain: &Domain,
     left_inverse: Option<&LeftInverse>,

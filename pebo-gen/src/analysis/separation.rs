@@ -227,16 +227,23 @@ pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Re
         .filter(|(s, _)| plant.theta.contains(s))
         .collect();
     let rest: Vec<Symbol> = plant.theta.iter().copied().filter(|t| !direct.contains_key(t)).collect();
+    // The others are looked for with these in their place.
+    let equations: Vec<Equation> = equations
+        .iter()
+        .map(|e| Equation { formula: arena.substitute(e.formula, &direct), value: e.value })
+        .filter(|e| e.formula != e.value)
+        .collect();
     let mut solved = if rest.is_empty() { BTreeMap::new() } else { solve(arena, domain, &equations, &rest).ok()? };
     solved.extend(direct.into_iter().map(|(symbol, value)| (symbol, vec![value])));
     let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
+    let unknown: BTreeSet<Symbol> = plant.theta.iter().copied().collect();
     let mut recovered = Recovered { theta: Vec::new(), turning: Vec::new() };
     for (index, theta) in plant.theta.iter().enumerate() {
-        let candidates = solved.get(theta)?;
+        let candidates = solved.get(theta)?.iter().filter(|f| !arena.depends_on(**f, &unknown));
         let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
-        let exact = candidates.iter().find(|f| decide(arena, difference(**f), domain).is_zero());
+        let exact = candidates.clone().find(|f| decide(arena, difference(**f), domain).is_zero());
         recovered.turning.extend(exact.is_none().then_some(index));
-        let formula = exact.or_else(|| candidates.iter().find(|f| is_whole_turns(arena, domain, difference(**f))));
+        let formula = exact.or_else(|| candidates.clone().find(|f| is_whole_turns(arena, domain, difference(**f))));
         recovered.theta.push(*formula?);
     }
     Some(recovered)

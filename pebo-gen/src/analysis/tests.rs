@@ -1,6 +1,7 @@
 //! Verdicts that were wrong once, each on the smallest plant that showed it.
 
 use super::{Derivation, Excitation, Outcome, Verdict};
+use crate::cas::Expr;
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::source::{Code, Source};
@@ -39,9 +40,11 @@ fn a_state_that_a_turn_of_another_moves_is_not_determined() {
 fn functions_of_theta_with_proportional_factors_are_one_unknown() {
     let (plant, derivation) = derive("x: [a, b]\ny: [y]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {y: a + b^2}\nphi: [a, b]");
     assert_eq!(derivation.outcome, Outcome::Accepted);
-    let eta = &derivation.regression.result.as_ref().unwrap().eta;
-    let eta: Vec<String> = eta.iter().map(|e| plant.arena.print(*e)).collect();
-    assert_eq!(eta, ["theta1 + theta2^2", "theta2"]);
+    let regression = derivation.regression.result.as_ref().unwrap();
+    let print = |exprs: &[Expr]| -> Vec<String> { exprs.iter().map(|e| plant.arena.print(*e)).collect() };
+    assert_eq!(print(&regression.eta), ["theta1 + theta2^2", "theta2"]);
+    // In eta alone: emitted code has no theta to read.
+    assert_eq!(print(&regression.theta), ["eta1 - eta2^2", "eta2"]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::domain::Domain;
 use super::enclosure::Point;
 use super::expr::Expr;
 use super::field::{Field, Obstacle};
-use super::interval::Interval;
+use super::interval::{Interval, Precision};
 
 /// Points of the domain that a search looks at: an analytic expression that vanishes at so many, or has
 /// no value there, is not one that more of them would help with.
@@ -47,6 +47,10 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     if arena.is_zero(expr) {
         return Answer::Zero;
     }
+    // One cheap look first: what plainly differs from zero needs no normal form.
+    if let Some(witness) = domain.points(arena, &[expr]).next().and_then(|point| glimpse(arena, expr, point)) {
+        return Answer::NonZero(witness);
+    }
     let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| field.fraction(expr));
     match normal {
         Ok(fraction) if fraction.is_zero() => match point_of(arena, expr, domain) {
@@ -56,6 +60,12 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
         Ok(_) => refute(arena, expr, domain).map_or(Answer::Open(Obstacle::NoWitness), Answer::NonZero),
         Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
     }
+}
+
+/// Whether the least precision shows that the expression is not zero at the point.
+fn glimpse(arena: &Arena, expr: Expr, point: Point) -> Option<Witness> {
+    let value = arena.enclose(expr, &point, Precision::new(64)).filter(|value| !value.contains_zero())?;
+    Some(Witness { point, value })
 }
 
 /// Looks for a point of the domain at which the expression provably is not zero.

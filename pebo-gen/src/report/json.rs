@@ -3,11 +3,11 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
+use super::conditions;
 use crate::analysis::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
     RegressionKind, Verdict, Witness,
 };
-use super::conditions;
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Located, Source};

@@ -106,10 +106,6 @@ fn admit(size: usize) -> Result<(), Diagnostic> {
     if size <= SIZE_LIMIT {
         return Ok(());
     }
-    Err(Diagnostic::error(
-        Code::FileTooLarge,
-        Span::default(),
-        format!("the file has more than {SIZE_LIMIT} bytes"),
-    )
-    .help("give a model file; a model needs a few kilobytes"))
+    Err(Diagnostic::error(Code::FileTooLarge, Span::default(), format!("the file has more than {SIZE_LIMIT} bytes"))
+        .help("give a model file; a model needs a few kilobytes"))
 }

@@ -19,8 +19,15 @@ type Pair = (Fraction, Fraction);
 impl Field<'_> {
     /// Sine and cosine of an argument.
     pub(super) fn angle(&self, argument: &Fraction) -> Result<Pair, Obstacle> {
+        // The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one angle, which is still
+        // the same kernel wherever it occurs.
+        const MOST_SUMMANDS: usize = 10;
+        let mut parts = self.split(argument)?;
+        if parts.len() > MOST_SUMMANDS {
+            parts = vec![self.undivided(argument)?];
+        }
         let mut total = (Fraction::zero(), Fraction::one());
-        for (key, factor) in self.split(argument)? {
+        for (key, factor) in parts {
             let pair = match self.arena.node(key) {
                 Node::Pi => self.multiple_of_pi(&factor)?,
                 _ => self.multiple_of(key, &factor)?,

@@ -92,13 +92,13 @@ impl Field<'_> {
             // Beyond the angle that goes in, only sine and cosine of these are used (see `angle`).
             Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => match self.angle_within(expr)? {
                 Some(angle) => Ok(angle),
-                None => Ok(self.entered(self.tidy_call(expr)?, None, false)),
+                None => self.inverse_function(expr),
             },
         }
     }
 
     /// The same call over arguments in normal form, so that equal arguments make equal kernels.
-    fn tidy_call(&self, expr: Expr) -> Result<Expr, Obstacle> {
+    pub(super) fn tidy_call(&self, expr: Expr) -> Result<Expr, Obstacle> {
         let Node::Call(function, arguments) = self.arena.node(expr) else { return Ok(expr) };
         let mut tidied = Vec::with_capacity(arguments.len());
         for argument in arguments.iter() {

@@ -49,7 +49,9 @@ impl Field<'_> {
         let (Some(top), Some(bottom)) = (self.sign(&num)?, self.sign(&den)?) else {
             return self.log_kernel(argument);
         };
-        if top == Sign::Zero || top != bottom {
+        // Where the logarithm has a value, what is not negative is positive.
+        let agree = top.is_positive_or_zero() == bottom.is_positive_or_zero();
+        if top == Sign::Zero || !agree {
             return self.log_kernel(argument);
         }
         let oriented = |poly: Poly| if top == Sign::Negative { -&poly } else { poly };
@@ -71,12 +73,34 @@ impl Field<'_> {
             let expr = self.kernel(kernel);
             let log = match self.arena.node(expr) {
                 Node::Call(Function::Exp, inside) => self.fraction(inside[0])?,
+                // log(a^(1/q)) = log(a)/q: both have values where a is positive.
+                Node::Product(product) if self.is_plain_root(expr) => {
+                    let (base, exponent) = &product.factors[0];
+                    self.scale(&self.logarithm(&self.fraction(*base)?)?, exponent)?
+                }
                 _ => self.log_kernel(&Fraction::polynomial(Poly::variable(kernel)))?,
             };
             total = self.add(&total, &self.scale(&log, &Rational::from(i64::from(times)))?)?;
         }
-        if !rest.is_one() {
-            total = self.add(&total, &self.log_kernel(&Fraction::polynomial(rest))?)?;
+        let mut left = rest.clone();
+        for (factor, times) in rest.square_free(self.limit())?.factors {
+            // Of an even power, the magnitude counts; of an odd one, only what is positive comes out.
+            let size = match self.sign(&factor)? {
+                Some(Sign::Positive) => factor.clone(),
+                Some(Sign::Negative) if times % 2 == 0 => -&factor,
+                _ => continue,
+            };
+            if size == left {
+                break;
+            }
+            if let Some(quotient) = left.div_exact(&factor.pow(times, self.limit())?, self.limit())? {
+                left = quotient;
+                let log = self.log_kernel(&Fraction::polynomial(size))?;
+                total = self.add(&total, &self.scale(&log, &Rational::from(i64::from(times)))?)?;
+            }
+        }
+        if !left.is_one() {
+            total = self.add(&total, &self.log_kernel(&Fraction::polynomial(left))?)?;
         }
         Ok(total)
     }

@@ -20,6 +20,7 @@ mod branch;
 mod convert;
 mod exponent;
 mod fraction;
+mod inverse;
 mod kernel;
 mod root;
 mod show;
@@ -41,7 +42,7 @@ pub use fraction::Fraction;
 use kernel::Kernel;
 
 /// Steps of polynomial arithmetic that one field may spend, some seconds' worth.
-const STEPS: u64 = 400_000_000;
+const STEPS: u64 = 50_000_000;
 
 /// How often the bases of angles and exponents may be refined before the field is given up.
 const MOST_ROUNDS: usize = 12;

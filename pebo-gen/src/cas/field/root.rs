@@ -95,7 +95,9 @@ impl Field<'_> {
         }
         let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
         let shown = self.arena.power(self.show(&Fraction::polynomial(radicand.clone())), &exponent);
-        let root = self.entered(shown, Some(Relation { degree, value: radicand.clone() }), true);
+        // A root is zero where its radicand is: positive by nature is only that of a number.
+        let positive = radicand.is_constant();
+        let root = self.entered(shown, Some(Relation { degree, value: radicand.clone() }), positive);
         self.pow(&root, i64::from(times))
     }
 
@@ -135,8 +137,36 @@ impl Field<'_> {
         Ok((outside, inside))
     }
 
-    /// `|poly|`: by its sign where that is known, else a kernel whose square is known.
+    /// `|poly|`: by its sign where that is known, else the product of the magnitudes of its parts.
     pub(super) fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
+        match self.sign(poly)? {
+            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
+            Some(_) => return Ok(Fraction::polynomial(-poly)),
+            None => {}
+        }
+        let parts = poly.square_free(self.limit())?;
+        let mut total = Fraction::polynomial(Poly::constant(parts.content.abs()));
+        for (factor, times) in parts.factors {
+            let mut rest = factor.clone();
+            let mut pieces = Vec::new();
+            for &(variable, exponent) in factor.monomial_content().powers() {
+                let power = Poly::variable(variable).pow(exponent, self.limit())?;
+                if let Some(quotient) = rest.div_exact(&power, self.limit())? {
+                    rest = quotient;
+                    pieces.push((Poly::variable(variable), exponent));
+                }
+            }
+            pieces.push((rest, 1));
+            for (piece, exponent) in pieces {
+                let size = self.size(&piece)?;
+                total = self.mul(&total, &self.pow(&size, i64::from(exponent) * i64::from(times))?)?;
+            }
+        }
+        Ok(total)
+    }
+
+    /// `|poly|` for what does not split: by its sign where that is known, else a kernel whose square is known.
+    fn size(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
         match self.sign(poly)? {
             Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
             Some(_) => return Ok(Fraction::polynomial(-poly)),
@@ -193,7 +223,7 @@ impl Field<'_> {
             .collect()
     }
 
-    fn is_plain_root(&self, expr: Expr) -> bool {
+    pub(super) fn is_plain_root(&self, expr: Expr) -> bool {
         match self.arena.node(expr) {
             Node::Product(product) => {
                 product.coefficient.is_one()

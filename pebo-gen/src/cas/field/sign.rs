@@ -159,6 +159,9 @@ impl Field<'_> {
         if self.kernels.borrow().get(variable as usize).is_some_and(|kernel| kernel.positive) {
             return Some(Sign::Positive);
         }
+        if let Some(sign) = self.sign_by_nature(variable) {
+            return Some(sign);
+        }
         for (fact, compared) in self.signs.borrow().iter() {
             if fact.variables() != [variable] {
                 continue;
@@ -182,6 +185,28 @@ impl Field<'_> {
             }
         }
         None
+    }
+
+    /// Roots and absolute values are not negative; a root of something positive is positive.
+    fn sign_by_nature(&self, variable: u32) -> Option<Sign> {
+        use crate::cas::expr::Node;
+        use crate::cas::function::Function;
+        let (expr, radicand) = {
+            let kernels = self.kernels.borrow();
+            let kernel = kernels.get(variable as usize)?;
+            (kernel.expr, kernel.relation.as_ref().map(|relation| relation.value.clone()))
+        };
+        if matches!(self.arena.node(expr), Node::Call(Function::Abs, _)) {
+            return Some(Sign::NonNegative);
+        }
+        if !self.is_plain_root(expr) {
+            return None;
+        }
+        // Relations lead to earlier kernels, so this ends.
+        match self.plain_sign(&radicand?) {
+            Some(Sign::Positive) => Some(Sign::Positive),
+            _ => Some(Sign::NonNegative),
+        }
     }
 
     /// As a positive multiple of a fact plus what is not negative, or the negation of that; also after
@@ -264,8 +289,18 @@ impl Field<'_> {
         Ok(self.sign_of(fraction)?.is_some_and(Sign::is_positive_or_zero))
     }
 
-    /// Whether the polynomial is known to be zero nowhere, whatever is assumed.
+    /// Whether the polynomial is known to be zero nowhere by the nature of its kernels: exponentials,
+    /// and roots of what is positive.
     pub fn never_zero(&self, poly: &Poly) -> bool {
-        poly.term_count() == 1 && poly.variables().iter().all(|v| self.kernels.borrow()[*v as usize].positive)
+        let never = |variable: &u32| {
+            let (positive, radicand) = {
+                let kernel = &self.kernels.borrow()[*variable as usize];
+                let root = kernel.relation.as_ref().filter(|_| self.is_plain_root(kernel.expr));
+                (kernel.positive, root.map(|relation| relation.value.clone()))
+            };
+            let rooted = |radicand: Poly| self.sign(&radicand).is_ok_and(|sign| sign == Some(Sign::Positive));
+            positive || radicand.is_some_and(rooted)
+        };
+        poly.term_count() == 1 && poly.variables().iter().all(never)
     }
 }
