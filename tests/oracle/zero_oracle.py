@@ -6,8 +6,8 @@ Write the cases, then read them (the second number is how many to sample, all if
     python3 tests/oracle/zero_oracle.py /tmp/cases.tsv 5000
 
 Needs SymPy and mpmath. What decides is the value at random points of the domain, with 50 digits: a
-case called zero must be below 1e-30 wherever it has a real value, one called nonzero must exceed that
-somewhere. `simplify` is asked of short open cases only, for information. Exits with 1 on a wrong verdict.
+case called zero must shrink to nothing with 150 digits wherever it has a real value, one called nonzero must
+not somewhere. `simplify` is asked of short open cases only, for information. Exits with 1 on a wrong verdict.
 """
 
 import random
@@ -83,15 +83,19 @@ def points(random_source):
 
 
 def largest(text, random_source, times=12):
-    """The largest magnitude over some points, and how many of them had a value."""
+    """The largest magnitude over some points, zero where more digits let it shrink, and how many had a value."""
     code, best, seen = compiled(text), mpmath.mpf(0), 0
     for _, point in zip(range(times), points(random_source)):
         try:
-            value = eval(code, FUNCTIONS, point)
+            with mpmath.workdps(50):
+                coarse = abs(eval(code, FUNCTIONS, point))
+            with mpmath.workdps(150):
+                fine = abs(eval(code, FUNCTIONS, point))
         except (ValueError, ZeroDivisionError, OverflowError):
             continue
         seen += 1
-        best = max(best, abs(value))
+        # Rounding shrinks by a hundred orders, a value that differs from zero stays.
+        best = max(best, fine if fine > coarse * TINY else mpmath.mpf(0))
     return best, seen
 
 

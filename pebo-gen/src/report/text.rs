@@ -34,7 +34,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     });
     let conditions = super::conditions(&plant.arena, &derivation.conditions);
     if !conditions.is_empty() && derivation.outcome == Outcome::Accepted {
-        text.push_str(&format!("  where {}\n", conditions.join(", ")));
+        text.extend(["  where ", &conditions.join(", "), "\n"]);
     }
     text
 }
