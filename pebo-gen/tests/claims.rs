@@ -335,3 +335,22 @@ fn conditions_are_listed_unless_the_assumptions_discharge_them() {
     assert_eq!(remaining("k != 0, r >= 0"), ["r NonZero"]);
     assert_eq!(remaining("k < 0, r > 0"), Vec::<String>::new());
 }
+
+/// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
+#[test]
+fn points_without_a_value_refute_nothing() {
+    let plant = derived("x: [p]\ny: [x]\nu: [u]\nf_x: {p: u + p*(sqrt(x)^2 - abs(x))}\nf_y: {x: p}\nphi: [p]");
+    assert_eq!(plant.derivation.outcome, Outcome::Accepted);
+    let conditions: Vec<String> =
+        plant.derivation.conditions.iter().map(|(e, r)| format!("{} {r:?}", plant.plant.arena.print(*e))).collect();
+    assert_eq!(conditions, ["x NonNegative"]);
+}
+
+/// A root can vanish: what is divided by it stays a condition.
+#[test]
+fn a_root_below_a_fraction_bar_is_a_condition() {
+    let plant = derived("x: [p]\ny: [r]\nu: [u]\nassume: [r >= 0]\nf_x: {p: u/sqrt(r)}\nf_y: {r: p}\nphi: [p]");
+    let conditions: Vec<String> =
+        plant.derivation.conditions.iter().map(|(e, r)| format!("{} {r:?}", plant.plant.arena.print(*e))).collect();
+    assert_eq!(conditions, ["r NonZero"]);
+}

@@ -55,7 +55,7 @@ impl Derivation {
             left_inverse,
             regression,
             identifiability,
-            conditions: conditions::remaining(plant, &domain),
+            conditions: conditions::remaining(plant, &plant.assumed()),
             diagnostics: found,
         }
     }

@@ -147,7 +147,11 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) 
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let other = BTreeMap::from([(state, arena.substitute(formula, &transform))]);
-    let facts = domain.facts.iter().all(|(fact, _)| !arena.symbols_of(&[fact]).contains(&state));
+    // The other state must be one of the domain too; what only must not vanish rules out no open set.
+    let concerns = |(fact, relation): (Expr, Relation)| {
+        relation != Relation::NonZero && arena.symbols_of(&[fact]).contains(&state)
+    };
+    let facts = !domain.facts.iter().any(concerns);
     facts
         && plant
             .transform()

@@ -138,8 +138,20 @@ impl Plant {
         (1..=count).map(|i| self.arena.symbol(&format!("eta{i}"))).collect()
     }
 
-    /// What is assumed of values: the author's inequalities, and the values of the parameters.
+    /// Where the claims are made: the assumed values at which the formulas as written have values.
+    ///
+    /// Without the second part a point where the author's `sqrt(x)` does not exist could count against
+    /// a claim, since construction makes `x` of its square.
     pub fn domain(&self) -> Domain {
+        let mut domain = self.assumed();
+        for condition in &self.conditions {
+            domain.facts.assume(condition.expr, condition.relation);
+        }
+        domain
+    }
+
+    /// What is assumed of values: the author's inequalities, and the values of the parameters.
+    pub fn assumed(&self) -> Domain {
         let mut domain = Domain::default();
         for assumption in &self.assumptions {
             domain.facts.assume(assumption.expr, assumption.relation);
