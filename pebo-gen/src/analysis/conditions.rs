@@ -49,6 +49,8 @@ impl Domain {
             }
         };
         // What cannot be decided is not shown.
-        self.facts.iter().any(|fact| fact == (expr, relation)) || shown().unwrap_or(false)
+        self.facts.iter().any(|fact| fact == (expr, relation))
+            || shown().unwrap_or(false)
+            || self.sign_over_box(arena, expr).is_some_and(|positive| positive || relation == Relation::NonZero)
     }
 }

@@ -46,10 +46,5 @@ fn over_common_denominator(field: &Field<'_>, fractions: &[Fraction]) -> Result<
     for fraction in fractions {
         common = common.lcm(fraction.denominator(), work)?;
     }
-    let common = field.of_polynomial(&common)?;
-    let mut numerators = Vec::with_capacity(fractions.len());
-    for fraction in fractions {
-        numerators.push(field.mul(fraction, &common)?.numerator().clone());
-    }
-    Ok(numerators)
+    fractions.iter().map(|fraction| field.over_denominator(fraction, &common)).collect()
 }

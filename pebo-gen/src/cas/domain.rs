@@ -9,10 +9,14 @@ use super::arena::Arena;
 use super::enclosure::Point;
 use super::expr::{Expr, Node, Symbol};
 use super::facts::{Facts, Relation};
+use super::interval::Precision;
 use super::rational::Rational;
 
 /// How many points are looked at before a search gives up.
 const MOST_TRIALS: u64 = 400;
+
+/// Trials with small integers and random signs.
+const PLAIN_TRIALS: u64 = 8;
 
 /// The assumed domain of a question: inequalities, and symbols whose values are given.
 #[derive(Clone, Debug, Default)]
@@ -39,15 +43,23 @@ impl Domain {
         (0..MOST_TRIALS).filter_map(move |trial| {
             let mut draw = Draw::new(trial);
             let mut point = Point::new();
-            for &symbol in &symbols {
+            for (index, &symbol) in symbols.iter().enumerate() {
                 let value = match self.fixed.get(&symbol) {
                     Some(value) => value.clone(),
-                    None => draw.value(ranges.get(&symbol)),
+                    None => draw.value(ranges.get(&symbol), index),
                 };
                 point.insert(symbol, value);
             }
             facts.iter().all(|fact| holds(arena, *fact, &point)).then_some(point)
         })
+    }
+
+    /// What the facts say directly of the least and greatest values of symbols, rounded outward.
+    pub(super) fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> BTreeMap<Symbol, (Rational, Rational)> {
+        let facts: Vec<_> = self.facts.iter().collect();
+        let ranges = ranges(arena, &facts);
+        let both = |(symbol, range): (Symbol, Range)| Some((symbol, (range.low?, range.high?)));
+        ranges.into_iter().filter(|(symbol, _)| symbols.contains(symbol)).filter_map(both).collect()
     }
 
     /// The facts that share a symbol with the question, directly or through other facts.
@@ -85,6 +97,7 @@ fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> 
             continue;
         }
         let Some((symbol, slope, constant)) = affine(arena, *expr) else { continue };
+        // Of an irrational constant the greater end, which only widens the range.
         let Some(bound) = (-&constant).checked_div(&slope) else { continue };
         let range = ranges.entry(symbol).or_default();
         if slope.is_negative() {
@@ -96,7 +109,7 @@ fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> 
     ranges
 }
 
-/// `slope * symbol + constant`, if the expression is that.
+/// `slope * symbol + constant`, if the expression is at most that, by no more than rounding.
 fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
     let unit = |e: Expr| arena.as_symbol(e);
     match arena.node(expr) {
@@ -107,10 +120,21 @@ fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
             }
             _ => None,
         },
-        Node::Sum(sum) => match sum.terms.as_slice() {
-            [(term, slope)] => Some((unit(*term)?, slope.clone(), sum.constant.clone())),
-            _ => None,
-        },
+        Node::Sum(sum) => {
+            let mut constant = sum.constant.clone();
+            let mut found = None;
+            for (term, slope) in &sum.terms {
+                match unit(*term) {
+                    Some(symbol) if found.is_none() => found = Some((symbol, slope.clone())),
+                    Some(_) => return None,
+                    None => {
+                        let value = arena.enclose(*term, &Point::new(), Precision::new(64))?;
+                        constant = &constant + &value.above_multiples(slope)?;
+                    }
+                }
+            }
+            found.map(|(symbol, slope)| (symbol, slope, constant))
+        }
         _ => None,
     }
 }
@@ -141,21 +165,38 @@ impl Draw {
     }
 
     /// A value within the range; small integers in the first trials, fractions later.
-    fn value(&mut self, range: Option<&Range>) -> Rational {
+    ///
+    /// After the first trials, the signs of five symbols go through all patterns: what differs from zero
+    /// only where several of them are negative would be rare among random signs.
+    fn value(&mut self, range: Option<&Range>, index: usize) -> Rational {
         let (low, high) = range.map_or((None, None), |range| (range.low.as_ref(), range.high.as_ref()));
         let size = 3 + i64::try_from(self.trial / 8).unwrap_or(0);
-        let parts = if self.trial < 8 { 1 } else { 1 + i64::try_from(self.trial % 7).unwrap_or(0) };
+        let parts = if self.trial < PLAIN_TRIALS { 1 } else { 1 + i64::try_from(self.trial % 7).unwrap_or(0) };
         let ratio = |n: i64, d: i64| Rational::new(n, d).unwrap_or(Rational::ONE);
+        // Now and then near zero, or near the only bound: there inverse functions have values.
+        let small = match self.trial % 8 {
+            3 => Some(9),
+            7 => Some(90),
+            _ => None,
+        };
+        let distance = match small {
+            Some(parts) => ratio(self.integer(1, 8), parts),
+            None => ratio(self.integer(1, size * parts), parts),
+        };
         match (low, high) {
             (Some(low), Some(high)) => {
                 let share = ratio(self.integer(1, 8 + self.trial.cast_signed()), 9 + self.trial.cast_signed());
                 low + &(&(high - low) * &share)
             }
-            (Some(low), None) => low + &ratio(self.integer(1, size * parts), parts),
-            (None, Some(high)) => high - &ratio(self.integer(1, size * parts), parts),
+            (Some(low), None) => low + &distance,
+            (None, Some(high)) => high - &distance,
             (None, None) => {
-                let magnitude = ratio(self.integer(1, size * parts), parts);
-                if self.integer(0, 2) == 0 { -&magnitude } else { magnitude }
+                let drawn = self.integer(0, 2) == 0;
+                let negative = match self.trial.checked_sub(PLAIN_TRIALS) {
+                    Some(pattern) if pattern < 32 && index < 5 => pattern >> index & 1 == 1,
+                    _ => drawn,
+                };
+                if negative { -&distance } else { distance }
             }
         }
     }

@@ -15,6 +15,9 @@ use super::interval::{Interval, Precision};
 /// no value there, is not one that more of them would help with.
 const MOST_POINTS: usize = 64;
 
+/// Points at which the least precision is tried before the normal form.
+const GLIMPSES: usize = 3;
+
 /// The answer to whether an expression is zero.
 #[derive(Clone, Debug)]
 pub enum Answer {
@@ -47,17 +50,19 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     if arena.is_zero(expr) {
         return Answer::Zero;
     }
-    // One cheap look first: what plainly differs from zero needs no normal form.
-    if let Some(witness) = domain.points(arena, &[expr]).next().and_then(|point| glimpse(arena, expr, point)) {
+    // A cheap look first: what plainly differs from zero needs no normal form.
+    if let Some(witness) = domain.points(arena, &[expr]).take(GLIMPSES).find_map(|point| glimpse(arena, expr, point)) {
         return Answer::NonZero(witness);
     }
-    let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| field.fraction(expr));
+    let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
+        let fraction = field.fraction(expr)?;
+        if fraction.is_zero() { Ok(()) } else { Err(field.doubt(&fraction)) }
+    });
     match normal {
-        Ok(fraction) if fraction.is_zero() => match point_of(arena, expr, domain) {
+        Ok(()) => match point_of(arena, expr, domain) {
             Some(_) => Answer::Zero,
             None => Answer::Open(Obstacle::NoPoint),
         },
-        Ok(_) => refute(arena, expr, domain).map_or(Answer::Open(Obstacle::NoWitness), Answer::NonZero),
         Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
     }
 }

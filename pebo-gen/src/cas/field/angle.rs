@@ -6,39 +6,35 @@
 
 use crate::cas::expr::{Expr, Node};
 use crate::cas::function::Function;
+use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
-use crate::cas::rational::{Rational, half};
+use crate::cas::rational::Rational;
 
 use super::fraction::{Fraction, negated};
 use super::kernel::Relation;
+use super::range::Range;
 use super::{Family, Field, Obstacle};
 
 /// Sine and cosine of one angle.
-type Pair = (Fraction, Fraction);
+pub(super) type Pair = (Fraction, Fraction);
 
 impl Field<'_> {
     /// Sine and cosine of an argument.
     pub(super) fn angle(&self, argument: &Fraction) -> Result<Pair, Obstacle> {
-        // The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one angle, which is still
-        // the same kernel wherever it occurs.
-        const MOST_SUMMANDS: usize = 10;
-        let mut parts = self.split(argument)?;
-        if parts.len() > MOST_SUMMANDS {
-            parts = vec![self.undivided(argument)?];
-        }
         let mut total = (Fraction::zero(), Fraction::one());
-        for (key, factor) in parts {
+        for (key, factor) in self.split(Family::Angle, argument)? {
             let pair = match self.arena.node(key) {
                 Node::Pi => self.multiple_of_pi(&factor)?,
                 _ => self.multiple_of(key, &factor)?,
             };
             total = self.sum_of_angles(&total, &pair)?;
         }
+        self.remember_angle(argument, &total);
         Ok(total)
     }
 
     /// Sine and cosine of a sum, from those of the summands.
-    fn sum_of_angles(&self, a: &Pair, b: &Pair) -> Result<Pair, Obstacle> {
+    pub(super) fn sum_of_angles(&self, a: &Pair, b: &Pair) -> Result<Pair, Obstacle> {
         let sin = self.add(&self.mul(&a.0, &b.1)?, &self.mul(&a.1, &b.0)?)?;
         let cos = self.sub(&self.mul(&a.1, &b.1)?, &self.mul(&a.0, &b.0)?)?;
         Ok((sin, cos))
@@ -67,7 +63,7 @@ impl Field<'_> {
     }
 
     /// Sine and cosine of `times` as much, by repeated doubling.
-    fn repeated(&self, basic: &Pair, times: u64) -> Result<Pair, Obstacle> {
+    pub(super) fn repeated(&self, basic: &Pair, times: u64) -> Result<Pair, Obstacle> {
         let mut total = (Fraction::zero(), Fraction::one());
         for bit in (0..u64::BITS - times.leading_zeros()).rev() {
             total = self.sum_of_angles(&total, &total)?;
@@ -78,57 +74,23 @@ impl Field<'_> {
         Ok(total)
     }
 
-    /// Sine and cosine of an inverse trigonometric function, taken a whole number of times.
+    /// Sine and cosine of an inverse trigonometric function in multiples of a unit.
     fn inverse(&self, key: Expr, unit: &Rational) -> Result<Option<Pair>, Obstacle> {
+        const MOST_HALVINGS: u32 = 4;
+        let Some(mut pair) = self.pair_of(key)? else { return Ok(None) };
+        let halvings = unit.denominator().trailing_zeros();
+        if unit.denominator() != Integer::from(1_i64 << halvings.min(MOST_HALVINGS)) {
+            // The third of an inverse angle has no sine in radicals; the basis angle is that third.
+            return Ok(None);
+        }
         let Node::Call(function, arguments) = self.arena.node(key) else { return Ok(None) };
-        if !matches!(function, Function::Asin | Function::Acos | Function::Atan | Function::Atan2) {
-            return Ok(None);
+        let mut range = self.range_of_inverse(function, &arguments)?;
+        for _ in 0..halvings {
+            let Some(half) = self.half_of(&pair, &range)? else { return Ok(None) };
+            pair = half;
+            range = Range::right_half();
         }
-        if !unit.is_integer() {
-            // Half an inverse angle has no rational sine; the basis angle is the whole one.
-            return Ok(None);
-        }
-        let a = self.fraction(arguments[0])?;
-        let complement = |a: &Fraction| -> Result<Fraction, Obstacle> {
-            self.root(&self.sub(&Fraction::one(), &self.pow(a, 2)?)?, &half())
-        };
-        let pair = match function {
-            Function::Asin => (a.clone(), complement(&a)?),
-            Function::Acos => (complement(&a)?, a.clone()),
-            Function::Atan => {
-                let radius = self.root(&self.add(&Fraction::one(), &self.pow(&a, 2)?)?, &half())?;
-                (self.div(&a, &radius)?, self.div(&Fraction::one(), &radius)?)
-            }
-            _ => {
-                let b = self.fraction(arguments[1])?;
-                let radius = self.root(&self.add(&self.pow(&a, 2)?, &self.pow(&b, 2)?)?, &half())?;
-                (self.div(&a, &radius)?, self.div(&b, &radius)?)
-            }
-        };
-        let times = unit.to_i64().ok_or(Obstacle::TooLarge)?;
+        let times = unit.numerator().to_i64().ok_or(Obstacle::TooLarge)?;
         Ok(Some(self.repeated(&pair, times.unsigned_abs())?))
-    }
-
-    /// Sine and cosine of a rational multiple of pi.
-    fn multiple_of_pi(&self, factor: &Rational) -> Result<Pair, Obstacle> {
-        let quarters = Rational::from((factor * &Rational::from(2)).floor());
-        let rest = factor - &(&quarters * &half());
-        let root_of = |n: i64| self.root(&Fraction::constant(&Rational::from(n)), &half());
-        let half_of = |f: &Fraction| self.scale(f, &half());
-        let fraction = (rest.numerator().to_i64(), rest.denominator().to_i64());
-        let first = match fraction {
-            (Some(0), _) => (Fraction::zero(), Fraction::one()),
-            (Some(1), Some(6)) => (Fraction::constant(&half()), half_of(&root_of(3)?)?),
-            (Some(1), Some(4)) => (half_of(&root_of(2)?)?, half_of(&root_of(2)?)?),
-            (Some(1), Some(3)) => (half_of(&root_of(3)?)?, Fraction::constant(&half())),
-            _ => self.basic(self.arena.scale(self.arena.pi(), &rest)),
-        };
-        let (sin, cos) = first;
-        Ok(match quarters.numerator().rem_u64(4) {
-            0 => (sin, cos),
-            1 => (cos, negated(&sin)),
-            2 => (negated(&sin), negated(&cos)),
-            _ => (negated(&cos), sin),
-        })
     }
 }

@@ -89,11 +89,7 @@ impl Field<'_> {
             Function::Log => self.logarithm(argument),
             Function::Sqrt => self.root(argument, &half()),
             Function::Abs => self.absolute(argument),
-            // Beyond the angle that goes in, only sine and cosine of these are used (see `angle`).
-            Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => match self.angle_within(expr)? {
-                Some(angle) => Ok(angle),
-                None => self.inverse_function(expr),
-            },
+            Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => self.inverse_function(expr),
         }
     }
 
@@ -105,11 +101,5 @@ impl Field<'_> {
             tidied.push(self.show(&self.get(*argument)?));
         }
         Ok(self.arena.call(function, &tidied))
-    }
-
-    /// The absolute value: by the sign where the facts give it, else a kernel whose square is known.
-    fn absolute(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
-        let above = self.magnitude(argument.numerator())?;
-        self.div(&above, &self.magnitude(argument.denominator())?)
     }
 }

@@ -1,15 +1,19 @@
 //! Quotients of polynomials over kernels.
 //!
 //! In: numerators and denominators. Out: canonical fractions: coprime, the denominator's leading
-//! coefficient positive, powers of algebraic kernels reduced by their relations, and the denominator
-//! free of every kernel with a quadratic relation (it is cleared by the conjugate). Over kernels that
-//! are otherwise independent, equal fractions are therefore stored equally.
+//! coefficient positive, powers of algebraic kernels reduced by their relations, and a short
+//! denominator free of every kernel with a quadratic relation (it is cleared by the conjugate). Over
+//! kernels that are otherwise independent, a fraction is zero if and only if its numerator is, and
+//! equal fractions with short denominators are stored equally.
 
 use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 
 use super::{Field, Obstacle};
+
+/// Terms of a denominator that its conjugate may still multiply: what is longer grows out of proportion.
+const MOST_CLEARED: usize = 16;
 
 /// A quotient of polynomials, canonical with respect to one [`Field`].
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -89,7 +93,9 @@ impl Field<'_> {
         if den.is_zero() {
             return Err(Obstacle::DivisionByZero);
         }
-        while let Some(conjugate) = self.conjugate(&den)? {
+        while den.term_count() <= MOST_CLEARED
+            && let Some(conjugate) = self.conjugate(&den)?
+        {
             num = self.reduce(&num.mul(&conjugate, self.work())?)?;
             den = self.reduce(&den.mul(&conjugate, self.work())?)?;
             if den.is_zero() {
@@ -111,6 +117,12 @@ impl Field<'_> {
             }
         }
         Ok(Fraction { num, den })
+    }
+
+    /// The numerator over a multiple of the denominator.
+    pub fn over_denominator(&self, fraction: &Fraction, multiple: &Poly) -> Result<Poly, Obstacle> {
+        let missing = exact(multiple.div_exact(&fraction.den, self.work())?)?;
+        self.reduce(&fraction.num.mul(&missing, self.work())?)
     }
 
     /// `a + b`.
@@ -169,13 +181,13 @@ impl Field<'_> {
             return Ok(a.clone());
         }
         let times = u32::try_from(exponent.unsigned_abs()).map_err(|_| Obstacle::TooLarge)?;
-        let num = self.power_of(&a.num, times)?;
-        let den = self.power_of(&a.den, times)?;
+        let num = self.repeated_product(&a.num, times)?;
+        let den = self.repeated_product(&a.den, times)?;
         if exponent < 0 { self.fraction_of(&den, &num) } else { self.fraction_of(&num, &den) }
     }
 
     /// A power reduced as it grows, so that relations keep it small.
-    fn power_of(&self, base: &Poly, times: u32) -> Result<Poly, Obstacle> {
+    fn repeated_product(&self, base: &Poly, times: u32) -> Result<Poly, Obstacle> {
         let mut result = Poly::one();
         for bit in (0..u32::BITS - times.leading_zeros()).rev() {
             result = self.reduce(&result.mul(&result, self.work())?)?;

@@ -1,79 +1,218 @@
-//! Inverse trigonometric functions as kernels: one kernel for an argument, its opposite and its complement.
+//! Inverse trigonometric functions as kernels, and the linear relations among them.
 //!
-//! `asin` and `atan` are odd, `acos(-a) = pi - acos(a)`, `asin(a) + acos(a) = pi/2`; for a positive a,
-//! `atan(a) + atan(1/a) = pi/2`, and `atan2(y, x)` is `atan(y/x)` for x > 0, `pi/2 - atan(x/y)` for
-//! y > 0 and `-pi/2 - atan(x/y)` for y < 0.
+//! In: `asin`, `acos`, `atan` or `atan2` of arguments in normal form. Out: a combination of the angles
+//! that came before, where there is one, else a kernel. That `a = asin(t)` and `b = atan(t/sqrt(1 - t^2))`
+//! are equal is shown in two steps: the sine of a - b is 0 and its cosine is 1, so that a - b is a
+//! multiple of 2 pi; and both ranges lie within a half circle, so that it is zero. The same two steps
+//! show that `asin(sin(w)) = w` where the facts keep w on the principal branch.
 
+use crate::cas::domain::Domain;
 use crate::cas::expr::{Expr, Node};
+use crate::cas::facts::Facts;
 use crate::cas::function::Function;
-use crate::cas::rational::half;
+use crate::cas::interval::Precision;
+use crate::cas::rational::{Rational, half};
 
+use super::angle::Pair;
 use super::fraction::{Fraction, negated};
-use super::sign::Sign;
+use super::range::Range;
 use super::{Field, Obstacle};
+
+/// Angles that a new one is compared with.
+const MOST_ANGLES: usize = 8;
+
+/// The largest multiple of pi/12 in a relation: two full turns.
+const MOST_TWELFTHS: i32 = 48;
+
+/// An angle with its sine and cosine.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    value: Fraction,
+    pair: Pair,
+    range: Range,
+}
+
+/// `own * new = sum of share * known + twelfths * pi/12`
+struct Guess {
+    own: i32,
+    shares: Vec<(usize, i32)>,
+    twelfths: i32,
+}
 
 impl Field<'_> {
     /// An inverse trigonometric function at arguments whose normal form is known.
     pub(super) fn inverse_function(&self, expr: Expr) -> Result<Fraction, Obstacle> {
-        let Node::Call(function, arguments) = self.arena.node(expr) else {
-            return Ok(self.entered(expr, None, false));
-        };
-        let first = self.fraction(arguments[0])?;
-        if function == Function::Atan2 {
-            return self.direction(expr, &first, &self.fraction(arguments[1])?);
+        let call = self.tidy_call(expr)?;
+        if let Some(&number) = self.numbers.borrow().get(&call) {
+            return Ok(Fraction::polynomial(crate::cas::poly::Poly::variable(number)));
         }
-        let opposed = first.num.leading_coefficient().is_negative();
-        let argument = if opposed { negated(&first) } else { first };
-        let value = self.inverse_of(function, &argument)?;
-        match (opposed, function) {
-            (false, _) => Ok(value),
-            (true, Function::Acos) => self.sub(&self.fraction(self.arena.pi())?, &value),
-            _ => Ok(negated(&value)),
+        if let Some(angle) = self.angle_inside(expr)? {
+            return Ok(angle);
         }
-    }
-
-    /// The function at an argument whose leading coefficient is positive.
-    fn inverse_of(&self, function: Function, argument: &Fraction) -> Result<Fraction, Obstacle> {
-        let other = match function {
-            Function::Asin => Some((Function::Acos, argument.clone())),
-            Function::Acos => Some((Function::Asin, argument.clone())),
-            _ if !argument.is_zero() && self.is_positive(argument)? => {
-                Some((Function::Atan, self.div(&Fraction::one(), argument)?))
-            }
-            _ => None,
+        let (Some(pair), Node::Call(function, arguments)) = (self.pair_of(expr)?, self.arena.node(expr)) else {
+            return Ok(self.entered(call, None, false));
         };
-        if let Some((complement, argument)) = other {
-            let call = self.arena.call(complement, &[self.show(&argument)]);
-            if self.numbers.borrow().contains_key(&call) {
-                return self.sub(&self.right_angle()?, &self.entered(call, None, false));
+        let range = self.range_of_inverse(function, &arguments)?;
+        let known = self.known_angles()?;
+        for guess in self.guesses(call, &known) {
+            if self.holds(&guess, &pair, &range, &known)? {
+                let mut total = self.scale(&self.fraction(self.arena.pi())?, &ratio(guess.twelfths, 12))?;
+                for (index, share) in &guess.shares {
+                    total = self.add(&total, &self.scale(&known[*index].value, &Rational::from(i64::from(*share)))?)?;
+                }
+                return self.scale(&total, &ratio(1, guess.own));
             }
         }
-        let call = self.arena.call(function, &[self.show(argument)]);
-        match self.arena.as_number(call) {
-            Some(value) => Ok(Fraction::constant(&value)),
-            None => Ok(self.entered(call, None, false)),
+        if let Some(value) = self.arena.as_number(call) {
+            return Ok(Fraction::constant(&value));
+        }
+        let value = self.entered(call, None, false);
+        self.inverses.borrow_mut().push(Known { value: value.clone(), pair, range });
+        Ok(value)
+    }
+
+    /// The angle whose sine, cosine or tangent the argument is, on the principal branch.
+    fn angle_inside(&self, expr: Expr) -> Result<Option<Fraction>, Obstacle> {
+        let Node::Call(function, arguments) = self.arena.node(expr) else { return Ok(None) };
+        let argument = self.fraction(arguments[0])?;
+        let angles = self.angles.borrow().clone();
+        for (value, (sin, cos)) in angles {
+            let fits = match function {
+                Function::Asin => argument == sin,
+                Function::Acos => argument == cos,
+                Function::Atan => self.sub(&sin, &self.mul(&argument, &cos)?)?.is_zero(),
+                _ => false,
+            };
+            if fits && self.range_of_angle(&value)?.is_some_and(|range| range.is_principal(function)) {
+                return Ok(Some(value));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Remembers an angle of which sine and cosine were taken.
+    pub(super) fn remember_angle(&self, value: &Fraction, pair: &Pair) {
+        let mut angles = self.angles.borrow_mut();
+        if angles.len() < MOST_ANGLES
+            && value.to_constant().is_none()
+            && !angles.iter().any(|(known, _)| known == value)
+        {
+            angles.push((value.clone(), pair.clone()));
         }
     }
 
-    fn right_angle(&self) -> Result<Fraction, Obstacle> {
-        self.scale(&self.fraction(self.arena.pi())?, &half())
+    /// The angles that came before and whose range is known.
+    fn known_angles(&self) -> Result<Vec<Known>, Obstacle> {
+        let mut known: Vec<Known> = self.inverses.borrow().iter().take(MOST_ANGLES).cloned().collect();
+        let angles = self.angles.borrow().clone();
+        for (value, pair) in angles {
+            if let Some(range) = self.range_of_angle(&value)? {
+                known.push(Known { value, pair, range });
+            }
+        }
+        Ok(known)
     }
 
-    /// `atan2(y, x)`: an `atan` where the sign of one of them is known.
-    fn direction(&self, expr: Expr, y: &Fraction, x: &Fraction) -> Result<Fraction, Obstacle> {
-        let atan = |ratio: &Fraction| -> Result<Fraction, Obstacle> {
-            let opposed = ratio.num.leading_coefficient().is_negative();
-            let value = self.inverse_of(Function::Atan, &if opposed { negated(ratio) } else { ratio.clone() })?;
-            Ok(if opposed { negated(&value) } else { value })
+    /// Combinations that fit at two points of the domain, the simplest first.
+    fn guesses(&self, call: Expr, known: &[Known]) -> Vec<Guess> {
+        let exprs: Vec<Expr> = [call].into_iter().chain(known.iter().map(|k| self.show(&k.value))).collect();
+        let samples: Vec<Vec<f64>> = {
+            let precision = Precision::new(64);
+            let points = self.domain.points(self.arena, &exprs);
+            let values = points.take(40).filter_map(|point| self.arena.enclose_all(&exprs, &point, precision));
+            values.take(2).map(|row| row.iter().map(|value| f64::midpoint(value.lo(), value.hi())).collect()).collect()
         };
-        if self.is_positive(x)? {
-            return atan(&self.div(y, x)?);
+        let [first, second] = samples.as_slice() else { return Vec::new() };
+        let mut shares: Vec<Vec<(usize, i32)>> = vec![Vec::new()];
+        for i in 0..known.len() {
+            shares.extend([1, -1, 2, -2, 3, -3, 4, -4].map(|s| vec![(i, s)]));
         }
-        let quarter = match self.sign_of(y)? {
-            Some(Sign::Positive) => self.right_angle()?,
-            Some(Sign::Negative) => negated(&self.right_angle()?),
-            _ => return Ok(self.entered(self.tidy_call(expr)?, None, false)),
-        };
-        self.sub(&quarter, &atan(&self.div(x, y)?)?)
+        for i in 0..known.len() {
+            for j in i + 1..known.len() {
+                for s in [1, -1] {
+                    shares.extend([1, -1].map(|t| vec![(i, s), (j, t)]));
+                }
+            }
+        }
+        let mut guesses = Vec::new();
+        for shares in shares {
+            for own in [1, 2] {
+                let twelfths = |sample: &[f64]| {
+                    let sum: f64 = shares.iter().map(|(index, share)| sample[index + 1] * f64::from(*share)).sum();
+                    (sample[0] * f64::from(own) - sum) * 12.0 / std::f64::consts::PI
+                };
+                let (a, b) = (twelfths(first), twelfths(second));
+                // Only a guess: what it leads to is proved.
+                let near = |number: &i32| [a, b].iter().all(|value| (value - f64::from(*number)).abs() < 1e-9);
+                if let Some(twelfths) = (-MOST_TWELFTHS..=MOST_TWELFTHS).find(near) {
+                    guesses.push(Guess { own, shares: shares.clone(), twelfths });
+                }
+            }
+        }
+        guesses
     }
+
+    /// Whether the guess is an identity.
+    fn holds(&self, guess: &Guess, pair: &Pair, range: &Range, known: &[Known]) -> Result<bool, Obstacle> {
+        let mut total = self.repeated(pair, u64::from(guess.own.unsigned_abs()))?;
+        let mut within = range.times(i64::from(guess.own));
+        let opposite = |(sin, cos): Pair| (negated(&sin), cos);
+        for (index, share) in &guess.shares {
+            let other = self.repeated(&known[*index].pair, u64::from(share.unsigned_abs()))?;
+            total = self.sum_of_angles(&total, &if *share > 0 { opposite(other) } else { other })?;
+            within = within.plus(&known[*index].range.times(-i64::from(*share)));
+        }
+        total = self.sum_of_angles(&total, &self.multiple_of_pi(&ratio(-guess.twelfths, 12))?)?;
+        within = within.plus(&Range::point(ratio(-guess.twelfths, 12)));
+        Ok(within.is_within_turn() && total.0.is_zero() && total.1.is_one())
+    }
+
+    /// Sine and cosine of an inverse trigonometric function.
+    pub(super) fn pair_of(&self, expr: Expr) -> Result<Option<Pair>, Obstacle> {
+        let Node::Call(function, arguments) = self.arena.node(expr) else { return Ok(None) };
+        if !matches!(function, Function::Asin | Function::Acos | Function::Atan | Function::Atan2) {
+            return Ok(None);
+        }
+        let a = self.fraction(arguments[0])?;
+        let complement = |a: &Fraction| -> Result<Fraction, Obstacle> {
+            self.root(&self.sub(&Fraction::one(), &self.pow(a, 2)?)?, &half())
+        };
+        Ok(Some(match function {
+            Function::Asin => (a.clone(), complement(&a)?),
+            Function::Acos => (complement(&a)?, a),
+            _ => {
+                let b = match arguments.get(1) {
+                    Some(argument) => self.fraction(*argument)?,
+                    None => Fraction::one(),
+                };
+                let radius = self.root(&self.add(&self.pow(&a, 2)?, &self.pow(&b, 2)?)?, &half())?;
+                (self.div(&a, &radius)?, self.div(&b, &radius)?)
+            }
+        }))
+    }
+
+    /// Sine and cosine of half an angle, for an angle within a half circle.
+    ///
+    /// `cos(a/2) = sqrt((1 + cos a)/2)` is not negative for |a| <= pi and not zero for |a| < pi, where
+    /// `sin(a/2) = sin(a) / (2 cos(a/2))`; for 0 <= a <= pi, `sin(a/2) = sqrt((1 - cos a)/2)`.
+    pub(super) fn half_of(&self, (sin, cos): &Pair, range: &Range) -> Result<Option<Pair>, Obstacle> {
+        let root = |square: &Fraction| self.root(&self.scale(square, &half())?, &half());
+        let half_cos = root(&self.add(&Fraction::one(), cos)?)?;
+        if range.is_upper_half() {
+            return Ok(Some((root(&self.sub(&Fraction::one(), cos)?)?, half_cos)));
+        }
+        if !range.is_within_half_turn() || half_cos.is_zero() {
+            return Ok(None);
+        }
+        Ok(Some((self.div(&self.scale(sin, &half())?, &half_cos)?, half_cos)))
+    }
+}
+
+fn ratio(n: i32, d: i32) -> Rational {
+    Rational::new(i64::from(n), i64::from(d)).unwrap_or(Rational::ZERO)
+}
+
+/// The domain that guesses are tried on.
+pub(super) fn domain_of(facts: &Facts) -> Domain {
+    Domain { facts: facts.clone(), ..Domain::default() }
 }

@@ -58,28 +58,4 @@ impl Field<'_> {
         }
         Ok((unit.clone(), times))
     }
-
-    /// The argument as a rational multiple of one basis argument.
-    pub(super) fn undivided(&self, argument: &Fraction) -> Result<(Expr, Rational), Obstacle> {
-        let (above, num) = super::fraction::primitive(&argument.num);
-        let (below, den) = super::fraction::primitive(&argument.den);
-        let mut factor = Rational::new(above, below).ok_or(Obstacle::DivisionByZero)?;
-        let mut key = Fraction { num, den };
-        if key.num.leading_coefficient().is_negative() {
-            factor = -&factor;
-            key = super::fraction::negated(&key);
-        }
-        Ok((self.show(&key), factor))
-    }
-
-    /// Splits an argument into rational multiples of basis arguments.
-    pub(super) fn split(&self, argument: &Fraction) -> Result<Vec<(Expr, Rational)>, Obstacle> {
-        let mut parts = Vec::new();
-        for (monomial, coefficient) in argument.num.terms() {
-            let term = Poly::from_terms([(monomial, coefficient.clone())])?;
-            let term = self.fraction_of(&term, &argument.den)?;
-            parts.push(self.undivided(&term)?);
-        }
-        Ok(parts)
-    }
 }

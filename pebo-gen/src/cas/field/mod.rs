@@ -9,37 +9,60 @@
 //! likewise, roots into roots of coprime parts. What relates kernels (`sin^2 = 1 - cos^2`, `r^2 = a`)
 //! is reduced away.
 //!
-//! Holds after: every rewriting is an identity wherever the expression has a value, so a fraction that
-//! is zero proves that the expression is zero. The converse needs the kernels to be independent, which
-//! is so for rational functions, for sines, cosines and exponentials of arguments that are linearly
-//! independent over the rationals (Ax 1971), and for square roots of coprime square-free polynomials;
-//! nothing here relies on it for a verdict: what refutes is an enclosure (see [`super::zero`]).
+//! Holds after: every rewriting is an identity wherever the expressions have values, up to points in
+//! whose neighbourhood they have values too, so a fraction that is zero proves that the expression is
+//! zero. The converse needs the kernels to be independent. They are, and the answer is complete, for
+//! what is built of
+//!
+//! - rational functions of symbols,
+//! - sines, cosines and exponentials of rational functions, split into arguments that are linearly
+//!   independent over the rationals modulo constants (Ax 1971, theorem 3),
+//! - logarithms of coprime polynomials (the same theorem, for the inverse functions),
+//! - roots of coprime square-free polynomials, and magnitudes of polynomials that have both signs
+//!   (Kummer theory; Besicovitch 1940 for roots of primes),
+//! - cosines of rational multiples of pi and square roots of rationals (Gauss 1811).
+//!
+//! It is not known to be for relations among constants (e, pi, sin(1): Schanuel's conjecture), roots of
+//! sums of roots that do not denest, and inverse trigonometric functions beyond sums of three. Nothing
+//! here relies on independence for a verdict: what refutes is an enclosure (see [`super::zero`]).
 
 mod angle;
-mod branch;
+mod circle;
 mod convert;
 mod exponent;
 mod fraction;
 mod inverse;
 mod kernel;
+mod logarithm;
+mod magnitude;
+mod parts;
+mod range;
 mod root;
 mod show;
 mod sign;
+mod span;
+mod square;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use rustc_hash::FxHashMap;
 
 use super::arena::Arena;
+use super::domain::Domain;
 use super::expr::{Expr, Symbol};
 use super::facts::{Facts, Relation};
 use super::poly::{Poly, TooLarge, Work};
 use super::rational::Rational;
 
 pub use fraction::Fraction;
+
+use angle::Pair;
+use inverse::{Known, domain_of};
 use kernel::Kernel;
+use parts::Parts;
+use root::Whole;
 
 /// Steps of polynomial arithmetic that one field may spend, some seconds' worth.
 const STEPS: u64 = 50_000_000;
@@ -60,6 +83,8 @@ pub enum Obstacle {
     NoPoint,
     /// The normal form is not zero, but no point shows it.
     NoWitness,
+    /// The same, and it has two kernels that were not shown to be independent.
+    Related(String, String),
 }
 
 impl fmt::Display for Obstacle {
@@ -72,6 +97,7 @@ impl fmt::Display for Obstacle {
             Self::NoWitness => {
                 f.write_str("the normal form is not zero, yet no point was found where it provably differs")
             }
+            Self::Related(a, b) => write!(f, "no rule shows whether {a} and {b} are independent"),
         }
     }
 }
@@ -91,6 +117,8 @@ enum Family {
     Angle,
     /// Arguments of the exponential.
     Exponent,
+    /// Radicands.
+    Root,
 }
 
 /// The kernels of one question, and the arithmetic over them.
@@ -103,8 +131,23 @@ pub struct Field<'a> {
     known: RefCell<FxHashMap<Expr, Fraction>>,
     /// The step of which all multiples of a basis argument are integer multiples.
     units: RefCell<BTreeMap<(Family, Expr), Rational>>,
+    /// What arguments are combinations of, each with the expression it stands for.
+    atoms: RefCell<BTreeMap<Family, Vec<(Expr, Fraction)>>>,
+    /// The m of `cos(pi/m)`, of which all other multiples of pi are multiples.
+    finest: Cell<Option<u32>>,
+    /// Inverse functions that are kernels.
+    inverses: RefCell<Vec<Known>>,
+    /// Arguments of sines and cosines.
+    angles: RefCell<Vec<(Fraction, Pair)>>,
+    domain: Domain,
     refined: RefCell<bool>,
+    parts: RefCell<Parts>,
+    wholes: RefCell<Vec<Whole>>,
     signs: RefCell<Vec<(Poly, Relation)>>,
+    /// What must hold for the expressions to have values.
+    learned: RefCell<Vec<(Expr, Relation)>>,
+    /// Parts of whose unknown signs something was made.
+    unsigned: RefCell<BTreeSet<Poly>>,
 }
 
 impl<'a> Field<'a> {
@@ -118,11 +161,20 @@ impl<'a> Field<'a> {
             numbers: RefCell::default(),
             known: RefCell::default(),
             units: RefCell::default(),
+            atoms: RefCell::default(),
+            finest: Cell::default(),
+            inverses: RefCell::default(),
+            angles: RefCell::default(),
+            domain: domain_of(facts),
             refined: RefCell::new(false),
+            parts: RefCell::default(),
+            wholes: RefCell::default(),
             signs: RefCell::default(),
+            learned: RefCell::default(),
+            unsigned: RefCell::default(),
         };
         for _ in 0..MOST_ROUNDS {
-            field.restart(facts)?;
+            field.restart(facts, roots)?;
             for root in roots {
                 field.fraction(*root)?;
             }
@@ -133,14 +185,20 @@ impl<'a> Field<'a> {
         Err(Obstacle::TooLarge)
     }
 
-    /// Forgets the kernels but not the units.
-    fn restart(&self, facts: &Facts) -> Result<(), Obstacle> {
+    /// Forgets the kernels, but not the units, the parts and what was learned.
+    fn restart(&self, facts: &Facts, roots: &[Expr]) -> Result<(), Obstacle> {
+        self.keep_parts();
         self.kernels.borrow_mut().clear();
         self.numbers.borrow_mut().clear();
         self.known.borrow_mut().clear();
+        self.atoms.borrow_mut().clear();
+        self.inverses.borrow_mut().clear();
+        self.angles.borrow_mut().clear();
+        self.wholes.borrow_mut().clear();
         self.signs.borrow_mut().clear();
+        self.unsigned.borrow_mut().clear();
         *self.refined.borrow_mut() = false;
-        self.learn(facts)
+        self.learn(facts, roots)
     }
 
     fn work(&self) -> &Work {
@@ -161,6 +219,18 @@ impl<'a> Field<'a> {
     /// What a kernel stands for.
     pub fn kernel(&self, number: u32) -> Expr {
         self.kernels.borrow()[number as usize].expr
+    }
+
+    /// Why a fraction that is not zero may stand for zero all the same: its last two kernels that are
+    /// not symbols, which no rule has shown to be independent.
+    pub fn doubt(&self, fraction: &Fraction) -> Obstacle {
+        let exprs: BTreeSet<u32> = fraction.numerator().variables().iter().copied().collect();
+        let made = |number: &u32| self.arena.as_symbol(self.kernel(*number)).is_none();
+        let mut last = exprs.into_iter().rev().filter(made).map(|number| self.arena.print(self.kernel(number)));
+        match (last.next(), last.next()) {
+            (Some(b), Some(a)) => Obstacle::Related(a, b),
+            _ => Obstacle::NoWitness,
+        }
     }
 
     /// A polynomial over the kernels as a fraction.

@@ -1,226 +1,294 @@
 //! Roots of fractions.
 //!
-//! `sqrt(n/d)` with a positive d becomes `sqrt(n*d)/d`; of the radicand, even powers and known
-//! positive kernels come out, and what is left is a kernel r with the relation `r^q = radicand`. Where
-//! the sign of a part is not known, the root stays whole, which is correct but may leave two kernels
-//! that are related: then an identity among them is not seen.
+//! In: a fraction and a rational exponent. Out: powers of kernels `r = part^(1/q)` with `r^q = part`,
+//! one for each part of known sign (see [`super::parts`]). A power of parts of unknown signs has a
+//! kernel for the product: where that has a value, the product is not negative, which is learned as a
+//! fact. Products of such roots are written over those that came before.
+//!
+//! Everywhere a root stands for the real one of a number that is not negative, so that
+//! `(a^k b^m)^(1/q) = |a|^(k/q) |b|^(m/q)` wherever it has a value.
 
 use crate::cas::expr::{Expr, Node};
+use crate::cas::facts::Relation as Compared;
 use crate::cas::function::Function;
 use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
-use crate::cas::rational::Rational;
+use crate::cas::rational::{Rational, half};
 
-use super::exponent::prime_powers;
 use super::fraction::{Fraction, primitive};
 use super::kernel::Relation;
+use super::logarithm::prime_powers;
 use super::sign::Sign;
-use super::{Field, Obstacle};
+use super::{Family, Field, Obstacle};
+
+/// A root of a product of parts whose signs are not known.
+#[derive(Clone, Debug)]
+pub(super) struct Whole {
+    degree: u32,
+    negative: bool,
+    powers: Vec<(Poly, i64)>,
+    kernel: u32,
+}
 
 impl Field<'_> {
-    /// `base ^ exponent` for an exponent that is not an integer; the positive real power.
+    /// `base ^ exponent` for an exponent that is not an integer; the real power of what is not negative.
     pub(super) fn root(&self, base: &Fraction, exponent: &Rational) -> Result<Fraction, Obstacle> {
         if base.is_zero() {
             return if exponent.is_negative() { Err(Obstacle::DivisionByZero) } else { Ok(Fraction::zero()) };
         }
-        let degree = exponent.denominator().to_i64().and_then(|q| u32::try_from(q).ok()).ok_or(Obstacle::TooLarge)?;
+        let mut total = Fraction::one();
+        let mut negative = false;
+        let mut unknown: Vec<(Poly, i64)> = Vec::new();
+        for (poly, direction) in [(&base.num, 1), (&base.den, -1)] {
+            let (content, rest) = primitive(poly);
+            for (prime, times) in prime_powers(&content) {
+                let share = &Rational::from(direction * i64::from(times)) * exponent;
+                total = self.mul(&total, &self.power_of_number(&prime, &share)?)?;
+            }
+            let product = self.product_of(&rest)?;
+            negative ^= product.negative;
+            for (prime, times) in prime_powers(&product.divisor) {
+                let share = &Rational::from(-direction * i64::from(times)) * exponent;
+                total = self.mul(&total, &self.power_of_number(&prime, &share)?)?;
+            }
+            for (part, times) in product.powers {
+                let times = direction * i64::from(times);
+                match self.sign_of_part(&part)? {
+                    Some(sign) => {
+                        let below = sign == Sign::Negative;
+                        negative ^= below && times % 2 != 0;
+                        let size = if below { -&part } else { part };
+                        total = self.mul(&total, &self.power_of(&size, &(&Rational::from(times) * exponent))?)?;
+                    }
+                    None => unknown.push((part, times)),
+                }
+            }
+        }
+        if unknown.is_empty() {
+            return if negative { Err(self.negative_root(base)) } else { Ok(total) };
+        }
+        let rest = self.root_of_unknown(negative, unknown, exponent)?;
+        self.mul(&total, &rest)
+    }
+
+    fn negative_root(&self, base: &Fraction) -> Obstacle {
+        Obstacle::Kernel(format!("the root of {}, which is negative", self.arena.print(self.show(base))))
+    }
+
+    /// A root of parts whose signs are not known, of which the whole is not negative.
+    fn root_of_unknown(
+        &self,
+        negative: bool,
+        parts: Vec<(Poly, i64)>,
+        exponent: &Rational,
+    ) -> Result<Fraction, Obstacle> {
+        let degree = exponent.denominator().to_i64().ok_or(Obstacle::TooLarge)?;
+        let mut total = Fraction::one();
+        let mut odd = Vec::new();
+        for (part, times) in parts {
+            // Full powers of even exponent come out as magnitudes; an even power has the magnitude's root.
+            let step = if degree % 2 == 0 { degree } else { 2 * degree };
+            let inside = times.rem_euclid(step);
+            let share = if inside % 2 == 0 { times } else { times - inside };
+            if share != 0 {
+                let power = self.power_of_size(&part, &(&Rational::from(share) * exponent))?;
+                total = self.mul(&total, &power)?;
+            }
+            if times != share {
+                odd.push((part, inside));
+            }
+        }
+        if odd.is_empty() {
+            return if negative { Err(Obstacle::Kernel("the root of a negative square".into())) } else { Ok(total) };
+        }
+        if let [(part, times)] = odd.as_slice() {
+            // The part itself has the sign that the root needs.
+            let size = if negative { -part } else { part.clone() };
+            self.learn_from_existence(&size, Compared::NonNegative)?;
+            let power = self.power_of(&size, &(&Rational::from(*times) * exponent))?;
+            return self.mul(&total, &power);
+        }
+        let root = self.whole_root(negative, odd, u32::try_from(degree).map_err(|_| Obstacle::TooLarge)?)?;
         let times = exponent.numerator().to_i64().ok_or(Obstacle::TooLarge)?;
-        let bottom = self.sign(&base.den)?;
-        let flipped = match bottom {
-            Some(Sign::Positive) => base.clone(),
-            Some(Sign::Negative) => Fraction { num: -&base.num, den: -&base.den },
-            _ => return self.pow(&self.whole_root(base, degree)?, times),
-        };
-        // (n/d)^(1/q) = (n d^(q-1))^(1/q) / d
-        let cleared = flipped.den.pow(degree - 1, self.limit())?;
-        let radicand = self.reduce(&flipped.num.mul(&cleared, self.limit())?)?;
-        let above = self.root_of_polynomial(&radicand, degree)?;
-        let root = self.div(&above, &Fraction::polynomial(flipped.den))?;
-        self.pow(&root, times)
+        self.mul(&total, &self.pow(&root, times)?)
     }
 
-    /// A root whose parts have unknown signs: `r = d * (n/d)^(1/q)` has `r^q = n d^(q-1)`.
-    fn whole_root(&self, base: &Fraction, degree: u32) -> Result<Fraction, Obstacle> {
-        let value = self.reduce(&base.num.mul(&base.den.pow(degree - 1, self.limit())?, self.limit())?)?;
+    /// The root of a product as one kernel, or over the roots of products that came before.
+    fn whole_root(&self, negative: bool, powers: Vec<(Poly, i64)>, degree: u32) -> Result<Fraction, Obstacle> {
+        let mut value = if negative { Poly::constant(-1) } else { Poly::one() };
+        for (part, times) in &powers {
+            let times = u32::try_from(*times).map_err(|_| Obstacle::TooLarge)?;
+            value = value.mul(&part.pow(times, self.limit())?, self.limit())?;
+        }
+        for (part, _) in &powers {
+            self.unsigned.borrow_mut().insert(part.clone());
+        }
+        self.learn_from_existence(&value, Compared::NonNegative)?;
+        if let Some(root) = self.over_whole_roots(negative, &powers, degree)? {
+            return Ok(root);
+        }
+        let value = self.reduce(&value)?;
         let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
-        let shown = self.arena.power(self.show(base), &exponent);
-        let den = self.show(&Fraction::polynomial(base.den.clone()));
-        let kernel = self.arena.mul(den, shown);
-        let root = self.entered(kernel, Some(Relation { degree, value }), false);
-        self.div(&root, &Fraction::polynomial(base.den.clone()))
+        let shown = self.arena.power(self.show_polynomial(&value), &exponent);
+        let kernel = self.enter(shown, Some(Relation { degree, value }), false);
+        self.wholes.borrow_mut().push(Whole { degree, negative, powers, kernel });
+        Ok(Fraction::polynomial(Poly::variable(kernel)))
     }
 
-    /// The positive root of a polynomial.
-    fn root_of_polynomial(&self, radicand: &Poly, degree: u32) -> Result<Fraction, Obstacle> {
-        let (content, mut rest) = primitive(radicand);
-        let mut total = Fraction::one();
-        for (prime, times) in prime_powers(&content) {
-            total = self.mul(&total, &self.root_of_number(&prime, times, degree)?)?;
+    /// A square root as a product of one or two earlier ones over magnitudes: all of them have values,
+    /// so `sqrt(a b) = sqrt(a c) sqrt(b c) / |c|`.
+    fn over_whole_roots(
+        &self,
+        negative: bool,
+        powers: &[(Poly, i64)],
+        degree: u32,
+    ) -> Result<Option<Fraction>, Obstacle> {
+        let earlier: Vec<Whole> = self.wholes.borrow().iter().filter(|whole| whole.degree == degree).cloned().collect();
+        if let Some(same) = earlier.iter().find(|whole| whole.negative == negative && whole.powers == powers) {
+            return Ok(Some(Fraction::polynomial(Poly::variable(same.kernel))));
         }
-        let (powers, without) = self.take_positive_kernels(&rest)?;
-        rest = without;
-        for (kernel, times) in powers {
-            total = self.mul(&total, &self.root_of_kernel(kernel, times, degree)?)?;
+        if degree != 2 {
+            return Ok(None);
         }
-        let (outside, inside) = self.take_powers(&rest, degree)?;
-        total = self.mul(&total, &outside)?;
-        if inside.is_one() {
-            return Ok(total);
+        for (index, first) in earlier.iter().enumerate() {
+            for second in &earlier[index + 1..] {
+                let mut exponents: Vec<(Poly, i64)> = powers.to_vec();
+                for (part, times) in first.powers.iter().chain(&second.powers) {
+                    match exponents.iter_mut().find(|(known, _)| known == part) {
+                        Some((_, total)) => *total -= times,
+                        None => exponents.push((part.clone(), -times)),
+                    }
+                }
+                let even = exponents.iter().all(|(_, times)| times % 2 == 0);
+                if !even || negative != (first.negative ^ second.negative) {
+                    continue;
+                }
+                let kernels = [first, second].map(|whole| Fraction::polynomial(Poly::variable(whole.kernel)));
+                let mut total = self.mul(&kernels[0], &kernels[1])?;
+                for (part, times) in exponents {
+                    total = self.mul(&total, &self.pow(&self.size(&part)?, times / 2)?)?;
+                }
+                return Ok(Some(total));
+            }
         }
-        let last = self.root_of_rest(&inside, degree)?;
-        self.mul(&total, &last)
+        Ok(None)
     }
 
-    /// `(prime^times)^(1/degree)`
-    fn root_of_number(&self, prime: &Integer, times: u32, degree: u32) -> Result<Fraction, Obstacle> {
-        let whole = Fraction::polynomial(Poly::constant(prime.pow(times / degree)));
-        self.kernel_root(&Poly::constant(prime.clone()), times % degree, degree).and_then(|r| self.mul(&whole, &r))
+    /// `prime ^ exponent`
+    fn power_of_number(&self, prime: &Integer, exponent: &Rational) -> Result<Fraction, Obstacle> {
+        self.power_of(&Poly::constant(prime.clone()), exponent)
     }
 
-    /// `(kernel^times)^(1/degree)` for a positive kernel.
-    fn root_of_kernel(&self, kernel: u32, times: u32, degree: u32) -> Result<Fraction, Obstacle> {
-        let poly = Poly::variable(kernel);
-        if let Node::Call(Function::Exp, inside) = self.arena.node(self.kernel(kernel)) {
-            let share = Rational::new(i64::from(times), i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
-            return self.exponential(&self.scale(&self.fraction(inside[0])?, &share)?);
+    /// `|part| ^ exponent`
+    fn power_of_size(&self, part: &Poly, exponent: &Rational) -> Result<Fraction, Obstacle> {
+        let size = self.size(part)?;
+        match exponent.to_i64() {
+            Some(times) => self.pow(&size, times),
+            None => self.power_of(&size.num, exponent),
         }
-        let whole = Fraction::polynomial(poly.pow(times / degree, self.limit())?);
-        self.kernel_root(&poly, times % degree, degree).and_then(|r| self.mul(&whole, &r))
     }
 
-    /// `(radicand^(1/degree))^times` as a power of one kernel; the radicand positive and not a power.
-    fn kernel_root(&self, radicand: &Poly, times: u32, degree: u32) -> Result<Fraction, Obstacle> {
-        if times == 0 {
-            return Ok(Fraction::one());
+    /// `part ^ exponent` for a part that is not negative.
+    pub(super) fn power_of(&self, part: &Poly, exponent: &Rational) -> Result<Fraction, Obstacle> {
+        if let Some(times) = exponent.to_i64() {
+            return self.pow(&Fraction::polynomial(part.clone()), times);
         }
-        let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
-        let shown = self.arena.power(self.show(&Fraction::polynomial(radicand.clone())), &exponent);
+        if let ([variable], true) = (part.variables(), part.term_count() == 1 && part.total_degree() == 1) {
+            let expr = self.kernel(*variable);
+            match self.arena.node(expr) {
+                Node::Call(Function::Exp, inside) => {
+                    return self.exponential(&self.scale(&self.fraction(inside[0])?, exponent)?);
+                }
+                Node::Product(product) if self.is_plain_root(expr) => {
+                    let (base, inner) = &product.factors[0];
+                    return self.root(&self.fraction(*base)?, &(inner * exponent));
+                }
+                _ => {}
+            }
+        }
+        if exponent.denominator().trailing_zeros() > 0
+            && let Some(simpler) = self.denested(part)?
+        {
+            return self.root(&simpler, &(exponent * &Rational::from(2)));
+        }
+        let whole = Rational::from(exponent.floor());
+        let times = whole.to_i64().ok_or(Obstacle::TooLarge)?;
+        let outside = self.pow(&Fraction::polynomial(part.clone()), times)?;
+        let key = self.show_polynomial(part);
+        let share = exponent - &whole;
+        let step = Rational::new(Integer::ONE, share.denominator()).ok_or(Obstacle::DivisionByZero)?;
+        // The kernel is the root itself, not a power of it.
+        let _unit = self.multiple(Family::Root, key, &step)?;
+        let (unit, times) = self.multiple(Family::Root, key, &share)?;
+        let degree = unit.denominator().to_i64().and_then(|q| u32::try_from(q).ok()).ok_or(Obstacle::TooLarge)?;
+        let mut value = self.reduce(part)?;
+        let mut degree = degree;
+        if degree % 2 == 0
+            && let Some(prime) = part.to_constant()
+            && let Some(root) = self.root_on_circle(&prime)?
+        {
+            // r^q = p is r^(q/2) = sqrt(p) there.
+            degree /= 2;
+            value = root;
+            if degree == 1 {
+                return self.mul(&outside, &self.pow(&Fraction::polynomial(value), times)?);
+            }
+        }
         // A root is zero where its radicand is: positive by nature is only that of a number.
-        let positive = radicand.is_constant();
-        let root = self.entered(shown, Some(Relation { degree, value: radicand.clone() }), positive);
-        self.pow(&root, i64::from(times))
+        let root = self.entered(self.arena.power(key, &unit), Some(Relation { degree, value }), part.is_constant());
+        self.mul(&outside, &self.pow(&root, times)?)
     }
 
-    /// Takes full powers out of the square-free decomposition: what stands outside and inside.
-    fn take_powers(&self, poly: &Poly, degree: u32) -> Result<(Fraction, Poly), Obstacle> {
-        let mut outside = Fraction::one();
-        let mut inside = poly.clone();
-        for (factor, multiplicity) in poly.square_free(self.limit())?.factors {
-            let times = multiplicity / degree;
-            if times == 0 || factor.is_constant() {
+    /// The square root of `a + b r` with `r^2 = c`, where `a^2 - b^2 c = d^2`: the square root is
+    /// `sqrt((a + d)/2) + sqrt((a - d)/2)`, with a minus for a negative b r (Borodin and others, 1985).
+    fn denested(&self, part: &Poly) -> Result<Option<Fraction>, Obstacle> {
+        for (kernel, c) in self.square_roots_in(part) {
+            let mut a = Poly::zero();
+            let mut b = Poly::zero();
+            for (exponent, coefficient) in part.coefficients_in(kernel) {
+                match exponent {
+                    0 => a = coefficient,
+                    _ => b = coefficient,
+                }
+            }
+            let squares = &a.mul(&a, self.limit())? - &b.mul(&b, self.limit())?.mul(&c, self.limit())?;
+            let Some(d) = self.reduce(&squares)?.sqrt_exact(self.limit())? else { continue };
+            let d = match self.sign(&d)? {
+                Some(Sign::Negative) => -&d,
+                _ => d,
+            };
+            let halves = [&a + &d, &a - &d];
+            if halves.iter().any(Poly::is_zero) {
                 continue;
             }
-            // (f^(k q) g)^(1/q) = |f|^k g^(1/q) for an even q; for an odd one g must be known non-negative,
-            // which the sign of f shows.
-            let size = match self.sign(&factor)? {
-                Some(Sign::Positive | Sign::NonNegative) => Some(factor.clone()),
-                Some(Sign::Negative) if degree.is_multiple_of(2) => Some(-&factor),
-                _ if degree.is_multiple_of(2) && times.is_multiple_of(2) => Some(factor.clone()),
-                _ => None,
-            };
-            let taken = factor.pow(times * degree, self.limit())?;
-            let Some(rest) = inside.div_exact(&taken, self.limit())? else { continue };
-            match size {
-                Some(size) => {
-                    let power = Fraction::polynomial(self.reduce(&size.pow(times, self.limit())?)?);
-                    outside = self.mul(&outside, &power)?;
-                    inside = rest;
+            let mut roots = Vec::new();
+            for value in &halves {
+                if !self.sign(value)?.is_some_and(Sign::is_positive_or_zero) {
+                    break;
                 }
-                None if degree == 2 => {
-                    let magnitude = self.magnitude(&factor)?;
-                    outside = self.mul(&outside, &self.pow(&magnitude, i64::from(times))?)?;
-                    inside = rest;
+                roots.push(self.root(&self.scale(&Fraction::polynomial(value.clone()), &half())?, &half())?);
+            }
+            let [first, second] = roots.as_slice() else { continue };
+            match self.sign(&b)? {
+                Some(Sign::Negative) if self.sign(&d)?.is_some_and(Sign::is_positive_or_zero) => {
+                    return Ok(Some(self.sub(first, second)?));
                 }
-                None => {}
+                Some(sign) if sign.is_positive_or_zero() => return Ok(Some(self.add(first, second)?)),
+                _ => {}
             }
         }
-        Ok((outside, inside))
+        Ok(None)
     }
 
-    /// `|poly|`: by its sign where that is known, else the product of the magnitudes of its parts.
-    pub(super) fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
-        match self.sign(poly)? {
-            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
-            Some(_) => return Ok(Fraction::polynomial(-poly)),
-            None => {}
-        }
-        let parts = poly.square_free(self.limit())?;
-        let mut total = Fraction::polynomial(Poly::constant(parts.content.abs()));
-        for (factor, times) in parts.factors {
-            let mut rest = factor.clone();
-            let mut pieces = Vec::new();
-            for &(variable, exponent) in factor.monomial_content().powers() {
-                let power = Poly::variable(variable).pow(exponent, self.limit())?;
-                if let Some(quotient) = rest.div_exact(&power, self.limit())? {
-                    rest = quotient;
-                    pieces.push((Poly::variable(variable), exponent));
-                }
-            }
-            pieces.push((rest, 1));
-            for (piece, exponent) in pieces {
-                let size = self.size(&piece)?;
-                total = self.mul(&total, &self.pow(&size, i64::from(exponent) * i64::from(times))?)?;
-            }
-        }
-        Ok(total)
-    }
-
-    /// `|poly|` for what does not split: by its sign where that is known, else a kernel whose square is known.
-    fn size(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
-        match self.sign(poly)? {
-            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
-            Some(_) => return Ok(Fraction::polynomial(-poly)),
-            None => {}
-        }
-        let shown = self.show(&Fraction::polynomial(poly.clone()));
-        let value = self.reduce(&poly.mul(poly, self.limit())?)?;
-        let kernel = self.arena.call(Function::Abs, &[shown]);
-        Ok(self.entered(kernel, Some(Relation { degree: 2, value }), false))
-    }
-
-    /// The root of a primitive polynomial without powers: over an earlier radicand where one divides it.
-    ///
-    /// Where `sqrt(g)` and `sqrt(g m)` have values, g and g m are not negative, so m is not negative
-    /// either and `sqrt(g m) = sqrt(g) sqrt(m)`.
-    fn root_of_rest(&self, inside: &Poly, degree: u32) -> Result<Fraction, Obstacle> {
-        let mut rest = inside.clone();
-        let mut total = Fraction::one();
-        for (kernel, radicand) in self.roots(degree) {
-            if radicand.is_constant() || radicand.variables().len() > rest.variables().len() {
-                continue;
-            }
-            if let Some(quotient) = rest.div_exact(&radicand, self.limit())? {
-                total = self.mul(&total, &Fraction::polynomial(Poly::variable(kernel)))?;
-                rest = quotient;
-            }
-        }
-        if let Some(value) = rest.to_constant() {
-            let constant = Fraction::constant(&Rational::from(value.clone()));
-            if value.is_one() {
-                return Ok(total);
-            }
-            let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
-            return if value.is_negative() {
-                Err(Obstacle::Kernel(format!("the root of {value}")))
-            } else {
-                self.mul(&total, &self.root(&constant, &exponent)?)
-            };
-        }
-        let root = self.kernel_root(&rest, 1, degree)?;
-        self.mul(&total, &root)
-    }
-
-    /// The root kernels of a degree, with their radicands.
-    fn roots(&self, degree: u32) -> Vec<(u32, Poly)> {
+    /// The square roots that occur linearly in a polynomial, with their radicands.
+    fn square_roots_in(&self, poly: &Poly) -> Vec<(u32, Poly)> {
         let kernels = self.kernels.borrow();
-        (0..)
-            .zip(kernels.iter())
-            .filter(|(_, kernel)| self.is_plain_root(kernel.expr))
-            .filter_map(|(number, kernel)| {
-                let relation = kernel.relation.as_ref().filter(|relation| relation.degree == degree)?;
-                Some((number, relation.value.clone()))
-            })
-            .collect()
+        let of = |&variable: &u32| {
+            let kernel = &kernels[variable as usize];
+            let relation = kernel.relation.as_ref().filter(|relation| relation.degree == 2)?;
+            (self.is_plain_root(kernel.expr) && poly.degree(variable) == 1).then(|| (variable, relation.value.clone()))
+        };
+        poly.variables().iter().filter_map(of).collect()
     }
 
     pub(super) fn is_plain_root(&self, expr: Expr) -> bool {

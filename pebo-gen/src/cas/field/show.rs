@@ -25,6 +25,12 @@ impl Field<'_> {
         self.arena.multiply(&coefficient, factors)
     }
 
+    /// A polynomial as an expression.
+    pub(super) fn show_polynomial(&self, poly: &Poly) -> Expr {
+        let (content, rest) = primitive(poly);
+        self.arena.multiply(&Rational::from(content), self.factors(&rest, 1))
+    }
+
     /// The fraction as a sum over the denominators that are left when each term of the numerator cancels
     /// on its own: `(a + b)/L - G*c/C` rather than everything over `L*C`.
     pub fn show_apart(&self, fraction: &Fraction) -> Expr {

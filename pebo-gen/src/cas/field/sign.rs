@@ -4,12 +4,21 @@
 //! kernels have values, or none. The rules are sound and simple: constants, positive kernels, factors,
 //! sums of like signs, and a positive multiple of a fact plus what is not negative.
 
+use std::collections::BTreeSet;
+
+use crate::cas::enclosure::Point;
+use crate::cas::expr::{Expr, Node};
 use crate::cas::facts::{Facts, Relation as Compared};
+use crate::cas::function::Function;
 use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
+use crate::cas::rational::half;
 
 use super::fraction::{Fraction, primitive};
 use super::{Field, Obstacle};
+
+/// How many facts may be combined to show a sign.
+const MOST_FACTS: usize = 3;
 
 /// The sign of a value throughout a domain.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -41,30 +50,58 @@ impl Sign {
 }
 
 impl Field<'_> {
-    /// Takes in the facts that are polynomial in symbols: the only ones that are used.
-    pub(super) fn learn(&self, facts: &Facts) -> Result<(), Obstacle> {
-        let mut found = Vec::new();
+    /// Takes in the facts that can be used: polynomial ones, those about functions that occur in the
+    /// question, and what was learned in earlier rounds.
+    pub(super) fn learn(&self, facts: &Facts, roots: &[Expr]) -> Result<(), Obstacle> {
+        let occurring: BTreeSet<Expr> = self.arena.postorder(roots).into_iter().collect();
         for (expr, compared) in facts.iter() {
-            let calls = self.arena.postorder(&[expr]).into_iter().any(|e| {
-                use crate::cas::expr::Node;
-                match self.arena.node(e) {
-                    Node::Call(..) => true,
-                    Node::Product(product) => product.factors.iter().any(|(_, exponent)| !exponent.is_integer()),
-                    _ => false,
+            let foreign = |e: &Expr| match self.arena.node(*e) {
+                Node::Call(..) => !occurring.contains(e),
+                Node::Product(product) => {
+                    product.factors.iter().any(|(_, exponent)| !exponent.is_integer()) && !occurring.contains(e)
                 }
-            });
-            if calls {
+                _ => false,
+            };
+            if self.arena.postorder(&[expr]).iter().any(foreign) {
                 continue;
             }
-            let fraction = self.fraction(expr)?;
-            if fraction.den.is_constant() {
-                found.push((fraction.num, compared));
-            } else {
-                // n/d > 0 has the sign of n*d
-                found.push((fraction.num.mul(&fraction.den, self.limit())?, compared));
+            self.learn_sign(expr, compared)?;
+        }
+        let learned = self.learned.borrow().clone();
+        for (expr, compared) in learned {
+            self.learn_sign(expr, compared)?;
+        }
+        Ok(())
+    }
+
+    fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
+        let fraction = self.fraction(expr)?;
+        // n/d > 0 has the sign of n*d
+        let poly =
+            if fraction.den.is_constant() { fraction.num } else { fraction.num.mul(&fraction.den, self.limit())? };
+        self.signs.borrow_mut().push((poly, compared));
+        Ok(())
+    }
+
+    /// Learns the sign of what must have it for the expressions to have values. Where something was
+    /// already made of an unknown sign, the field starts again.
+    pub(super) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
+        let known = self.sign(poly)?;
+        let enough = match compared {
+            Compared::Positive => known == Some(Sign::Positive),
+            _ => known.is_some_and(Sign::is_positive_or_zero),
+        };
+        if enough || known == Some(Sign::Negative) {
+            return Ok(());
+        }
+        let entry = (self.show_polynomial(poly), compared);
+        if !self.learned.borrow().contains(&entry) {
+            self.learned.borrow_mut().push(entry);
+            if !self.unsigned.borrow().is_empty() {
+                *self.refined.borrow_mut() = true;
             }
         }
-        *self.signs.borrow_mut() = found;
+        self.signs.borrow_mut().push((poly.clone(), compared));
         Ok(())
     }
 
@@ -86,6 +123,14 @@ impl Field<'_> {
         if let Some(sign) = self.sign_by_facts(&rest)? {
             return Ok(Some(sign));
         }
+        if let Some(sign) = self.sign_by_factors(&rest)? {
+            return Ok(Some(sign));
+        }
+        self.sign_by_discriminant(&rest)
+    }
+
+    /// The sign of a primitive polynomial by those of its factors.
+    fn sign_by_factors(&self, rest: &Poly) -> Result<Option<Sign>, Obstacle> {
         // Factor by factor, where there is more than one.
         let monomial = rest.monomial_content();
         let square_free = rest.square_free(self.limit())?;
@@ -120,17 +165,34 @@ impl Field<'_> {
                 total = product;
             }
         }
-        let sign = match self.plain_sign(&rest) {
-            Some(sign) => Some(sign),
-            None => self.sign_by_facts(&rest)?,
-        };
+        let mut sign = self.plain_sign(&rest);
+        if sign.is_none() {
+            sign = self.sign_by_facts(&rest)?;
+        }
+        if sign.is_none() {
+            sign = self.sign_by_discriminant(&rest)?;
+        }
         Ok(sign.and_then(|sign| total.times(sign)))
     }
 
+    /// Of a number that is not rational, as `pi/2 - 1`, by enclosing it.
+    fn constant_sign(&self, poly: &Poly) -> Option<Sign> {
+        const MOST_TERMS: usize = 24;
+        let numbers = |v: &u32| self.arena.symbols_of(&[self.kernel(*v)]).is_empty();
+        if poly.is_constant() || poly.term_count() > MOST_TERMS || !poly.variables().iter().all(numbers) {
+            return None;
+        }
+        let value = self.arena.separated_from_zero(self.show_polynomial(poly), &Point::new())?;
+        Some(if value.is_positive() { Sign::Positive } else { Sign::Negative })
+    }
+
     /// By the signs of the terms.
-    fn plain_sign(&self, poly: &Poly) -> Option<Sign> {
+    pub(super) fn plain_sign(&self, poly: &Poly) -> Option<Sign> {
         if poly.is_zero() {
             return Some(Sign::Zero);
+        }
+        if let Some(sign) = self.constant_sign(poly) {
+            return Some(sign);
         }
         let mut signs = poly.terms().map(|(monomial, coefficient)| {
             let first = if coefficient.is_negative() { Sign::Negative } else { Sign::Positive };
@@ -187,20 +249,24 @@ impl Field<'_> {
         None
     }
 
-    /// Roots and absolute values are not negative; a root of something positive is positive.
+    /// Roots and absolute values are not negative; a root of something positive is positive. A cosine
+    /// is positive where its angle is within the right half, a sine where it is within the upper one.
     fn sign_by_nature(&self, variable: u32) -> Option<Sign> {
-        use crate::cas::expr::Node;
-        use crate::cas::function::Function;
         let (expr, radicand) = {
             let kernels = self.kernels.borrow();
             let kernel = kernels.get(variable as usize)?;
             (kernel.expr, kernel.relation.as_ref().map(|relation| relation.value.clone()))
         };
-        if matches!(self.arena.node(expr), Node::Call(Function::Abs, _)) {
-            return Some(Sign::NonNegative);
-        }
-        if !self.is_plain_root(expr) {
-            return None;
+        match self.arena.node(expr) {
+            Node::Call(Function::Abs, _) => return Some(Sign::NonNegative),
+            Node::Call(function @ (Function::Sin | Function::Cos), arguments) => {
+                return self.sign_on_circle(function, arguments[0]);
+            }
+            Node::Call(function @ (Function::Asin | Function::Acos | Function::Atan | Function::Atan2), arguments) => {
+                return self.range_of_inverse(function, &arguments).ok()?.sign();
+            }
+            _ if !self.is_plain_root(expr) => return None,
+            _ => {}
         }
         // Relations lead to earlier kernels, so this ends.
         match self.plain_sign(&radicand?) {
@@ -209,79 +275,154 @@ impl Field<'_> {
         }
     }
 
-    /// As a positive multiple of a fact plus what is not negative, or the negation of that; also after
+    /// The sign of a sine or cosine by the range of its angle.
+    fn sign_on_circle(&self, function: Function, angle: Expr) -> Option<Sign> {
+        if self.signs.borrow().is_empty() {
+            return None;
+        }
+        let right = self.scale(&self.fraction(self.arena.pi()).ok()?, &half()).ok()?;
+        let angle = self.fraction(angle).ok()?;
+        // From the middle of where the function is positive.
+        let angle = if function == Function::Sin { self.sub(&angle, &right).ok()? } else { angle };
+        let mut strict = true;
+        for distance in [self.sub(&right, &angle).ok()?, self.add(&right, &angle).ok()?] {
+            match self.sign_of(&distance).ok()?? {
+                Sign::Positive => {}
+                Sign::NonNegative => strict = false,
+                _ => return None,
+            }
+        }
+        Some(if strict { Sign::Positive } else { Sign::NonNegative })
+    }
+
+    /// As a positive combination of facts plus what is not negative, or the negation of that; also after
     /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
     fn sign_by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
-        for form in self.forms(poly)? {
+        let facts = self.facts_about(poly);
+        for form in [Some(poly.clone()), self.with_sines(poly)?].into_iter().flatten() {
             if let Some(sign) = self.plain_sign(&form) {
                 return Ok(Some(sign));
             }
-            for (fact, compared) in self.signs.borrow().iter() {
-                if *compared == Compared::NonZero {
-                    continue;
-                }
-                for (sign, oriented) in [(Sign::Positive, form.clone()), (Sign::Negative, -&form)] {
-                    if let Some(rest) = self.without(&oriented, fact) {
-                        let known = match rest {
-                            Sign::Positive => sign,
-                            _ if *compared == Compared::Positive => sign,
-                            _ if sign == Sign::Positive => Sign::NonNegative,
-                            _ => continue,
-                        };
-                        return Ok(Some(known));
-                    }
-                }
+            if let Some(sign) = self.above_facts(&form, &facts, MOST_FACTS) {
+                return Ok(Some(sign));
+            }
+            if let Some(sign) = self.above_facts(&-&form, &facts, MOST_FACTS) {
+                return Ok((sign == Sign::Positive).then_some(Sign::Negative));
             }
         }
         Ok(None)
     }
 
-    /// The sign of `poly - k * fact` for the k > 0 that cancels a term, if it is not negative.
-    fn without(&self, poly: &Poly, fact: &Poly) -> Option<Sign> {
-        for (monomial, wanted) in fact.terms() {
-            let Some((_, present)) = poly.terms().find(|(candidate, _)| *candidate == monomial) else { continue };
-            if wanted.is_negative() != present.is_negative() {
+    /// The facts, and that no sine or cosine exceeds one.
+    fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Compared)> {
+        let mut facts = self.signs.borrow().clone();
+        for &variable in poly.variables() {
+            if let Node::Call(Function::Sin | Function::Cos, _) = self.arena.node(self.kernel(variable)) {
+                let value = Poly::variable(variable);
+                facts.push((&Poly::one() - &value, Compared::NonNegative));
+                facts.push((&Poly::one() + &value, Compared::NonNegative));
+            }
+        }
+        facts
+    }
+
+    /// The sign of `poly = k * fact + rest` for a k > 0 that cancels a term, if the rest is not negative.
+    fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
+        for (fact, compared) in facts {
+            if *compared == Compared::NonZero {
                 continue;
             }
-            // |wanted| * poly - |present| * fact
-            let rest = &poly.scale(&wanted.abs()) - &fact.scale(&present.abs());
-            if let Some(sign) = self.plain_sign(&rest).filter(|sign| sign.is_positive_or_zero()) {
-                return Some(sign);
+            for (monomial, wanted) in fact.terms() {
+                let Some((_, present)) = poly.terms().find(|(candidate, _)| *candidate == monomial) else { continue };
+                if monomial.is_one() || wanted.is_negative() != present.is_negative() {
+                    continue;
+                }
+                // |wanted| * poly - |present| * fact
+                let rest = &poly.scale(&wanted.abs()) - &fact.scale(&present.abs());
+                let mut sign = self.plain_sign(&rest);
+                if sign.is_none() && most > 1 && rest.term_count() <= poly.term_count() {
+                    sign = self.above_facts(&rest, facts, most - 1);
+                }
+                match sign {
+                    Some(Sign::Positive) => return Some(Sign::Positive),
+                    Some(Sign::NonNegative | Sign::Zero) if *compared == Compared::Positive => {
+                        return Some(Sign::Positive);
+                    }
+                    Some(Sign::NonNegative | Sign::Zero) => return Some(Sign::NonNegative),
+                    _ => {}
+                }
             }
         }
         None
     }
 
-    /// The polynomial, and the same with squared cosines replaced by squared sines.
-    fn forms(&self, poly: &Poly) -> Result<Vec<Poly>, Obstacle> {
-        let mut forms = vec![poly.clone()];
-        let mut other = poly.clone();
+    /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
+    /// out.
+    fn sign_by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        const MOST_TERMS: usize = 40;
+        if poly.term_count() > MOST_TERMS {
+            return Ok(None);
+        }
         for &variable in poly.variables() {
-            if let Some(sine) = self.sine_beside(variable) {
-                let square = Poly::variable(sine).pow(2, self.limit())?;
-                other = other.reduce_power(variable, 2, &(&Poly::one() - &square), self.limit())?;
+            // Also in a power of the variable.
+            let degree = poly.degree(variable);
+            let (mut a, mut b, mut c) = (Poly::zero(), Poly::zero(), Poly::zero());
+            let mut quadratic = degree.is_multiple_of(2);
+            for (exponent, coefficient) in poly.coefficients_in(variable) {
+                match exponent {
+                    0 => c = coefficient,
+                    _ if exponent == degree => a = coefficient,
+                    _ if 2 * exponent == degree => b = coefficient,
+                    _ => quadratic = false,
+                }
             }
+            if !quadratic {
+                continue;
+            }
+            if b.is_zero() || c.is_zero() {
+                continue;
+            }
+            let Some(upward) = self.sign(&a)? else { continue };
+            if upward == Sign::Negative {
+                (a, c) = (-&a, -&c);
+            }
+            let four = Integer::from(4);
+            let below = &a.mul(&c, self.limit())?.scale(&four) - &b.mul(&b, self.limit())?;
+            // 4 a poly = (2 a v^k + b)^2 + below; where a is zero, b is not unless below is zero.
+            let least = match self.sign(&below)? {
+                Some(Sign::Positive) => Sign::Positive,
+                Some(Sign::NonNegative | Sign::Zero)
+                    if matches!(upward, Sign::Positive | Sign::Negative)
+                        || self.sign(&c)?.is_some_and(Sign::is_positive_or_zero) =>
+                {
+                    Sign::NonNegative
+                }
+                _ => continue,
+            };
+            return Ok(match (upward, least) {
+                (Sign::Negative, Sign::Positive) => Some(Sign::Negative),
+                (Sign::Negative, _) => None,
+                (_, least) => Some(least),
+            });
         }
-        if other != *poly {
-            forms.push(other);
-        }
-        Ok(forms)
-    }
-
-    /// The sine kernel of the same angle, for a cosine kernel.
-    fn sine_beside(&self, variable: u32) -> Option<u32> {
-        use crate::cas::expr::Node;
-        use crate::cas::function::Function;
-        let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) else { return None };
-        let sine = self.arena.call(Function::Sin, &arguments);
-        self.numbers.borrow().get(&sine).copied()
+        Ok(None)
     }
 }
 
 impl Field<'_> {
+    /// The sign of a part: by algebra, or by enclosing it over the box that the facts state.
+    pub(super) fn sign_of_part(&self, part: &Poly) -> Result<Option<Sign>, Obstacle> {
+        if let Some(sign) = self.sign(part)? {
+            return Ok(Some(sign));
+        }
+        let positive = self.domain.sign_over_box(self.arena, self.show_polynomial(part));
+        Ok(positive.map(|positive| if positive { Sign::Positive } else { Sign::Negative }))
+    }
+
     /// Whether the fraction is known to be positive throughout the domain.
     pub fn is_positive(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
-        Ok(self.sign_of(fraction)? == Some(Sign::Positive))
+        Ok(self.sign_of(fraction)? == Some(Sign::Positive)
+            || self.domain.sign_over_box(self.arena, self.show(fraction)) == Some(true))
     }
 
     /// Whether the fraction is known to be positive or zero throughout the domain.

@@ -155,6 +155,12 @@ impl Interval {
         parts.is_some_and(|(n, d)| self.lo.product(&d) > n || self.hi.product(&d) < n)
     }
 
+    /// A rational number that is no less than any of the multiples; none where that is out of range.
+    pub fn above_multiples(&self, factor: &Rational) -> Option<Rational> {
+        let end = if factor.is_negative() { self.lo() } else { self.hi() };
+        Some(&Rational::from_f64_exact(end)? * factor)
+    }
+
     /// The greatest `f64` that is at most every number.
     pub fn lo(&self) -> f64 {
         self.lo.to_f64(Side::Below)

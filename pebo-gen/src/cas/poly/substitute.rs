@@ -12,12 +12,15 @@ impl Poly {
     }
 
     /// This modulo the relation `variable^degree = value`: no power of the variable as high as
-    /// `degree` remains. A degree of zero, and a value with the variable in it, are programming
-    /// errors.
+    /// `degree` remains. The value has lower powers of the variable at most; other values are
+    /// programming errors.
     pub fn reduce_power(&self, variable: u32, degree: u32, value: &Self, work: &Work) -> Result<Self, TooLarge> {
-        debug_assert!(degree > 0 && value.degree(variable) == 0, "{variable}^{degree} = {value}");
+        debug_assert!(value.degree(variable) < degree, "{variable}^{degree} = {value}");
         if self.degree(variable) < degree {
             return Ok(self.clone());
+        }
+        if value.degree(variable) > 0 {
+            return self.reduce_by(variable, degree, value, work);
         }
         let mut coefficients = self.coefficients_in(variable);
         // Stable: within a class the powers still descend.
@@ -30,6 +33,19 @@ impl Poly {
             reduced = &reduced + &part;
         }
         Ok(reduced)
+    }
+
+    /// The remainder of the division by `variable^degree - value`, from the highest power down.
+    fn reduce_by(&self, variable: u32, degree: u32, value: &Self, work: &Work) -> Result<Self, TooLarge> {
+        let mut rest = self.clone();
+        while rest.degree(variable) >= degree {
+            let top = rest.degree(variable);
+            let leading = rest.leading_coefficient_in(variable);
+            let power = leading.mul_term(&Monomial::new([(variable, top - degree)]), &Integer::ONE, work)?;
+            let above = power.mul_term(&Monomial::new([(variable, degree)]), &Integer::ONE, work)?;
+            rest = &(&rest - &above) + &power.mul(value, work)?;
+        }
+        Ok(rest)
     }
 }
 

@@ -1,0 +1,68 @@
+//! Signs over a box of values, by interval arithmetic with subdivision.
+//!
+//! In: an expression, and a domain that bounds each of its symbols from both sides. Out: its sign, if
+//! one holds throughout the box; the box contains the domain. The enclosures are rigorous, so is the
+//! answer; where the expression comes close to zero, there is none.
+
+use std::collections::BTreeMap;
+
+use super::arena::Arena;
+use super::domain::Domain;
+use super::expr::{Expr, Symbol};
+use super::interval::{Interval, Precision};
+use super::rational::{Rational, half};
+
+/// How many boxes are looked at before the question is given up.
+const MOST_BOXES: usize = 256;
+
+/// Bits of the enclosures: the width of a box matters more.
+const PRECISION: Precision = Precision::new(64);
+
+/// A closed range for each symbol.
+type Box = BTreeMap<Symbol, (Rational, Rational)>;
+
+impl Domain {
+    /// Whether the expression is positive (true) or negative (false) throughout the domain.
+    pub fn sign_over_box(&self, arena: &Arena, expr: Expr) -> Option<bool> {
+        let symbols = arena.symbols_of(&[expr]);
+        if symbols.is_empty() {
+            return None;
+        }
+        let ranges = self.bounds(arena, &symbols);
+        let whole: Box = symbols.iter().map(|s| Some((*s, ranges.get(s)?.clone()))).collect::<Option<_>>()?;
+        let mut open = vec![whole];
+        let mut found: Option<bool> = None;
+        for _ in 0..MOST_BOXES {
+            let Some(part) = open.pop() else { return found };
+            match sign(arena, expr, &part) {
+                Some(sign) if found.is_none_or(|known| known == sign) => found = Some(sign),
+                Some(_) => return None,
+                None => open.extend(halves(part)),
+            }
+        }
+        None
+    }
+}
+
+/// The sign that one enclosure shows.
+fn sign(arena: &Arena, expr: Expr, part: &Box) -> Option<bool> {
+    let mut values = BTreeMap::new();
+    for (symbol, (low, high)) in part {
+        let ends = [low, high].map(|end| Interval::from_rational(end, PRECISION));
+        let [Some(low), Some(high)] = ends else { return None };
+        values.insert(*symbol, low.hull(&high));
+    }
+    let value = arena.enclose_over(&[expr], &values, PRECISION)?.pop()?;
+    (!value.contains_zero()).then(|| value.is_positive())
+}
+
+/// The box cut in two across its widest side.
+fn halves(part: Box) -> Vec<Box> {
+    let widest = part.iter().max_by_key(|(_, (low, high))| high - low).map(|(symbol, ends)| (*symbol, ends.clone()));
+    let Some((symbol, (low, high))) = widest else { return Vec::new() };
+    let middle = &(&low + &high) * &half();
+    let mut parts = [part.clone(), part];
+    parts[0].insert(symbol, (low, middle.clone()));
+    parts[1].insert(symbol, (middle, high));
+    parts.into()
+}

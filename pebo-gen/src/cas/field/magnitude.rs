@@ -1,0 +1,48 @@
+//! Absolute values: of a product, the product of the absolute values of its parts.
+
+use crate::cas::function::Function;
+use crate::cas::poly::Poly;
+use crate::cas::rational::Rational;
+
+use super::fraction::{Fraction, primitive};
+use super::kernel::Relation;
+use super::sign::Sign;
+use super::{Field, Obstacle};
+
+impl Field<'_> {
+    /// The absolute value of a fraction.
+    pub(super) fn absolute(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
+        let above = self.magnitude(argument.numerator())?;
+        self.div(&above, &self.magnitude(argument.denominator())?)
+    }
+
+    /// `|poly|`: by its sign where that is known, else part by part.
+    fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
+        match self.sign(poly)? {
+            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
+            Some(_) => return Ok(Fraction::polynomial(-poly)),
+            None => {}
+        }
+        let (content, rest) = primitive(poly);
+        let product = self.product_of(&rest)?;
+        let factor = Rational::new(content, product.divisor).ok_or(Obstacle::DivisionByZero)?;
+        let mut total = Fraction::constant(&factor);
+        for (part, times) in product.powers {
+            total = self.mul(&total, &self.pow(&self.size(&part)?, i64::from(times))?)?;
+        }
+        Ok(total)
+    }
+
+    /// `|part|`: by its sign where that is known, else a kernel whose square is known.
+    pub(super) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
+        match self.sign_of_part(part)? {
+            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(part.clone())),
+            Some(Sign::Negative) => return Ok(Fraction::polynomial(-part)),
+            _ => {}
+        }
+        self.unsigned.borrow_mut().insert(part.clone());
+        let kernel = self.arena.call(Function::Abs, &[self.show_polynomial(part)]);
+        let value = self.reduce(&part.mul(part, self.limit())?)?;
+        Ok(self.entered(kernel, Some(Relation { degree: 2, value }), false))
+    }
+}

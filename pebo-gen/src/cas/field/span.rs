@@ -1,0 +1,174 @@
+//! Arguments as rational combinations of atoms that are linearly independent over the rationals.
+//!
+//! In: the argument of a sine, cosine or exponential. Out: atoms with rational factors, whose sum it
+//! is. An argument is first divided by its denominator and taken apart into its monomials, so that
+//! `sin(x + u)` separates x from u; where a piece is a combination of pieces seen before, as
+//! `y^2/(1 + y^2)` is of 1 and `1/(1 + y^2)`, it is written so. Holds after: no atom of a family is a
+//! rational combination of the others.
+
+use std::collections::BTreeMap;
+
+use crate::cas::expr::Expr;
+use crate::cas::integer::Integer;
+use crate::cas::poly::{Monomial, Poly};
+use crate::cas::rational::Rational;
+
+use super::fraction::{Fraction, negated, primitive};
+use super::{Family, Field, Obstacle};
+
+/// The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one atom.
+const MOST_SUMMANDS: usize = 8;
+
+/// Atoms that a linear dependence is looked for among.
+const MOST_ATOMS: usize = 40;
+
+impl Field<'_> {
+    /// Splits an argument into rational multiples of atoms.
+    pub(super) fn split(&self, family: Family, argument: &Fraction) -> Result<Vec<(Expr, Rational)>, Obstacle> {
+        let mut pieces = self.pieces(argument)?;
+        if pieces.len() > MOST_SUMMANDS {
+            pieces = vec![argument.clone()];
+        }
+        let mut total: BTreeMap<Expr, Rational> = BTreeMap::new();
+        for piece in &pieces {
+            for (atom, factor) in self.over_atoms(family, piece)? {
+                let entry = total.entry(atom).or_insert(Rational::ZERO);
+                *entry = &*entry + &factor;
+            }
+        }
+        Ok(total.into_iter().filter(|(_, factor)| !factor.is_zero()).collect())
+    }
+
+    /// The terms of the quotient and of the remainder of numerator by denominator.
+    fn pieces(&self, argument: &Fraction) -> Result<Vec<Fraction>, Obstacle> {
+        let mut pieces = Vec::new();
+        let mut rest = argument.num.clone();
+        let mut scale = Integer::ONE;
+        if argument.den.term_count() > 1
+            && let Some((leading, coefficient)) = argument.den.leading_term()
+        {
+            // scale * num = sum of quotient * den + rest, over the integers
+            let mut remainder = Vec::new();
+            while let Some((monomial, own)) = rest.leading_term() {
+                let own = own.clone();
+                let Some(quotient) = over(&monomial, &leading) else {
+                    let term = Poly::from_terms([(monomial, own)])?;
+                    rest = &rest - &term;
+                    remainder.push(term);
+                    continue;
+                };
+                let value = Rational::new(own.clone(), &scale * coefficient).ok_or(Obstacle::DivisionByZero)?;
+                let bare = Fraction::polynomial(Poly::from_terms([(quotient.clone(), Integer::ONE)])?);
+                pieces.push(self.scale(&bare, &value)?);
+                let quotient = Poly::from_terms([(quotient, own)])?;
+                rest = &rest.scale(coefficient) - &quotient.mul(&argument.den, self.limit())?;
+                for part in &mut remainder {
+                    *part = Poly::scale(part, coefficient);
+                }
+                scale = &scale * coefficient;
+            }
+            let den = argument.den.scale(&scale);
+            for term in remainder {
+                pieces.push(self.fraction_of(&term, &den)?);
+            }
+        } else {
+            for (monomial, coefficient) in argument.num.terms() {
+                let term = Poly::from_terms([(monomial, coefficient.clone())])?;
+                pieces.push(self.fraction_of(&term, &argument.den)?);
+            }
+        }
+        Ok(pieces)
+    }
+
+    /// A piece as a combination of atoms; a new one where it is none.
+    fn over_atoms(&self, family: Family, piece: &Fraction) -> Result<Vec<(Expr, Rational)>, Obstacle> {
+        let (key, bare, factor) = self.undivided(piece)?;
+        let atoms = self.atoms.borrow().get(&family).cloned().unwrap_or_default();
+        if atoms.iter().any(|(atom, _)| *atom == key) {
+            return Ok(vec![(key, factor)]);
+        }
+        // Different monomials are independent of each other; only sums can depend.
+        let simple = |f: &Fraction| f.num.term_count() == 1 && f.den.term_count() == 1;
+        if atoms.len() <= MOST_ATOMS
+            && !(simple(&bare) && atoms.iter().all(|(_, atom)| simple(atom)))
+            && let Some(combination) = self.dependence(&bare, &atoms)?
+        {
+            return Ok(combination.into_iter().map(|(atom, share)| (atom, &share * &factor)).collect());
+        }
+        self.atoms.borrow_mut().entry(family).or_default().push((key, bare));
+        Ok(vec![(key, factor)])
+    }
+
+    /// A fraction as a rational multiple of one that is primitive with a positive leading coefficient.
+    fn undivided(&self, argument: &Fraction) -> Result<(Expr, Fraction, Rational), Obstacle> {
+        let (above, num) = primitive(&argument.num);
+        let (below, den) = primitive(&argument.den);
+        let mut factor = Rational::new(above, below).ok_or(Obstacle::DivisionByZero)?;
+        let mut key = Fraction { num, den };
+        if key.num.leading_coefficient().is_negative() {
+            factor = -&factor;
+            key = negated(&key);
+        }
+        Ok((self.show(&key), key, factor))
+    }
+
+    /// The fraction as a rational combination of atoms, if it is one.
+    fn dependence(
+        &self,
+        wanted: &Fraction,
+        atoms: &[(Expr, Fraction)],
+    ) -> Result<Option<Vec<(Expr, Rational)>>, Obstacle> {
+        let mut common = wanted.den.clone();
+        for (_, atom) in atoms {
+            common = common.lcm(&atom.den, self.limit())?;
+        }
+        let mut columns = Vec::with_capacity(atoms.len() + 1);
+        for fraction in atoms.iter().map(|(_, atom)| atom).chain([wanted]) {
+            columns.push(self.over_denominator(fraction, &common)?);
+        }
+        let mut rows: BTreeMap<Monomial, Vec<Rational>> = BTreeMap::new();
+        for (column, poly) in columns.iter().enumerate() {
+            for (monomial, coefficient) in poly.terms() {
+                let row = rows.entry(monomial).or_insert_with(|| vec![Rational::ZERO; columns.len()]);
+                row[column] = Rational::from(coefficient.clone());
+            }
+        }
+        let Some(solution) = solve(rows.into_values().collect(), atoms.len()) else { return Ok(None) };
+        let used = atoms.iter().zip(solution).filter(|(_, share)| !share.is_zero());
+        Ok(Some(used.map(|((atom, _), share)| (*atom, share)).collect()))
+    }
+}
+
+/// The monomial divided by another, if that divides it.
+fn over(monomial: &Monomial, divisor: &Monomial) -> Option<Monomial> {
+    let fits = divisor.powers().iter().all(|&(v, e)| monomial.exponent(v) >= e);
+    fits.then(|| Monomial::new(monomial.powers().iter().map(|&(v, e)| (v, e - divisor.exponent(v)))))
+}
+
+/// Solves rows `[matrix | right]` over the rationals; zero for unknowns that are free.
+fn solve(mut rows: Vec<Vec<Rational>>, unknowns: usize) -> Option<Vec<Rational>> {
+    let mut pivots: Vec<(usize, Vec<Rational>)> = Vec::new();
+    for column in 0..unknowns {
+        let Some(index) = rows.iter().position(|row| !row[column].is_zero()) else { continue };
+        let pivot = rows.swap_remove(index);
+        let pivot: Vec<Rational> =
+            pivot.iter().map(|entry| entry.checked_div(&pivot[column])).collect::<Option<_>>()?;
+        for row in rows.iter_mut().chain(pivots.iter_mut().map(|(_, row)| row)) {
+            let factor = row[column].clone();
+            if !factor.is_zero() {
+                for (entry, own) in row.iter_mut().zip(&pivot) {
+                    *entry = &*entry - &(&factor * own);
+                }
+            }
+        }
+        pivots.push((column, pivot));
+    }
+    if rows.iter().any(|row| !row[unknowns].is_zero()) {
+        return None;
+    }
+    let mut solution = vec![Rational::ZERO; unknowns];
+    for (column, row) in pivots {
+        solution[column] = row[unknowns].clone();
+    }
+    Some(solution)
+}
