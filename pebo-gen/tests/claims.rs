@@ -336,6 +336,22 @@ fn conditions_are_listed_unless_the_assumptions_discharge_them() {
     assert_eq!(remaining("k < 0, r > 0"), Vec::<String>::new());
 }
 
+/// No rule of algebra knows the sign of `u^3 - u + exp(-u)`; enclosures over the assumed box do.
+#[test]
+fn conditions_are_discharged_by_enclosures_over_the_assumed_box() {
+    let remaining = |assume: &str| {
+        let plant = derived(&format!(
+            "x: [x]\ny: [y]\nu: [u]\nassume: [{assume}]\n\
+             f_x: {{x: sqrt(u^3 - u + exp(-u))}}\nf_y: {{y: x*(2 + sin(3*u))}}\nphi: [x]"
+        ));
+        plant.derivation.conditions.len()
+    };
+    assert_eq!(remaining("0 < u < 1"), 0);
+    // At u = -2 the radicand is 1.4, at u = -3 it is -3.9.
+    assert_eq!(remaining("-3 < u < 1"), 1);
+    assert_eq!(remaining("u > 0"), 1);
+}
+
 /// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
 #[test]
 fn points_without_a_value_refute_nothing() {

@@ -66,3 +66,39 @@ fn halves(part: Box) -> Vec<Box> {
     parts[1].insert(symbol, (middle, high));
     parts.into()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::facts::Relation;
+    use crate::cas::function::Function;
+
+    /// The domain `low < x < high`, with an end at an irrational number where that is asked for.
+    fn between(arena: &Arena, low: Expr, high: Expr) -> Domain {
+        let x = arena.variable("x");
+        let mut domain = Domain::default();
+        domain.facts.assume(arena.sub(x, low), Relation::Positive);
+        domain.facts.assume(arena.sub(high, x), Relation::Positive);
+        domain
+    }
+
+    #[test]
+    fn signs_hold_throughout_or_not_at_all() {
+        let arena = Arena::new();
+        let number = |n: i64| arena.number(n);
+        let x = arena.variable("x");
+        let third = arena.scale(arena.pi(), &Rational::new(1, 3).expect("a third"));
+        let cosine = arena.call(Function::Cos, &[x]);
+        // Before the third of a half turn the cosine is above one half, and only there.
+        let above = arena.sub(cosine, arena.number(Rational::new(49, 100).expect("a rational")));
+        let below = arena.sub(cosine, arena.number(Rational::new(51, 100).expect("a rational")));
+        let domain = between(&arena, number(0), third);
+        assert_eq!(domain.sign_over_box(&arena, above), Some(true));
+        assert_eq!(domain.sign_over_box(&arena, arena.neg(above)), Some(false));
+        assert_eq!(domain.sign_over_box(&arena, below), None);
+        // Unbounded on one side, and zero within the box.
+        let y = arena.variable("y");
+        assert_eq!(domain.sign_over_box(&arena, arena.add(above, y)), None);
+        assert_eq!(between(&arena, number(-1), number(1)).sign_over_box(&arena, x), None);
+    }
+}
