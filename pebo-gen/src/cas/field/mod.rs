@@ -140,6 +140,10 @@ pub struct Field<'a> {
     /// Arguments of sines and cosines.
     angles: RefCell<Vec<(Fraction, Pair)>>,
     domain: Domain,
+    /// Signs of expressions over the box that the facts state.
+    boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
+    /// How deep the question of a sign is nested.
+    depth: Cell<u32>,
     refined: RefCell<bool>,
     parts: RefCell<Parts>,
     wholes: RefCell<Vec<Whole>>,
@@ -166,6 +170,8 @@ impl<'a> Field<'a> {
             inverses: RefCell::default(),
             angles: RefCell::default(),
             domain: domain_of(facts),
+            boxed: RefCell::default(),
+            depth: Cell::default(),
             refined: RefCell::new(false),
             parts: RefCell::default(),
             wholes: RefCell::default(),

@@ -329,7 +329,8 @@ impl Field<'_> {
     /// The sign of `poly = k * fact + rest` for a k > 0 that cancels a term, if the rest is not negative.
     fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
         for (fact, compared) in facts {
-            if *compared == Compared::NonZero {
+            let effort = poly.term_count() * fact.term_count();
+            if *compared == Compared::NonZero || self.limit().spend(effort as u64).is_err() {
                 continue;
             }
             for (monomial, wanted) in fact.terms() {
@@ -360,9 +361,19 @@ impl Field<'_> {
     /// out.
     fn sign_by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         const MOST_TERMS: usize = 40;
-        if poly.term_count() > MOST_TERMS {
+        const DEEPEST: u32 = 3;
+        // Each step asks for the signs of polynomials in one variable less.
+        let depth = self.depth.get();
+        if poly.term_count() > MOST_TERMS || depth == DEEPEST {
             return Ok(None);
         }
+        self.depth.set(depth + 1);
+        let sign = self.sign_as_quadratic(poly);
+        self.depth.set(depth);
+        sign
+    }
+
+    fn sign_as_quadratic(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         for &variable in poly.variables() {
             // Also in a power of the variable.
             let degree = poly.degree(variable);
@@ -415,14 +426,23 @@ impl Field<'_> {
         if let Some(sign) = self.sign(part)? {
             return Ok(Some(sign));
         }
-        let positive = self.domain.sign_over_box(self.arena, self.show_polynomial(part));
+        let positive = self.sign_over_box(self.show_polynomial(part));
         Ok(positive.map(|positive| if positive { Sign::Positive } else { Sign::Negative }))
+    }
+
+    /// What enclosures over the box say, once for each expression.
+    fn sign_over_box(&self, expr: Expr) -> Option<bool> {
+        if let Some(known) = self.boxed.borrow().get(&expr) {
+            return *known;
+        }
+        let sign = self.domain.sign_over_box(self.arena, expr);
+        self.boxed.borrow_mut().insert(expr, sign);
+        sign
     }
 
     /// Whether the fraction is known to be positive throughout the domain.
     pub fn is_positive(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
-        Ok(self.sign_of(fraction)? == Some(Sign::Positive)
-            || self.domain.sign_over_box(self.arena, self.show(fraction)) == Some(true))
+        Ok(self.sign_of(fraction)? == Some(Sign::Positive) || self.sign_over_box(self.show(fraction)) == Some(true))
     }
 
     /// Whether the fraction is known to be positive or zero throughout the domain.
