@@ -15,10 +15,11 @@ use crate::cas::interval::{Interval, Precision};
 use crate::cas::linear::Echelon;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::Plant;
+use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
+use super::pencil;
 use super::singular::singular_where;
 
 /// Points that are tried before a rank counts as deficient.
@@ -257,7 +258,17 @@ fn never(
             return diagnostic.help("drop the redundant components of phi");
         }
     }
-    diagnostic.help("measure another output, or choose another phi")
+    let blind = match &plant.class {
+        Some(Class::Linear(linear)) => pencil::blindness(plant, domain, linear).ok().flatten(),
+        _ => None,
+    };
+    match blind {
+        Some(blind) => diagnostic
+            .note(blind)
+            .note("the cascade exists all the same, but theta needs observability (Proposition 2, claims C2 and C3)")
+            .help("measure another output"),
+        None => diagnostic.help("measure another output, or choose another phi"),
+    }
 }
 
 fn at_phi(plant: &Plant) -> Span {

@@ -14,6 +14,7 @@ use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide, refute};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
+use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict, Witness};
@@ -50,7 +51,7 @@ pub(super) fn prove(
     let mut obstacles = Vec::new();
     let mut veiled = Vec::new();
     for (index, rate, span) in &rows {
-        match decompose(plant, domain, *rate) {
+        match decompose(plant, domain, *index, *rate) {
             Ok(Some(row)) => affine.push(row),
             Ok(None) | Err(_) if plant.arena.depends_on(*rate, &unmeasured) => veiled.push((*index, *rate, *span)),
             Ok(None) => obstacles.push((*index, *rate, *span, None)),
@@ -116,9 +117,15 @@ pub(super) fn prove(
 }
 
 /// Writes an output's rate over {1, phi}, and proves it.
-fn decompose(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<Row>, Obstacle> {
+fn decompose(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<Row>, Obstacle> {
     let arena = &plant.arena;
     let phi = plant.transform();
+    if let Some((known, factors)) = plant.proposal.rates.get(&plant.y[index].symbol) {
+        let rebuilt = arena.add(*known, dot(arena, factors, &phi));
+        if decide(arena, arena.sub(rate, rebuilt), domain).is_zero() {
+            return Ok(Some(Row { known: *known, factors: factors.clone() }));
+        }
+    }
     let mut roots = phi.clone();
     roots.push(rate);
     let field = Field::over(arena, &domain.facts, &roots)?;

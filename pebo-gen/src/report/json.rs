@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::conditions;
+use super::{conditions, expansion};
 use crate::analysis::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
     RegressionKind, Verdict, Witness,
@@ -19,6 +19,8 @@ struct Report<'a> {
     model: &'a str,
     verdict: &'static str,
     class: Option<&'static str>,
+    /// The plant that a model by class stands for.
+    expansion: Option<ExpansionReport>,
     cascade: Option<CascadeReport>,
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
@@ -26,6 +28,16 @@ struct Report<'a> {
     /// What the proofs rest on besides the assumptions, as comparisons with zero.
     conditions: Vec<String>,
     diagnostics: Vec<Located<'a>>,
+}
+
+#[derive(Serialize)]
+struct ExpansionReport {
+    class: &'static str,
+    #[serde(flatten)]
+    origin: IndexMap<&'static str, String>,
+    rates: IndexMap<String, String>,
+    phi: Vec<String>,
+    velocity: IndexMap<String, String>,
 }
 
 #[derive(Serialize)]
@@ -90,6 +102,13 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
             Class::Pebo => "pebo",
             Class::Gpebo => "gpebo",
         }),
+        expansion: expansion::of(plant).map(|expansion| ExpansionReport {
+            class: expansion.class,
+            origin: expansion.origin.into_iter().collect(),
+            rates: expansion.rates.into_iter().collect(),
+            phi: expansion.phi,
+            velocity: expansion.velocity.into_iter().collect(),
+        }),
         cascade: Some(cascade(arena, &derivation.cascade)),
         left_inverse: Some(left_inverse(plant, &derivation.left_inverse)),
         regression: Some(regression(plant, &derivation.regression)),
@@ -107,6 +126,7 @@ pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Str
         model: name,
         verdict: "rejected",
         class: None,
+        expansion: None,
         cascade: None,
         left_inverse: None,
         regression: None,

@@ -15,6 +15,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         Outcome::Undecided => "undecided: a claim could not be decided",
     };
     let mut text = format!("{}: {outcome}\n", plant.name);
+    expansion(&mut text, plant);
     claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));
     claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
     claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
@@ -37,6 +38,17 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         text.extend(["  where ", &conditions.join(", "), "\n"]);
     }
     text
+}
+
+/// The plant that a class stands for.
+fn expansion(text: &mut String, plant: &Plant) {
+    let Some(expansion) = super::expansion::of(plant) else { return };
+    let mut lines: Vec<String> = expansion.origin.iter().map(|(name, formula)| format!("{name} = {formula}")).collect();
+    lines.extend(expansion.rates.iter().map(|(name, rate)| format!("{name}' = {rate}")));
+    lines.extend(expansion.phi.iter().enumerate().map(|(i, phi)| format!("z{} = {phi}", i + 1)));
+    lines.extend(expansion.velocity.iter().map(|(name, formula)| format!("velocity of {name}: {formula}")));
+    let line = format!("  {:<26}{}", expansion.class, lines.join(&format!("\n{INDENT}")));
+    text.extend([line.trim_end(), "\n"]);
 }
 
 fn claim<T>(text: &mut String, name: &str, claim: &Claim<T>, lines: impl Fn(&T) -> Vec<String>) {
