@@ -17,6 +17,7 @@ mod killing;
 mod left_inverse;
 mod pencil;
 mod regression;
+mod relations;
 mod separation;
 mod singular;
 mod solve;

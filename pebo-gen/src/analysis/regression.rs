@@ -19,6 +19,7 @@ use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict, Witness};
 use super::left_inverse::is_whole_turns;
+use super::relations;
 use super::separation::{self, Recovered, Separated};
 use super::tidy::{shortest, shortest_equal};
 
@@ -62,7 +63,8 @@ pub(super) fn prove(
     rows.retain(|row| !veiled.contains(row));
     if rows.is_empty() {
         if plant.identities.is_empty() {
-            return hidden_by_signals(plant, domain, &veiled, found);
+            return from_relations(plant, domain, left_inverse, found)
+                .unwrap_or_else(|| hidden_by_signals(plant, domain, &veiled, found));
         }
         return from_identities(plant, domain, left_inverse, found);
     }
@@ -363,6 +365,9 @@ pub(super) fn from_identities(
     let arena = &plant.arena;
     let span = plant.y.first().map_or(Span::point(0), |output| output.span);
     if plant.identities.is_empty() {
+        if let Some(claim) = from_relations(plant, domain, left_inverse, found) {
+            return claim;
+        }
         found.push(
             Diagnostic::error(Code::RegressionNonlinear, span, "there is nothing to estimate the unknowns from")
                 .label("no output has a rate under `f_y`, and there are no `identities`")
@@ -373,7 +378,39 @@ pub(super) fn from_identities(
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
     let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
     let identities: Vec<Expr> = plant.identities.iter().map(|i| arena.substitute(i.expr, &inverse)).collect();
-    match separation::separate(plant, domain, &identities) {
+    standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+}
+
+/// A static regression from what the components of the transform have to do with each other; none if that
+/// is nothing, or nothing that theta can be recovered from.
+fn from_relations(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let relations = relations::among(plant, domain).ok().filter(|relations| !relations.is_empty())?;
+    let mut own = Vec::new();
+    let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
+    let claim = standing_still(plant, domain, left_inverse?, (&relations, span), &mut own);
+    // A claim that is undecided here is left to what the author can mend: the rates.
+    if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
+        return None;
+    }
+    found.extend(own);
+    Some(claim)
+}
+
+/// A static regression from expressions in z that vanish.
+fn standing_still(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: &LeftInverse,
+    (in_z, span): (&[Expr], Span),
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    match separation::separate(plant, domain, in_z) {
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
             if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
@@ -393,14 +430,14 @@ pub(super) fn from_identities(
                 };
                 return Claim { verdict: Verdict::Proved, result: Some(result) };
             }
-            found.push(undecided(plant, 0, plant.identities[0].span, &Obstacle::NoWitness));
+            found.push(undecided(plant, 0, span, &Obstacle::NoWitness));
             Claim { verdict: Verdict::Undecided, result: None }
         }
         Ok(None) => {
             found.push(
                 Diagnostic::error(
                     Code::RegressionUndecided,
-                    plant.identities[0].span,
+                    span,
                     "no regression that is linear in functions of theta was found in this identity",
                 )
                 .help("write it as a polynomial in the components of phi, or give `f_y` for an output"),
@@ -408,7 +445,7 @@ pub(super) fn from_identities(
             Claim { verdict: Verdict::Undecided, result: None }
         }
         Err(obstacle) => {
-            found.push(undecided(plant, 0, plant.identities[0].span, &obstacle));
+            found.push(undecided(plant, 0, span, &obstacle));
             Claim { verdict: Verdict::Undecided, result: None }
         }
     }

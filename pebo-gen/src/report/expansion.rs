@@ -1,7 +1,6 @@
 //! The plant that a class stands for: its equations, and what the class is known by.
 
 use crate::cas::Expr;
-use crate::plant::matrix::dot;
 use crate::plant::{Class, Plant};
 
 /// What a class was expanded to, as formulas.
@@ -33,9 +32,8 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
     let origin = match class {
         Class::Linear(linear) => vec![("T1", matrix(linear.t1.rows())), ("T2", matrix(linear.t2.rows()))],
         Class::Mechanical(mechanical) => {
-            let z: Vec<Expr> = plant.z.iter().map(|z| arena.of_symbol(*z)).collect();
-            let rows = mechanical.q.iter().zip(mechanical.velocity.rows());
-            velocity.extend(rows.map(|(q, row)| (arena.name(*q), arena.print(dot(arena, row, &z)))));
+            let velocities = mechanical.q.iter().zip(&mechanical.velocities);
+            velocity.extend(velocities.map(|(q, formula)| (arena.name(*q), arena.print(*formula))));
             vec![("H", arena.print(mechanical.energy))]
         }
         Class::Electromechanical(coils) => {

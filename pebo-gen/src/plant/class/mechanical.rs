@@ -36,8 +36,8 @@ pub struct Mechanical {
     pub inverse_frame: Matrix,
     /// `(T' M T)^-1`.
     pub inverse_metric: Matrix,
-    /// `(T' M)^-1`: velocities from z.
-    pub velocity: Matrix,
+    /// The velocities `(T' M)^-1 z`.
+    pub velocities: Vec<Expr>,
     /// `-T' (dV/dq - G u)`: what z' is if the terms that are quadratic in momenta vanish.
     pub h: Vec<Expr>,
     /// The energy H.
@@ -100,6 +100,7 @@ pub(super) fn expand(
     let (p, u) = (symbols(names.x), symbols(names.u));
     let z: Vec<Expr> = (1..=n).map(|i| arena.variable(&format!("z{i}"))).collect();
     let rates = collected(place, &velocity.mul(arena, &transposed), &p).map_err(open("M^-1 p", m.span))?;
+    let velocities = collected(place, &velocity, &z).map_err(open("the velocity", m.span))?;
     let force = |index: usize| {
         let slope = arena.neg(arena.derivative(potential, names.y[index]));
         if u.is_empty() { slope } else { arena.add(slope, dot(arena, &forces.rows()[index], &u)) }
@@ -138,7 +139,7 @@ pub(super) fn expand(
             frame,
             inverse_frame,
             inverse_metric,
-            velocity,
+            velocities,
             energy,
             span: t.span,
         })),
