@@ -16,8 +16,8 @@ use crate::source::{Code, Diagnostic, listed};
 
 use super::design::{Cascade, Claim, Class, Verdict, Witness};
 use super::killing::{self, Column};
-use super::{gpebo, pencil};
 use super::tidy::{proved_shortest, shortest};
+use super::{gpebo, pencil};
 
 /// One component of the derivative of the transform.
 enum Component {

@@ -187,8 +187,10 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
         .x
         .iter()
         .filter_map(|state| {
-            let proposed = plant.proposal.phi_left.iter().filter(|(s, _)| *s == state.symbol).map(|(_, formula)| *formula);
-            let candidates: Vec<Expr> = proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
+            let proposed =
+                plant.proposal.phi_left.iter().filter(|(s, _)| *s == state.symbol).map(|(_, formula)| *formula);
+            let candidates: Vec<Expr> =
+                proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
             let right = |formula: &&Expr| check(plant, domain, state.symbol, **formula).1.is_zero();
             // A candidate that is wrong may still show that the transform is not one-to-one.
             let formula = candidates.iter().find(right).or(candidates.first())?;

@@ -72,9 +72,13 @@ pub(super) fn refuse(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>
     }
     Some(witnessed(plant, domain, linear, found).unwrap_or_else(|obstacle| {
         found.push(
-            Diagnostic::error(Code::CascadeUndecided, linear.span, "it could not be decided whether a transform exists")
-                .note(format!("obstacle: {obstacle}"))
-                .help("give the parameters values"),
+            Diagnostic::error(
+                Code::CascadeUndecided,
+                linear.span,
+                "it could not be decided whether a transform exists",
+            )
+            .note(format!("obstacle: {obstacle}"))
+            .help("give the parameters values"),
         );
         Claim { verdict: Verdict::Undecided, result: None }
     }))
@@ -134,7 +138,10 @@ fn refused(
         "no transform T1 x + T2 y of this plant moves by known signals: no PEBO exists",
     )
     .label("T1 A11 + T2 A21 = 0 has no solution with T1 of full column rank")
-    .note(format!("along x = ({}) the rates of the outputs show nothing, A21 x = 0, yet A11 x is not zero", entries.join(", ")))
+    .note(format!(
+        "along x = ({}) the rates of the outputs show nothing, A21 x = 0, yet A11 x is not zero",
+        entries.join(", ")
+    ))
     .note(witness.sentence(arena))
     .note(observability)
     .help("measure further outputs, until every row of A11 is a combination of rows of A21"))

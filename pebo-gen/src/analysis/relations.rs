@@ -4,11 +4,11 @@
 //! vanish at z = phi(x, y); each proved. The motor's `|z - L i|^2 = lambda_m^2` is one (Ortega et al. 2015,
 //! eq. 28): its position is gone from it.
 
+use crate::cas::Expr;
 use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::zero::decide;
-use crate::cas::Expr;
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 

@@ -81,9 +81,7 @@ impl Matrix {
     /// The product.
     #[must_use]
     pub fn mul(&self, arena: &Arena, other: &Self) -> Self {
-        let entry = |i: usize, j: usize| {
-            arena.sum((0..self.width()).map(|k| arena.mul(self.at(i, k), other.at(k, j))))
-        };
+        let entry = |i: usize, j: usize| arena.sum((0..self.width()).map(|k| arena.mul(self.at(i, k), other.at(k, j))));
         Self::build(self.height(), other.width(), entry)
     }
 

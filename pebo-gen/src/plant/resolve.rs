@@ -58,11 +58,8 @@ impl Plant {
             confined(&arena, expr, formula.span, allowed, place)
         };
 
-        let assumptions: Vec<Assumption> = problems
-            .all(model.assume.iter().map(|c| compared(&arena, &scope, c)))
-            .into_iter()
-            .flatten()
-            .collect();
+        let assumptions: Vec<Assumption> =
+            problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
         let on_states = with(&[&x, &y]);
         let dynamics = match &model.class {
             None => explicit(&arena, &scope, model, (&x, &y), &mut problems, |formula| {

@@ -130,10 +130,8 @@ pub(super) fn expand(
         .collect();
     let rates = inverse.apply(arena, &induced);
     let acceleration = inertia.map(|inertia| {
-        let force = arena.add(
-            arena.scale(dot(arena, &i, &slope.apply(arena, &i)), &half()),
-            dot(arena, &i, &magnet_slope),
-        );
+        let force =
+            arena.add(arena.scale(dot(arena, &i, &slope.apply(arena, &i)), &half()), dot(arena, &i, &magnet_slope));
         let drag = arena.mul(friction.unwrap_or_else(|| arena.zero()), omega);
         let against = arena.add(drag, load.unwrap_or_else(|| arena.zero()));
         arena.div(arena.sub(force, against), inertia)

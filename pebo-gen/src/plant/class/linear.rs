@@ -45,6 +45,11 @@ pub(super) fn expand(
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
     let arena = place.arena;
+    if let (None, Some(alone)) = (&written.t1, &written.t2) {
+        return Err(Diagnostic::error(Code::MissingKey, alone.span, "T2 without T1")
+            .help("give T1 as well, or neither to have both derived")
+            .into());
+    }
     let (nx, ny, nu) = (names.x.len(), names.y.len(), names.u.len());
     let mut read = |name, matrix, (height, width), counted| {
         let size = Size { height, width, diagonal: false, counted };
@@ -65,11 +70,6 @@ pub(super) fn expand(
         return Err(Stop::Reported);
     };
     let (Some(first), Some(second)) = (&written.a11, &written.a21) else { return Err(Stop::Reported) };
-    if let (None, Some(alone)) = (&written.t1, &written.t2) {
-        return Err(Diagnostic::error(Code::MissingKey, alone.span, "T2 without T1")
-            .help("give T1 as well, or neither to have both derived")
-            .into());
-    }
     let facts = &place.domain.facts;
     let open = |obstacle: Obstacle| Stop::from(unresolved("the transform", first.span, &obstacle));
     // Values at which ranks are others than in general are written in for the parameters: what follows
@@ -184,9 +184,11 @@ fn propose(
     let symbols = |list: &[crate::cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (y, u) = (symbols(names.y), symbols(names.u));
     let z: Vec<Expr> = (1..=t1.height()).map(|i| arena.variable(&format!("z{i}"))).collect();
-    let states = names.x.iter().enumerate().map(|(i, symbol)| {
-        (*symbol, arena.add(dot(arena, &left.rows()[i], &z), dot(arena, &on_y.rows()[i], &y)))
-    });
+    let states = names
+        .x
+        .iter()
+        .enumerate()
+        .map(|(i, symbol)| (*symbol, arena.add(dot(arena, &left.rows()[i], &z), dot(arena, &on_y.rows()[i], &y))));
     let rates = names.y.iter().enumerate().map(|(i, symbol)| {
         let driven = if u.is_empty() { arena.zero() } else { dot(arena, &b2.rows()[i], &u) };
         (*symbol, (arena.add(dot(arena, &rest.rows()[i], &y), driven), factors.rows()[i].clone()))

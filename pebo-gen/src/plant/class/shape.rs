@@ -84,11 +84,18 @@ impl Place<'_> {
                     Answer::NonZero(_) => {
                         let message = format!("{name} is not symmetric");
                         let entry = |row: usize, column: usize| {
-                            format!("entry ({}, {}) is {}", row + 1, column + 1, self.arena.print(matrix.at(row, column)))
+                            format!(
+                                "entry ({}, {}) is {}",
+                                row + 1,
+                                column + 1,
+                                self.arena.print(matrix.at(row, column))
+                            )
                         };
                         return Err(Diagnostic::error(Code::NotSymmetric, span, message)
                             .label(format!("{}, {}", entry(i, j), entry(j, i)))
-                            .help(format!("write the same formula in both places: {name} is the matrix of an energy")));
+                            .help(format!(
+                                "write the same formula in both places: {name} is the matrix of an energy"
+                            )));
                     }
                     Answer::Open(obstacle) => return Err(super::unresolved(name, span, &obstacle)),
                 }
