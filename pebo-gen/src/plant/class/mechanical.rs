@@ -86,7 +86,8 @@ pub(super) fn expand(
     let inverse_frame = inverse_frame.ok_or_else(|| singular("T", t.span))?;
     let inverse_metric = metric.inverse(arena, facts).map_err(open("the inverse of M", m.span))?;
     let inverse_metric = inverse_metric.ok_or_else(|| singular("M", m.span))?;
-    let velocity = frame.mul(arena, &inverse_metric).normal(arena, facts).map_err(open("the velocity", m.span))?;
+    // Not in normal form: where W is simple, what the author wrote for T is shorter.
+    let velocity = frame.mul(arena, &inverse_metric);
     let mut conditions = Vec::new();
     for (matrix, span) in [(&frame, t.span), (&metric, m.span)] {
         let determinant = matrix.determinant(arena, facts).map_err(open("a determinant", span))?;
