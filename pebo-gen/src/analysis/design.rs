@@ -141,6 +141,28 @@ pub struct Identifiability {
     pub singular_where: Vec<String>,
     /// A direction of eta that no trajectory shows, where there is one.
     pub direction: Option<Vec<Expr>>,
+    /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
+    pub gram: Option<Gram>,
+}
+
+/// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.
+#[derive(Clone, Debug)]
+pub struct Gram {
+    /// By rows.
+    pub matrix: Vec<Vec<Expr>>,
+    /// Its determinant.
+    pub determinant: Expr,
+    /// What shows that the determinant is positive throughout the assumed domain, if anything does.
+    pub positive: Option<Positive>,
+}
+
+/// What shows that a determinant is positive.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Positive {
+    /// Its factors have signs by the assumptions.
+    Assumed,
+    /// Enclosures on the parts of the closed box that the assumptions bound, at the values of the parameters.
+    Divided,
 }
 
 /// What identifying the unknowns takes.

@@ -19,8 +19,8 @@ use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
-use super::pencil;
 use super::singular::singular_where;
+use super::{excitation, pencil};
 
 /// Points that are tried before a rank counts as deficient.
 const MOST_POINTS: usize = 6;
@@ -37,13 +37,19 @@ pub(super) fn prove(
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
     let mut stack = regression.phi_1.clone();
-    let answer = |kind, singular_where, direction, verdict| Claim {
+    let answer = |kind, direction, verdict| Claim {
         verdict,
-        result: Some(Identifiability { kind, singular_where, direction }),
+        result: Some(Identifiability { kind, singular_where: Vec::new(), direction, gram: None }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
-        let singular = singular_where(plant, domain, &without_psi(plant, &regression.phi_1));
-        return answer(Excitation::Instant, singular, None, Verdict::Proved);
+        let phi_1 = without_psi(plant, &regression.phi_1);
+        let result = Identifiability {
+            kind: Excitation::Instant,
+            singular_where: singular_where(plant, domain, &phi_1),
+            direction: None,
+            gram: excitation::of(plant, domain, &phi_1),
+        };
+        return Claim { verdict: Verdict::Proved, result: Some(result) };
     }
     let mut flow = Flow::new(plant, cascade);
     let mut latest = stack.clone();
@@ -55,7 +61,7 @@ pub(super) fn prove(
         latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
         stack.extend(latest.iter().cloned());
         if full_rank(arena, domain, &stack, unknowns) {
-            return answer(Excitation::Excitation, Vec::new(), None, Verdict::Proved);
+            return answer(Excitation::Excitation, None, Verdict::Proved);
         }
         flow.advance(plant);
         let next = match unseen_by(arena, domain, &stack, unknowns) {
@@ -73,7 +79,7 @@ pub(super) fn prove(
         return open(plant, &Obstacle::NoWitness, found);
     };
     found.push(never(plant, domain, &direction, regression, left_inverse));
-    answer(Excitation::Never, Vec::new(), Some(direction), Verdict::Refuted)
+    answer(Excitation::Never, Some(direction), Verdict::Refuted)
 }
 
 /// The plant's motion with its observer's extension: rates of all that moves.

@@ -11,6 +11,7 @@ mod cascade;
 mod conditions;
 mod derive;
 mod design;
+mod excitation;
 mod gpebo;
 mod identifiability;
 mod killing;
@@ -27,6 +28,6 @@ mod tidy;
 mod tests;
 
 pub use design::{
-    Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
-    RegressionKind, Verdict, Witness,
+    Cascade, Claim, Class, Derivation, Excitation, Gram, Identifiability, LeftInverse, Origin, Outcome, Positive,
+    Regression, RegressionKind, Verdict, Witness,
 };

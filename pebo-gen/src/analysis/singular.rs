@@ -88,7 +88,11 @@ fn condition(
 }
 
 /// `Phi' Phi`
-fn gram(field: &Field<'_>, matrix: &[Vec<Fraction>], columns: usize) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+pub(super) fn gram(
+    field: &Field<'_>,
+    matrix: &[Vec<Fraction>],
+    columns: usize,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
     let mut gram = vec![vec![Fraction::zero(); columns]; columns];
     for (i, line) in gram.iter_mut().enumerate() {
         for (j, entry) in line.iter_mut().enumerate() {

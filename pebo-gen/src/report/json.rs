@@ -77,6 +77,15 @@ struct IdentifiabilityReport {
     kind: Option<&'static str>,
     singular_where: Vec<String>,
     direction: Option<Vec<String>>,
+    gram: Option<GramReport>,
+}
+
+/// `Phi_1' Phi_1` and its determinant; `positive` where that is proved on the whole assumed domain.
+#[derive(Serialize)]
+struct GramReport {
+    matrix: Vec<Vec<String>>,
+    determinant: String,
+    positive: bool,
 }
 
 /// A point where an expression provably is not zero: exact coordinates, outward rounded bounds.
@@ -228,5 +237,10 @@ fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> Identifiabi
         }),
         singular_where: result.map(|r| r.singular_where.clone()).unwrap_or_default(),
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
+        gram: result.and_then(|r| r.gram.as_ref()).map(|gram| GramReport {
+            matrix: matrix(arena, &gram.matrix),
+            determinant: arena.print(gram.determinant),
+            positive: gram.positive.is_some(),
+        }),
     }
 }

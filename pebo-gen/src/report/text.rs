@@ -1,6 +1,9 @@
 //! The verdict as a person reads it.
 
-use crate::analysis::{Claim, Class, Derivation, Excitation, Origin, Outcome, Regression, RegressionKind, Verdict};
+use crate::analysis::{
+    Claim, Class, Derivation, Excitation, Gram, Origin, Outcome, Positive, Regression, RegressionKind, Verdict,
+};
+use crate::cas::Expr;
 use crate::plant::Plant;
 use crate::source::listed;
 
@@ -31,6 +34,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         if !r.singular_where.is_empty() {
             lines.push(format!("except where {}", listed(r.singular_where.iter().map(String::as_str))));
         }
+        lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
         lines
     });
     let conditions = super::conditions(&plant.arena, &derivation.conditions);
@@ -38,6 +42,26 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         text.extend(["  where ", &conditions.join(", "), "\n"]);
     }
     text
+}
+
+/// More columns than a reader would look at in one line.
+const MOST_COLUMNS: usize = 3;
+
+/// `Phi_1' Phi_1` with its determinant.
+fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
+    let arena = &plant.arena;
+    let mut lines = Vec::new();
+    if gram.matrix.len() <= MOST_COLUMNS {
+        let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
+        let rows: Vec<String> = gram.matrix.iter().map(row).collect();
+        lines.push(format!("Phi_1' Phi_1 = [{}]", rows.join(", ")));
+    }
+    lines.push(format!("its determinant {}", arena.print(gram.determinant)));
+    lines.extend(gram.positive.map(|positive| match positive {
+        Positive::Assumed => "is positive wherever the assumptions hold: every input excites".to_owned(),
+        Positive::Divided => "is positive on the box of the assumptions: every input excites".to_owned(),
+    }));
+    lines
 }
 
 /// The plant that a class stands for.

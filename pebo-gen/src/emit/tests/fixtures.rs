@@ -10,7 +10,7 @@ use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::emit::value::{Scope, Value, expression};
-use crate::plant::{Assumption, Formula, Output, Parameter, Plant, State};
+use crate::plant::{Assumption, Formula, Output, Parameter, Plant, Proposal, State};
 use crate::source::Span;
 
 /// A plant and its derivation as text. Formulas are in Rust's grammar, with floating-point numbers
@@ -173,12 +173,15 @@ impl Sketch {
             }),
             identifiability: proved(Identifiability {
                 kind: Excitation::Instant,
+                gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
                 direction: None,
             }),
             diagnostics: Vec::new(),
         };
         let plant = Plant {
+            class: None,
+            proposal: Proposal::default(),
             conditions: Vec::new(),
             name: self.name.to_owned(),
             title: Some(self.title.to_owned()),
