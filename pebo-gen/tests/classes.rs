@@ -204,7 +204,7 @@ fn chain(masses: usize) -> String {
         }
     };
     let frame = |(s, j): (char, usize), column: usize| {
-        let (k, along_x) = (column / 2 + 1, column % 2 == 0);
+        let (k, along_x) = (column / 2 + 1, column.is_multiple_of(2));
         let entry = match (s, along_x) {
             ('r', true) => format!("cos(q{j})"),
             ('r', false) => format!("sin(q{j})"),

@@ -5,20 +5,21 @@
 //! until an enclosure of the determinant is positive on every part. The box is closed, so that the second
 //! way also covers what lies on its faces.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::{Rational, half};
-use crate::cas::{Arena, Expr, Node, Symbol};
+use crate::cas::zero::decide;
+use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::determinant;
 
 use super::design::{Gram, Positive};
 use super::singular::gram;
-use super::tidy::shortest;
+use super::tidy::{shorter, shortest};
 
 /// Parts that a box is divided into before the proof is given up.
 const MOST_PARTS: usize = 4096;
@@ -44,25 +45,30 @@ fn worked_out(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>], columns: usiz
         .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
         .collect::<Result<Vec<_>, _>>()?;
     let product = gram(&field, &rows, columns)?;
-    let matrix: Vec<Vec<Expr>> = product
-        .iter()
-        .map(|row| row.iter().map(|entry| shortest(arena, domain, field.show(entry))).collect())
-        .collect();
+    let written = |i: usize, j: usize| arena.sum(phi_1.iter().map(|row| arena.mul(row[i], row[j])));
+    let entry = |i: usize, j: usize, product: &Fraction| {
+        shorter(arena, written(i, j), shortest(arena, domain, field.show(product)))
+    };
+    let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
+    let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
     // Of a square regressor the root of the determinant is known.
     let square = rows.len() == columns;
     let root = determinant(&field, if square { rows } else { product })?;
     let shown = shortest(arena, domain, field.show(&root));
     let by_facts = field.is_positive(&root)? || (square && field.is_positive(&root.opposite())?);
-    let positive =
-        if by_facts { Some(Positive::Assumed) } else { on_box(plant, shown, square).then_some(Positive::Divided) };
+    let positive = if by_facts {
+        Some(Positive::Assumed)
+    } else {
+        on_box(plant, domain, shown, square).then_some(Positive::Divided)
+    };
     let determinant = if square { arena.mul(shown, shown) } else { shown };
     Ok(Gram { matrix, determinant, positive })
 }
 
 /// Whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
-fn on_box(plant: &Plant, expr: Expr, square: bool) -> bool {
+fn on_box(plant: &Plant, domain: &Domain, expr: Expr, square: bool) -> bool {
     let arena = &plant.arena;
-    let Some(ranges) = ranges(plant, &arena.symbols_of(&[expr])) else { return false };
+    let Some(ranges) = ranges(plant, domain, expr) else { return false };
     let mut open = vec![ranges];
     let mut parts = 0;
     while let Some(part) = open.pop() {
@@ -108,33 +114,42 @@ fn divide(ranges: Ranges) -> Option<[Ranges; 2]> {
     Some([lower, upper])
 }
 
-/// The ranges that values and assumptions give the symbols; none if one is unbounded.
-fn ranges(plant: &Plant, symbols: &BTreeSet<Symbol>) -> Option<Ranges> {
+/// The ranges that values and assumptions give the symbols, or a turn of an angle; none if one is unbounded.
+fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
+    let arena = &plant.arena;
     let mut found = Ranges::new();
-    for &symbol in symbols {
+    for symbol in arena.symbols_of(&[expr]) {
         let value = plant.parameters.iter().find(|p| p.symbol == symbol).and_then(|p| p.value.clone());
-        let range = match value {
-            Some(value) => (value.clone(), value),
-            None => {
-                let bounds = plant.assumptions.iter().filter(|a| a.relation != Relation::NonZero);
-                let bounds: Vec<_> = bounds.filter_map(|a| bound(&plant.arena, a.expr, symbol)).collect();
-                let low = bounds.iter().filter(|(is_low, _)| *is_low).map(|(_, value)| value.clone()).max()?;
-                let high = bounds.iter().filter(|(is_low, _)| !is_low).map(|(_, value)| value.clone()).min()?;
-                (low, high)
-            }
+        if let Some(value) = value {
+            found.insert(symbol, (value.clone(), value));
+            continue;
+        }
+        let bounds = plant.assumptions.iter().filter(|a| a.relation != Relation::NonZero);
+        let bounds: Vec<_> = bounds.filter_map(|a| bound(arena, a.expr, symbol)).collect();
+        let low = bounds.iter().filter(|(is_low, _)| *is_low).map(|(_, value)| value.clone()).max();
+        let high = bounds.iter().filter(|(is_low, _)| !is_low).map(|(_, value)| value.clone()).min();
+        let range = match (low, high) {
+            (Some(low), Some(high)) => (low, high),
+            // More than a turn.
+            _ if turns(arena, domain, expr, symbol) => (Rational::from(-4), Rational::from(4)),
+            _ => return None,
         };
         found.insert(symbol, range);
     }
     Some(found)
 }
 
+/// Whether the expression is the same after a turn of the symbol.
+fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
+    let turn = arena.mul(arena.number(2), arena.pi());
+    let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
+    decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
+}
+
 /// What `expr >= 0` says of a symbol alone: whether from below, and the bound.
 fn bound(arena: &Arena, expr: Expr, symbol: Symbol) -> Option<(bool, Rational)> {
     let slope = arena.as_number(arena.derivative(expr, symbol))?;
     let rest = arena.substitute(expr, &BTreeMap::from([(symbol, arena.zero())]));
-    if matches!(arena.node(rest), Node::Symbol(_)) {
-        return None;
-    }
     let rest = arena.as_number(rest)?;
     Some((!slope.is_negative(), (-&rest).checked_div(&slope)?))
 }
@@ -162,8 +177,10 @@ mod tests {
         let facts = gram_of("0 < d < 1", "p: (1 - d)*a + d*b, q: b");
         assert_eq!(facts.positive, Some(Positive::Assumed));
         // By division: 1 + d sin(e) on a box, whose sign no rule sees.
-        let divided = gram_of("0 < d < 0.9, -3 < e < 3", "p: (1 + d*sin(e))*a + d*b, q: b");
-        assert_eq!(divided.positive, Some(Positive::Divided));
+        for assume in ["0 < d < 0.9, -3 < e < 3", "0 < d < 0.9"] {
+            let divided = gram_of(assume, "p: (1 + d*sin(e))*a + d*b, q: b");
+            assert_eq!(divided.positive, Some(Positive::Divided), "{assume}");
+        }
     }
 
     #[test]
@@ -175,7 +192,7 @@ mod tests {
             // At one point inside.
             ("-1 < d < 1, -1 < e < 1", "p: ((d - 1/3)^2 + (e - 1/7)^2)*a, q: b"),
             // Positive, but on no bounded box.
-            ("0 < d < 0.9", "p: (2 + sin(e)*d)*a, q: b"),
+            ("0 < d < 0.9", "p: (2 + sin(e)*d)*a + b/(1 + e^2), q: b*(2 + sin(e*d))"),
         ] {
             assert_eq!(gram_of(assume, rates).positive, None, "{assume}: {rates}");
         }

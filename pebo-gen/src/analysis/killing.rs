@@ -26,7 +26,7 @@ use crate::plant::class::Mechanical;
 /// The answer for one column of T.
 #[derive(Debug)]
 pub(super) enum Column {
-    /// It is a Killing field: z_i' = h_i.
+    /// It is a Killing field: `z_i' = h_i`.
     Killing,
     /// It is none; with the entries of `B_(i) + B_(i)'` on and above the diagonal that are not zero.
     Other(Vec<(usize, usize, Expr)>),
@@ -74,14 +74,14 @@ pub(super) fn structure(arena: &Arena, domain: &Domain, plant: &Mechanical, inde
     // (M T T')^-1 = T'^-1 (T' M T)^-1 T'
     let inverse = inverse_frame.transpose().mul(arena, inverse_metric).mul(arena, &transposed);
     let mut total = Matrix::zero(arena, n, n);
-    for j in 0..n {
+    for (j, position) in q.iter().enumerate() {
         let bracket = bracket(arena, plant, index, j).normal(arena, facts)?;
         if bracket.entries().iter().any(|e| !arena.is_zero(*e)) {
             let row = Matrix::new(vec![frame.column(j)]);
             total = total.add(arena, &bracket.mul(arena, &row).mul(arena, &inverse));
         }
         let weight = arena.scale(frame.at(j, index), &half());
-        let slope = inverse_metric.derivative(arena, q[j]);
+        let slope = inverse_metric.derivative(arena, *position);
         if !arena.is_zero(weight) && slope.entries().iter().any(|e| !arena.is_zero(*e)) {
             let term = frame.mul(arena, &slope).mul(arena, &transposed);
             total = total.add(arena, &term.map(|e| arena.mul(weight, e)));

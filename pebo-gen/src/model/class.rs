@@ -163,6 +163,6 @@ impl Class {
 }
 
 /// The entries of those matrices that are there.
-fn entries<'a, const N: usize>(matrices: [&'a Option<Matrix<Formula>>; N]) -> impl Iterator<Item = &'a Formula> {
+fn entries<const N: usize>(matrices: [&Option<Matrix<Formula>>; N]) -> impl Iterator<Item = &Formula> {
     matrices.into_iter().flatten().flat_map(|matrix| matrix.rows.iter().flatten())
 }

@@ -59,7 +59,9 @@ fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
     lines.push(format!("its determinant {}", arena.print(gram.determinant)));
     lines.extend(gram.positive.map(|positive| match positive {
         Positive::Assumed => "is positive wherever the assumptions hold: every input excites".to_owned(),
-        Positive::Divided => "is positive on the box of the assumptions: every input excites".to_owned(),
+        Positive::Divided => {
+            "is positive throughout the assumed box, at the parameters' values: every input excites".to_owned()
+        }
     }));
     lines
 }

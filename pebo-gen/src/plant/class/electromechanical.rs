@@ -63,40 +63,8 @@ pub(super) fn expand(
             .into());
     }
     counted(written, n)?;
-    let on_q: BTreeSet<Symbol> = [*position].iter().chain(names.constants).copied().collect();
-    let mut read = |name, matrix, (height, width), diagonal, counted, allowed| {
-        let size = Size { height, width, diagonal, counted };
-        place.matrix(shape::Written { name, matrix }, size, allowed, problems)
-    };
-    let nu = if names.u.contains(&speed) { names.u.len() - 1 } else { names.u.len() };
-    let inductance = read("L", &written.inductance, (n, n), true, "coils x coils", &on_q);
-    let magnets = read("mu", &written.mu, (n, 1), false, "coils x 1", &on_q);
-    let resistance = read("R", &written.resistance, (n, n), true, "coils x coils", names.constants);
-    let voltages = match &written.voltages {
-        Some(_) => read("B", &written.voltages, (n, nu), nu == n, "coils x voltages", names.constants),
-        None if nu == n => Some(Matrix::identity(arena, n)),
-        None => {
-            let message = format!("{nu} voltages for {n} coils need the matrix B");
-            problems.push(
-                Diagnostic::error(Code::MissingKey, l.span, message)
-                    .help("add `B`, with a row for each coil and a column for each voltage in u"),
-            );
-            None
-        }
-    };
-    let mut constant = |formula: &Option<Written>, what: &str| match formula {
-        Some(formula) => problems.keep(place.formula(formula, names.constants, what)).map(Some),
-        None => Some(None),
-    };
-    let inertia = constant(&written.inertia, "inertia");
-    let friction = constant(&written.friction, "friction");
-    let load = constant(&written.load, "load");
-    let (Some(inductance), Some(magnets), Some(resistance), Some(voltages)) =
-        (inductance, magnets, resistance, voltages)
-    else {
-        return Err(Stop::Reported);
-    };
-    let (Some(inertia), Some(friction), Some(load)) = (inertia, friction, load) else { return Err(Stop::Reported) };
+    let Parts { inductance, magnets, resistance, voltages, inertia, friction, load } =
+        Parts::read(place, written, names, (*position, speed, n), problems).ok_or(Stop::Reported)?;
     place.symmetric("L", &inductance, l.span)?;
     let open = |what: &'static str| move |obstacle: Obstacle| Stop::from(unresolved(what, l.span, &obstacle));
     let inverse = inductance.inverse(arena, facts).map_err(open("the inverse of L"))?;
@@ -112,7 +80,6 @@ pub(super) fn expand(
     let i = symbols(&currents);
     let u: Vec<Expr> = names.u.iter().filter(|s| **s != speed).map(|s| arena.of_symbol(*s)).collect();
     let omega = arena.of_symbol(speed);
-    let magnets = magnets.column(0);
     let slope = inductance.derivative(arena, *position);
     let magnet_slope: Vec<Expr> = magnets.iter().map(|e| arena.derivative(*e, *position)).collect();
     let driven: Vec<Expr> = (0..n)
@@ -156,6 +123,67 @@ pub(super) fn expand(
         conditions,
         class: Some(Class::Electromechanical(Electromechanical { inductance, magnets })),
     })
+}
+
+/// The formulas of the class.
+struct Parts {
+    inductance: Matrix,
+    magnets: Vec<Expr>,
+    resistance: Matrix,
+    voltages: Matrix,
+    inertia: Option<Expr>,
+    friction: Option<Expr>,
+    load: Option<Expr>,
+}
+
+impl Parts {
+    /// Reads them for so many coils; nothing if there was a mistake, which is reported.
+    fn read(
+        place: &Place<'_>,
+        written: &WrittenClass<Written>,
+        names: &Names<'_>,
+        (position, speed, n): (Symbol, Symbol, usize),
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let on_q: BTreeSet<Symbol> = [position].iter().chain(names.constants).copied().collect();
+        let mut read = |name, matrix, (height, width), diagonal, counted, allowed| {
+            let size = Size { height, width, diagonal, counted };
+            place.matrix(shape::Written { name, matrix }, size, allowed, problems)
+        };
+        let nu = names.u.iter().filter(|input| **input != speed).count();
+        let inductance = read("L", &written.inductance, (n, n), true, "coils x coils", &on_q);
+        let magnets = read("mu", &written.mu, (n, 1), false, "coils x 1", &on_q);
+        let resistance = read("R", &written.resistance, (n, n), true, "coils x coils", names.constants);
+        let voltages = if written.voltages.is_some() {
+            read("B", &written.voltages, (n, nu), nu == n, "coils x voltages", names.constants)
+        } else if nu == n {
+            Some(Matrix::identity(place.arena, n))
+        } else {
+            let span = written.inductance.as_ref()?.span;
+            let message = format!("{nu} voltages for {n} coils need the matrix B");
+            problems.push(
+                Diagnostic::error(Code::MissingKey, span, message)
+                    .help("add `B`, with a row for each coil and a column for each voltage in u"),
+            );
+            None
+        };
+        let mut constant = |formula: &Option<Written>, what: &str| match formula {
+            Some(formula) => problems.keep(place.formula(formula, names.constants, what)).map(Some),
+            None => Some(None),
+        };
+        let inertia = constant(&written.inertia, "inertia");
+        let friction = constant(&written.friction, "friction");
+        let load = constant(&written.load, "load");
+        Some(Self {
+            inductance: inductance?,
+            magnets: magnets?.column(0),
+            resistance: resistance?,
+            voltages: voltages?,
+            inertia: inertia?,
+            friction: friction?,
+            load: load?,
+        })
+    }
 }
 
 /// The declared symbol of the speed.

@@ -89,12 +89,11 @@ pub(super) fn expand(
     } else {
         blocks
     };
-    let (t1, t2, unsolved) = match &written.t1 {
-        Some(_) => (t1, t2, Vec::new()),
-        None => {
-            let (t2, unsolved) = transform(place, &a11, &a21).map_err(open)?;
-            (Matrix::identity(arena, nx), t2, unsolved)
-        }
+    let (t1, t2, unsolved) = if written.t1.is_some() {
+        (t1, t2, Vec::new())
+    } else {
+        let (t2, unsolved) = transform(place, &a11, &a21).map_err(open)?;
+        (Matrix::identity(arena, nx), t2, unsolved)
     };
     let symbols = |list: &[crate::cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (x, y, u) = (symbols(names.x), symbols(names.y), symbols(names.u));
@@ -154,12 +153,11 @@ fn transform(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, V
             line.push(field.fraction(*entry)?.opposite());
             system.push(line);
         }
-        match solve(&field, system, a21.height())? {
-            Some(solution) => rows.push(solution.iter().map(|e| field.show(e)).collect()),
-            None => {
-                unsolved.push(index);
-                rows.push(vec![arena.zero(); a21.height()]);
-            }
+        if let Some(solution) = solve(&field, system, a21.height())? {
+            rows.push(solution.iter().map(|e| field.show(e)).collect());
+        } else {
+            unsolved.push(index);
+            rows.push(vec![arena.zero(); a21.height()]);
         }
     }
     Ok((Matrix::new(rows), unsolved))
