@@ -310,6 +310,58 @@ fn a_measured_speed_gives_its_own_row() {
     assert_eq!(motor.derivation.regression.result.as_ref().expect("a regression").rows, [0, 1]);
 }
 
+// Regressions with the unknown under the derivative.
+
+/// The levitated ball: `d/dt (z i) = 2 i (U - R i) - v z^2/k` at z = chi + theta.
+#[test]
+fn the_flux_of_a_levitated_ball_multiplies_a_rate() {
+    let ball = derived(
+        "x: [q]\ny: [i]\nu: [U, v]\nparameters: [R, k, c]\nassume: [k > 0, c - q > 0, i > 0]\n\
+         electromechanical: {coils: 1, L: k/(c - q), R: R, speed: v}",
+    );
+    assert_eq!(ball.derivation.outcome, Outcome::Accepted, "{:?}", ball.derivation.diagnostics);
+    let regression = ball.derivation.regression.result.as_ref().expect("a regression");
+    assert_eq!(regression.kind, RegressionKind::Implicit);
+    assert_eq!(printed(&ball, &regression.eta), ["theta1", "theta1^2"]);
+    assert_eq!(printed(&ball, &regression.primitive_0), ["i*chi1"]);
+    assert_eq!(printed(&ball, &regression.primitive_1.concat()), ["i", "0"]);
+    let arena = &ball.plant.arena;
+    let [i, u, r, k, v, chi] = ["i", "U", "R", "k", "v", "chi1"].map(|name| arena.variable(name));
+    // 2 i (U - R i) - v chi^2/k, and its slopes in theta and theta^2.
+    let driven = arena.product([arena.number(2), i, arena.sub(u, arena.mul(r, i))]);
+    let expected = [
+        arena.sub(driven, arena.div(arena.product([v, chi, chi]), k)),
+        arena.div(arena.product([arena.number(-2), v, chi]), k),
+        arena.neg(arena.div(v, k)),
+    ];
+    let found = [regression.phi_0[0], regression.phi_1[0][0], regression.phi_1[0][1]];
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!(decide(arena, arena.sub(found, expected), &ball.plant.domain()).is_zero(), "{}", arena.print(found));
+    }
+    // Its speed alone shows the ball only while it moves.
+    assert_eq!(ball.derivation.identifiability.result.as_ref().expect("a result").kind, Excitation::Excitation);
+}
+
+#[test]
+fn a_rate_has_a_primitive_or_is_refused() {
+    let kind = |rate: &str| {
+        let plant = derived(&format!(
+            "x: [x]\ny: [y]\nu: [u]\nassume: [x > 0, y > 0]\nf_x: {{x: u}}\nf_y: {{y: {rate}}}\nphi: [x]"
+        ));
+        let regression = plant.derivation.regression.result.as_ref().map(|regression| regression.kind);
+        (plant.derivation.outcome, regression)
+    };
+    let implicit = (Outcome::Accepted, Some(RegressionKind::Implicit));
+    // (x + y) y' = u has the primitive x y + y^2/2.
+    for rate in ["u/x", "x/(1 + x)", "u/(x + y)", "(u + x)/(x^2 + x*y^2 + 1)"] {
+        assert_eq!(kind(rate), implicit, "{rate}");
+    }
+    // No primitive: what multiplies the rate depends on the input, is no polynomial in y, or mixes theta with signals.
+    for rate in ["u/(x + u)", "u/(x + exp(y))", "u/(x + log(y))", "1/(1 + exp(-x^2))", "1/(1 + exp(x*y))"] {
+        assert_ne!(kind(rate).0, Outcome::Accepted, "{rate}");
+    }
+}
+
 // Mistakes.
 
 #[test]

@@ -32,6 +32,7 @@ const CASES: &[Case] = &[
     Case { model: "cuk", within: 0.5, changes: &[CALM] },
     Case { model: "cuk_case2", within: 0.9, changes: &[CALM] },
     case("inertia_wheel", 1.6),
+    case("levitated_ball", 1.4),
     case("motor", 0.4),
     case("motor_currents", 1.1),
     case("motor_flux", 1.1),

@@ -101,7 +101,7 @@ pub enum RegressionKind {
     Dynamic,
     /// `Phi_0` = `Phi_1` eta.
     Static,
-    /// `d/dt(p_0 + p_1 eta)` = `Phi_0` + `Phi_1` eta.
+    /// `d/dt(P_0 + P_1 eta)` = `Phi_0` + `Phi_1` eta.
     Implicit,
 }
 
@@ -116,6 +116,10 @@ pub struct Regression {
     pub phi_0: Vec<Expr>,
     /// `Phi_1` by rows, an entry for each eta.
     pub phi_1: Vec<Vec<Expr>>,
+    /// `P_0` by rows, for an implicit regression.
+    pub primitive_0: Vec<Expr>,
+    /// `P_1` by rows, for an implicit regression.
+    pub primitive_1: Vec<Vec<Expr>>,
     /// The unknowns as functions of theta1..; theta itself where the parameterisation is linear.
     pub eta: Vec<Expr>,
     /// theta as functions of eta1.., an entry for each theta.

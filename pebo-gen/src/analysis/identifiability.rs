@@ -36,22 +36,24 @@ pub(super) fn prove(
 ) -> Claim<Identifiability> {
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
-    let mut stack = regression.phi_1.clone();
+    let mut flow = Flow::new(plant, cascade);
+    let mut stack = effective(arena, &flow, regression);
     let answer = |kind, direction, verdict| Claim {
         verdict,
         result: Some(Identifiability { kind, singular_where: Vec::new(), direction, gram: None }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
-        let phi_1 = without_psi(plant, &regression.phi_1);
+        let phi_1 = without_psi(plant, &stack);
+        // Of an implicit regression the rates are part of what multiplies the unknowns: nothing to read off.
+        let shown = regression.primitive_1.is_empty();
         let result = Identifiability {
             kind: Excitation::Instant,
-            singular_where: singular_where(plant, domain, &phi_1),
+            singular_where: if shown { singular_where(plant, domain, &phi_1) } else { Vec::new() },
             direction: None,
-            gram: excitation::of(plant, domain, &phi_1),
+            gram: if shown { excitation::of(plant, domain, &phi_1) } else { None },
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) };
     }
-    let mut flow = Flow::new(plant, cascade);
     let mut latest = stack.clone();
     let mut unseen = match unseen_by(arena, domain, &stack, unknowns) {
         Ok(unseen) => unseen,
@@ -80,6 +82,17 @@ pub(super) fn prove(
     };
     found.push(never(plant, domain, &direction, regression, left_inverse));
     answer(Excitation::Never, Some(direction), Verdict::Refuted)
+}
+
+/// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
+fn effective(arena: &Arena, flow: &Flow, regression: &Regression) -> Vec<Vec<Expr>> {
+    let mut rows = regression.phi_1.clone();
+    for (row, primitive) in rows.iter_mut().zip(&regression.primitive_1) {
+        for (entry, factor) in row.iter_mut().zip(primitive) {
+            *entry = arena.sub(*entry, flow.rate(arena, *factor));
+        }
+    }
+    rows
 }
 
 /// The plant's motion with its observer's extension: rates of all that moves.

@@ -14,6 +14,7 @@ mod design;
 mod excitation;
 mod gpebo;
 mod identifiability;
+mod implicit;
 mod killing;
 mod left_inverse;
 mod pencil;

@@ -19,9 +19,9 @@ use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict, Witness};
 use super::left_inverse::is_whole_turns;
-use super::relations;
 use super::separation::{self, Recovered, Separated};
 use super::tidy::{shortest, shortest_equal};
+use super::{implicit, relations};
 
 const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
     polynomials, exponentials, sines and cosines of z go";
@@ -88,6 +88,13 @@ pub(super) fn prove(
                 }
                 stands_against =
                     format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
+            }
+            Ok(None) if cascade.lambda.is_none() => {
+                let outputs: Vec<usize> = rows.iter().map(|r| r.0).collect();
+                let claim = implicit(plant, domain, cascade, left_inverse, &outputs, &rates, found);
+                if let Some(claim) = claim {
+                    return claim;
+                }
             }
             Ok(None) => {}
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
@@ -198,13 +205,16 @@ fn linear(
         rows,
         phi_0,
         phi_1,
+        primitive_0: Vec::new(),
+        primitive_1: Vec::new(),
         eta: theta.clone(),
         theta: plant.eta(theta.len()).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(theta.len()),
     }
 }
 
-/// A dynamic regression in functions of theta, if theta can be recovered from them.
+/// A regression in functions of theta, if theta can be recovered from them: a dynamic one with a row for each
+/// output, an implicit one with the rows of the primitives before these.
 fn over_parameterised(
     plant: &Plant,
     domain: &Domain,
@@ -227,16 +237,43 @@ fn over_parameterised(
     if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
         return Some(refusal);
     }
+    // With sides of a primitive first, these are the first half of the rows.
+    let (mut phi_0, mut phi_1) = (separated.known, separated.factors);
+    let held = phi_0.len() - rows.len();
+    let primitive_0: Vec<Expr> = phi_0.drain(..held).collect();
+    let primitive_1: Vec<Vec<Expr>> = phi_1.drain(..held).collect();
     let result = Regression {
-        kind: RegressionKind::Dynamic,
+        kind: if held == 0 { RegressionKind::Dynamic } else { RegressionKind::Implicit },
         rows,
-        phi_0: separated.known,
-        phi_1: separated.factors,
+        phi_0,
+        phi_1,
+        primitive_0,
+        primitive_1,
         eta_symbols: plant.eta(separated.eta.len()),
         eta: separated.eta,
         theta: recovered.theta,
     };
     Some(Claim { verdict: Verdict::Proved, result: Some(result) })
+}
+
+/// A regression with the unknowns under the derivative, where the rates have that form.
+fn implicit(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: &LeftInverse,
+    outputs: &[usize],
+    rates: &[Expr],
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let (mut primitives, mut rights) = (Vec::new(), Vec::new());
+    for (output, rate) in outputs.iter().zip(rates) {
+        let sides = implicit::sides(plant, domain, &cascade.h, (*output, *rate)).ok()??;
+        primitives.push(sides.primitive);
+        rights.push(sides.rate);
+    }
+    let separated = separation::separate(plant, domain, &[primitives, rights].concat()).ok()??;
+    over_parameterised(plant, domain, left_inverse, outputs.to_vec(), separated, found)
 }
 
 /// The refusal, where theta is determined only up to whole turns and a state is lost by that: one that does
@@ -424,6 +461,8 @@ fn standing_still(
                     rows: Vec::new(),
                     phi_1: separated.factors.iter().map(negated).collect(),
                     phi_0: separated.known,
+                    primitive_0: Vec::new(),
+                    primitive_1: Vec::new(),
                     eta_symbols: plant.eta(separated.eta.len()),
                     eta: separated.eta,
                     theta: recovered.theta,

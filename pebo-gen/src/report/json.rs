@@ -67,6 +67,9 @@ struct RegressionReport {
     parameterisation: Option<&'static str>,
     phi_0: Vec<String>,
     phi_1: Vec<Vec<String>>,
+    /// Under the derivative of an implicit regression.
+    primitive_0: Vec<String>,
+    primitive_1: Vec<Vec<String>>,
     eta: Vec<String>,
     theta: Vec<String>,
 }
@@ -221,6 +224,8 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
         parameterisation: result.map(|r| if r.is_linear(plant) { "linear" } else { "over-parameterised" }),
         phi_0: result.map(|r| printed(arena, &r.phi_0)).unwrap_or_default(),
         phi_1: result.map(|r| matrix(arena, &r.phi_1)).unwrap_or_default(),
+        primitive_0: result.map(|r| printed(arena, &r.primitive_0)).unwrap_or_default(),
+        primitive_1: result.map(|r| matrix(arena, &r.primitive_1)).unwrap_or_default(),
         eta: result.map(|r| printed(arena, &r.eta)).unwrap_or_default(),
         theta: result.map(|r| printed(arena, &r.theta)).unwrap_or_default(),
     }

@@ -3,7 +3,7 @@
 use crate::analysis::{
     Claim, Class, Derivation, Excitation, Gram, Origin, Outcome, Positive, Regression, RegressionKind, Verdict,
 };
-use crate::cas::Expr;
+use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 use crate::source::listed;
 
@@ -23,14 +23,13 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
     claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
-        let mut lines = vec![
-            match r.kind {
-                Excitation::Instant => "instant: Phi_1 has full column rank",
-                Excitation::Excitation => "with excitation: Phi_1 has full column rank over time",
-                Excitation::Never => "never: a direction of the unknowns stays unseen",
-            }
-            .to_owned(),
-        ];
+        let implicit = derivation.regression.result.as_ref().is_some_and(|r| r.kind == RegressionKind::Implicit);
+        let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
+        let mut lines = vec![match r.kind {
+            Excitation::Instant => format!("instant: {regressor} has full column rank"),
+            Excitation::Excitation => format!("with excitation: {regressor} has full column rank over time"),
+            Excitation::Never => "never: a direction of the unknowns stays unseen".to_owned(),
+        }];
         if !r.singular_where.is_empty() {
             lines.push(format!("except where {}", listed(r.singular_where.iter().map(String::as_str))));
         }
@@ -155,20 +154,16 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         |index: usize| -> String { if linear { arena.name(plant.theta[index]) } else { format!("eta{}", index + 1) } };
     let mut lines = Vec::new();
     for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
-        let terms: Vec<String> = factors
-            .iter()
-            .enumerate()
-            .filter(|(_, factor)| !arena.is_zero(**factor))
-            .map(|(column, factor)| format!("[{}]*{}", arena.print(*factor), unknown(column)))
-            .collect();
-        let sum = terms.join(" + ");
         lines.push(match regression.kind {
-            RegressionKind::Static => format!("{} = {sum}", arena.print(*known)),
+            RegressionKind::Static => {
+                format!("{} = {}", arena.print(*known), affine(arena, arena.zero(), factors, &unknown))
+            }
             RegressionKind::Dynamic | RegressionKind::Implicit => {
-                let output = regression.rows.get(index).map_or_else(String::new, |o| arena.name(plant.y[*o].symbol));
-                let known =
-                    if arena.is_zero(*known) && !terms.is_empty() { Vec::new() } else { vec![arena.print(*known)] };
-                format!("{output}' = {}", known.into_iter().chain(terms).collect::<Vec<_>>().join(" + "))
+                let output = match regression.primitive_0.get(index) {
+                    None => format!("{}'", arena.name(plant.y[regression.rows[index]].symbol)),
+                    Some(known) => format!("d/dt({})", affine(arena, *known, &regression.primitive_1[index], &unknown)),
+                };
+                format!("{output} = {}", affine(arena, *known, factors, &unknown))
             }
         });
     }
@@ -178,4 +173,15 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         }
     }
     lines
+}
+
+/// `known + [factor]*unknown + ..`, without what is zero.
+fn affine(arena: &Arena, known: Expr, factors: &[Expr], unknown: &impl Fn(usize) -> String) -> String {
+    let factors = factors.iter().enumerate().filter(|(_, factor)| !arena.is_zero(**factor));
+    let mut terms: Vec<String> =
+        factors.map(|(column, factor)| format!("[{}]*{}", arena.print(*factor), unknown(column))).collect();
+    if terms.is_empty() || !arena.is_zero(known) {
+        terms.insert(0, arena.print(known));
+    }
+    terms.join(" + ")
 }

@@ -166,6 +166,8 @@ impl Sketch {
                 kind: self.kind,
                 rows: (0..self.phi_0.len()).collect(),
                 phi_0: formulas(self.phi_0),
+                primitive_0: Vec::new(),
+                primitive_1: Vec::new(),
                 phi_1: rows(self.phi_1),
                 eta: formulas(self.eta),
                 theta: eta[..count].iter().map(|&eta| arena.of_symbol(eta)).collect(),
