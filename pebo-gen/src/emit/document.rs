@@ -237,13 +237,14 @@ pub(super) fn size(plant: &Plant, definitions: &Definitions, name: &str) -> Stri
 }
 
 /// What a function returns, in a line.
-pub(super) fn function(name: &str) -> &'static str {
+pub(super) fn function(name: &str, kind: RegressionKind) -> &'static str {
     match name {
         "h" => "`h` of the cascade.",
         "lambda" => "`lambda` of the cascade, by columns.",
         "phi_0" => "What is known in the regression.",
         "phi_1" => "The factors of the unknowns, by columns: one for each unknown.",
-        "primitive_0" => "What is known under the derivative of the regression: as a rule its outputs.",
+        "primitive_0" if kind == RegressionKind::Implicit => "What is known under the derivative of the regression.",
+        "primitive_0" => "The outputs whose rates the regression gives.",
         "primitive_1" => "The factors of the unknowns under the derivative, by columns.",
         "theta" => "`theta` from the unknowns of the regression.",
         _ => "The recovered states.",
