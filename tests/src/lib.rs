@@ -51,6 +51,8 @@ pub fn evaluate<
     report("lambda", model.lambda(&y, &u).transpose().as_slice());
     report("phi_0", model.phi_0(&extension, &y, &u).as_slice());
     report("phi_1", rows(&model.phi_1(&extension, &y, &u)).as_slice());
+    report("primitive_0", model.primitive_0(&extension, &y).as_slice());
+    report("primitive_1", rows(&model.primitive_1(&extension, &y)).as_slice());
     report("theta", model.theta(&vector(point.eta)).as_slice());
     report("phi_left", model.phi_left(&vector(point.z), &y).as_slice());
 }

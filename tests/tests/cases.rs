@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pebo_gen::analysis::{Class, Derivation, Excitation, Outcome};
+use pebo_gen::analysis::{Class, Derivation, Excitation, Outcome, RegressionKind};
 use pebo_gen::plant::Plant;
 use pebo_gen::source::{Code, Source};
 
@@ -22,7 +22,11 @@ fn agrees(verdict: &str, plant: &Plant, derivation: &Derivation) -> bool {
         "ACCEPT_GPEBO" => accepted && !pebo,
         "REJECT_PDE" => refused_for(Code::CascadeRefuted),
         "REJECT_LEFTINV" => refused_for(Code::LeftInverseRefuted),
-        "REJECT_NONLINEAR" => refused_for(Code::RegressionNonlinear),
+        // Not linear as a dynamic regression; where the unknown multiplies the rate, it is as an implicit one.
+        "REJECT_NONLINEAR" => {
+            refused_for(Code::RegressionNonlinear)
+                || (accepted && regression.is_some_and(|r| r.kind == RegressionKind::Implicit))
+        }
         "REJECT_UNIDENT" => refused_for(Code::NeverIdentifiable),
         other => panic!("no such verdict: {other}"),
     }

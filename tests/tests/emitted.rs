@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use pebo_gen::analysis::Class;
+use pebo_gen::analysis::{Class, RegressionKind};
 use pebo_gen::cas::interval::{Interval, Precision};
 use pebo_gen::cas::rational::Rational;
 use pebo_gen::cas::{Expr, Symbol};
@@ -123,10 +123,18 @@ fn compare(derived: &Derived, evaluate: tests::Evaluate, tolerance: f64, trial: 
 
     let cascade = derivation.cascade.result.as_ref().expect("a cascade");
     let inverse = derivation.left_inverse.result.as_ref().expect("a left inverse");
+    let outputs = regression.rows.iter().map(|row| plant.arena.of_symbol(plant.y[*row].symbol));
+    // Without a primitive of its own, the outputs themselves stand under the derivative.
+    let primitive_0 = match regression.kind {
+        RegressionKind::Dynamic => outputs.collect(),
+        RegressionKind::Static | RegressionKind::Implicit => regression.primitive_0.clone(),
+    };
     let mut expected: Vec<(&str, Vec<Expr>)> = vec![
         ("h", cascade.h.clone()),
         ("phi_0", regression.phi_0.clone()),
         ("phi_1", regression.phi_1.concat()),
+        ("primitive_0", primitive_0),
+        ("primitive_1", regression.primitive_1.concat()),
         ("theta", regression.theta.clone()),
         ("phi_left", inverse.x.iter().map(|(_, e)| *e).collect()),
     ];
@@ -135,6 +143,11 @@ fn compare(derived: &Derived, evaluate: tests::Evaluate, tolerance: f64, trial: 
     for (name, exprs) in expected {
         let found = found.borrow();
         let found = &found[name];
+        // Where the model has no such function, the trait's own gives zeros.
+        if exprs.is_empty() {
+            assert!(found.iter().all(|value| *value == 0.0), "{} {name}", plant.name);
+            continue;
+        }
         assert_eq!(found.len(), exprs.len(), "{} {name}", plant.name);
         for (expr, value) in exprs.iter().zip(found) {
             // The value, and those of all its parts: where these cancel, their rounding is what is left.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pebo_gen::analysis::Outcome;
 use pebo_gen::emit::Scalar;
 use pebo_gen::simulate::{Overrides, figure};
 use pebo_gen::source::{Colour, Source, render};
@@ -49,9 +50,19 @@ fn the_example_of_use_runs() {
 
 #[test]
 fn the_smallest_model_and_its_code_are_real() {
-    assert_eq!(blocks("yaml"), [model("pendulum.yaml")]);
+    assert_eq!(blocks("yaml")[0], model("pendulum.yaml"));
     let text = derived(&model("pendulum.yaml")).emit(Scalar::F64).expect("an accepted model").text;
     assert!(text.contains(blocks("rust")[0]), "{text}");
+}
+
+#[test]
+fn the_class_that_is_shown_is_accepted() {
+    let class = blocks("yaml")[1];
+    let leg = derived(&format!(
+        "model: leg\nparameters: {{m: 2, g: 9.81}}\nx: [p_r, p_theta]\ny: [r, theta]\nu: [f, tau]\n\
+         assume: [m > 0, r > 0]\n{class}"
+    ));
+    assert_eq!(leg.derivation.outcome, Outcome::Accepted);
 }
 
 #[test]

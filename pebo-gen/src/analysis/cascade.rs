@@ -11,12 +11,13 @@ use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::zero::{Answer, decide, point_of};
 use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::Plant;
+use crate::plant::{self, Plant};
 use crate::source::{Code, Diagnostic, listed};
 
 use super::design::{Cascade, Claim, Class, Verdict, Witness};
-use super::gpebo;
+use super::killing::{self, Column};
 use super::tidy::{proved_shortest, shortest};
+use super::{gpebo, pencil};
 
 /// One component of the derivative of the transform.
 enum Component {
@@ -30,8 +31,12 @@ enum Component {
 
 /// Proves or refutes the cascade.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
+    if let Some(refusal) = pencil::refuse(plant, domain, found) {
+        return (Class::Pebo, refusal);
+    }
     let lie = plant.derivative_of_transform();
-    let components: Vec<Component> = lie.iter().map(|rate| component(plant, domain, *rate)).collect();
+    let components: Vec<Component> =
+        lie.iter().enumerate().map(|(index, rate)| component_of(plant, domain, index, *rate)).collect();
     if components.iter().all(|c| matches!(c, Component::Free(_))) {
         let h = components.iter().filter_map(Component::free).collect();
         let result = Cascade { h, lambda: None, residual: Vec::new(), witness: None };
@@ -56,7 +61,8 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     for (index, (component, mend)) in components.iter().zip(&mends).enumerate() {
         residual.push(match component {
             Component::Bound { residual, witness, through } => {
-                found.push(refuted(plant, index, *residual, witness, through, *mend));
+                let refusal = refuted(plant, index, *residual, witness, through, *mend);
+                found.push(structure(plant, domain, index, refusal));
                 first.get_or_insert_with(|| witness.clone());
                 *residual
             }
@@ -74,6 +80,16 @@ impl Component {
             Self::Free(rate) => Some(*rate),
             _ => None,
         }
+    }
+}
+
+/// One component, by what the class knows of it where it knows.
+fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Component {
+    let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
+    match killing::column(&plant.arena, domain, mechanical, index) {
+        Column::Killing => Component::Free(proved_shortest(&plant.arena, domain, mechanical.h[index])),
+        Column::Other(_) => component(plant, domain, rate),
+        Column::Open(obstacle) => Component::Open(obstacle),
     }
 }
 
@@ -177,6 +193,19 @@ fn refuted(
         Some(mend) => diagnostic.help(format!("use `{}` for this component", arena.print(mend))),
         None => diagnostic.help("choose a phi whose derivative along the plant is free of the unmeasured states"),
     }
+}
+
+/// For a mechanical plant, the entries of Assumption 3 that do not vanish.
+fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) -> Diagnostic {
+    let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return refusal };
+    let arena = &plant.arena;
+    let Column::Other(entries) = killing::column(arena, domain, mechanical, index) else { return refusal };
+    let name = index + 1;
+    let noted = entries.into_iter().fold(refusal, |refusal, (row, column, entry)| {
+        let entry = arena.print(shortest(arena, domain, entry));
+        refusal.note(format!("B_({name}) + B_({name})' has the entry ({}, {}) = {entry}", row + 1, column + 1))
+    });
+    noted.help(format!("choose for column {name} of T a Killing field of M: one along which M does not change"))
 }
 
 fn undecided(plant: &Plant, index: usize, obstacle: &Obstacle) -> Diagnostic {

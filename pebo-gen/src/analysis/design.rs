@@ -101,7 +101,7 @@ pub enum RegressionKind {
     Dynamic,
     /// `Phi_0` = `Phi_1` eta.
     Static,
-    /// `d/dt(p_0 + p_1 eta)` = `Phi_0` + `Phi_1` eta.
+    /// `d/dt(P_0 + P_1 eta)` = `Phi_0` + `Phi_1` eta.
     Implicit,
 }
 
@@ -116,6 +116,10 @@ pub struct Regression {
     pub phi_0: Vec<Expr>,
     /// `Phi_1` by rows, an entry for each eta.
     pub phi_1: Vec<Vec<Expr>>,
+    /// `P_0` by rows, for an implicit regression.
+    pub primitive_0: Vec<Expr>,
+    /// `P_1` by rows, for an implicit regression.
+    pub primitive_1: Vec<Vec<Expr>>,
     /// The unknowns as functions of theta1..; theta itself where the parameterisation is linear.
     pub eta: Vec<Expr>,
     /// theta as functions of eta1.., an entry for each theta.
@@ -141,6 +145,28 @@ pub struct Identifiability {
     pub singular_where: Vec<String>,
     /// A direction of eta that no trajectory shows, where there is one.
     pub direction: Option<Vec<Expr>>,
+    /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
+    pub gram: Option<Gram>,
+}
+
+/// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.
+#[derive(Clone, Debug)]
+pub struct Gram {
+    /// By rows.
+    pub matrix: Vec<Vec<Expr>>,
+    /// Its determinant.
+    pub determinant: Expr,
+    /// What shows that the determinant is positive throughout the assumed domain, if anything does.
+    pub positive: Option<Positive>,
+}
+
+/// What shows that a determinant is positive.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Positive {
+    /// Its factors have signs by the assumptions.
+    Assumed,
+    /// Enclosures on the parts of the closed box that the assumptions bound, at the values of the parameters.
+    Divided,
 }
 
 /// What identifying the unknowns takes.

@@ -15,11 +15,12 @@ use crate::cas::interval::{Interval, Precision};
 use crate::cas::linear::Echelon;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::Plant;
+use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::singular::singular_where;
+use super::{excitation, pencil};
 
 /// Points that are tried before a rank counts as deficient.
 const MOST_POINTS: usize = 6;
@@ -35,16 +36,24 @@ pub(super) fn prove(
 ) -> Claim<Identifiability> {
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
-    let mut stack = regression.phi_1.clone();
-    let answer = |kind, singular_where, direction, verdict| Claim {
+    let mut flow = Flow::new(plant, cascade);
+    let mut stack = effective(arena, &flow, regression);
+    let answer = |kind, direction, verdict| Claim {
         verdict,
-        result: Some(Identifiability { kind, singular_where, direction }),
+        result: Some(Identifiability { kind, singular_where: Vec::new(), direction, gram: None }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
-        let singular = singular_where(plant, domain, &without_psi(plant, &regression.phi_1));
-        return answer(Excitation::Instant, singular, None, Verdict::Proved);
+        let phi_1 = without_psi(plant, &stack);
+        // Of an implicit regression the rates are part of what multiplies the unknowns: nothing to read off.
+        let shown = regression.primitive_1.is_empty();
+        let result = Identifiability {
+            kind: Excitation::Instant,
+            singular_where: if shown { singular_where(plant, domain, &phi_1) } else { Vec::new() },
+            direction: None,
+            gram: if shown { excitation::of(plant, domain, &phi_1) } else { None },
+        };
+        return Claim { verdict: Verdict::Proved, result: Some(result) };
     }
-    let mut flow = Flow::new(plant, cascade);
     let mut latest = stack.clone();
     let mut unseen = match unseen_by(arena, domain, &stack, unknowns) {
         Ok(unseen) => unseen,
@@ -54,7 +63,7 @@ pub(super) fn prove(
         latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
         stack.extend(latest.iter().cloned());
         if full_rank(arena, domain, &stack, unknowns) {
-            return answer(Excitation::Excitation, Vec::new(), None, Verdict::Proved);
+            return answer(Excitation::Excitation, None, Verdict::Proved);
         }
         flow.advance(plant);
         let next = match unseen_by(arena, domain, &stack, unknowns) {
@@ -72,7 +81,18 @@ pub(super) fn prove(
         return open(plant, &Obstacle::NoWitness, found);
     };
     found.push(never(plant, domain, &direction, regression, left_inverse));
-    answer(Excitation::Never, Vec::new(), Some(direction), Verdict::Refuted)
+    answer(Excitation::Never, Some(direction), Verdict::Refuted)
+}
+
+/// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
+fn effective(arena: &Arena, flow: &Flow, regression: &Regression) -> Vec<Vec<Expr>> {
+    let mut rows = regression.phi_1.clone();
+    for (row, primitive) in rows.iter_mut().zip(&regression.primitive_1) {
+        for (entry, factor) in row.iter_mut().zip(primitive) {
+            *entry = arena.sub(*entry, flow.rate(arena, *factor));
+        }
+    }
+    rows
 }
 
 /// The plant's motion with its observer's extension: rates of all that moves.
@@ -257,7 +277,17 @@ fn never(
             return diagnostic.help("drop the redundant components of phi");
         }
     }
-    diagnostic.help("measure another output, or choose another phi")
+    let blind = match &plant.class {
+        Some(Class::Linear(linear)) => pencil::blindness(plant, domain, linear).ok().flatten(),
+        _ => None,
+    };
+    match blind {
+        Some(blind) => diagnostic
+            .note(blind)
+            .note("the cascade exists all the same, but theta needs observability (Proposition 2, claims C2 and C3)")
+            .help("measure another output"),
+        None => diagnostic.help("measure another output, or choose another phi"),
+    }
 }
 
 fn at_phi(plant: &Plant) -> Span {

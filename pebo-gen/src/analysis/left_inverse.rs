@@ -177,12 +177,20 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
         .map(|(phi, z)| Equation { formula: phi.expr, value: arena.of_symbol(*z) })
         .collect();
     let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).collect();
-    let solved = solve(arena, domain, &equations, &states)?;
+    // Where a class proposes a formula for every state, nothing is solved for.
+    let solved = if plant.proposal.phi_left.len() == states.len() {
+        BTreeMap::new()
+    } else {
+        solve(arena, domain, &equations, &states)?
+    };
     Ok(plant
         .x
         .iter()
         .filter_map(|state| {
-            let candidates = solved.get(&state.symbol)?;
+            let proposed =
+                plant.proposal.phi_left.iter().filter(|(s, _)| *s == state.symbol).map(|(_, formula)| *formula);
+            let candidates: Vec<Expr> =
+                proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
             let right = |formula: &&Expr| check(plant, domain, state.symbol, **formula).1.is_zero();
             // A candidate that is wrong may still show that the transform is not one-to-one.
             let formula = candidates.iter().find(right).or(candidates.first())?;

@@ -11,10 +11,15 @@ mod cascade;
 mod conditions;
 mod derive;
 mod design;
+mod excitation;
 mod gpebo;
 mod identifiability;
+mod implicit;
+mod killing;
 mod left_inverse;
+mod pencil;
 mod regression;
+mod relations;
 mod separation;
 mod singular;
 mod solve;
@@ -24,6 +29,6 @@ mod tidy;
 mod tests;
 
 pub use design::{
-    Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
-    RegressionKind, Verdict, Witness,
+    Cascade, Claim, Class, Derivation, Excitation, Gram, Identifiability, LeftInverse, Origin, Outcome, Positive,
+    Regression, RegressionKind, Verdict, Witness,
 };

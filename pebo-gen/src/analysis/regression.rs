@@ -14,12 +14,14 @@ use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide, refute};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
+use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict, Witness};
 use super::left_inverse::is_whole_turns;
 use super::separation::{self, Recovered, Separated};
 use super::tidy::{shortest, shortest_equal};
+use super::{implicit, relations};
 
 const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
     polynomials, exponentials, sines and cosines of z go";
@@ -50,7 +52,7 @@ pub(super) fn prove(
     let mut obstacles = Vec::new();
     let mut veiled = Vec::new();
     for (index, rate, span) in &rows {
-        match decompose(plant, domain, *rate) {
+        match decompose(plant, domain, *index, *rate) {
             Ok(Some(row)) => affine.push(row),
             Ok(None) | Err(_) if plant.arena.depends_on(*rate, &unmeasured) => veiled.push((*index, *rate, *span)),
             Ok(None) => obstacles.push((*index, *rate, *span, None)),
@@ -61,7 +63,8 @@ pub(super) fn prove(
     rows.retain(|row| !veiled.contains(row));
     if rows.is_empty() {
         if plant.identities.is_empty() {
-            return hidden_by_signals(plant, domain, &veiled, found);
+            return from_relations(plant, domain, left_inverse, found)
+                .unwrap_or_else(|| hidden_by_signals(plant, domain, &veiled, found));
         }
         return from_identities(plant, domain, left_inverse, found);
     }
@@ -85,6 +88,13 @@ pub(super) fn prove(
                 }
                 stands_against =
                     format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
+            }
+            Ok(None) if cascade.lambda.is_none() => {
+                let outputs: Vec<usize> = rows.iter().map(|r| r.0).collect();
+                let claim = implicit(plant, domain, cascade, left_inverse, &outputs, &rates, found);
+                if let Some(claim) = claim {
+                    return claim;
+                }
             }
             Ok(None) => {}
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
@@ -116,9 +126,15 @@ pub(super) fn prove(
 }
 
 /// Writes an output's rate over {1, phi}, and proves it.
-fn decompose(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<Row>, Obstacle> {
+fn decompose(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<Row>, Obstacle> {
     let arena = &plant.arena;
     let phi = plant.transform();
+    if let Some((known, factors)) = plant.proposal.rates.get(&plant.y[index].symbol) {
+        let rebuilt = arena.add(*known, dot(arena, factors, &phi));
+        if decide(arena, arena.sub(rate, rebuilt), domain).is_zero() {
+            return Ok(Some(Row { known: *known, factors: factors.clone() }));
+        }
+    }
     let mut roots = phi.clone();
     roots.push(rate);
     let field = Field::over(arena, &domain.facts, &roots)?;
@@ -189,13 +205,16 @@ fn linear(
         rows,
         phi_0,
         phi_1,
+        primitive_0: Vec::new(),
+        primitive_1: Vec::new(),
         eta: theta.clone(),
         theta: plant.eta(theta.len()).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(theta.len()),
     }
 }
 
-/// A dynamic regression in functions of theta, if theta can be recovered from them.
+/// A regression in functions of theta, if theta can be recovered from them: a dynamic one with a row for each
+/// output, an implicit one with the rows of the primitives before these.
 fn over_parameterised(
     plant: &Plant,
     domain: &Domain,
@@ -218,16 +237,43 @@ fn over_parameterised(
     if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
         return Some(refusal);
     }
+    // With sides of a primitive first, these are the first half of the rows.
+    let (mut phi_0, mut phi_1) = (separated.known, separated.factors);
+    let held = phi_0.len() - rows.len();
+    let primitive_0: Vec<Expr> = phi_0.drain(..held).collect();
+    let primitive_1: Vec<Vec<Expr>> = phi_1.drain(..held).collect();
     let result = Regression {
-        kind: RegressionKind::Dynamic,
+        kind: if held == 0 { RegressionKind::Dynamic } else { RegressionKind::Implicit },
         rows,
-        phi_0: separated.known,
-        phi_1: separated.factors,
+        phi_0,
+        phi_1,
+        primitive_0,
+        primitive_1,
         eta_symbols: plant.eta(separated.eta.len()),
         eta: separated.eta,
         theta: recovered.theta,
     };
     Some(Claim { verdict: Verdict::Proved, result: Some(result) })
+}
+
+/// A regression with the unknowns under the derivative, where the rates have that form.
+fn implicit(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: &LeftInverse,
+    outputs: &[usize],
+    rates: &[Expr],
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let (mut primitives, mut rights) = (Vec::new(), Vec::new());
+    for (output, rate) in outputs.iter().zip(rates) {
+        let sides = implicit::sides(plant, domain, &cascade.h, (*output, *rate)).ok()??;
+        primitives.push(sides.primitive);
+        rights.push(sides.rate);
+    }
+    let separated = separation::separate(plant, domain, &[primitives, rights].concat()).ok()??;
+    over_parameterised(plant, domain, left_inverse, outputs.to_vec(), separated, found)
 }
 
 /// The refusal, where theta is determined only up to whole turns and a state is lost by that: one that does
@@ -356,6 +402,9 @@ pub(super) fn from_identities(
     let arena = &plant.arena;
     let span = plant.y.first().map_or(Span::point(0), |output| output.span);
     if plant.identities.is_empty() {
+        if let Some(claim) = from_relations(plant, domain, left_inverse, found) {
+            return claim;
+        }
         found.push(
             Diagnostic::error(Code::RegressionNonlinear, span, "there is nothing to estimate the unknowns from")
                 .label("no output has a rate under `f_y`, and there are no `identities`")
@@ -366,7 +415,39 @@ pub(super) fn from_identities(
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
     let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
     let identities: Vec<Expr> = plant.identities.iter().map(|i| arena.substitute(i.expr, &inverse)).collect();
-    match separation::separate(plant, domain, &identities) {
+    standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+}
+
+/// A static regression from what the components of the transform have to do with each other; none if that
+/// is nothing, or nothing that theta can be recovered from.
+fn from_relations(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let relations = relations::among(plant, domain).ok().filter(|relations| !relations.is_empty())?;
+    let mut own = Vec::new();
+    let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
+    let claim = standing_still(plant, domain, left_inverse?, (&relations, span), &mut own);
+    // A claim that is undecided here is left to what the author can mend: the rates.
+    if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
+        return None;
+    }
+    found.extend(own);
+    Some(claim)
+}
+
+/// A static regression from expressions in z that vanish.
+fn standing_still(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: &LeftInverse,
+    (in_z, span): (&[Expr], Span),
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    match separation::separate(plant, domain, in_z) {
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
             if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
@@ -380,20 +461,22 @@ pub(super) fn from_identities(
                     rows: Vec::new(),
                     phi_1: separated.factors.iter().map(negated).collect(),
                     phi_0: separated.known,
+                    primitive_0: Vec::new(),
+                    primitive_1: Vec::new(),
                     eta_symbols: plant.eta(separated.eta.len()),
                     eta: separated.eta,
                     theta: recovered.theta,
                 };
                 return Claim { verdict: Verdict::Proved, result: Some(result) };
             }
-            found.push(undecided(plant, 0, plant.identities[0].span, &Obstacle::NoWitness));
+            found.push(undecided(plant, 0, span, &Obstacle::NoWitness));
             Claim { verdict: Verdict::Undecided, result: None }
         }
         Ok(None) => {
             found.push(
                 Diagnostic::error(
                     Code::RegressionUndecided,
-                    plant.identities[0].span,
+                    span,
                     "no regression that is linear in functions of theta was found in this identity",
                 )
                 .help("write it as a polynomial in the components of phi, or give `f_y` for an output"),
@@ -401,7 +484,7 @@ pub(super) fn from_identities(
             Claim { verdict: Verdict::Undecided, result: None }
         }
         Err(obstacle) => {
-            found.push(undecided(plant, 0, plant.identities[0].span, &obstacle));
+            found.push(undecided(plant, 0, span, &obstacle));
             Claim { verdict: Verdict::Undecided, result: None }
         }
     }

@@ -10,6 +10,7 @@ use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::poly::Poly;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
+use crate::plant::matrix::determinant;
 
 /// The conditions under which the columns of the regressor become dependent.
 pub(super) fn singular_where(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> Vec<String> {
@@ -87,7 +88,11 @@ fn condition(
 }
 
 /// `Phi' Phi`
-fn gram(field: &Field<'_>, matrix: &[Vec<Fraction>], columns: usize) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+pub(super) fn gram(
+    field: &Field<'_>,
+    matrix: &[Vec<Fraction>],
+    columns: usize,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
     let mut gram = vec![vec![Fraction::zero(); columns]; columns];
     for (i, line) in gram.iter_mut().enumerate() {
         for (j, entry) in line.iter_mut().enumerate() {
@@ -97,28 +102,4 @@ fn gram(field: &Field<'_>, matrix: &[Vec<Fraction>], columns: usize) -> Result<V
         }
     }
     Ok(gram)
-}
-
-/// The determinant by elimination.
-fn determinant(field: &Field<'_>, mut rows: Vec<Vec<Fraction>>) -> Result<Fraction, Obstacle> {
-    let mut total = Fraction::one();
-    for column in 0..rows.len() {
-        let Some(pivot) = (column..rows.len()).find(|row| !rows[*row][column].is_zero()) else {
-            return Ok(Fraction::zero());
-        };
-        if pivot != column {
-            rows.swap(pivot, column);
-            total = total.opposite();
-        }
-        total = field.mul(&total, &rows[column][column])?;
-        let (above, below) = rows.split_at_mut(column + 1);
-        let pivot_row = &above[column];
-        for row in below {
-            let factor = field.div(&row[column], &pivot_row[column])?;
-            for (entry, own) in row.iter_mut().zip(pivot_row).skip(column) {
-                *entry = field.sub(entry, &field.mul(&factor, own)?)?;
-            }
-        }
-    }
-    Ok(total)
 }

@@ -90,9 +90,6 @@ impl<'a> Definitions<'a> {
         let cascade = derivation.cascade.result.as_ref().ok_or(EmitError::Missing("cascade"))?;
         let left_inverse = derivation.left_inverse.result.as_ref().ok_or(EmitError::Missing("left inverse"))?;
         let regression = derivation.regression.result.as_ref().ok_or(EmitError::Missing("regression"))?;
-        if regression.kind == RegressionKind::Implicit {
-            return Err(EmitError::Implicit);
-        }
         let arena = &plant.arena;
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let (chi, psi) = match derivation.class {
@@ -124,6 +121,10 @@ impl<'a> Definitions<'a> {
             let outputs: Option<Vec<Expr>> = rows.collect();
             let outputs = outputs.ok_or(EmitError::Missing("row of the regression"))?;
             functions.push(vector("primitive_0", &[Extension, Y], "NR", outputs));
+        }
+        if regression.kind == RegressionKind::Implicit {
+            functions.push(vector("primitive_0", &[Extension, Y], "NR", regression.primitive_0.clone()));
+            functions.push(matrix("primitive_1", &[Extension, Y], "NR", "NE", &regression.primitive_1));
         }
         functions.push(vector("theta", &[Eta], "NZ", regression.theta.clone()));
         let states = left_inverse.x.iter().map(|state| state.1).collect();
@@ -175,10 +176,10 @@ impl<'a> Definitions<'a> {
 
     /// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase`): the
     /// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
-    /// not move. None where the unknowns are not theta itself.
+    /// not move. None where the unknowns are not theta itself, or stand under the derivative.
     pub(super) fn rebase_residuals(&self, arena: &Arena) -> Option<Vec<Expr>> {
         let unknowns = self.regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
-        if unknowns.ne(self.regression.theta.iter().copied()) {
+        if unknowns.ne(self.regression.theta.iter().copied()) || self.regression.kind == RegressionKind::Implicit {
             return None;
         }
         let mut residuals = Vec::new();
@@ -193,7 +194,7 @@ impl<'a> Definitions<'a> {
                 };
                 residuals.push(match self.regression.kind {
                     RegressionKind::Static => arena.add(slope, entry),
-                    RegressionKind::Dynamic | RegressionKind::Implicit => arena.sub(slope, entry),
+                    _ => arena.sub(slope, entry),
                 });
                 residuals.extend(self.chi.iter().map(|&chi| arena.derivative(entry, chi)));
             }

@@ -97,7 +97,10 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     };
     laws.push(match definitions.regression.kind {
         RegressionKind::Static => format!("phi_0 = phi_1 {unknown}"),
-        RegressionKind::Dynamic | RegressionKind::Implicit => {
+        RegressionKind::Implicit => {
+            format!("d/dt (primitive_0 + primitive_1 {unknown}) = phi_0 + phi_1 {unknown}")
+        }
+        RegressionKind::Dynamic => {
             let rows = definitions.regression.rows.iter();
             let outputs = rows.filter_map(|&row| Some(plant.y.get(row)?.symbol));
             format!("{}' = phi_0 + phi_1 {unknown}", vector(arena, outputs))
@@ -114,7 +117,7 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     let mut blocks = Vec::new();
     for definition in &definitions.functions {
         match definition.name {
-            "primitive_0" => {}
+            "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
             "theta" if linear => {}
             "theta" => blocks.extend(named(arena, &plant.theta, &definition.rows)),
             "phi_left" => {
@@ -234,13 +237,15 @@ pub(super) fn size(plant: &Plant, definitions: &Definitions, name: &str) -> Stri
 }
 
 /// What a function returns, in a line.
-pub(super) fn function(name: &str) -> &'static str {
+pub(super) fn function(name: &str, kind: RegressionKind) -> &'static str {
     match name {
         "h" => "`h` of the cascade.",
         "lambda" => "`lambda` of the cascade, by columns.",
         "phi_0" => "What is known in the regression.",
         "phi_1" => "The factors of the unknowns, by columns: one for each unknown.",
+        "primitive_0" if kind == RegressionKind::Implicit => "What is known under the derivative of the regression.",
         "primitive_0" => "The outputs whose rates the regression gives.",
+        "primitive_1" => "The factors of the unknowns under the derivative, by columns.",
         "theta" => "`theta` from the unknowns of the regression.",
         _ => "The recovered states.",
     }

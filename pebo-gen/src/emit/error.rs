@@ -11,8 +11,6 @@ pub enum EmitError {
     NotAccepted,
     /// The derivation is accepted, but lacks this result.
     Missing(&'static str),
-    /// The regression has unknowns under the derivative.
-    Implicit,
     /// A function depends on a symbol that it does not get.
     Undeclared {
         /// The symbol.
@@ -44,7 +42,6 @@ impl fmt::Display for EmitError {
         match self {
             Self::NotAccepted => f.write_str("not every claim is proved"),
             Self::Missing(what) => write!(f, "the derivation lacks its {what}"),
-            Self::Implicit => f.write_str("regressions with unknowns under the derivative are not emitted yet"),
             Self::Undeclared { symbol } => {
                 write!(f, "`{symbol}` occurs in a function that does not know it")
             }

@@ -79,7 +79,8 @@ impl Module<'_> {
             symbols.iter().enumerate().filter(read).map(|(_, symbol)| scope.locals[symbol].clone()).collect();
         let similar = permission::for_names(&named);
         let long = permission::for_length(statements.len() + program.outputs.len());
-        let (name, doc) = (ident(definition.name), doc(document::function(definition.name)));
+        let (name, doc) =
+            (ident(definition.name), doc(document::function(definition.name, self.definitions.regression.kind)));
         quote! {
             #doc
             #similar

@@ -192,7 +192,7 @@ fn signature(function: &str) -> Option<&'static [Argument]> {
     Some(match function {
         "h" | "lambda" => &[Y, U],
         "phi_0" | "phi_1" => &[Extension, Y, U],
-        "primitive_0" => &[Extension, Y],
+        "primitive_0" | "primitive_1" => &[Extension, Y],
         "theta" => &[Eta],
         "phi_left" => &[Z, Y],
         _ => return None,

@@ -10,6 +10,7 @@
 //! end that builds a [`Model`] from something else than YAML runs the same check.
 
 mod check;
+pub mod class;
 pub mod formula;
 mod names;
 mod written;
@@ -19,6 +20,7 @@ mod yaml;
 mod tests;
 
 pub use check::check;
+pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Function, Operator, Relation, Term};
 pub use names::unknown_name;
 pub use written::{Baseline, Entry, Hold, Model, Observer, Panel, Piece, Scale, Simulation, Spanned};

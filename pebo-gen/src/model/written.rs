@@ -5,6 +5,7 @@
 
 use serde::Deserialize;
 
+use super::class::Class;
 use super::formula::{Comparison, Decimal, Formula};
 use crate::source::Span;
 
@@ -51,6 +52,8 @@ pub struct Model {
     pub define: Vec<Entry<Formula>>,
     /// Inequalities that hold where the plant operates.
     pub assume: Vec<Comparison>,
+    /// The class that the plant is written by, which gives what is empty below.
+    pub class: Option<Class>,
     /// Rates of x: one for each, in the order of `x`.
     pub f_x: Vec<Entry<Formula>>,
     /// Rates of y, in the order of `y`; those that nothing needs may be absent.

@@ -5,15 +5,20 @@
 //! ```
 //!
 //! Holds after: every name in a formula is declared where it may stand, every formula has a value as far
-//! as its constants tell, and each equation keeps the span of its source.
+//! as its constants tell, and each equation keeps the span of its source. A model by class has become
+//! the same equations, with the spans of the class's fields.
 
+pub mod class;
 mod conditions;
 mod formula;
+pub mod matrix;
 #[allow(clippy::module_inception)]
 mod plant;
 mod resolve;
 mod scope;
 
+pub use class::{Class, Proposal};
 pub use formula::lower;
+pub use matrix::Matrix;
 pub use plant::{Assumption, Formula, Output, Parameter, Plant, State};
 pub use scope::Scope;

@@ -8,6 +8,8 @@ use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::source::Span;
 
+use super::class::{Class, Proposal};
+
 /// A plant with its candidate transform, resolved.
 #[derive(Debug)]
 pub struct Plant {
@@ -19,6 +21,10 @@ pub struct Plant {
     pub reference: Option<String>,
     /// Where all expressions of this plant live.
     pub arena: Arena,
+    /// The class that it was written by, with what the class knows of it.
+    pub class: Option<Class>,
+    /// What the class proposes; proved like anything else.
+    pub proposal: Proposal,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
     /// Unmeasured states with their rates.
@@ -152,20 +158,25 @@ impl Plant {
 
     /// What is assumed of values: the author's inequalities, and the values of the parameters.
     pub fn assumed(&self) -> Domain {
-        let mut domain = Domain::default();
-        for assumption in &self.assumptions {
-            domain.facts.assume(assumption.expr, assumption.relation);
-        }
-        for parameter in &self.parameters {
-            let Some(value) = &parameter.value else { continue };
-            domain.fixed.insert(parameter.symbol, value.clone());
-            let symbol = self.arena.of_symbol(parameter.symbol);
-            match value.signum() {
-                1 => domain.facts.assume(symbol, Relation::Positive),
-                -1 => domain.facts.assume(self.arena.neg(symbol), Relation::Positive),
-                _ => {}
-            }
-        }
-        domain
+        assumed(&self.arena, &self.assumptions, &self.parameters)
     }
+}
+
+/// The domain of these inequalities and values.
+pub(super) fn assumed(arena: &Arena, assumptions: &[Assumption], parameters: &[Parameter]) -> Domain {
+    let mut domain = Domain::default();
+    for assumption in assumptions {
+        domain.facts.assume(assumption.expr, assumption.relation);
+    }
+    for parameter in parameters {
+        let Some(value) = &parameter.value else { continue };
+        domain.fixed.insert(parameter.symbol, value.clone());
+        let symbol = arena.of_symbol(parameter.symbol);
+        match value.signum() {
+            1 => domain.facts.assume(symbol, Relation::Positive),
+            -1 => domain.facts.assume(arena.neg(symbol), Relation::Positive),
+            _ => {}
+        }
+    }
+    domain
 }

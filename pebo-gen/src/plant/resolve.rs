@@ -10,9 +10,9 @@ use crate::cas::{Arena, Expr, Symbol};
 use crate::model::{self, Comparison, Entry, Model, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::conditions;
+use super::class;
 use super::formula::{exact, lower};
-use super::plant::{Assumption, Formula, Output, Parameter, Plant, State};
+use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, assumed};
 use super::scope::Scope;
 
 impl Plant {
@@ -29,14 +29,15 @@ impl Plant {
                 .unwrap_or_default()
         };
         let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
+        let components = class::components(model);
         let indexed = |letter: &str| -> Vec<Symbol> {
-            (1..=model.phi.len())
+            (1..=components)
                 .map(|i| format!("{letter}{i}"))
                 .filter_map(|n| arena.as_symbol(arena.variable(&n)))
                 .collect()
         };
         let (z, chi, theta, xi) = (indexed("z"), indexed("chi"), indexed("theta"), indexed("xi"));
-        let psi = (1..=model.phi.len()).map(|row| indexed(&format!("Psi{row}"))).collect();
+        let psi = (1..=components).map(|row| indexed(&format!("Psi{row}"))).collect();
 
         let mut scope = Scope::new();
         for name in model.names() {
@@ -57,21 +58,21 @@ impl Plant {
             confined(&arena, expr, formula.span, allowed, place)
         };
 
-        let states = model
-            .x
-            .iter()
-            .zip(&model.f_x)
-            .zip(&x)
-            .map(|((_, rate), symbol)| Ok(State { symbol: *symbol, rate: resolved(&arena, &scope, &rate.value)? }));
-        let states = problems.all(states);
-        let outputs = model.y.iter().zip(&y).map(|(name, symbol)| {
-            let rate = model.f_y.iter().find(|entry| entry.name.value == name.value);
-            let rate = rate.map(|entry| resolved(&arena, &scope, &entry.value)).transpose()?;
-            Ok(Output { symbol: *symbol, rate, span: name.span })
-        });
-        let outputs = problems.all(outputs);
+        let assumptions: Vec<Assumption> =
+            problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
         let on_states = with(&[&x, &y]);
-        let phi = problems.all(model.phi.iter().map(|f| within(f, &on_states, "phi(x, y)")));
+        let dynamics = match &model.class {
+            None => explicit(&arena, &scope, model, (&x, &y), &mut problems, |formula| {
+                within(formula, &on_states, "phi(x, y)")
+            }),
+            Some(class) => {
+                let domain = assumed(&arena, &assumptions, &parameters);
+                let place = class::Place { arena: &arena, scope: &scope, model, domain: &domain };
+                let names = class::Names { x: &x, y: &y, u: &u, w: &w, constants: &constants };
+                place.expand(class, &names, &mut problems).unwrap_or_default()
+            }
+        };
+        let class::Expansion { x: states, y: outputs, phi, proposal, class, conditions } = dynamics;
         let identities = problems.all(model.identities.iter().map(|f| within(f, &on_states, "an identity in x and y")));
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
@@ -87,13 +88,13 @@ impl Plant {
             let formula = confined(&arena, expr, entry.value.span, &on_transform, "phi_left(z, y)")?;
             Ok((arena.symbol(&entry.name.value), formula))
         }));
-        let assumptions = problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c)));
-        let mut conditions = Vec::new();
+        let mut conditions = conditions;
         let written = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value);
         let written = written.chain(&model.phi).chain(&model.identities).chain(model.define.iter().map(|d| &d.value));
+        let written = written.chain(model.class.iter().flat_map(model::Class::formulas));
         for formula in written {
             // What fails here was reported where the formula itself was lowered.
-            let _ = conditions::collect(&arena, &scope, formula, &mut conditions);
+            let _ = super::conditions::collect(&arena, &scope, formula, &mut conditions);
         }
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
         problems.propagate()?;
@@ -101,6 +102,8 @@ impl Plant {
             name: model.name.value.clone(),
             title: model.title.as_ref().map(|t| t.value.clone()),
             reference: model.reference.as_ref().map(|r| r.value.clone()),
+            class,
+            proposal,
             parameters,
             x: states,
             y: outputs,
@@ -111,7 +114,7 @@ impl Plant {
             identities,
             angles,
             conditions,
-            assumptions: assumptions.into_iter().flatten().collect(),
+            assumptions,
             z,
             chi,
             theta,
@@ -122,9 +125,33 @@ impl Plant {
     }
 }
 
+/// The equations as the author wrote them.
+fn explicit(
+    arena: &Arena,
+    scope: &Scope,
+    model: &Model,
+    (x, y): (&[Symbol], &[Symbol]),
+    problems: &mut Diagnostics,
+    component: impl Fn(&model::Formula) -> Result<Formula, Diagnostic>,
+) -> class::Expansion {
+    let states = x
+        .iter()
+        .zip(&model.f_x)
+        .map(|(symbol, rate)| Ok(State { symbol: *symbol, rate: resolved(arena, scope, &rate.value)? }));
+    let states = problems.all(states);
+    let outputs = model.y.iter().zip(y).map(|(name, symbol)| {
+        let rate = model.f_y.iter().find(|entry| entry.name.value == name.value);
+        let rate = rate.map(|entry| resolved(arena, scope, &entry.value)).transpose()?;
+        Ok(Output { symbol: *symbol, rate, span: name.span })
+    });
+    let outputs = problems.all(outputs);
+    let phi = problems.all(model.phi.iter().map(component));
+    class::Expansion { x: states, y: outputs, phi, ..class::Expansion::default() }
+}
+
 impl Diagnostics {
     /// The good results; the others are kept as diagnostics.
-    fn all<T>(&mut self, results: impl Iterator<Item = Result<T, Diagnostic>>) -> Vec<T> {
+    pub(super) fn all<T>(&mut self, results: impl Iterator<Item = Result<T, Diagnostic>>) -> Vec<T> {
         results.filter_map(|result| self.keep(result)).collect()
     }
 }
@@ -140,7 +167,7 @@ fn resolved(arena: &Arena, scope: &Scope, formula: &model::Formula) -> Result<Fo
 }
 
 /// The formula, if it depends on nothing but what its place allows.
-fn confined(
+pub(super) fn confined(
     arena: &Arena,
     expr: Expr,
     span: Span,

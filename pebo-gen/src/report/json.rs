@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::conditions;
+use super::{conditions, expansion};
 use crate::analysis::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
     RegressionKind, Verdict, Witness,
@@ -19,6 +19,8 @@ struct Report<'a> {
     model: &'a str,
     verdict: &'static str,
     class: Option<&'static str>,
+    /// The plant that a model by class stands for.
+    expansion: Option<ExpansionReport>,
     cascade: Option<CascadeReport>,
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
@@ -26,6 +28,16 @@ struct Report<'a> {
     /// What the proofs rest on besides the assumptions, as comparisons with zero.
     conditions: Vec<String>,
     diagnostics: Vec<Located<'a>>,
+}
+
+#[derive(Serialize)]
+struct ExpansionReport {
+    class: &'static str,
+    #[serde(flatten)]
+    origin: IndexMap<&'static str, String>,
+    rates: IndexMap<String, String>,
+    phi: Vec<String>,
+    velocity: IndexMap<String, String>,
 }
 
 #[derive(Serialize)]
@@ -55,6 +67,9 @@ struct RegressionReport {
     parameterisation: Option<&'static str>,
     phi_0: Vec<String>,
     phi_1: Vec<Vec<String>>,
+    /// Under the derivative of an implicit regression.
+    primitive_0: Vec<String>,
+    primitive_1: Vec<Vec<String>>,
     eta: Vec<String>,
     theta: Vec<String>,
 }
@@ -65,6 +80,15 @@ struct IdentifiabilityReport {
     kind: Option<&'static str>,
     singular_where: Vec<String>,
     direction: Option<Vec<String>>,
+    gram: Option<GramReport>,
+}
+
+/// `Phi_1' Phi_1` and its determinant; `positive` where that is proved on the whole assumed domain.
+#[derive(Serialize)]
+struct GramReport {
+    matrix: Vec<Vec<String>>,
+    determinant: String,
+    positive: bool,
 }
 
 /// A point where an expression provably is not zero: exact coordinates, outward rounded bounds.
@@ -90,6 +114,13 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
             Class::Pebo => "pebo",
             Class::Gpebo => "gpebo",
         }),
+        expansion: expansion::of(plant).map(|expansion| ExpansionReport {
+            class: expansion.class,
+            origin: expansion.origin.into_iter().collect(),
+            rates: expansion.rates.into_iter().collect(),
+            phi: expansion.phi,
+            velocity: expansion.velocity.into_iter().collect(),
+        }),
         cascade: Some(cascade(arena, &derivation.cascade)),
         left_inverse: Some(left_inverse(plant, &derivation.left_inverse)),
         regression: Some(regression(plant, &derivation.regression)),
@@ -107,6 +138,7 @@ pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Str
         model: name,
         verdict: "rejected",
         class: None,
+        expansion: None,
         cascade: None,
         left_inverse: None,
         regression: None,
@@ -192,6 +224,8 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
         parameterisation: result.map(|r| if r.is_linear(plant) { "linear" } else { "over-parameterised" }),
         phi_0: result.map(|r| printed(arena, &r.phi_0)).unwrap_or_default(),
         phi_1: result.map(|r| matrix(arena, &r.phi_1)).unwrap_or_default(),
+        primitive_0: result.map(|r| printed(arena, &r.primitive_0)).unwrap_or_default(),
+        primitive_1: result.map(|r| matrix(arena, &r.primitive_1)).unwrap_or_default(),
         eta: result.map(|r| printed(arena, &r.eta)).unwrap_or_default(),
         theta: result.map(|r| printed(arena, &r.theta)).unwrap_or_default(),
     }
@@ -208,5 +242,10 @@ fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> Identifiabi
         }),
         singular_where: result.map(|r| r.singular_where.clone()).unwrap_or_default(),
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
+        gram: result.and_then(|r| r.gram.as_ref()).map(|gram| GramReport {
+            matrix: matrix(arena, &gram.matrix),
+            determinant: arena.print(gram.determinant),
+            positive: gram.positive.is_some(),
+        }),
     }
 }

@@ -3,6 +3,7 @@
 //! In: a plant and what was derived of it. Out: one JSON object (design: schema 1), or a few lines of
 //! text. Formulas are in the model file's grammar.
 
+mod expansion;
 mod json;
 mod text;
 

@@ -1,6 +1,9 @@
 //! The verdict as a person reads it.
 
-use crate::analysis::{Claim, Class, Derivation, Excitation, Origin, Outcome, Regression, RegressionKind, Verdict};
+use crate::analysis::{
+    Claim, Class, Derivation, Excitation, Gram, Origin, Outcome, Positive, Regression, RegressionKind, Verdict,
+};
+use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 use crate::source::listed;
 
@@ -15,21 +18,22 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         Outcome::Undecided => "undecided: a claim could not be decided",
     };
     let mut text = format!("{}: {outcome}\n", plant.name);
+    expansion(&mut text, plant);
     claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));
     claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
     claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
-        let mut lines = vec![
-            match r.kind {
-                Excitation::Instant => "instant: Phi_1 has full column rank",
-                Excitation::Excitation => "with excitation: Phi_1 has full column rank over time",
-                Excitation::Never => "never: a direction of the unknowns stays unseen",
-            }
-            .to_owned(),
-        ];
+        let implicit = derivation.regression.result.as_ref().is_some_and(|r| r.kind == RegressionKind::Implicit);
+        let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
+        let mut lines = vec![match r.kind {
+            Excitation::Instant => format!("instant: {regressor} has full column rank"),
+            Excitation::Excitation => format!("with excitation: {regressor} has full column rank over time"),
+            Excitation::Never => "never: a direction of the unknowns stays unseen".to_owned(),
+        }];
         if !r.singular_where.is_empty() {
             lines.push(format!("except where {}", listed(r.singular_where.iter().map(String::as_str))));
         }
+        lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
         lines
     });
     let conditions = super::conditions(&plant.arena, &derivation.conditions);
@@ -37,6 +41,39 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         text.extend(["  where ", &conditions.join(", "), "\n"]);
     }
     text
+}
+
+/// More columns than a reader would look at in one line.
+const MOST_COLUMNS: usize = 3;
+
+/// `Phi_1' Phi_1` with its determinant.
+fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
+    let arena = &plant.arena;
+    let mut lines = Vec::new();
+    if gram.matrix.len() <= MOST_COLUMNS {
+        let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
+        let rows: Vec<String> = gram.matrix.iter().map(row).collect();
+        lines.push(format!("Phi_1' Phi_1 = [{}]", rows.join(", ")));
+    }
+    lines.push(format!("its determinant {}", arena.print(gram.determinant)));
+    lines.extend(gram.positive.map(|positive| match positive {
+        Positive::Assumed => "is positive wherever the assumptions hold: every input excites".to_owned(),
+        Positive::Divided => {
+            "is positive throughout the assumed box, at the parameters' values: every input excites".to_owned()
+        }
+    }));
+    lines
+}
+
+/// The plant that a class stands for.
+fn expansion(text: &mut String, plant: &Plant) {
+    let Some(expansion) = super::expansion::of(plant) else { return };
+    let mut lines: Vec<String> = expansion.origin.iter().map(|(name, formula)| format!("{name} = {formula}")).collect();
+    lines.extend(expansion.rates.iter().map(|(name, rate)| format!("{name}' = {rate}")));
+    lines.extend(expansion.phi.iter().enumerate().map(|(i, phi)| format!("z{} = {phi}", i + 1)));
+    lines.extend(expansion.velocity.iter().map(|(name, formula)| format!("velocity of {name}: {formula}")));
+    let line = format!("  {:<26}{}", expansion.class, lines.join(&format!("\n{INDENT}")));
+    text.extend([line.trim_end(), "\n"]);
 }
 
 fn claim<T>(text: &mut String, name: &str, claim: &Claim<T>, lines: impl Fn(&T) -> Vec<String>) {
@@ -117,20 +154,16 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         |index: usize| -> String { if linear { arena.name(plant.theta[index]) } else { format!("eta{}", index + 1) } };
     let mut lines = Vec::new();
     for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
-        let terms: Vec<String> = factors
-            .iter()
-            .enumerate()
-            .filter(|(_, factor)| !arena.is_zero(**factor))
-            .map(|(column, factor)| format!("[{}]*{}", arena.print(*factor), unknown(column)))
-            .collect();
-        let sum = terms.join(" + ");
         lines.push(match regression.kind {
-            RegressionKind::Static => format!("{} = {sum}", arena.print(*known)),
+            RegressionKind::Static => {
+                format!("{} = {}", arena.print(*known), affine(arena, arena.zero(), factors, &unknown))
+            }
             RegressionKind::Dynamic | RegressionKind::Implicit => {
-                let output = regression.rows.get(index).map_or_else(String::new, |o| arena.name(plant.y[*o].symbol));
-                let known =
-                    if arena.is_zero(*known) && !terms.is_empty() { Vec::new() } else { vec![arena.print(*known)] };
-                format!("{output}' = {}", known.into_iter().chain(terms).collect::<Vec<_>>().join(" + "))
+                let output = match regression.primitive_0.get(index) {
+                    None => format!("{}'", arena.name(plant.y[regression.rows[index]].symbol)),
+                    Some(known) => format!("d/dt({})", affine(arena, *known, &regression.primitive_1[index], &unknown)),
+                };
+                format!("{output} = {}", affine(arena, *known, factors, &unknown))
             }
         });
     }
@@ -140,4 +173,15 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         }
     }
     lines
+}
+
+/// `known + [factor]*unknown + ..`, without what is zero.
+fn affine(arena: &Arena, known: Expr, factors: &[Expr], unknown: &impl Fn(usize) -> String) -> String {
+    let factors = factors.iter().enumerate().filter(|(_, factor)| !arena.is_zero(**factor));
+    let mut terms: Vec<String> =
+        factors.map(|(column, factor)| format!("[{}]*{}", arena.print(*factor), unknown(column))).collect();
+    if terms.is_empty() || !arena.is_zero(known) {
+        terms.insert(0, arena.print(known));
+    }
+    terms.join(" + ")
 }

@@ -121,6 +121,7 @@ struct Derived<X, K, const N: usize> {
     lambda: Option<RefCell<Function>>,
     phi_0: RefCell<Function>,
     phi_1: RefCell<Function>,
+    primitives: Option<[RefCell<Function>; 2]>,
     theta: RefCell<Function>,
     phi_left: RefCell<Function>,
     kind: PhantomData<(X, K)>,
@@ -138,10 +139,19 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
             lambda: design.lambda.as_ref().map(Function::new),
             phi_0: Function::new(&design.phi_0),
             phi_1: Function::new(&design.phi_1),
+            primitives: design.primitives.as_ref().map(|both| both.each_ref().map(Function::new)),
             theta: Function::new(&design.theta),
             phi_left: Function::new(&design.phi_left),
             kind: PhantomData,
         }
+    }
+
+    /// The values of a function that stands under the derivative.
+    fn held<'a>(&self, function: &'a mut Function, extension: &X, y: &SVector<f64, N>) -> &'a [f64] {
+        function.call(|arguments| {
+            extension.write(self.nz, arguments);
+            arguments.extend(&y.as_slice()[..self.ny]);
+        })
     }
 
     fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
@@ -196,12 +206,22 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         pad_rows(values, self.ne)
     }
 
-    fn primitive_0(&self, _: &X, y: &SVector<f64, N>) -> SVector<f64, N> {
+    fn primitive_0(&self, extension: &X, y: &SVector<f64, N>) -> SVector<f64, N> {
+        if let Some([known, _]) = &self.primitives {
+            return pad(self.held(&mut known.borrow_mut(), extension, y));
+        }
         let mut used = SVector::zeros();
         for (row, &output) in self.rows.iter().enumerate() {
             used[row] = y[output];
         }
         used
+    }
+
+    fn primitive_1(&self, extension: &X, y: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        match &self.primitives {
+            Some([_, factor]) => pad_rows(self.held(&mut factor.borrow_mut(), extension, y), self.ne),
+            None => SMatrix::zeros(),
+        }
     }
 
     fn theta(&self, eta: &SVector<f64, N>) -> SVector<f64, N> {

@@ -40,6 +40,9 @@ pub(super) struct Design {
     pub(super) phi_0: Program,
     /// From the extension, y, u to the factor of the unknowns, by rows.
     pub(super) phi_1: Program,
+    /// From the extension and y to what is known under the derivative, and the factor of the unknowns there by
+    /// rows, in an implicit regression.
+    pub(super) primitives: Option<[Program; 2]>,
     /// From eta to theta.
     pub(super) theta: Program,
     /// From z, y to the recovered states.
@@ -89,6 +92,13 @@ impl Design {
             },
             phi_0: compile(&regressed, &regression.phi_0)?,
             phi_1: compile(&regressed, &regression.phi_1.concat())?,
+            primitives: match regression.kind {
+                RegressionKind::Implicit => Some([
+                    compile(&[&extension, &y], &regression.primitive_0)?,
+                    compile(&[&extension, &y], &regression.primitive_1.concat())?,
+                ]),
+                RegressionKind::Dynamic | RegressionKind::Static => None,
+            },
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,
             phi_left: compile(&[&plant.z, &y], &states)?,
             recovered: inverse.x.iter().map(|(state, _)| *state).collect(),
@@ -146,10 +156,6 @@ impl Settings {
                 Diagnostic::error(Code::WrongChoice, estimator.span, message)
                     .help(format!("write one of `{}`", ESTIMATORS.join("`, `"))),
             );
-        }
-        if regression.kind == RegressionKind::Implicit {
-            let message = "an implicit regression is not simulated yet";
-            problems.push(Diagnostic::error(Code::SimulationUnsupported, section, message).help("emit the code"));
         }
         if written.filter.is_none() {
             problems.push(lacking("the observer's filter", "add `observer: {filter: 1}`, in rad/s"));

@@ -84,9 +84,18 @@ codes! {
         "The key accepts only the words that the help lists."
     EmptyList "empty-list" "a list must not be empty"
         "A model has at least one unmeasured state, one output and one component of phi."
-    ClassNotYet "class-not-yet" "a model class that this version does not expand yet"
-        "Models may be written by class as lti, mechanical or electromechanical. This version does not expand these \
-         classes: write x, y, u, f_x, f_y and phi instead."
+    ClassConflict "class-conflict" "a class beside what it gives"
+        "A model written by class (lti, mechanical or electromechanical) has its equations f_x and f_y and its transform \
+         phi from the class. They cannot be given besides, nor can a second class."
+    ClassUnresolved "class-unresolved" "the matrices of a class could not be worked out"
+        "Expanding a class inverts matrices exactly. Here the algebra met an obstacle, which the message names; simpler \
+         formulas, or parameters with values, may avoid it."
+    NotSymmetric "not-symmetric" "a matrix that must be symmetric is not"
+        "The inertia matrix M and the inductance matrix L are those of an energy, hence symmetric. The message names a \
+         pair of entries that differ."
+    SingularMatrix "singular-matrix" "a matrix has no inverse anywhere"
+        "The inertia matrix M, the frame T and the inductance matrix L are inverted. This one has determinant zero \
+         whatever the positions are."
 
     // Names.
 

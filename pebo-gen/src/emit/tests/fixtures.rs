@@ -10,7 +10,7 @@ use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::emit::value::{Scope, Value, expression};
-use crate::plant::{Assumption, Formula, Output, Parameter, Plant, State};
+use crate::plant::{Assumption, Formula, Output, Parameter, Plant, Proposal, State};
 use crate::source::Span;
 
 /// A plant and its derivation as text. Formulas are in Rust's grammar, with floating-point numbers
@@ -166,6 +166,8 @@ impl Sketch {
                 kind: self.kind,
                 rows: (0..self.phi_0.len()).collect(),
                 phi_0: formulas(self.phi_0),
+                primitive_0: Vec::new(),
+                primitive_1: Vec::new(),
                 phi_1: rows(self.phi_1),
                 eta: formulas(self.eta),
                 theta: eta[..count].iter().map(|&eta| arena.of_symbol(eta)).collect(),
@@ -173,12 +175,15 @@ impl Sketch {
             }),
             identifiability: proved(Identifiability {
                 kind: Excitation::Instant,
+                gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
                 direction: None,
             }),
             diagnostics: Vec::new(),
         };
         let plant = Plant {
+            class: None,
+            proposal: Proposal::default(),
             conditions: Vec::new(),
             name: self.name.to_owned(),
             title: Some(self.title.to_owned()),

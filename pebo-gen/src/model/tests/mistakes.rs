@@ -27,7 +27,6 @@ fn each_gives_one_diagnostic() {
         ("phi: [i1, i3]\n", "", MissingKey, "model"),
         ("model: cuk\n", "", MissingKey, "title"),
         ("title: error, ", "", MissingKey, "{unit: A, curves: [hat(i1) - i1, v2], scale: log}"),
-        ("title:", "lti: {A11: [[0]]}\ntitle:", ClassNotYet, "lti"),
         // Shapes.
         ("x: [i1, i3]", "x: {i1: 0, i3: 0}", WrongShape, "{i1: 0, i3: 0}"),
         ("x: [i1, i3]", "x: i1", WrongShape, "i1"),

@@ -5,6 +5,7 @@
 
 use serde::Deserialize;
 
+use crate::model::class::{Electromechanical, Lti, Mechanical};
 use crate::model::formula::Decimal;
 use crate::model::written::{Entry, Observer, Scale, Spanned};
 
@@ -33,6 +34,9 @@ pub(super) struct Document {
     pub(super) angles: Vec<Entry<Text>>,
     pub(super) observer: Observer,
     pub(super) simulation: Option<Simulation>,
+    pub(super) lti: Option<Lti<Text>>,
+    pub(super) mechanical: Option<Mechanical<Text>>,
+    pub(super) electromechanical: Option<Electromechanical<Text>>,
 }
 
 /// The section `simulation`.

@@ -4,6 +4,7 @@
 //! diagnostic and is `0` from there on, so that its entry is not missing as well.
 
 use super::document::{self, Document, Text};
+use crate::model::class::{Class, Electromechanical, Lti, Mechanical};
 use crate::model::formula::{Comparison, Decimal, Estimates, Formula, Places, Term, parse_comparison, parse_formula};
 use crate::model::written::{Baseline, Entry, Model, Panel, Piece, Simulation};
 use crate::source::{Diagnostics, Source};
@@ -19,6 +20,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
     let phi_left = pass.entries(document.phi_left);
     let identities = pass.list(&document.identities);
     let angles = pass.entries(document.angles);
+    let class = pass.class(document.lti, document.mechanical, document.electromechanical);
     let simulation = document.simulation.map(|simulation| pass.simulation(simulation));
     Some(Model {
         name: document.model?,
@@ -31,6 +33,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         w: document.w,
         define,
         assume,
+        class,
         f_x,
         f_y,
         phi,
@@ -70,6 +73,20 @@ impl Pass<'_> {
     fn entries(&mut self, entries: Vec<Entry<Text>>) -> Vec<Entry<Formula>> {
         let parse = |entry: Entry<Text>| Entry { value: self.formula(&entry.value), name: entry.name };
         entries.into_iter().map(parse).collect()
+    }
+
+    /// The class, of which there is at most one.
+    fn class(
+        &mut self,
+        lti: Option<Lti<Text>>,
+        mechanical: Option<Mechanical<Text>>,
+        electromechanical: Option<Electromechanical<Text>>,
+    ) -> Option<Class> {
+        let mut parse = |text: Text| self.formula(&text);
+        let lti = lti.map(|class| Class::Lti(class.map(&mut parse)));
+        let mechanical = mechanical.map(|class| Class::Mechanical(class.map(&mut parse)));
+        let electromechanical = electromechanical.map(|class| Class::Electromechanical(class.map(&mut parse)));
+        lti.or(mechanical).or(electromechanical)
     }
 
     fn simulation(&mut self, simulation: document::Simulation) -> Simulation {

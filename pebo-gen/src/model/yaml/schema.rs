@@ -23,26 +23,46 @@ pub(super) enum Shape {
     Signal,
     /// A map with these keys.
     Record(&'static [Key]),
-    /// A section that is not read yet.
-    Later,
+    /// A matrix of formulas: rows, or a plain list, or a single one; what these stand for depends on
+    /// the size that is wanted.
+    Matrix,
+}
+
+/// What the presence of a key means for the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// It must be there.
+    Required,
+    /// It may be there.
+    Optional,
+    /// It stands for the keys that a class gives.
+    Class,
+    /// It must be there unless a class is, which gives it.
+    RequiredOrByClass,
+    /// It may be there unless a class is, which gives it.
+    OptionalOrByClass,
 }
 
 /// A key of a record.
 #[derive(Debug)]
 pub(super) struct Key {
     pub(super) name: &'static str,
-    pub(super) required: bool,
+    pub(super) role: Role,
     pub(super) shape: Shape,
     /// How to write it.
     pub(super) example: &'static str,
 }
 
+const fn key(role: Role, name: &'static str, shape: Shape, example: &'static str) -> Key {
+    Key { name, role, shape, example }
+}
+
 const fn required(name: &'static str, shape: Shape, example: &'static str) -> Key {
-    Key { name, required: true, shape, example }
+    key(Role::Required, name, shape, example)
 }
 
 const fn optional(name: &'static str, shape: Shape, example: &'static str) -> Key {
-    Key { name, required: false, shape, example }
+    key(Role::Optional, name, shape, example)
 }
 
 const TEXTS: Shape = Shape::List(&Shape::Text);
@@ -62,17 +82,55 @@ pub(super) const MODEL: &[Key] = &[
     optional("w", TEXTS, "w: [omega]"),
     optional("define", RATES, "define: {p: v2*i1}"),
     optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]"),
-    required("f_x", RATES, "f_x: {i1: (E - (1 - d)*v2)/L1}"),
-    optional("f_y", RATES, "f_y: {v2: i1/C2}"),
-    required("phi", FORMULAS, "phi: [i1, i3]"),
+    key(Role::RequiredOrByClass, "f_x", RATES, "f_x: {i1: (E - (1 - d)*v2)/L1}"),
+    key(Role::OptionalOrByClass, "f_y", RATES, "f_y: {v2: i1/C2}"),
+    key(Role::RequiredOrByClass, "phi", FORMULAS, "phi: [i1, i3]"),
     optional("phi_left", RATES, "phi_left: {i1: z1}"),
     optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]"),
     optional("angles", RATES, "angles: {q: 2*pi}"),
     optional("observer", Shape::Record(OBSERVER), "observer: {gain: 1e7}"),
     optional("simulation", Shape::Record(SIMULATION), "simulation: {duration: 0.1, step: 1e-6}"),
-    optional("lti", Shape::Later, "lti: {A11: [[0]]}"),
-    optional("mechanical", Shape::Later, "mechanical: {M: [[1]]}"),
-    optional("electromechanical", Shape::Later, "electromechanical: {L: [[1]]}"),
+    key(Role::Class, "lti", Shape::Record(LTI), "lti: {A11: [[-1]], A21: [[2]]}"),
+    key(Role::Class, "mechanical", Shape::Record(MECHANICAL), "mechanical: {M: [[m]], V: m*g*q, T: [[1]]}"),
+    key(
+        Role::Class,
+        "electromechanical",
+        Shape::Record(ELECTROMECHANICAL),
+        "electromechanical: {L: [[L]], mu: [c*q], R: [r], speed: omega}",
+    ),
+];
+
+/// Blocks of a linear plant; those left out are zero. With T1 and T2 the author chooses the transform.
+const LTI: &[Key] = &[
+    required("A11", Shape::Matrix, "A11: [[0, 1], [-1, 0]]"),
+    optional("A12", Shape::Matrix, "A12: [[0], [1]]"),
+    required("A21", Shape::Matrix, "A21: [[1, 0]]"),
+    optional("A22", Shape::Matrix, "A22: [[-1]]"),
+    optional("B1", Shape::Matrix, "B1: [[0], [1]]"),
+    optional("B2", Shape::Matrix, "B2: [[1]]"),
+    optional("T1", Shape::Matrix, "T1: [[1, 0], [0, 1]]"),
+    optional("T2", Shape::Matrix, "T2: [[0], [0]]"),
+];
+
+/// Inertia, potential energy, input matrix and the frame T of a mechanical plant, in positions and parameters.
+const MECHANICAL: &[Key] = &[
+    required("M", Shape::Matrix, "M: [[m, 0], [0, m*r^2]]"),
+    optional("V", Shape::Formula, "V: m*g*r*cos(q)"),
+    optional("G", Shape::Matrix, "G: [[1], [0]]"),
+    required("T", Shape::Matrix, "T: [[1, 0], [0, 1]]"),
+];
+
+/// Inductances, magnets, resistances, and the mass that the coils move.
+const ELECTROMECHANICAL: &[Key] = &[
+    optional("coils", Shape::Number, "coils: 2"),
+    required("L", Shape::Matrix, "L: [[L, 0], [0, L]]"),
+    optional("mu", Shape::Matrix, "mu: [lambda_m*cos(q), lambda_m*sin(q)]"),
+    required("R", Shape::Matrix, "R: [R, R]"),
+    optional("B", Shape::Matrix, "B: [[1, 0], [0, 1]]"),
+    required("speed", Shape::Text, "speed: omega"),
+    optional("inertia", Shape::Formula, "inertia: j"),
+    optional("friction", Shape::Formula, "friction: f"),
+    optional("load", Shape::Formula, "load: m*g"),
 ];
 
 const OBSERVER: &[Key] = &[

@@ -11,7 +11,7 @@
 use serde_yaml::{Mapping, Value};
 
 use super::refusal;
-use super::schema::{Key, MODEL, Shape};
+use super::schema::{Key, MODEL, Role, Shape};
 use super::tree::{self, Content, Node};
 use crate::model::formula::Decimal;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
@@ -70,8 +70,46 @@ impl Fitter<'_> {
                 Some(piece(start, self.fit(node, &Shape::Formula)?))
             }))),
             (Shape::Record(keys), Content::Map(entries)) => Some(self.record(entries, keys, node.span)),
+            (Shape::Matrix, Content::Scalar(text)) => {
+                Some(matrix(node.span, 0, sequence([Some(sequence([Some(spanned(text, node.span))]))])))
+            }
+            (Shape::Matrix, Content::List(rows)) => self.matrix(node, rows),
             _ => self.refuse(node, shape),
         }
+    }
+
+    /// A list of formulas, or a list of rows; all rows of one length.
+    fn matrix(&mut self, node: &Node, items: &[Node]) -> Option<Value> {
+        if items.is_empty() || items.iter().any(is_empty) {
+            self.diagnostics.push(
+                Diagnostic::error(Code::EmptyList, node.span, "a matrix has at least one entry")
+                    .help(format!("write for example `{}`", self.example)),
+            );
+            return None;
+        }
+        let formulas = |this: &mut Self, items: &[Node]| {
+            sequence(items.iter().map(|item| this.fit(item, &Shape::Formula)).collect::<Vec<_>>())
+        };
+        if !items.iter().any(|item| matches!(item.content, Content::List(_))) {
+            let row = formulas(self, items);
+            return Some(matrix(node.span, 1, sequence([Some(row)])));
+        }
+        let mut rows = Vec::new();
+        let mut width = None;
+        for item in items {
+            let Content::List(entries) = &item.content else { return self.refuse(item, &Shape::List(&Shape::Formula)) };
+            let first = *width.get_or_insert(entries.len());
+            if entries.len() != first {
+                let message = format!("a row of {} in a matrix with rows of {first}", entries.len());
+                self.diagnostics.push(
+                    Diagnostic::error(Code::WrongShape, item.span, message)
+                        .help(format!("write {first} formulas in each row, as `{}`", self.example)),
+                );
+                return None;
+            }
+            rows.push(Some(formulas(self, entries)));
+        }
+        Some(matrix(node.span, 2, sequence(rows)))
     }
 
     /// A parameter in a plain list of names.
@@ -102,17 +140,20 @@ impl Fitter<'_> {
     /// A map with known keys; `place` is where something is missing if it is.
     fn record(&mut self, entries: &[(tree::Key, Node)], keys: &'static [Key], place: Span) -> Value {
         let mut fields = Mapping::new();
-        let mut by_class = false;
+        let class = entries.iter().map(|(name, _)| name).find(|name| {
+            let key = keys.iter().find(|key| key.name == name.text);
+            key.is_some_and(|key| key.role == Role::Class)
+        });
         for (name, node) in entries {
             let Some(key) = keys.iter().find(|key| key.name == name.text) else {
                 self.diagnostics.push_with(|| unknown_key(&name.text, name.span, keys));
                 continue;
             };
             self.example = key.example;
-            if let Shape::Later = key.shape {
-                by_class = true;
-                self.diagnostics.push(not_yet(key.name, name.span));
-            } else if key.required && is_empty(node) {
+            let needed = matches!(key.role, Role::Required | Role::RequiredOrByClass);
+            if let Some(class) = class.filter(|class| key.excludes(name, class)) {
+                self.diagnostics.push(in_class(name, class));
+            } else if needed && is_empty(node) {
                 let message = format!("`{}` is empty", key.name);
                 self.diagnostics.push(
                     Diagnostic::error(Code::EmptyList, node.span, message)
@@ -123,7 +164,12 @@ impl Fitter<'_> {
             }
         }
         // A class stands for the keys that it replaces.
-        for key in keys.iter().filter(|key| key.required && !by_class) {
+        let missing = |key: &&Key| match key.role {
+            Role::Required => true,
+            Role::RequiredOrByClass => class.is_none(),
+            Role::Optional | Role::OptionalOrByClass | Role::Class => false,
+        };
+        for key in keys.iter().filter(missing) {
             if !entries.iter().any(|(name, _)| name.text == key.name) {
                 let message = format!("the key `{}` is missing", key.name);
                 self.diagnostics.push(
@@ -169,7 +215,7 @@ fn describe(shape: &Shape) -> String {
         Shape::Record(keys) => {
             format!("a map with keys of {}", listed(keys.iter().map(|key| key.name)))
         }
-        Shape::Later => "a section".to_owned(),
+        Shape::Matrix => "a matrix, as a list of rows".to_owned(),
     }
 }
 
@@ -194,9 +240,23 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     }
 }
 
-fn not_yet(class: &str, span: Span) -> Diagnostic {
-    let message = format!("models by class are not expanded yet: `{class}`");
-    Diagnostic::error(Code::ClassNotYet, span, message).help("write x, y, u, f_x, f_y and phi instead")
+impl Key {
+    /// Whether the key cannot stand beside the class.
+    fn excludes(&self, name: &tree::Key, class: &tree::Key) -> bool {
+        match self.role {
+            Role::Class => name.span != class.span,
+            Role::RequiredOrByClass | Role::OptionalOrByClass => true,
+            Role::Required | Role::Optional => false,
+        }
+    }
+}
+
+/// A key that the class gives, or a second class.
+fn in_class(name: &tree::Key, class: &tree::Key) -> Diagnostic {
+    let message = format!("`{}` beside the class `{}`", name.text, class.text);
+    Diagnostic::error(Code::ClassConflict, name.span, message)
+        .also(class.span, "which gives the equations of the plant and its transform")
+        .help(format!("remove `{}`, or `{}` and write f_x, f_y and phi", name.text, class.text))
 }
 
 fn is_empty(node: &Node) -> bool {
@@ -213,12 +273,20 @@ fn sequence(items: impl IntoIterator<Item = Option<Value>>) -> Value {
 }
 
 fn spanned(text: &str, span: Span) -> Value {
-    let place = fields([("start", span.start.into()), ("end", span.end.into())]);
-    fields([("value", text.into()), ("span", place)])
+    fields([("value", text.into()), ("span", place(span))])
+}
+
+fn place(span: Span) -> Value {
+    fields([("start", span.start.into()), ("end", span.end.into())])
 }
 
 fn entry(name: &str, span: Span, value: Value) -> Value {
     fields([("name", spanned(name, span)), ("value", value)])
+}
+
+/// Rows of formulas, with the depth of the lists that they were written in.
+fn matrix(span: Span, depth: u64, rows: Value) -> Value {
+    fields([("span", place(span)), ("depth", depth.into()), ("rows", rows)])
 }
 
 fn piece(from: Value, formula: Value) -> Value {

@@ -1,0 +1,200 @@
+//! How strongly the regression sees the unknowns: `Phi_1' Phi_1`, its determinant, and whether that is
+//! positive throughout the assumed domain (Ortega et al. 2015, remark R3).
+//!
+//! Positive is proved by the assumptions, factor by factor, or else by dividing the box that they bound
+//! until an enclosure of the determinant is positive on every part. The box is closed, so that the second
+//! way also covers what lies on its faces.
+
+use std::collections::BTreeMap;
+
+use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
+use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::interval::{Interval, Precision};
+use crate::cas::rational::{Rational, half};
+use crate::cas::zero::decide;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::Plant;
+use crate::plant::matrix::determinant;
+
+use super::design::{Gram, Positive};
+use super::singular::gram;
+use super::tidy::{shorter, shortest};
+
+/// Parts that a box is divided into before the proof is given up.
+const MOST_PARTS: usize = 4096;
+
+/// Of the enclosures: parts do not get so small that more would help.
+const PRECISION: Precision = Precision::new(64);
+
+/// The Gram matrix of a regressor with as many rows as columns or more; none where it could not be worked out.
+pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> Option<Gram> {
+    let columns = phi_1.first().map_or(0, Vec::len);
+    if phi_1.len() < columns {
+        return None;
+    }
+    worked_out(plant, domain, phi_1, columns).ok()
+}
+
+fn worked_out(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>], columns: usize) -> Result<Gram, Obstacle> {
+    let arena = &plant.arena;
+    let entries: Vec<Expr> = phi_1.iter().flatten().copied().collect();
+    let field = Field::over(arena, &domain.facts, &entries)?;
+    let rows = phi_1
+        .iter()
+        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
+        .collect::<Result<Vec<_>, _>>()?;
+    let product = gram(&field, &rows, columns)?;
+    let written = |i: usize, j: usize| arena.sum(phi_1.iter().map(|row| arena.mul(row[i], row[j])));
+    let entry = |i: usize, j: usize, product: &Fraction| {
+        shorter(arena, written(i, j), shortest(arena, domain, field.show(product)))
+    };
+    let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
+    let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
+    // Of a square regressor the root of the determinant is known.
+    let square = rows.len() == columns;
+    let root = determinant(&field, if square { rows } else { product })?;
+    let shown = shortest(arena, domain, field.show(&root));
+    let by_facts = field.is_positive(&root)? || (square && field.is_positive(&root.opposite())?);
+    let positive = if by_facts {
+        Some(Positive::Assumed)
+    } else {
+        on_box(plant, domain, shown, square).then_some(Positive::Divided)
+    };
+    let determinant = if square { arena.mul(shown, shown) } else { shown };
+    Ok(Gram { matrix, determinant, positive })
+}
+
+/// Whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
+fn on_box(plant: &Plant, domain: &Domain, expr: Expr, square: bool) -> bool {
+    let arena = &plant.arena;
+    let Some(ranges) = ranges(plant, domain, expr) else { return false };
+    let mut open = vec![ranges];
+    let mut parts = 0;
+    while let Some(part) = open.pop() {
+        parts += 1;
+        if parts > MOST_PARTS {
+            return false;
+        }
+        let Some(intervals) = enclosed(&part) else { return false };
+        let value = arena.enclose_over(&[expr], &intervals, PRECISION).and_then(|mut values| values.pop());
+        if value.is_some_and(|value| if square { !value.contains_zero() } else { value.is_positive() }) {
+            continue;
+        }
+        let Some(halves) = divide(part) else { return false };
+        open.extend(halves);
+    }
+    true
+}
+
+/// Closed ranges of symbols.
+type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
+
+fn enclosed(ranges: &Ranges) -> Option<BTreeMap<Symbol, Interval>> {
+    let ends = |(low, high): &(Rational, Rational)| {
+        Some(Interval::from_rational(low, PRECISION)?.hull(&Interval::from_rational(high, PRECISION)?))
+    };
+    ranges.iter().map(|(symbol, range)| Some((*symbol, ends(range)?))).collect()
+}
+
+/// Both halves across the longest side; none of a point.
+fn divide(ranges: Ranges) -> Option<[Ranges; 2]> {
+    let (symbol, (low, high)) = ranges
+        .iter()
+        .max_by(|(_, a), (_, b)| (&a.1 - &a.0).cmp(&(&b.1 - &b.0)))
+        .map(|(symbol, range)| (*symbol, range.clone()))?;
+    let middle = &(&low + &high) * &half();
+    if low == high {
+        return None;
+    }
+    let mut lower = ranges.clone();
+    lower.insert(symbol, (low, middle.clone()));
+    let mut upper = ranges;
+    upper.insert(symbol, (middle, high));
+    Some([lower, upper])
+}
+
+/// The ranges that values and assumptions give the symbols, or a turn of an angle; none if one is unbounded.
+fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
+    let arena = &plant.arena;
+    let mut found = Ranges::new();
+    for symbol in arena.symbols_of(&[expr]) {
+        let value = plant.parameters.iter().find(|p| p.symbol == symbol).and_then(|p| p.value.clone());
+        if let Some(value) = value {
+            found.insert(symbol, (value.clone(), value));
+            continue;
+        }
+        let bounds = plant.assumptions.iter().filter(|a| a.relation != Relation::NonZero);
+        let bounds: Vec<_> = bounds.filter_map(|a| bound(arena, a.expr, symbol)).collect();
+        let low = bounds.iter().filter(|(is_low, _)| *is_low).map(|(_, value)| value.clone()).max();
+        let high = bounds.iter().filter(|(is_low, _)| !is_low).map(|(_, value)| value.clone()).min();
+        let range = match (low, high) {
+            (Some(low), Some(high)) => (low, high),
+            // More than a turn.
+            _ if turns(arena, domain, expr, symbol) => (Rational::from(-4), Rational::from(4)),
+            _ => return None,
+        };
+        found.insert(symbol, range);
+    }
+    Some(found)
+}
+
+/// Whether the expression is the same after a turn of the symbol.
+fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
+    let turn = arena.mul(arena.number(2), arena.pi());
+    let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
+    decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
+}
+
+/// What `expr >= 0` says of a symbol alone: whether from below, and the bound.
+fn bound(arena: &Arena, expr: Expr, symbol: Symbol) -> Option<(bool, Rational)> {
+    let slope = arena.as_number(arena.derivative(expr, symbol))?;
+    let rest = arena.substitute(expr, &BTreeMap::from([(symbol, arena.zero())]));
+    let rest = arena.as_number(rest)?;
+    Some((!slope.is_negative(), (-&rest).checked_div(&slope)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::source::Source;
+
+    fn gram_of(assume: &str, rates: &str) -> Gram {
+        let text = format!(
+            "model: m\nx: [a, b]\ny: [p, q]\nu: [d, e]\nassume: [{assume}]\n\
+             f_x: {{a: d, b: e}}\nf_y: {{{rates}}}\nphi: [a, b]\n"
+        );
+        let model = Model::parse(&Source::new("m", text.as_str()).unwrap()).unwrap();
+        let plant = Plant::resolve(&model).unwrap();
+        let derivation = crate::analysis::Derivation::derive(&plant);
+        derivation.identifiability.result.unwrap().gram.unwrap()
+    }
+
+    #[test]
+    fn a_determinant_is_positive_where_it_is_shown_to_be() {
+        // By the assumptions: (1 - d)^2 on the open interval.
+        let facts = gram_of("0 < d < 1", "p: (1 - d)*a + d*b, q: b");
+        assert_eq!(facts.positive, Some(Positive::Assumed));
+        // By division: 1 + d sin(e) on a box, whose sign no rule sees.
+        for assume in ["0 < d < 0.9, -3 < e < 3", "0 < d < 0.9"] {
+            let divided = gram_of(assume, "p: (1 + d*sin(e))*a + d*b, q: b");
+            assert_eq!(divided.positive, Some(Positive::Divided), "{assume}");
+        }
+    }
+
+    #[test]
+    fn a_determinant_that_vanishes_somewhere_is_not_called_positive() {
+        for (assume, rates) in [
+            ("0 < d < 2", "p: (1 - d)*a + d*b, q: b"),
+            // On the face of the closed box.
+            ("0 < d < 1, -3 < e < 3", "p: (1 - d*cos(e))*a + d*b, q: b"),
+            // At one point inside.
+            ("-1 < d < 1, -1 < e < 1", "p: ((d - 1/3)^2 + (e - 1/7)^2)*a, q: b"),
+            // Positive, but on no bounded box.
+            ("0 < d < 0.9", "p: (2 + sin(e)*d)*a + b/(1 + e^2), q: b*(2 + sin(e*d))"),
+        ] {
+            assert_eq!(gram_of(assume, rates).positive, None, "{assume}: {rates}");
+        }
+    }
+}

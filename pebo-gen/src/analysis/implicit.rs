@@ -1,0 +1,101 @@
+//! The implicit regression: the unknown multiplies the rate of an output.
+//!
+//! In: rates of outputs as functions of z, y and u. Out: for each a primitive A(z, y) with
+//!
+//! ```text
+//! a(z, y) y' = N(z, y, u)      dA/dy = a      d/dt A = N + dA/dz h = R(z, y, u)
+//! ```
+//!
+//! Where A and R are linear in functions of theta at z = chi + theta, filtering both sides gives a linear
+//! regression without the rate (Ortega et al. 2015, Section 5.2: for the levitated ball a = z, A = z i).
+//! Nothing is divided by a, so the regression holds also where a vanishes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::domain::Domain;
+use crate::cas::field::{Field, Obstacle};
+use crate::cas::rational::Rational;
+use crate::cas::zero::decide;
+use crate::cas::{Expr, Symbol};
+use crate::plant::Plant;
+
+use super::tidy::shortest;
+
+/// Powers of the output in a that are looked for.
+const MOST_POWERS: i64 = 8;
+
+/// Both sides of `d/dt A = R`, in z.
+pub(super) struct Sides {
+    pub(super) primitive: Expr,
+    pub(super) rate: Expr,
+}
+
+/// The sides for the rate of an output, as a function of z; none where it has no such form.
+pub(super) fn sides(
+    plant: &Plant,
+    domain: &Domain,
+    h: &[Expr],
+    (output, rate): (usize, Expr),
+) -> Result<Option<Sides>, Obstacle> {
+    let arena = &plant.arena;
+    if arena.depends_on(rate, &plant.hidden()) {
+        return Ok(None);
+    }
+    let y = plant.y[output].symbol;
+    let Some(factor) = factor(plant, domain, rate)? else { return Ok(None) };
+    let known: BTreeSet<Symbol> =
+        plant.z.iter().copied().chain([y]).chain(plant.parameters.iter().map(|p| p.symbol)).collect();
+    if !arena.symbols_of(&[factor]).is_subset(&known) {
+        return Ok(None);
+    }
+    let Some(primitive) = primitive(plant, domain, factor, y) else { return Ok(None) };
+    let along = plant.z.iter().zip(h).map(|(z, h)| arena.mul(arena.derivative(primitive, *z), *h));
+    let right = arena.add(arena.mul(factor, rate), arena.sum(along));
+    let right = shortest(arena, domain, right);
+    // Proved of the plant itself: at z = phi(x, y), along its vector field.
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    let moving = arena.directional(arena.substitute(primitive, &transform), &plant.rates());
+    let difference = arena.sub(moving, arena.substitute(right, &transform));
+    Ok(decide(arena, difference, domain).is_zero().then_some(Sides { primitive, rate: right }))
+}
+
+/// What the rate has to be multiplied by: the part of its denominator that holds z.
+fn factor(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<Expr>, Obstacle> {
+    let arena = &plant.arena;
+    let field = Field::over(arena, &domain.facts, &[rate])?;
+    let fraction = field.fraction(rate)?;
+    let kernels: Vec<u32> = field.kernels_of(&plant.z.iter().copied().collect()).into_iter().collect();
+    let parts = fraction.denominator().collect(&kernels);
+    Ok(match parts.as_slice() {
+        [(monomial, _)] => {
+            let powers = monomial.powers().iter();
+            let factors = powers.map(|&(kernel, times)| (field.kernel(kernel), Rational::from(i64::from(times))));
+            Some(arena.multiply(&Rational::ONE, factors))
+        }
+        [] => None,
+        _ => Some(field.show(&field.of_polynomial(fraction.denominator())?)),
+    })
+}
+
+/// The primitive of a polynomial in the output, zero where the output is.
+fn primitive(plant: &Plant, domain: &Domain, factor: Expr, y: Symbol) -> Option<Expr> {
+    let arena = &plant.arena;
+    let origin = BTreeMap::from([(y, arena.zero())]);
+    let mut slope = factor;
+    let mut power = Rational::ONE;
+    let mut terms = Vec::new();
+    for degree in 0..=MOST_POWERS {
+        // By Taylor: the derivative of this order at zero, over the factorial.
+        let coefficient = arena.substitute(slope, &origin);
+        power = power.checked_div(&Rational::from(degree + 1))?;
+        let monomial = arena.power(arena.of_symbol(y), &Rational::from(degree + 1));
+        terms.push(arena.scale(arena.mul(coefficient, monomial), &power));
+        slope = arena.derivative(slope, y);
+        if decide(arena, slope, domain).is_zero() {
+            let primitive = shortest(arena, domain, arena.sum(terms));
+            let difference = arena.sub(arena.derivative(primitive, y), factor);
+            return decide(arena, difference, domain).is_zero().then_some(primitive);
+        }
+    }
+    None
+}
