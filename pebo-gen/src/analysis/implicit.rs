@@ -43,6 +43,11 @@ pub(super) fn sides(
     }
     let y = plant.y[output].symbol;
     let Some(factor) = factor(plant, domain, rate)? else { return Ok(None) };
+    // The unknown itself multiplies the rate; what is not affine in it is not taken for such a regression.
+    let curved = |z: &Symbol| arena.depends_on(arena.derivative(factor, *z), &plant.z.iter().copied().collect());
+    if plant.z.iter().any(curved) {
+        return Ok(None);
+    }
     let known: BTreeSet<Symbol> =
         plant.z.iter().copied().chain([y]).chain(plant.parameters.iter().map(|p| p.symbol)).collect();
     if !arena.symbols_of(&[factor]).is_subset(&known) {
