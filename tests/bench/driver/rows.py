@@ -1,5 +1,4 @@
 """A row of a table: one job, all systems in turn, medians, and ratios to ours."""
-import time
 from statistics import median
 
 # Repetitions of what is short, of the rest, and where the border is (in seconds).
@@ -34,9 +33,6 @@ def measure(askers, timeout):
     for turn in range(max(repetitions.values(), default=0)):
         for name, count in repetitions.items():
             if turn < count and name not in failed:
-                if len(askers) == 1 and times[name]:
-                    # Others' turns are pauses too, without which a busy machine interrupts what lasts a few ms.
-                    time.sleep(times[name][-1])
                 answer = askers[name](timeout)
                 if isinstance(answer, float):
                     times[name].append(answer)
