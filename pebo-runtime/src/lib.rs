@@ -11,7 +11,7 @@
 //! - [`Model`]: the functions of one plant, written by hand or emitted by the generator;
 //! - [`Extension`]: [`Integrator`] (PEBO) or [`Fundamental`] (generalised PEBO);
 //! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step;
-//! - [`Estimator`]: [`Gradient`], or one of your own;
+//! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
 //! - [`Observer`]: one [`step`](Observer::step) a sample, which never panics and answers a bad sample with a [`Fault`].
 //!
 //! No heap, no `std`, no `unsafe`; `f32` and `f64`; every size is a constant.
@@ -77,6 +77,7 @@
 
 pub use nalgebra;
 
+mod decay;
 pub mod estimator;
 mod extension;
 mod fault;
@@ -88,7 +89,10 @@ mod real;
 mod regression;
 mod sum;
 
-pub use estimator::{Estimator, Gradient, Information};
+pub use estimator::{
+    Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
+    RegressorExtension, Response,
+};
 pub use extension::{Extension, Flow, Fundamental, Integrator};
 pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};

@@ -1,5 +1,7 @@
 //! Weighted linear equations in, one after another; the vector that fits them best out.
 
+use core::cmp::Ordering;
+
 use nalgebra::{SMatrix, SVector};
 
 use crate::sum::all_finite;
@@ -106,6 +108,33 @@ impl<S: Real, const N: usize> Information<S, N> {
         }
     }
 
+    /// Multiplies every weight by a factor, `factor >= 0`; the vector that fits best stays the same.
+    pub fn scale(&mut self, factor: S) {
+        self.weight *= factor;
+    }
+
+    /// Adds the equations of another problem, with their right sides, its weights multiplied by `factor >= 0`.
+    pub fn absorb_information(&mut self, other: &Self, factor: S) {
+        for i in 0..N {
+            let row = SVector::from_fn(|k, _| match k.cmp(&i) {
+                Ordering::Less => S::zero(),
+                Ordering::Equal => S::one(),
+                Ordering::Greater => other.upper[(i, k)],
+            });
+            self.absorb(&row, other.target[i], factor * other.weight[i]);
+        }
+    }
+
+    /// The vector that fits best, from which the unknown is counted from now on: every right side becomes 0.
+    ///
+    /// # Errors
+    /// [`Fault::State`] as in [`solve`](Self::solve).
+    pub fn take_solution(&mut self) -> Result<SVector<S, N>, Fault> {
+        let solution = self.solve()?;
+        self.target = SVector::zeros();
+        Ok(solution)
+    }
+
     /// The vector that fits best.
     ///
     /// # Errors
@@ -119,6 +148,11 @@ impl<S: Real, const N: usize> Information<S, N> {
             }
         }
         if self.is_finite() && all_finite(&solution) { Ok(solution) } else { Err(Fault::State) }
+    }
+
+    /// The diagonal of `D`: the weight of each component given those after it.
+    pub fn weight(&self) -> &SVector<S, N> {
+        &self.weight
     }
 
     /// Whether every number of the state is finite.

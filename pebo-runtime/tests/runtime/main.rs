@@ -4,6 +4,7 @@ mod converter;
 mod random;
 
 mod drift;
+mod estimators;
 mod extension;
 mod fault;
 mod filter;
