@@ -88,7 +88,8 @@ impl<S: Real, const N: usize> Information<S, N> {
         let (mut row, mut value, mut weight) = (*row, value, weight);
         for i in 0..N {
             let lead = row[i];
-            if lead == S::zero() {
+            // An equation without weight says nothing, also where nothing is known yet.
+            if lead == S::zero() || weight == S::zero() {
                 continue;
             }
             let before = self.weight[i];
