@@ -77,18 +77,24 @@
 
 pub use nalgebra;
 
+#[cfg(feature = "serde")]
+mod array;
 mod decay;
+mod drift;
 pub mod estimator;
 mod extension;
 mod fault;
 mod filter;
+mod limits;
 mod linear;
 mod model;
 mod observer;
 mod real;
 mod regression;
 mod sum;
+mod window;
 
+pub use drift::Drift;
 pub use estimator::{
     Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
     RegressorExtension, Response,
@@ -96,8 +102,10 @@ pub use estimator::{
 pub use extension::{Extension, Flow, Fundamental, Integrator};
 pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};
+pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
-pub use observer::Observer;
+pub use observer::{Observer, State};
 pub use real::Real;
-pub use regression::FilteredRegression;
+pub use regression::{FilteredRegression, RegressionOperator, Sides};
 pub use sum::Sum;
+pub use window::WindowedRegression;

@@ -3,9 +3,12 @@
 use nalgebra::SVector;
 
 use crate::extension::{Extension, Flow};
-use crate::regression::{Primitives, Terms};
+use crate::regression::Sides;
 use crate::sum::all_finite;
-use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Rebase, Regression};
+use crate::{
+    Drift, Estimator, Fault, Filter, FilteredRegression, Hold, Integrator, Limits, Model, Real, Rebase, Regression,
+    RegressionOperator,
+};
 
 /// A parameter-estimation-based observer.
 ///
@@ -21,10 +24,15 @@ use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Rebase, R
 /// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no effect.
 /// `dt` is the time since the last sample that was accepted; it need not be constant.
 ///
+/// An input that runs straight between samples rather than being held is told with
+/// [`with_input_hold`](Self::with_input_hold): each call then gets the input at the *end* of the interval, the first included.
+///
 /// # Faults
 ///
 /// A call that returns a [`Fault`] has changed nothing, to the last bit. The next good sample goes on from the last
-/// accepted one, with the time since that one as `dt`.
+/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, tell each interval without a usable output to
+/// [`skip`](Self::skip) instead. What good samples can be is for [`Limits`] to say. The whole state can be saved and restored:
+/// [`state`](Self::state).
 #[derive(Clone, Debug)]
 pub struct Observer<
     M,
@@ -35,23 +43,50 @@ pub struct Observer<
     const NZ: usize,
     const NR: usize,
     const NE: usize,
+    R = FilteredRegression<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>,
 > where
     M: Model<NX, NY, NU, NZ, NR, NE>,
     E: Estimator<M::Scalar, NR, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
 {
     model: M,
-    state: State<M::Scalar, M::Extension, E, NY, NR, NE>,
+    limits: Limits<M::Scalar, NY, NU>,
+    input_hold: Hold,
+    state: State<M::Scalar, M::Extension, R, E, NY, NU>,
 }
 
-/// Everything that a step changes.
-#[derive(Clone, Debug)]
-struct State<S: Real, X, E, const NY: usize, const NR: usize, const NE: usize> {
+/// Everything that a step of an [`Observer`] changes, gains and filter included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct State<S: Real, X, R, E, const NY: usize, const NU: usize> {
     /// The last accepted sample.
-    y: Option<SVector<S, NY>>,
+    last: Option<Sample<S, NY, NU>>,
+    skipped: Skipped<S, NU>,
     extension: X,
-    filter: Filter<S>,
-    regression: FilteredRegression<S, NR, NE>,
+    regression: R,
     estimator: E,
+}
+
+/// An accepted sample; the input is the one at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Sample<S: Real, const NY: usize, const NU: usize> {
+    y: SVector<S, NY>,
+    u: SVector<S, NU>,
+}
+
+/// The time since the last accepted sample that was skipped, and the integral of the input over it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Skipped<S: Real, const NU: usize> {
+    time: S,
+    input: SVector<S, NU>,
+}
+
+impl<S: Real, const NU: usize> Skipped<S, NU> {
+    fn nothing() -> Self {
+        Self { time: S::zero(), input: SVector::zeros() }
+    }
 }
 
 impl<M, E, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
@@ -70,12 +105,46 @@ where
         filter: Filter<M::Scalar>,
         chi_0: SVector<M::Scalar, NZ>,
     ) -> Result<Self, Fault> {
+        Self::with_regression(model, estimator, FilteredRegression::new(filter), chi_0)
+    }
+}
+
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
+{
+    /// An observer whose regression goes through another operator than a filter, as
+    /// [`WindowedRegression`](crate::WindowedRegression).
+    ///
+    /// # Errors
+    /// [`Fault::Start`] unless `chi_0` and the estimator's state are finite.
+    pub fn with_regression(
+        model: M,
+        estimator: E,
+        regression: R,
+        chi_0: SVector<M::Scalar, NZ>,
+    ) -> Result<Self, Fault> {
         if !all_finite(&chi_0) || !estimator.is_finite() {
             return Err(Fault::Start);
         }
         let extension = M::Extension::new(chi_0);
-        let regression = FilteredRegression::at_rest();
-        Ok(Self { model, state: State { y: None, extension, filter, regression, estimator } })
+        let state = State { last: None, skipped: Skipped::nothing(), extension, regression, estimator };
+        Ok(Self { model, limits: Limits::none(), input_hold: Hold::Zero, state })
+    }
+
+    /// The same observer, refusing samples beyond the limits.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits<M::Scalar, NY, NU>) -> Self {
+        Self { limits, ..self }
+    }
+
+    /// The same observer for inputs that run as told between samples; held at their start if never told.
+    #[must_use]
+    pub fn with_input_hold(self, input_hold: Hold) -> Self {
+        Self { input_hold, ..self }
     }
 
     /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
@@ -89,28 +158,29 @@ where
         u: &SVector<M::Scalar, NU>,
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        if let Some(index) = first_bad(y) {
-            return Err(Fault::Output { index });
+        let next = self.next(y, u, dt)?;
+        self.accept(next, y)
+    }
+
+    /// Takes an interval of `dt` seconds with the input `u` at whose end there is no usable output. Nothing of it is lost:
+    /// the next [`step`](Self::step) (whose `dt` is then the time since the interval skipped) covers all intervals, with the mean of their inputs.
+    ///
+    /// # Errors
+    /// A [`Fault`]; the observer is then exactly as before.
+    pub fn skip(&mut self, u: &SVector<M::Scalar, NU>, dt: M::Scalar) -> Result<(), Fault> {
+        self.limits.check_input(u)?;
+        check_step(dt)?;
+        if self.state.last.is_none() {
+            return Ok(());
         }
-        if let Some(index) = first_bad(u) {
-            return Err(Fault::Input { index });
-        }
-        if !(dt > nalgebra::zero() && Real::is_finite(dt)) {
-            return Err(Fault::Step);
-        }
-        let mut next = self.state.clone();
-        if let Some(before) = next.y.replace(*y) {
-            next.advance(&self.model, [&before, y], u, dt)?;
-        }
-        if !next.is_finite() {
+        let Skipped { time, input } = self.state.skipped;
+        let skipped = Skipped { time: time + dt, input: input + u * dt };
+        self.limits.check_gap(skipped.time)?;
+        if !Real::is_finite(skipped.time) || !all_finite(&skipped.input) {
             return Err(Fault::State);
         }
-        let estimate = next.estimate(&self.model, y);
-        if !all_finite(&estimate) {
-            return Err(Fault::Estimate);
-        }
-        self.state = next;
-        Ok(estimate)
+        self.state.skipped = skipped;
+        Ok(())
     }
 
     /// Starts again before the first sample, as after an outage that no `dt` can bridge: extension at `chi_0`, filters
@@ -122,16 +192,36 @@ where
         if !all_finite(&chi_0) || !all_finite(eta) {
             return Err(Fault::Start);
         }
-        self.state.y = None;
+        self.state.last = None;
+        self.state.skipped = Skipped::nothing();
         self.state.extension = M::Extension::new(chi_0);
-        self.state.regression = FilteredRegression::at_rest();
+        self.state.regression.reset();
         self.state.estimator.reset(eta);
+        Ok(())
+    }
+
+    /// Everything that a step changes, to be saved; with the feature `serde` it can be written and read.
+    pub fn state(&self) -> &State<M::Scalar, M::Extension, R, E, NY, NU> {
+        &self.state
+    }
+
+    /// Goes on from a saved state, bit for bit as the observer that it was taken from. Limits and input hold stay this
+    /// observer's own. A reset in flight is answered so, with the time since the state was saved as the next `dt`.
+    ///
+    /// # Errors
+    /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Whether it is undamaged is for
+    /// a checksum to say.
+    pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY, NU>) -> Result<(), Fault> {
+        if !state.is_finite() {
+            return Err(Fault::State);
+        }
+        self.state = state;
         Ok(())
     }
 
     /// The estimate of the state at the last accepted sample; none before the first.
     pub fn estimate(&self) -> Option<SVector<M::Scalar, NX>> {
-        self.state.y.as_ref().map(|y| self.estimate_at(y))
+        self.state.last.as_ref().map(|last| self.estimate_at(&last.y))
     }
 
     /// The estimate of the state that goes with an output `y`, as before the first sample.
@@ -154,8 +244,8 @@ where
         &self.state.extension
     }
 
-    /// The filtered regression that the estimator was given last.
-    pub fn regression(&self) -> &FilteredRegression<M::Scalar, NR, NE> {
+    /// The regression that the estimator was given last.
+    pub fn regression(&self) -> &R {
         &self.state.regression
     }
 
@@ -168,19 +258,67 @@ where
     pub fn model(&self) -> &M {
         &self.model
     }
+
+    /// The state after a sample.
+    fn next(
+        &self,
+        y: &SVector<M::Scalar, NY>,
+        u: &SVector<M::Scalar, NU>,
+        dt: M::Scalar,
+    ) -> Result<State<M::Scalar, M::Extension, R, E, NY, NU>, Fault> {
+        self.limits.check_output(y)?;
+        self.limits.check_input(u)?;
+        check_step(dt)?;
+        let mut next = self.state.clone();
+        let Some(before) = next.last.replace(Sample { y: *y, u: *u }) else {
+            return Ok(next);
+        };
+        let Skipped { time, input } = core::mem::replace(&mut next.skipped, Skipped::nothing());
+        let whole = time + dt;
+        self.limits.check_gap(whole)?;
+        let inputs = if time > nalgebra::zero() {
+            let mean = (input + u * dt) / whole;
+            [mean, mean]
+        } else {
+            match self.input_hold {
+                Hold::Zero => [*u, *u],
+                Hold::First => [before.u, *u],
+            }
+        };
+        next.advance(&self.model, [&before.y, y], inputs.each_ref(), whole)?;
+        Ok(next)
+    }
+
+    /// Keeps a state if all of it and its estimate are finite.
+    fn accept(
+        &mut self,
+        next: State<M::Scalar, M::Extension, R, E, NY, NU>,
+        y: &SVector<M::Scalar, NY>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        if !next.is_finite() {
+            return Err(Fault::State);
+        }
+        let estimate = next.estimate(&self.model, y);
+        if !all_finite(&estimate) {
+            return Err(Fault::Estimate);
+        }
+        self.state = next;
+        Ok(estimate)
+    }
 }
 
-impl<M, E, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>
-    Observer<M, E, NX, NY, NU, NZ, NR, NZ>
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NZ, R>
 where
     M: Rebase<NX, NY, NU, NZ, NR>,
     E: Estimator<M::Scalar, NR, NZ>,
+    R: RegressionOperator<M::Scalar, NR, NZ>,
 {
     /// Moves `shift` from the extension into the estimated `theta`; the estimate of the state, now and later, stays the
     /// same up to rounding.
     ///
     /// The remedy against the drift of the open integrator (the paper, remark R5): when `chi` has grown, re-base by
-    /// `chi`, and it starts again from 0.
+    /// `chi`, and it starts again from 0. [`step_without_drift`](Self::step_without_drift) does so by itself.
     ///
     /// # Errors
     /// [`Fault::Start`] if the shift is not finite, [`Fault::State`] if the moved state would not be; the observer is
@@ -190,9 +328,7 @@ where
             return Err(Fault::Start);
         }
         let mut next = self.state.clone();
-        next.extension.rebase(shift);
-        next.regression.shift(shift);
-        next.estimator.shift(shift);
+        next.rebase(shift);
         if !next.is_finite() {
             return Err(Fault::State);
         }
@@ -201,40 +337,80 @@ where
     }
 }
 
-impl<S: Real, X, E, const NY: usize, const NR: usize, const NE: usize> State<S, X, E, NY, NR, NE> {
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NZ, R>
+where
+    M: Rebase<NX, NY, NU, NZ, NR, Extension = Integrator<<M as Model<NX, NY, NU, NZ, NR, NZ>>::Scalar, NZ>>,
+    E: Estimator<M::Scalar, NR, NZ>,
+    R: RegressionOperator<M::Scalar, NR, NZ>,
+{
+    /// [`step`](Self::step) with an extension that cannot run away: see [`Drift`] for the forms and what each costs.
+    ///
+    /// # Errors
+    /// A [`Fault`]; the observer is then exactly as before.
+    pub fn step_without_drift(
+        &mut self,
+        y: &SVector<M::Scalar, NY>,
+        u: &SVector<M::Scalar, NU>,
+        dt: M::Scalar,
+        drift: Drift<M::Scalar>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let mut next = self.next(y, u, dt)?;
+        if let Some(shift) = drift.shift(&next.extension, dt)? {
+            next.rebase(&shift);
+        }
+        self.accept(next, y)
+    }
+}
+
+impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, NU> {
     /// Advances extension, regression and estimator from the first output to the second.
-    fn advance<M, const NX: usize, const NU: usize, const NZ: usize>(
+    fn advance<M, const NX: usize, const NZ: usize, const NR: usize, const NE: usize>(
         &mut self,
         model: &M,
         [before, after]: [&SVector<S, NY>; 2],
-        u: &SVector<S, NU>,
+        [u_before, u_after]: [&SVector<S, NU>; 2],
         dt: S,
     ) -> Result<(), Fault>
     where
         M: Model<NX, NY, NU, NZ, NR, NE, Scalar = S, Extension = X>,
         X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NE>,
         E: Estimator<S, NR, NE>,
     {
         let start = self.extension;
-        let flow = |y| Flow { lambda: model.lambda(y, u), h: model.h(y, u) };
-        self.extension.advance(&flow(before), &flow(after), dt)?;
+        let flow = |y, u| Flow { lambda: model.lambda(y, u), h: model.h(y, u) };
+        self.extension.advance(&flow(before, u_before), &flow(after, u_after), dt)?;
         let end = self.extension;
 
-        let terms = |x, y| Terms { phi_0: model.phi_0(x, y, u), phi_1: model.phi_1(x, y, u) };
-        let terms = [&terms(&start, before), &terms(&end, after)];
-        match M::REGRESSION {
-            Regression::Static => self.regression.advance_static(&mut self.filter, terms, dt),
-            Regression::Dynamic => {
-                let primitives = |x, y| Primitives { known: model.primitive_0(x, y), factor: model.primitive_1(x, y) };
-                let primitives = [&primitives(&start, before), &primitives(&end, after)];
-                self.regression.advance_dynamic(&mut self.filter, terms, primitives, dt);
+        let sides = |x, y, u| Sides { known: model.phi_0(x, y, u), factor: model.phi_1(x, y, u) };
+        let mut sides = [sides(&start, before, u_before), sides(&end, after, u_after)];
+        if M::REGRESSION == Regression::Dynamic {
+            let known_rate = (model.primitive_0(&end, after) - model.primitive_0(&start, before)) / dt;
+            let factor_rate = (model.primitive_1(&end, after) - model.primitive_1(&start, before)) / dt;
+            for Sides { known, factor } in &mut sides {
+                *known = known_rate - *known;
+                *factor -= factor_rate;
             }
         }
-        self.estimator.advance(self.regression.regressor(), self.regression.regressand(), dt)
+        self.regression.advance(sides.each_ref(), dt);
+        self.estimator.advance(&self.regression.regressor(), &self.regression.regressand(), dt)
+    }
+
+    /// Moves a shift from the extension into the unknown.
+    fn rebase<const NZ: usize, const NR: usize>(&mut self, shift: &SVector<S, NZ>)
+    where
+        X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NZ>,
+        E: Estimator<S, NR, NZ>,
+    {
+        self.extension.rebase(shift);
+        self.regression.shift(shift);
+        self.estimator.shift(shift);
     }
 
     /// The estimate of the state that goes with an output.
-    fn estimate<M, const NX: usize, const NU: usize, const NZ: usize>(
+    fn estimate<M, const NX: usize, const NZ: usize, const NR: usize, const NE: usize>(
         &self,
         model: &M,
         y: &SVector<S, NY>,
@@ -249,16 +425,22 @@ impl<S: Real, X, E, const NY: usize, const NR: usize, const NE: usize> State<S, 
     }
 
     /// Whether every number of the state is finite.
-    fn is_finite<const NZ: usize>(&self) -> bool
+    fn is_finite<const NZ: usize, const NR: usize, const NE: usize>(&self) -> bool
     where
         X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NE>,
         E: Estimator<S, NR, NE>,
     {
-        self.extension.is_finite() && self.regression.is_finite() && self.estimator.is_finite()
+        self.extension.is_finite()
+            && self.regression.is_finite()
+            && self.estimator.is_finite()
+            && Real::is_finite(self.skipped.time)
+            && all_finite(&self.skipped.input)
+            && self.last.as_ref().is_none_or(|last| all_finite(&last.y) && all_finite(&last.u))
     }
 }
 
-/// The place of the first element that is not finite.
-fn first_bad<S: Real, const N: usize>(vector: &SVector<S, N>) -> Option<usize> {
-    vector.iter().position(|&element| !Real::is_finite(element))
+/// A step must be a positive finite time.
+fn check_step<S: Real>(dt: S) -> Result<(), Fault> {
+    if dt > S::zero() && Real::is_finite(dt) { Ok(()) } else { Err(Fault::Step) }
 }

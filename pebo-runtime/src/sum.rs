@@ -12,6 +12,7 @@ use crate::Real;
 /// Source: Dekker, *A floating-point technique for extending the available precision*, Numer. Math., 1971; the error
 /// term is Knuth's (*The Art of Computer Programming* vol. 2, 4.2.2, theorem B), whichever operand is larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sum<S: Real, const R: usize, const C: usize> {
     value: SMatrix<S, R, C>,
     carry: SMatrix<S, R, C>,

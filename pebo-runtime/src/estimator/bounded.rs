@@ -17,6 +17,7 @@ use crate::{Fault, Real};
 /// Source: Ioannou and Sun, *Robust adaptive control*, 1996, chapter 4 (parameter projection; there it acts
 /// on the adaptive law).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounded<S: Real, E, const NE: usize> {
     estimator: E,
     lower: SVector<S, NE>,

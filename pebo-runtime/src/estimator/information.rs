@@ -17,6 +17,7 @@ use crate::{Fault, Real};
 /// Reference: Gentleman, *Least squares computations by Givens transformations without square roots*, J. Inst. Maths
 /// Applics, 1973, and algorithm AS 75, 1974.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Information<S: Real, const N: usize> {
     /// U above its diagonal.
     upper: SMatrix<S, N, N>,

@@ -30,11 +30,17 @@ use crate::{Fault, Real};
 /// Bobtsov, Yi, Ortega, Astolfi, *Generation of new exciting regressors for consistent on-line estimation of unknown
 /// constant parameters*, IEEE TAC, 2022 (gradient).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "S: serde::Deserialize<'de>, E: serde::Deserialize<'de> + Copy"))
+)]
 pub struct Response<S: Real, E, const NR: usize, const NE: usize> {
     /// The estimate at the start.
     start: Sum<S, NE, 1>,
     estimator: E,
     /// Copies that estimate the unit vectors from 0.
+    #[cfg_attr(feature = "serde", serde(with = "crate::array"))]
     units: [E; NE],
     /// The copies before any data.
     fresh: E,
