@@ -10,8 +10,9 @@
 //!
 //! - [`Model`]: the functions of one plant, written by hand or emitted by the generator;
 //! - [`Extension`]: [`Integrator`] (PEBO) or [`Fundamental`] (generalised PEBO);
-//! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step;
+//! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step; or [`WindowedRegression`], the integral form;
 //! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
+//! - [`Monitor`]: whether the data so far determine the unknown, and how well;
 //! - [`Observer`]: one [`step`](Observer::step) a sample, which never panics and answers a bad sample with a [`Fault`].
 //!
 //! No heap, no `std`, no `unsafe`; `f32` and `f64`; every size is a constant.
@@ -81,6 +82,7 @@ pub use nalgebra;
 mod array;
 mod decay;
 mod drift;
+mod eigenvalue;
 pub mod estimator;
 mod extension;
 mod fault;
@@ -88,6 +90,7 @@ mod filter;
 mod limits;
 mod linear;
 mod model;
+mod monitor;
 mod observer;
 mod real;
 mod regression;
@@ -104,6 +107,7 @@ pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};
 pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
+pub use monitor::{Excitation, Monitor};
 pub use observer::{Observer, State};
 pub use real::Real;
 pub use regression::{FilteredRegression, RegressionOperator, Sides};

@@ -1,6 +1,7 @@
 //! The runtime as its users see it. Every tolerance has its reason beside it.
 
 mod converter;
+mod noise;
 mod random;
 
 mod drift;
@@ -10,5 +11,7 @@ mod fault;
 mod filter;
 mod gradient;
 mod kinds;
+mod monitor;
 mod paper;
 mod real;
+mod sampling;
