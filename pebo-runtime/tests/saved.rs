@@ -52,7 +52,10 @@ fn feed<E: Estimator<f64, 1, 1>, R: RegressionOperator<f64, 1, 1>>(
     observer.step(&Vector1::new((1.3 * t).sin() + t / 3.0), &Vector1::new(t.sin()), 0.01)
 }
 
-fn continues<E, R>(estimator: E, regression: R)
+/// What is read back.
+type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1, 1>;
+
+fn continues<E, R>(estimator: &E, regression: &R)
 where
     E: Estimator<f64, 1, 1> + Serialize + DeserializeOwned + core::fmt::Debug + PartialEq,
     R: RegressionOperator<f64, 1, 1> + Serialize + DeserializeOwned + core::fmt::Debug + PartialEq,
@@ -74,7 +77,6 @@ where
     assert_eq!(postcard::to_allocvec(first.state()).unwrap(), postcard::to_allocvec(second.state()).unwrap());
 
     // Cut short, no state at all; with a NaN in it, refused.
-    type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1, 1>;
     for length in 0..bytes.len() {
         assert!(postcard::from_bytes::<Saved<E, R>>(&bytes[..length]).is_err());
     }
@@ -87,19 +89,19 @@ where
 }
 
 #[test]
-fn every_estimator_and_regression_continues() {
+fn every_estimator_and_regression_continues(&) {
     let one = Vector1::new(1.0);
-    let filtered = || FilteredRegression::new(Filter::new(3.0, Hold::First).unwrap());
+    let filtered = FilteredRegression::new(Filter::new(3.0, Hold::First).unwrap());
     let gradient = Gradient::diagonal(&Vector1::new(50.0)).unwrap();
     let squares = LeastSquares::diagonal(&Vector1::new(50.0), 0.5).unwrap();
     let kreisselmeier = Kreisselmeier::new(&one, 0.5).unwrap();
     let drem = Drem::new(kreisselmeier, &one).unwrap();
-    continues(gradient, filtered());
-    continues(gradient, WindowedRegression::<f64, 1, 1, 9>::new(Hold::First));
-    continues(NormalisedGradient::new(gradient, 2.0).unwrap(), filtered());
-    continues(squares, filtered());
-    continues(drem, filtered());
-    continues(Drem::new(Response::<_, _, 1, 1>::new(squares).unwrap(), &one).unwrap(), filtered());
-    continues(FiniteTime::tracking(drem, 0.1, 0.3).unwrap(), filtered());
-    continues(Bounded::new(gradient, &Vector1::new(-9.0), &Vector1::new(9.0)).unwrap(), filtered());
+    continues(&gradient, &filtered);
+    continues(&gradient, &WindowedRegression::<f64, 1, 1, 9>::new(Hold::First));
+    continues(&NormalisedGradient::new(gradient, 2.0).unwrap(), &filtered);
+    continues(&squares, &filtered);
+    continues(&drem, &filtered);
+    continues(&Drem::new(Response::<_, _, 1, 1>::new(squares).unwrap(), &one).unwrap(), &filtered);
+    continues(&FiniteTime::tracking(drem, 0.1, 0.3).unwrap(), &filtered);
+    continues(&Bounded::new(gradient, &Vector1::new(-9.0), &Vector1::new(9.0)).unwrap(), &filtered);
 }
