@@ -94,6 +94,7 @@ mod monitor;
 mod observer;
 mod real;
 mod regression;
+mod single;
 mod sum;
 mod window;
 

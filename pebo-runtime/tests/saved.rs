@@ -89,7 +89,7 @@ where
 }
 
 #[test]
-fn every_estimator_and_regression_continues(&) {
+fn every_estimator_and_regression_continues() {
     let one = Vector1::new(1.0);
     let filtered = FilteredRegression::new(Filter::new(3.0, Hold::First).unwrap());
     let gradient = Gradient::diagonal(&Vector1::new(50.0)).unwrap();

@@ -15,3 +15,4 @@ mod monitor;
 mod paper;
 mod real;
 mod sampling;
+mod single;
