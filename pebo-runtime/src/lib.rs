@@ -87,6 +87,7 @@ pub mod estimator;
 mod extension;
 mod fault;
 mod filter;
+mod gap;
 mod limits;
 mod linear;
 mod model;
@@ -106,6 +107,7 @@ pub use estimator::{
 pub use extension::{Extension, Flow, Fundamental, Integrator};
 pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};
+pub use gap::Gap;
 pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};

@@ -6,8 +6,9 @@ use crate::{Fault, Real};
 
 /// Ranges of outputs and inputs, and the longest time between two accepted samples.
 ///
-/// Set the range of an output inside the rails of its sensor: a saturated sample is then refused like a broken one, and
-/// the step after it covers both intervals. A saturated actuator is no fault: tell the observer the input that acted.
+/// Check a sample before the observer gets it; a refused one is a missing one. Set the range of an output inside the rails
+/// of its sensor, and saturated samples are refused too. A saturated actuator is no fault: tell the observer the input that
+/// acted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<S: Real, const NY: usize, const NU: usize> {
     y: Range<S, NY>,
@@ -35,12 +36,14 @@ impl<S: Real, const N: usize> Range<S, N> {
     /// The place of the first element out of range.
     fn first_outside(&self, vector: &SVector<S, N>) -> Option<usize> {
         let mut ranges = self.lower.iter().zip(self.upper.iter());
-        vector.iter().position(|element| ranges.next().is_some_and(|(lower, upper)| element < lower || element > upper))
+        vector
+            .iter()
+            .position(|element| !ranges.next().is_some_and(|(lower, upper)| lower <= element && element <= upper))
     }
 }
 
 impl<S: Real, const NY: usize, const NU: usize> Limits<S, NY, NU> {
-    /// Every finite sample is accepted.
+    /// Every number is in range.
     pub fn none() -> Self {
         Self { y: Range::unlimited(), u: Range::unlimited(), gap: None }
     }
@@ -70,26 +73,17 @@ impl<S: Real, const NY: usize, const NU: usize> Limits<S, NY, NU> {
         if longest > S::zero() { Ok(Self { gap: Some(longest), ..self }) } else { Err(Fault::Limits) }
     }
 
-    pub(crate) fn check_output(&self, y: &SVector<S, NY>) -> Result<(), Fault> {
-        if let Some(index) = first_bad(y) {
-            return Err(Fault::Output { index });
+    /// Whether a sample is one that an observer may be given.
+    ///
+    /// # Errors
+    /// [`Fault::OutputRange`], [`Fault::InputRange`] or [`Fault::Gap`], in this order. A NaN is not in any range.
+    pub fn check(&self, y: &SVector<S, NY>, u: &SVector<S, NU>, dt: S) -> Result<(), Fault> {
+        if let Some(index) = self.y.first_outside(y) {
+            return Err(Fault::OutputRange { index });
         }
-        self.y.first_outside(y).map_or(Ok(()), |index| Err(Fault::OutputRange { index }))
-    }
-
-    pub(crate) fn check_input(&self, u: &SVector<S, NU>) -> Result<(), Fault> {
-        if let Some(index) = first_bad(u) {
-            return Err(Fault::Input { index });
+        if let Some(index) = self.u.first_outside(u) {
+            return Err(Fault::InputRange { index });
         }
-        self.u.first_outside(u).map_or(Ok(()), |index| Err(Fault::InputRange { index }))
+        if self.gap.is_some_and(|longest| dt > longest) { Err(Fault::Gap) } else { Ok(()) }
     }
-
-    pub(crate) fn check_gap(&self, time: S) -> Result<(), Fault> {
-        if self.gap.is_some_and(|longest| time > longest) { Err(Fault::Gap) } else { Ok(()) }
-    }
-}
-
-/// The place of the first element that is not finite.
-fn first_bad<S: Real, const N: usize>(vector: &SVector<S, N>) -> Option<usize> {
-    vector.iter().position(|&element| !Real::is_finite(element))
 }

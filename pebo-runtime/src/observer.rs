@@ -1,12 +1,12 @@
 //! Samples of output and input in, the estimate of the unmeasured state out.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::extension::{Extension, Flow};
 use crate::regression::Sides;
 use crate::sum::all_finite;
 use crate::{
-    Drift, Estimator, Fault, Filter, FilteredRegression, Hold, Integrator, Limits, Model, Real, Rebase, Regression,
+    Drift, Estimator, Fault, Filter, FilteredRegression, Integrator, Model, Real, Rebase, Regression,
     RegressionOperator,
 };
 
@@ -24,15 +24,14 @@ use crate::{
 /// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no effect.
 /// `dt` is the time since the last sample that was accepted; it need not be constant.
 ///
-/// An input that runs straight between samples rather than being held is told with
-/// [`with_input_hold`](Self::with_input_hold): each call then gets the input at the *end* of the interval, the first included.
+/// For an input that runs straight between samples rather than being held, call [`step_straight`](Self::step_straight).
 ///
 /// # Faults
 ///
 /// A call that returns a [`Fault`] has changed nothing, to the last bit. The next good sample goes on from the last
-/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, tell each interval without a usable output to
-/// [`skip`](Self::skip) instead. What good samples can be is for [`Limits`] to say. The whole state can be saved and restored:
-/// [`state`](Self::state).
+/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, a [`Gap`](crate::Gap) says with what
+/// input. Samples that are finite but out of range or saturated are for [`Limits`](crate::Limits) to find before they get here. The whole state can be saved
+/// and restored: [`state`](Self::state).
 #[derive(Clone, Debug)]
 pub struct Observer<
     M,
@@ -50,43 +49,18 @@ pub struct Observer<
     R: RegressionOperator<M::Scalar, NR, NE>,
 {
     model: M,
-    limits: Limits<M::Scalar, NY, NU>,
-    input_hold: Hold,
-    state: State<M::Scalar, M::Extension, R, E, NY, NU>,
+    state: State<M::Scalar, M::Extension, R, E, NY>,
 }
 
 /// Everything that a step of an [`Observer`] changes, gains and filter included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct State<S: Real, X, R, E, const NY: usize, const NU: usize> {
+pub struct State<S: Real, X, R, E, const NY: usize> {
     /// The last accepted sample.
-    last: Option<Sample<S, NY, NU>>,
-    skipped: Skipped<S, NU>,
+    y: Option<SVector<S, NY>>,
     extension: X,
     regression: R,
     estimator: E,
-}
-
-/// An accepted sample; the input is the one at its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Sample<S: Real, const NY: usize, const NU: usize> {
-    y: SVector<S, NY>,
-    u: SVector<S, NU>,
-}
-
-/// The time since the last accepted sample that was skipped, and the integral of the input over it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Skipped<S: Real, const NU: usize> {
-    time: S,
-    input: SVector<S, NU>,
-}
-
-impl<S: Real, const NU: usize> Skipped<S, NU> {
-    fn nothing() -> Self {
-        Self { time: S::zero(), input: SVector::zeros() }
-    }
 }
 
 impl<M, E, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
@@ -131,20 +105,7 @@ where
             return Err(Fault::Start);
         }
         let extension = M::Extension::new(chi_0);
-        let state = State { last: None, skipped: Skipped::nothing(), extension, regression, estimator };
-        Ok(Self { model, limits: Limits::none(), input_hold: Hold::Zero, state })
-    }
-
-    /// The same observer, refusing samples beyond the limits.
-    #[must_use]
-    pub fn with_limits(self, limits: Limits<M::Scalar, NY, NU>) -> Self {
-        Self { limits, ..self }
-    }
-
-    /// The same observer for inputs that run as told between samples; held at their start if never told.
-    #[must_use]
-    pub fn with_input_hold(self, input_hold: Hold) -> Self {
-        Self { input_hold, ..self }
+        Ok(Self { model, state: State { y: None, extension, regression, estimator } })
     }
 
     /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
@@ -158,29 +119,22 @@ where
         u: &SVector<M::Scalar, NU>,
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let next = self.next(y, u, dt)?;
+        let next = self.next(y, [u, u], dt)?;
         self.accept(next, y)
     }
 
-    /// Takes an interval of `dt` seconds with the input `u` at whose end there is no usable output. Nothing of it is lost:
-    /// the next [`step`](Self::step) (whose `dt` is then the time since the interval skipped) covers all intervals, with the mean of their inputs.
+    /// [`step`](Self::step) for an input that runs straight from the first to the second over the interval.
     ///
     /// # Errors
     /// A [`Fault`]; the observer is then exactly as before.
-    pub fn skip(&mut self, u: &SVector<M::Scalar, NU>, dt: M::Scalar) -> Result<(), Fault> {
-        self.limits.check_input(u)?;
-        check_step(dt)?;
-        if self.state.last.is_none() {
-            return Ok(());
-        }
-        let Skipped { time, input } = self.state.skipped;
-        let skipped = Skipped { time: time + dt, input: input + u * dt };
-        self.limits.check_gap(skipped.time)?;
-        if !Real::is_finite(skipped.time) || !all_finite(&skipped.input) {
-            return Err(Fault::State);
-        }
-        self.state.skipped = skipped;
-        Ok(())
+    pub fn step_straight(
+        &mut self,
+        y: &SVector<M::Scalar, NY>,
+        u: [&SVector<M::Scalar, NU>; 2],
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let next = self.next(y, u, dt)?;
+        self.accept(next, y)
     }
 
     /// Starts again before the first sample, as after an outage that no `dt` can bridge: extension at `chi_0`, filters
@@ -192,8 +146,7 @@ where
         if !all_finite(&chi_0) || !all_finite(eta) {
             return Err(Fault::Start);
         }
-        self.state.last = None;
-        self.state.skipped = Skipped::nothing();
+        self.state.y = None;
         self.state.extension = M::Extension::new(chi_0);
         self.state.regression.reset();
         self.state.estimator.reset(eta);
@@ -201,18 +154,17 @@ where
     }
 
     /// Everything that a step changes, to be saved; with the feature `serde` it can be written and read.
-    pub fn state(&self) -> &State<M::Scalar, M::Extension, R, E, NY, NU> {
+    pub fn state(&self) -> &State<M::Scalar, M::Extension, R, E, NY> {
         &self.state
     }
 
-    /// Goes on from a saved state, bit for bit as the observer that it was taken from. Limits and input hold stay this
-    /// observer's own. A reset in flight is answered so, with the time since the state was saved as the next `dt`.
+    /// Goes on from a saved state, bit for bit as the observer that it was taken from. A reset in flight is answered so, with the time since the state was saved as the next `dt`.
     ///
     /// # Errors
     /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Whether it is undamaged is for
     /// a checksum to say.
-    pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY, NU>) -> Result<(), Fault> {
-        if !state.is_finite() {
+    pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY>) -> Result<(), Fault> {
+        if !state.is_finite() || state.y.as_ref().is_some_and(|y| !all_finite(y)) {
             return Err(Fault::State);
         }
         self.state = state;
@@ -221,7 +173,7 @@ where
 
     /// The estimate of the state at the last accepted sample; none before the first.
     pub fn estimate(&self) -> Option<SVector<M::Scalar, NX>> {
-        self.state.last.as_ref().map(|last| self.estimate_at(&last.y))
+        self.state.y.as_ref().map(|y| self.estimate_at(y))
     }
 
     /// The estimate of the state that goes with an output `y`, as before the first sample.
@@ -259,40 +211,36 @@ where
         &self.model
     }
 
-    /// The state after a sample.
+    /// The state after a sample, for an input that runs straight from the first to the second.
+    #[inline]
     fn next(
         &self,
         y: &SVector<M::Scalar, NY>,
-        u: &SVector<M::Scalar, NU>,
+        u: [&SVector<M::Scalar, NU>; 2],
         dt: M::Scalar,
-    ) -> Result<State<M::Scalar, M::Extension, R, E, NY, NU>, Fault> {
-        self.limits.check_output(y)?;
-        self.limits.check_input(u)?;
-        check_step(dt)?;
-        let mut next = self.state.clone();
-        let Some(before) = next.last.replace(Sample { y: *y, u: *u }) else {
-            return Ok(next);
-        };
-        let Skipped { time, input } = core::mem::replace(&mut next.skipped, Skipped::nothing());
-        let whole = time + dt;
-        self.limits.check_gap(whole)?;
-        let inputs = if time > nalgebra::zero() {
-            let mean = (input + u * dt) / whole;
-            [mean, mean]
-        } else {
-            match self.input_hold {
-                Hold::Zero => [*u, *u],
-                Hold::First => [before.u, *u],
+    ) -> Result<State<M::Scalar, M::Extension, R, E, NY>, Fault> {
+        if let Some(index) = first_bad(y) {
+            return Err(Fault::Output { index });
+        }
+        for u in u {
+            if let Some(index) = first_bad(u) {
+                return Err(Fault::Input { index });
             }
-        };
-        next.advance(&self.model, [&before.y, y], inputs.each_ref(), whole)?;
+        }
+        if !(dt > nalgebra::zero() && Real::is_finite(dt)) {
+            return Err(Fault::Step);
+        }
+        let mut next = self.state.clone();
+        if let Some(before) = next.y.replace(*y) {
+            next.advance(&self.model, [&before, y], u, dt)?;
+        }
         Ok(next)
     }
 
     /// Keeps a state if all of it and its estimate are finite.
     fn accept(
         &mut self,
-        next: State<M::Scalar, M::Extension, R, E, NY, NU>,
+        next: State<M::Scalar, M::Extension, R, E, NY>,
         y: &SVector<M::Scalar, NY>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         if !next.is_finite() {
@@ -355,7 +303,7 @@ where
         dt: M::Scalar,
         drift: Drift<M::Scalar>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let mut next = self.next(y, u, dt)?;
+        let mut next = self.next(y, [u, u], dt)?;
         if let Some(shift) = drift.shift(&next.extension, dt)? {
             next.rebase(&shift);
         }
@@ -363,9 +311,9 @@ where
     }
 }
 
-impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, NU> {
+impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
     /// Advances extension, regression and estimator from the first output to the second.
-    fn advance<M, const NX: usize, const NZ: usize, const NR: usize, const NE: usize>(
+    fn advance<M, const NX: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>(
         &mut self,
         model: &M,
         [before, after]: [&SVector<S, NY>; 2],
@@ -387,10 +335,15 @@ impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, N
         let mut sides = [sides(&start, before, u_before), sides(&end, after, u_after)];
         if M::REGRESSION == Regression::Dynamic {
             let known_rate = (model.primitive_0(&end, after) - model.primitive_0(&start, before)) / dt;
-            let factor_rate = (model.primitive_1(&end, after) - model.primitive_1(&start, before)) / dt;
-            for Sides { known, factor } in &mut sides {
+            for Sides { known, .. } in &mut sides {
                 *known = known_rate - *known;
-                *factor -= factor_rate;
+            }
+            let factor_change = model.primitive_1(&end, after) - model.primitive_1(&start, before);
+            // Where there is no such primitive the compiler knows so, and no division is left.
+            if factor_change != SMatrix::<S, NR, NE>::zeros() {
+                for Sides { factor, .. } in &mut sides {
+                    *factor -= factor_change / dt;
+                }
             }
         }
         self.regression.advance(sides.each_ref(), dt);
@@ -410,7 +363,7 @@ impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, N
     }
 
     /// The estimate of the state that goes with an output.
-    fn estimate<M, const NX: usize, const NZ: usize, const NR: usize, const NE: usize>(
+    fn estimate<M, const NX: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>(
         &self,
         model: &M,
         y: &SVector<S, NY>,
@@ -431,16 +384,11 @@ impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, N
         R: RegressionOperator<S, NR, NE>,
         E: Estimator<S, NR, NE>,
     {
-        self.extension.is_finite()
-            && self.regression.is_finite()
-            && self.estimator.is_finite()
-            && Real::is_finite(self.skipped.time)
-            && all_finite(&self.skipped.input)
-            && self.last.as_ref().is_none_or(|last| all_finite(&last.y) && all_finite(&last.u))
+        self.extension.is_finite() && self.regression.is_finite() && self.estimator.is_finite()
     }
 }
 
-/// A step must be a positive finite time.
-fn check_step<S: Real>(dt: S) -> Result<(), Fault> {
-    if dt > S::zero() && Real::is_finite(dt) { Ok(()) } else { Err(Fault::Step) }
+/// The place of the first element that is not finite.
+pub(crate) fn first_bad<S: Real, const N: usize>(vector: &SVector<S, N>) -> Option<usize> {
+    vector.iter().position(|&element| !Real::is_finite(element))
 }

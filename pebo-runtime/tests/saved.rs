@@ -46,14 +46,11 @@ fn feed<E: Estimator<f64, 1, 1>, R: RegressionOperator<f64, 1, 1>>(
     k: u32,
 ) -> Result<Vector1<f64>, Fault> {
     let t = f64::from(k) * 0.01;
-    if k % 7 == 3 {
-        observer.skip(&Vector1::new(t.cos()), 0.01)?;
-    }
     observer.step(&Vector1::new((1.3 * t).sin() + t / 3.0), &Vector1::new(t.sin()), 0.01)
 }
 
 /// What is read back.
-type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1, 1>;
+type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1>;
 
 fn continues<E, R>(estimator: &E, regression: &R)
 where
@@ -65,13 +62,11 @@ where
     for k in 0..100 {
         feed(&mut first, k).unwrap();
     }
-    // In the middle of a gap too.
-    first.skip(&Vector1::new(0.1), 0.01).unwrap();
     let bytes = postcard::to_allocvec(first.state()).unwrap();
     let mut second = new();
     second.restore(postcard::from_bytes(&bytes).unwrap()).unwrap();
     assert_eq!(first.state(), second.state());
-    for k in 101..200 {
+    for k in 100..200 {
         assert_eq!(feed(&mut first, k).unwrap().x.to_bits(), feed(&mut second, k).unwrap().x.to_bits());
     }
     assert_eq!(postcard::to_allocvec(first.state()).unwrap(), postcard::to_allocvec(second.state()).unwrap());

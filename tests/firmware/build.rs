@@ -17,9 +17,7 @@ fn main() {
         std::fs::write(out.join(format!("{name}.rs")), emitted.text).expect("OUT_DIR can be written to");
     }
     let modules: String = ["cuk_case2", "pmsm"]
-        .map(|name| {
-            format!("#[path = {:?}]\npub mod {name};\n", out.join(format!("{name}.rs")).display().to_string())
-        })
+        .map(|name| format!("#[path = {:?}]\npub mod {name};\n", out.join(format!("{name}.rs")).display().to_string()))
         .concat();
     std::fs::write(out.join("emitted.rs"), modules).expect("OUT_DIR can be written to");
     println!("cargo::rerun-if-changed=memory.x");

@@ -149,7 +149,8 @@ impl<S: Real, const N: usize> Information<S, N> {
                 solution[i] -= known;
             }
         }
-        if self.is_finite() && all_finite(&solution) { Ok(solution) } else { Err(Fault::State) }
+        // Every other number goes into the solution.
+        if all_finite(&self.weight) && all_finite(&solution) { Ok(solution) } else { Err(Fault::State) }
     }
 
     /// The diagonal of `D`: the weight of each component given those after it.

@@ -2,7 +2,7 @@
 
 use pebo_runtime::nalgebra::{Matrix1, SMatrix, Vector1, Vector2};
 use pebo_runtime::{
-    Drem, Drift, Estimator, Fault, Filter, Gradient, Hold, Integrator, Kreisselmeier, LeastSquares, Limits, Model,
+    Drem, Drift, Estimator, Fault, Filter, Gap, Gradient, Hold, Integrator, Kreisselmeier, LeastSquares, Limits, Model,
     Observer, Real, Rebase, Regression, RegressionOperator, Response, Sides, WindowedRegression,
 };
 use proptest::prelude::*;
@@ -102,46 +102,52 @@ fn window_gives_the_state_at_once_and_forgets_completely() {
 
 #[test]
 fn straight_inputs_need_the_first_order_hold() {
-    // x' = t: with u told at the ends of the intervals, the first-order hold is exact and the zero-order one is late.
-    let end = |hold: Hold| {
-        let mut observer =
-            Observer::new(mass(), squares(0.0), filter(), Vector1::zeros()).unwrap().with_input_hold(hold);
-        for k in 0..100_u32 {
-            let t = f64::from(k) * 0.1;
-            observer.step(&Vector1::new(2.0 * t), &Vector1::new(t), 0.1).unwrap();
-        }
-        observer.extension().chi().x
-    };
+    // x' = t: told both ends of the interval the observer is exact, told the end alone it is late.
+    let new = || Observer::new(mass(), squares(0.0), filter(), Vector1::zeros()).unwrap();
+    let (mut straight, mut held) = (new(), new());
+    for k in 0..100_u32 {
+        let [before, now] = [k.saturating_sub(1), k].map(|k| Vector1::new(f64::from(k) * 0.1));
+        straight.step_straight(&(now * 2.0), [&before, &now], 0.1).unwrap();
+        held.step(&(now * 2.0), &now, 0.1).unwrap();
+    }
     let exact = 9.9 * 9.9 / 2.0;
     // A hundred roundings of numbers up to 50; half a step of an input of 9.9.
-    assert!((end(Hold::First) - exact).abs() < 1e-12);
-    assert!((end(Hold::Zero) - exact - 0.05 * 9.9).abs() < 1e-12);
+    assert!((straight.extension().chi().x - exact).abs() < 1e-12);
+    assert!((held.extension().chi().x - exact - 0.05 * 9.9).abs() < 1e-12);
+    // Either end is looked at, and a held input is a straight one.
+    let (zero, bad) = (Vector1::zeros(), Vector1::new(f64::NAN));
+    for u in [[&zero, &bad], [&bad, &zero]] {
+        assert_eq!(straight.step_straight(&zero, u, 0.1), Err(Fault::Input { index: 0 }));
+    }
+    let mut other = straight.clone();
+    assert_eq!(straight.step(&zero, &zero, 0.1), other.step_straight(&zero, [&zero, &zero], 0.1));
 }
 
 #[test]
-fn skipped_samples_lose_nothing() {
-    let new = || Observer::new(mass(), squares(1.0), filter(), Vector1::zeros()).unwrap();
-    let (mut whole, mut gaps) = (new(), new());
-    gaps.skip(&Vector1::new(9.0), 9.0).unwrap();
-    assert_eq!(gaps.state(), whole.state());
-    for observer in [&mut whole, &mut gaps] {
-        observer.step(&Vector1::new(0.0), &Vector1::new(0.0), 0.1).unwrap();
+fn gaps_lose_nothing() {
+    // Three intervals with inputs 1, 2, 6, the outputs between them missing.
+    let mut observer = Observer::new(mass(), squares(1.0), filter(), Vector1::zeros()).unwrap();
+    observer.step(&Vector1::new(0.0), &Vector1::new(0.0), 0.1).unwrap();
+    let mut gap = Gap::new();
+    for (u, dt) in [(1.0, 0.1), (2.0, 0.2), (6.0, 0.1)] {
+        gap.add(&Vector1::new(u), dt);
     }
-    // Three intervals with inputs 1, 2, 6: to the one the inputs, to the other their mean over the time.
-    let before = *gaps.state();
-    gaps.skip(&Vector1::new(1.0), 0.1).unwrap();
-    gaps.skip(&Vector1::new(2.0), 0.2).unwrap();
-    for (u, dt, fault) in
-        [(f64::NAN, 0.1, Fault::Input { index: 0 }), (1.0, 0.0, Fault::Step), (1e300, 1e300, Fault::State)]
-    {
-        assert_eq!(gaps.skip(&Vector1::new(u), dt), Err(fault));
+    let (u, dt) = gap.take();
+    assert_eq!(gap, Gap::default());
+    observer.step(&Vector1::new(1.0), &u, dt).unwrap();
+    // The integral of the input: a few roundings of numbers up to 1.
+    assert!((observer.extension().chi().x - 1.1).abs() < 1e-15 && (dt - 0.4).abs() < 1e-15);
+    // A bad interval is refused by the observer, whatever surrounds it.
+    for (bad, dt, fault) in [
+        (f64::NAN, 0.1, Fault::Input { index: 0 }),
+        (1.0, f64::INFINITY, Fault::Input { index: 0 }),
+        (1.0, -1.0, Fault::Step),
+    ] {
+        gap.add(&Vector1::new(1.0), 0.1);
+        gap.add(&Vector1::new(bad), dt);
+        let (u, dt) = gap.take();
+        assert_eq!(observer.step(&Vector1::new(1.0), &u, dt), Err(fault));
     }
-    assert_ne!(*gaps.state(), before);
-    gaps.step(&Vector1::new(1.0), &Vector1::new(6.0), 0.1).unwrap();
-    whole.step(&Vector1::new(1.0), &Vector1::new((0.1 + 0.4 + 0.6) / 0.4), 0.4).unwrap();
-    // The mean and the time are rounded differently.
-    assert!((gaps.estimate().unwrap() - whole.estimate().unwrap()).norm() < 1e-14);
-    assert!((gaps.extension().chi().x - 1.1).abs() < 1e-15);
 }
 
 #[test]
@@ -151,18 +157,17 @@ fn limits_refuse_what_they_name() {
         .and_then(|limits| limits.inputs(&Vector1::new(0.0), &Vector1::new(1.0)))
         .and_then(|limits| limits.gap(0.5))
         .unwrap();
-    let mut observer = Observer::new(mass(), squares(0.0), filter(), Vector1::zeros()).unwrap().with_limits(limits);
-    let mut step = |y, u, dt| observer.step(&Vector1::new(y), &Vector1::new(u), dt);
-    assert!(step(10.0, 1.0, 0.5).is_ok());
-    assert_eq!(step(10.001, 0.0, 0.1), Err(Fault::OutputRange { index: 0 }));
-    assert_eq!(step(f64::INFINITY, 0.0, 0.1), Err(Fault::Output { index: 0 }));
-    assert_eq!(step(0.0, -0.1, 0.1), Err(Fault::InputRange { index: 0 }));
-    assert_eq!(step(0.0, 0.0, 0.6), Err(Fault::Gap));
-    observer.skip(&Vector1::new(0.5), 0.3).unwrap();
-    assert_eq!(observer.skip(&Vector1::new(0.5), 0.3), Err(Fault::Gap));
-    assert_eq!(observer.step(&Vector1::new(0.0), &Vector1::new(0.5), 0.3), Err(Fault::Gap));
-    assert!(observer.step(&Vector1::new(0.0), &Vector1::new(0.5), 0.1).is_ok());
+    let check = |y, u, dt| limits.check(&Vector1::new(y), &Vector1::new(u), dt);
+    assert_eq!(check(10.0, 1.0, 0.5), Ok(()));
+    for y in [10.001, -11.0, f64::INFINITY, f64::NAN] {
+        assert_eq!(check(y, 0.0, 0.1), Err(Fault::OutputRange { index: 0 }));
+    }
+    for u in [-0.1, 1.1, f64::NAN] {
+        assert_eq!(check(0.0, u, 0.1), Err(Fault::InputRange { index: 0 }));
+    }
+    assert_eq!(check(0.0, 0.0, 0.6), Err(Fault::Gap));
     let none = Limits::<f64, 2, 1>::none();
+    assert_eq!(none.check(&Vector2::new(1e300, -1e300), &Vector1::new(0.0), 1e300), Ok(()));
     assert_eq!(none.outputs(&Vector2::new(0.0, 1.0), &Vector2::new(1.0, 0.0)), Err(Fault::Limits));
     assert_eq!(none.inputs(&Vector1::new(f64::NAN), &Vector1::new(0.0)), Err(Fault::Limits));
     assert_eq!(none.gap(0.0), Err(Fault::Limits));

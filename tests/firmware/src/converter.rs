@@ -2,7 +2,7 @@
 
 use pebo_runtime::nalgebra::{SVector, Vector2};
 use pebo_runtime::{
-    Bounded, Drem, Drift, Estimator, Excitation, Fault, Filter, FilteredRegression, FiniteTime, Gradient, Hold,
+    Bounded, Drem, Drift, Estimator, Excitation, Fault, Filter, FilteredRegression, FiniteTime, Gap, Gradient, Hold,
     Kreisselmeier, LeastSquares, Limits, Monitor, NormalisedGradient, RegressionOperator, Response, WindowedRegression,
 };
 
@@ -99,19 +99,21 @@ fn run<E: Estimator<f32, 2, 2>, R: RegressionOperator<f32, 2, 2>>(
     let limits = Limits::none().outputs(&Vector2::repeat(-100.0), &Vector2::repeat(100.0))?;
     let mut observer: Observer<E, R> =
         pebo_runtime::Observer::with_regression(model(), estimator, regression, SVector::zeros())?;
-    observer = observer.with_limits(limits);
     let mut circuit = Circuit::new();
     let mut duty = SVector::from([0.5]);
+    let mut gap = Gap::new();
     for k in 0..2000_u32 {
         let y = circuit.outputs();
+        gap.add(&duty, DT);
         if k == 700 {
-            let broken = observer.step(&Vector2::new(y.x, f32::NAN), &duty, DT);
-            report.flag(broken == Err(Fault::Output { index: 1 }));
-            observer.skip(&duty, DT)?;
+            let broken = Vector2::new(y.x, f32::NAN);
+            report.flag(observer.step(&broken, &duty, DT) == Err(Fault::Output { index: 1 }));
+            report.flag(limits.check(&broken, &duty, DT) == Err(Fault::OutputRange { index: 1 }));
         } else {
+            let (duty, dt) = gap.take();
             let estimate = match drift {
-                Some(drift) => observer.step_without_drift(&y, &duty, DT, drift)?,
-                None => observer.step(&y, &duty, DT)?,
+                Some(drift) => observer.step_without_drift(&y, &duty, dt, drift)?,
+                None => observer.step(&y, &duty, dt)?,
             };
             if k % 400 == 399 {
                 report.estimate(&estimate, &circuit.unmeasured());

@@ -59,7 +59,8 @@ pub fn agree() -> Result<bool, Fault> {
     for _ in 0..2000_u32 {
         let y: [f32; 2] = circuit.outputs().into();
         let estimate: [f32; 2] = emitted_step(&mut emitted, &y, duty)?.into();
-        same &= hand_step(&mut hand, &y, duty).is_some_and(|by_hand| by_hand.map(f32::to_bits) == estimate.map(f32::to_bits));
+        same &= hand_step(&mut hand, &y, duty)
+            .is_some_and(|by_hand| by_hand.map(f32::to_bits) == estimate.map(f32::to_bits));
         duty = circuit.duty();
         circuit.advance();
     }

@@ -50,7 +50,8 @@ fn run(report: &mut Semihosting) -> Result<bool, Fault> {
 
     let samples = core::hint::black_box(samples());
     let (mut emitted, mut hand) = (converter::counted()?, ByHand::new());
-    let counts = [ticks(|| true), ticks(|| emitted_round(&mut emitted, &samples)), ticks(|| hand_round(&mut hand, &samples))];
+    let counts =
+        [ticks(|| true), ticks(|| emitted_round(&mut emitted, &samples)), ticks(|| hand_round(&mut hand, &samples))];
     for (name, count) in ["ticks nothing ", "ticks emitted ", "ticks hand "].into_iter().zip(counts) {
         let Some(count) = count else { return Ok(false) };
         report.write(name);
