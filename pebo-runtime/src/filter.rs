@@ -121,4 +121,9 @@ impl<S: Real, const R: usize, const C: usize> Filtered<S, R, C> {
     pub fn is_finite(&self) -> bool {
         self.output.is_finite()
     }
+
+    /// Zero if every number of the state is finite, else NaN.
+    pub(crate) fn blemish(&self) -> S {
+        self.output.blemish()
+    }
 }

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::extension::{Extension, Flow};
 use crate::regression::Sides;
-use crate::sum::all_finite;
+use crate::sum::{all_finite, blemish};
 use crate::{
     Drift, Estimator, Fault, Filter, FilteredRegression, Integrator, Model, Real, Rebase, Regression,
     RegressionOperator,
@@ -119,6 +119,7 @@ where
         u: &SVector<M::Scalar, NU>,
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        check(y, u, dt)?;
         let next = self.next(y, [u, u], dt)?;
         self.accept(next, y)
     }
@@ -133,6 +134,8 @@ where
         u: [&SVector<M::Scalar, NU>; 2],
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        check(y, u[0], dt)?;
+        check(y, u[1], dt)?;
         let next = self.next(y, u, dt)?;
         self.accept(next, y)
     }
@@ -211,7 +214,7 @@ where
         &self.model
     }
 
-    /// The state after a sample, for an input that runs straight from the first to the second.
+    /// The state after a good sample, for an input that runs straight from the first to the second.
     #[inline]
     fn next(
         &self,
@@ -219,17 +222,6 @@ where
         u: [&SVector<M::Scalar, NU>; 2],
         dt: M::Scalar,
     ) -> Result<State<M::Scalar, M::Extension, R, E, NY>, Fault> {
-        if let Some(index) = first_bad(y) {
-            return Err(Fault::Output { index });
-        }
-        for u in u {
-            if let Some(index) = first_bad(u) {
-                return Err(Fault::Input { index });
-            }
-        }
-        if !(dt > nalgebra::zero() && Real::is_finite(dt)) {
-            return Err(Fault::Step);
-        }
         let mut next = self.state.clone();
         if let Some(before) = next.y.replace(*y) {
             next.advance(&self.model, [&before, y], u, dt)?;
@@ -303,6 +295,7 @@ where
         dt: M::Scalar,
         drift: Drift<M::Scalar>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        check(y, u, dt)?;
         let mut next = self.next(y, [u, u], dt)?;
         if let Some(shift) = drift.shift(&next.extension, dt)? {
             next.rebase(&shift);
@@ -388,7 +381,26 @@ impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
     }
 }
 
-/// The place of the first element that is not finite.
-pub(crate) fn first_bad<S: Real, const N: usize>(vector: &SVector<S, N>) -> Option<usize> {
-    vector.iter().position(|&element| !Real::is_finite(element))
+/// A sample must be finite, and its time positive too.
+#[inline]
+fn check<S: Real, const NY: usize, const NU: usize>(
+    y: &SVector<S, NY>,
+    u: &SVector<S, NU>,
+    dt: S,
+) -> Result<(), Fault> {
+    let finite = blemish(y) + blemish(u) + dt * S::zero() == S::zero();
+    if finite && dt > S::zero() { Ok(()) } else { Err(what_is_wrong(y, u)) }
+}
+
+/// The fault of a sample that has one.
+#[cold]
+fn what_is_wrong<S: Real, const NY: usize, const NU: usize>(y: &SVector<S, NY>, u: &SVector<S, NU>) -> Fault {
+    let bad = |&element: &S| !Real::is_finite(element);
+    if let Some(index) = y.iter().position(bad) {
+        Fault::Output { index }
+    } else if let Some(index) = u.iter().position(bad) {
+        Fault::Input { index }
+    } else {
+        Fault::Step
+    }
 }

@@ -96,6 +96,6 @@ impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> fo
     }
 
     fn is_finite(&self) -> bool {
-        self.regressand.is_finite() && self.regressor.is_finite()
+        self.regressand.blemish() + self.regressor.blemish() == S::zero()
     }
 }

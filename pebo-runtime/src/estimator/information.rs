@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::sum::all_finite;
+use crate::sum::{all_finite, blemish};
 use crate::{Fault, Real};
 
 /// A weighted least-squares problem, kept in triangular form.
@@ -89,28 +89,26 @@ impl<S: Real, const N: usize> Information<S, N> {
         let (mut row, mut value, mut weight) = (*row, value, weight);
         for i in 0..N {
             let lead = row[i];
-            // An equation without weight says nothing, also where nothing is known yet.
-            if lead == S::zero() || weight == S::zero() {
-                continue;
+            if lead != S::zero() {
+                let before = self.weight[i];
+                let after = before + weight * lead * lead;
+                let kept = before / after;
+                let taken = weight * lead / after;
+                self.weight[i] = after;
+                weight *= kept;
+                for k in i + 1..N {
+                    let (entry, above) = (row[k], self.upper[(i, k)]);
+                    row[k] = entry - lead * above;
+                    self.upper[(i, k)] = kept * above + taken * entry;
+                }
+                let (entry, above) = (value, self.target[i]);
+                value = entry - lead * above;
+                self.target[i] = kept * above + taken * entry;
             }
-            let before = self.weight[i];
-            let after = before + weight * lead * lead;
-            let kept = before / after;
-            let taken = weight * lead / after;
-            self.weight[i] = after;
-            weight *= kept;
-            for k in i + 1..N {
-                let (entry, above) = (row[k], self.upper[(i, k)]);
-                row[k] = entry - lead * above;
-                self.upper[(i, k)] = kept * above + taken * entry;
-            }
-            let (entry, above) = (value, self.target[i]);
-            value = entry - lead * above;
-            self.target[i] = kept * above + taken * entry;
         }
     }
 
-    /// Multiplies every weight by a factor, `factor >= 0`; the vector that fits best stays the same.
+    /// Multiplies every weight by a factor, `factor > 0`; the vector that fits best stays the same.
     pub fn scale(&mut self, factor: S) {
         self.weight *= factor;
     }
@@ -150,7 +148,7 @@ impl<S: Real, const N: usize> Information<S, N> {
             }
         }
         // Every other number goes into the solution.
-        if all_finite(&self.weight) && all_finite(&solution) { Ok(solution) } else { Err(Fault::State) }
+        if blemish(&self.weight) + blemish(&solution) == S::zero() { Ok(solution) } else { Err(Fault::State) }
     }
 
     /// The diagonal of `D`: the weight of each component given those after it.

@@ -87,7 +87,9 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
 impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSquares<S, NE> {
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
         let share = self.forgetting.over(dt);
-        if share.lost > S::zero() {
+        if share.lost == S::one() {
+            self.information = self.floor;
+        } else if share.lost > S::zero() {
             self.information.scale(S::one() - share.lost);
             self.information.absorb_information(&self.floor, share.lost);
         }

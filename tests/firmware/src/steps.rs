@@ -35,6 +35,9 @@ pub fn hand_step(observer: &mut ByHand, y: &[f32; 2], d: f32) -> Option<[f32; 2]
     observer.step(*y, d, DT)
 }
 
+/// Rounds before the one that counts: the first step of all sets the clock, the second computes the filter's weights.
+pub const WARM_UP: usize = 1;
+
 /// A round of the emitted observer's steps.
 #[inline(never)]
 pub fn emitted_round(observer: &mut Observer, samples: &Samples) -> bool {

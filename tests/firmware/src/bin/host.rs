@@ -3,7 +3,7 @@
 
 use pebo_firmware::by_hand::ByHand;
 use pebo_firmware::report::Report;
-use pebo_firmware::steps::{agree, emitted_round, hand_round, samples};
+use pebo_firmware::steps::{WARM_UP, agree, emitted_round, hand_round, samples};
 use pebo_firmware::{converter, motor};
 use pebo_runtime::Fault;
 use pebo_runtime::nalgebra::Vector2;
@@ -47,11 +47,13 @@ fn main() -> Result<(), Fault> {
         ["count", which] => {
             let samples = std::hint::black_box(samples());
             let (mut emitted, mut hand) = (converter::counted()?, ByHand::new());
-            let good = match *which {
-                "emitted" => emitted_round(&mut emitted, &samples),
-                _ => hand_round(&mut hand, &samples),
-            };
-            assert!(good, "a step of the round was refused");
+            for _ in 0..=WARM_UP {
+                let good = match *which {
+                    "emitted" => emitted_round(&mut emitted, &samples),
+                    _ => hand_round(&mut hand, &samples),
+                };
+                assert!(good, "a step of the round was refused");
+            }
             Ok(())
         }
         _ => {
