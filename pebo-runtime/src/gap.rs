@@ -39,7 +39,7 @@ impl<S: Real, const NU: usize> Gap<S, NU> {
     /// The mean input over all intervals, and their time; to be called when the observer has accepted nothing since the
     /// first of them. Starts again with no interval.
     pub fn take(&mut self) -> (SVector<S, NU>, S) {
-        let Self { time, input } = core::mem::replace(self, Self::new());
+        let Self { time, input } = core::mem::take(self);
         (input / time, time)
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Estimator;
-use crate::sum::all_finite;
+use crate::sum::{Sum, all_finite};
 use crate::{Fault, Real};
 
 /// An estimator whose estimate is projected onto bounds `lower <= eta <= upper`, component by component.
@@ -12,7 +12,7 @@ use crate::{Fault, Real};
 /// leaves it. What is projected is the estimate that goes out: the estimator's own keeps the exact form of its
 /// equations (least squares stays least squares, the response stays linear), and its stability needs no help.
 ///
-/// A [`shift`](Estimator::shift) of the unknown moves the bounds along.
+/// A [`shift`](Estimator::shift) of the unknown moves the bounds along; a [`reset`](Estimator::reset) puts them back.
 ///
 /// Source: Ioannou and Sun, *Robust adaptive control*, 1996, chapter 4 (parameter projection; there it acts
 /// on the adaptive law).
@@ -22,6 +22,8 @@ pub struct Bounded<S: Real, E, const NE: usize> {
     estimator: E,
     lower: SVector<S, NE>,
     upper: SVector<S, NE>,
+    /// How far the unknown has moved.
+    moved: Sum<S, NE, 1>,
 }
 
 impl<S: Real, E, const NE: usize> Bounded<S, E, NE> {
@@ -31,7 +33,7 @@ impl<S: Real, E, const NE: usize> Bounded<S, E, NE> {
     /// [`Fault::Start`] unless `lower <= upper` in every component.
     pub fn new(estimator: E, lower: &SVector<S, NE>, upper: &SVector<S, NE>) -> Result<Self, Fault> {
         if lower.iter().zip(upper.iter()).all(|(lower, upper)| lower <= upper) {
-            Ok(Self { estimator, lower: *lower, upper: *upper })
+            Ok(Self { estimator, lower: *lower, upper: *upper, moved: Sum::new(SVector::zeros()) })
         } else {
             Err(Fault::Start)
         }
@@ -52,20 +54,21 @@ where
     }
 
     fn estimate(&self) -> SVector<S, NE> {
-        self.estimator.estimate().sup(&self.lower).inf(&self.upper)
+        let moved = self.moved.value();
+        self.estimator.estimate().sup(&(self.lower + moved)).inf(&(self.upper + moved))
     }
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
         self.estimator.shift(shift);
-        self.lower += shift;
-        self.upper += shift;
+        self.moved.add(shift);
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {
         self.estimator.reset(estimate);
+        self.moved = Sum::new(SVector::zeros());
     }
 
     fn is_finite(&self) -> bool {
-        self.estimator.is_finite() && all_finite(&self.estimate())
+        self.estimator.is_finite() && self.moved.is_finite() && all_finite(&self.estimate())
     }
 }

@@ -205,6 +205,8 @@ fn bounds_hold_and_move() {
     assert!((estimate - Vector2::new(1.0, -3.0)).norm() < 1e-5);
     Estimator::<f64, 2, 2>::shift(&mut estimator, &Vector2::new(10.0, 10.0));
     assert!((Estimator::<f64, 2, 2>::estimate(&estimator) - Vector2::new(11.0, 7.0)).norm() < 1e-5);
+    Estimator::<f64, 2, 2>::reset(&mut estimator, &Vector2::new(5.0, 0.25));
+    assert_eq!(Estimator::<f64, 2, 2>::estimate(&estimator), Vector2::new(1.0, 0.25));
     assert_eq!(Bounded::new(gradient::<1>(1.0), &Vector1::new(1.0), &Vector1::new(0.0)), Err(Fault::Start));
     assert_eq!(Bounded::new(gradient::<1>(1.0), &Vector1::new(f64::NAN), &Vector1::new(0.0)), Err(Fault::Start));
 }

@@ -5,6 +5,7 @@ mod noise;
 mod random;
 
 mod drift;
+mod efficiency;
 mod estimators;
 mod extension;
 mod fault;
@@ -16,3 +17,4 @@ mod paper;
 mod real;
 mod sampling;
 mod single;
+mod storm;
