@@ -2,43 +2,43 @@
 
 use pebo_runtime::nalgebra::{Vector2, Vector4};
 
-pub const L1: f64 = 10e-3;
-pub const C2: f64 = 22e-6;
-pub const L3: f64 = 10e-3;
-pub const C4: f64 = 22.9e-6;
-pub const G: f64 = 0.0447;
-pub const E: f64 = 12.0;
+pub(crate) const L1: f64 = 10e-3;
+pub(crate) const C2: f64 = 22e-6;
+pub(crate) const L3: f64 = 10e-3;
+pub(crate) const C4: f64 = 22.9e-6;
+pub(crate) const G: f64 = 0.0447;
+pub(crate) const E: f64 = 12.0;
 /// Not given in the paper.
 const LAMBDA_0: f64 = 0.1;
 
 /// The circuit: `i1`, `v2`, `i3`, `v4`.
-pub struct Converter {
+pub(crate) struct Converter {
     state: Vector4<f64>,
 }
 
 impl Converter {
     /// The paper's start.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { state: Vector4::new(0.5, 10.0, -1.0, -12.0) }
     }
 
     /// The measured pair: `v2`, `i3`.
-    pub fn outputs(&self) -> Vector2<f64> {
+    pub(crate) fn outputs(&self) -> Vector2<f64> {
         Vector2::new(self.state.y, self.state.z)
     }
 
     /// The unmeasured pair: `i1`, `v4`.
-    pub fn unmeasured(&self) -> Vector2<f64> {
+    pub(crate) fn unmeasured(&self) -> Vector2<f64> {
         Vector2::new(self.state.x, self.state.w)
     }
 
     /// The transform: `i1`, `v4 - L3 G/C4 i3`.
-    pub fn transform(&self) -> Vector2<f64> {
+    pub(crate) fn transform(&self) -> Vector2<f64> {
         Vector2::new(self.state.x, self.state.w - L3 * G / C4 * self.state.z)
     }
 
     /// The duty cycle that the controller sets at time `t`, knowing the state.
-    pub fn duty(&self, t: f64) -> f64 {
+    pub(crate) fn duty(&self, t: f64) -> f64 {
         // Half a nanosecond of slack: sample times are sums of rounded steps.
         let set_point = match t + 0.5e-9 {
             t if t < 0.2 => 25.0,
@@ -53,7 +53,7 @@ impl Converter {
     }
 
     /// One step of the classical Runge-Kutta method with a held duty cycle.
-    pub fn advance(&mut self, d: f64, dt: f64) {
+    pub(crate) fn advance(&mut self, d: f64, dt: f64) {
         let rate = |s: &Vector4<f64>| {
             Vector4::new(
                 (E - (1.0 - d) * s.y) / L1,

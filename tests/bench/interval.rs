@@ -37,7 +37,7 @@ fn main() -> Result<(), Fault> {
     show("least squares, variance 1e2", settles(squares(1e2, 0.0)?)?);
     show("least squares, variance 1e6", settles(squares(1e6, 0.0)?)?);
     show("least squares, variance 1e6, beta 1", settles(squares(1e6, 1.0)?)?);
-    for gain in [1e3, 1e5] {
+    for gain in [1e4, 1e6] {
         let gains = ones * gain;
         println!("with scalar gains of {gain:.0e}/s:");
         show("  Kreisselmeier DREM, gain 10, l 0", settles(Drem::new(memory(10.0, 0.0)?, &gains)?)?);

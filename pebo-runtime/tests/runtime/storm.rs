@@ -65,17 +65,16 @@ where
             1 => observer.step_straight(&y, [&u, &Vector1::new(real(noise.uniform()))], dt),
             _ => observer.step_without_drift(&y, &u, dt, Drift::Free),
         };
-        match estimate {
-            Ok(estimate) => assert!(finite(&estimate), "{estimate}"),
-            Err(_) => {
-                refused += 1;
-                assert_eq!(*observer.state(), before);
-            }
+        if let Ok(estimate) = estimate {
+            assert!(finite(&estimate), "{estimate}");
+        } else {
+            refused += 1;
+            assert_eq!(*observer.state(), before);
         }
         assert!(finite(&observer.eta()) && finite(observer.extension().chi()));
         assert!(observer.estimator().is_finite() && observer.regression().is_finite());
         // An outage now and then, or nothing would be left to go wrong after the first huge number.
-        if noise.bits() % 256 == 0 {
+        if noise.bits().is_multiple_of(256) {
             observer.restart(Vector2::zeros(), &Vector2::zeros()).unwrap();
             let fresh =
                 Observer::with_regression(CaseTwo::<S>::new(), estimator, regression, Vector2::zeros()).unwrap();
@@ -134,7 +133,7 @@ fn monitor_stands_it_too() {
         }
         assert!(monitor.level().is_finite());
         assert!(monitor.standard_error().is_none_or(|error| error.iter().all(|x| x.is_finite())));
-        if noise.bits() % 256 == 0 {
+        if noise.bits().is_multiple_of(256) {
             monitor.reset();
         }
     }
