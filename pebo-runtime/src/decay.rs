@@ -1,4 +1,5 @@
-//! How much of the past is kept over a step, and how much of the present is taken, when the past is forgotten at a rate.
+//! How much of the past is kept over a step, and how much of the present is taken, when the past is forgotten at a
+//! rate.
 
 use crate::{Fault, Real};
 

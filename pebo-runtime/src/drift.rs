@@ -6,8 +6,9 @@ use crate::{Fault, Integrator, Real};
 
 /// How an observer that can be re-based keeps its extension from running away (the paper, remark R5).
 ///
-/// Each form moves a shift `c` from `chi` into the estimated `theta` and into all memory of past regressands. That is exact: all
-/// forms give the same estimates of the state, up to rounding, and so does the plain one as long as its `chi` keeps its digits.
+/// Each form moves a shift `c` from `chi` into the estimated `theta` and into all memory of past regressands. That is
+/// exact: all forms give the same estimates of the state, up to rounding, and so does the plain one as long as its
+/// `chi` keeps its digits.
 ///
 /// | form | `chi` | cost beside [`Observer::step`](crate::Observer::step) |
 /// |---|---|---|
@@ -16,26 +17,27 @@ use crate::{Fault, Integrator, Real};
 /// | [`Leak`](Self::Leak) | below offset/rate | an exponential when `dt` changes; a shift each step |
 /// | [`Free`](Self::Free) | 0 | a shift each step |
 ///
-/// A shift costs a product of regressor and vector, and one of the Gramian with DREM; [`WindowedRegression`](crate::WindowedRegression)
-/// moves each of its steps.
+/// A shift costs a product of regressor and vector, and one of the Gramian with DREM;
+/// [`WindowedRegression`](crate::WindowedRegression) moves each of its steps.
 ///
 /// # Drift-free form
 ///
-/// With [`Free`](Self::Free) the estimate of `theta` is `z_hat` itself. Over a step it moves by the integral of `h` and by
-/// the estimator's correction, while the filtered regressand follows by the filtered regressor times that integral:
+/// With [`Free`](Self::Free) the estimate of `theta` is `z_hat` itself. Over a step it moves by the integral of `h` and
+/// by the estimator's correction, while the filtered regressand follows by the filtered regressor times that integral:
 ///
 /// ```text
 /// z_hat' = h(y, u) + gain * (innovation of the filtered regression, written in z)
 /// ```
 ///
-/// which is the observer without extension that the swapping lemma gives (Morse, *Global stability of parameter-adaptive
-/// control systems*, IEEE TAC, 1980; Sastry and Bodson, *Adaptive control*, 1989, lemma 3.6.5).
+/// which is the observer without extension that the swapping lemma gives (Morse, *Global stability of
+/// parameter-adaptive control systems*, IEEE TAC, 1980; Sastry and Bodson, *Adaptive control*, 1989, lemma 3.6.5).
 ///
 /// # Offset of a sensor
 ///
-/// An offset `b` in `h` makes the true `theta` a ramp of slope `b`, in every form alike. What the estimate then misses is
-/// the estimator's: `b/(gamma |Phi|^2)` for a gradient, `b/beta` for least squares that forgets at `beta`, and `b t/2`, growing
-/// without end, for one that does not. An observer that must live with an offset needs an estimator that forgets.
+/// An offset `b` in `h` makes the true `theta` a ramp of slope `b`, in every form alike. What the estimate then misses
+/// is the estimator's: `b/(gamma |Phi|^2)` for a gradient, `b/beta` for least squares that forgets at `beta`, and `b
+/// t/2`, growing without end, for one that does not. An observer that must live with an offset needs an estimator that
+/// forgets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drift<S: Real> {
     /// Re-base by `chi` when a component exceeds the bound, in units of z.

@@ -7,7 +7,8 @@ use crate::Real;
 /// What happened since the last accepted sample: time, and the integral of the input.
 ///
 /// Tell it every interval; when a good sample ends one, [`step`](crate::Observer::step) the observer by what it covers.
-/// An observer then covers the whole gap with the mean of its inputs, exact to second order where `h` is affine in the input.
+/// An observer then covers the whole gap with the mean of its inputs, exact to second order where `h` is affine in the
+/// input.
 ///
 /// ```
 /// # use pebo_runtime::{Gap, nalgebra::SVector};
@@ -30,7 +31,8 @@ impl<S: Real, const NU: usize> Gap<S, NU> {
         Self { time: S::zero(), input: SVector::zeros() }
     }
 
-    /// Adds an interval of `dt` seconds with the input `u`. What is not finite or not positive in it is for the observer to refuse.
+    /// Adds an interval of `dt` seconds with the input `u`. What is not finite or not positive in it is for the
+    /// observer to refuse.
     pub fn add(&mut self, u: &SVector<S, NU>, dt: S) {
         self.time += dt;
         self.input += u * dt;

@@ -6,9 +6,9 @@ use crate::{Fault, Real};
 
 /// Ranges of outputs and inputs, and the longest time between two accepted samples.
 ///
-/// Check a sample before the observer gets it; a refused one is a missing one. Set the range of an output inside the rails
-/// of its sensor, and saturated samples are refused too. A saturated actuator is no fault: tell the observer the input that
-/// acted.
+/// Check a sample before the observer gets it; a refused one is a missing one. Set the range of an output inside the
+/// rails of its sensor, and saturated samples are refused too. A saturated actuator is no fault: tell the observer the
+/// input that acted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<S: Real, const NY: usize, const NU: usize> {
     y: Range<S, NY>,
@@ -64,8 +64,8 @@ impl<S: Real, const NY: usize, const NU: usize> Limits<S, NY, NU> {
         Ok(Self { u: Range::new(lower, upper)?, ..self })
     }
 
-    /// With at most `longest` seconds between two accepted samples: beyond, interpolating the outputs is no longer sound, and
-    /// the application should [`restart`](crate::Observer::restart).
+    /// With at most `longest` seconds between two accepted samples: beyond, interpolating the outputs is no longer
+    /// sound, and the application should [`restart`](crate::Observer::restart).
     ///
     /// # Errors
     /// [`Fault::Limits`] unless the time is positive.

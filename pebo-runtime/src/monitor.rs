@@ -26,12 +26,14 @@ pub enum Excitation {
 /// G' = -beta G + D Phi^T Phi D / r        D = diag(wanted standard errors), r = noise intensity
 /// ```
 ///
-/// Without forgetting, `G^-1` is the covariance (in units of `D`) of the least-squares estimate under white noise: the least that any
-/// unbiased estimate can have. So every direction of the unknown is known as well as wanted exactly if the smallest eigenvalue of `G` is at least 1.
-/// Then the state is [`Converged`](Excitation::Converged); it is [`Lost`](Excitation::Lost) once the eigenvalue falls
-/// below 1/2. What an estimator makes of the data is its own matter: a gradient needs its time beyond.
+/// Without forgetting, `G^-1` is the covariance (in units of `D`) of the least-squares estimate under white noise: the
+/// least that any unbiased estimate can have. So every direction of the unknown is known as well as wanted exactly if
+/// the smallest eigenvalue of `G` is at least 1. Then the state is [`Converged`](Excitation::Converged); it is
+/// [`Lost`](Excitation::Lost) once the eigenvalue falls below 1/2. What an estimator makes of the data is its own
+/// matter: a gradient needs its time beyond.
 ///
-/// Units: noise intensity is that of a regression equation squared and second; noise of standard deviation `s` in samples
+/// Units: noise intensity is that of a regression equation squared and second; noise of standard deviation `s` in
+/// samples
 /// `dt` apart has `s^2 dt`. A filter before makes white noise coloured, and an intensity then is one at low frequencies.
 ///
 /// Source: the observability Gramian of parameter estimation, as in Ljung, *System identification*, 1999, chapter 9;
@@ -70,7 +72,8 @@ impl<S: Real, const NE: usize> Monitor<S, NE> {
     /// Takes the regressor of a step of `dt` seconds.
     ///
     /// # Errors
-    /// [`Fault::Step`] unless `dt` is positive and finite, [`Fault::State`] if the Gramian would not be finite; the monitor is then exactly as before.
+    /// [`Fault::Step`] unless `dt` is positive and finite, [`Fault::State`] if the Gramian would not be finite; the
+    /// monitor is then exactly as before.
     pub fn advance<const NR: usize>(&mut self, regressor: &SMatrix<S, NR, NE>, dt: S) -> Result<(), Fault> {
         if !(dt > S::zero() && Real::is_finite(dt)) {
             return Err(Fault::Step);

@@ -21,7 +21,8 @@ use crate::{
 /// ```
 ///
 /// A call gets the output at the *end* of an interval and the input that was held *during* it. The first call has no
-/// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no effect.
+/// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no
+/// effect.
 /// `dt` is the time since the last sample that was accepted; it need not be constant.
 ///
 /// For an input that runs straight between samples rather than being held, call [`step_straight`](Self::step_straight).
@@ -29,9 +30,9 @@ use crate::{
 /// # Faults
 ///
 /// A call that returns a [`Fault`] has changed nothing, to the last bit. The next good sample goes on from the last
-/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, a [`Gap`](crate::Gap) says with what
-/// input. Samples that are finite but out of range or saturated are for [`Limits`](crate::Limits) to find before they get here. The whole state can be saved
-/// and restored: [`state`](Self::state).
+/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, a [`Gap`](crate::Gap) says with
+/// what input. Samples that are finite but out of range or saturated are for [`Limits`](crate::Limits) to find before
+/// they get here. The whole state can be saved and restored: [`state`](Self::state).
 #[derive(Clone, Debug)]
 pub struct Observer<
     M,
@@ -161,11 +162,12 @@ where
         &self.state
     }
 
-    /// Goes on from a saved state, bit for bit as the observer that it was taken from. A reset in flight is answered so, with the time since the state was saved as the next `dt`.
+    /// Goes on from a saved state, bit for bit as the observer that it was taken from. A reset in flight is answered
+    /// so, with the time since the state was saved as the next `dt`.
     ///
     /// # Errors
-    /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Whether it is undamaged is for
-    /// a checksum to say.
+    /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Whether it is undamaged is
+    /// for a checksum to say.
     pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY>) -> Result<(), Fault> {
         if !state.is_finite() || state.y.as_ref().is_some_and(|y| !all_finite(y)) {
             return Err(Fault::State);

@@ -1,8 +1,8 @@
 //! Samples of both sides of the regression in, a regression without derivatives out: `regressand = regressor * eta`.
 //!
 //! Both sides of `d/dt primitive_0 - phi_0 = (phi_1 - d/dt primitive_1) eta` go through the same linear operator, which
-//! starts with nothing: the paper's decaying term epsilon is exactly 0. Between two samples a primitive runs straight, so its derivative
-//! is the difference quotient; no signal is differentiated otherwise.
+//! starts with nothing: the paper's decaying term epsilon is exactly 0. Between two samples a primitive runs straight,
+//! so its derivative is the difference quotient; no signal is differentiated otherwise.
 //!
 //! - [`FilteredRegression`]: the operator is a [`Filter`];
 //! - [`WindowedRegression`](crate::WindowedRegression): the mean over a window, the integral form.

@@ -1,9 +1,9 @@
 //! Elementary functions in single precision throughout, for processors without double precision.
 //!
-//! A common `f32` sine computes in double precision, in software on such a processor. These reduce the argument in two or
-//! three parts (Cody and Waite, *Software manual for the elementary functions*, 1980) and evaluate a polynomial of least
-//! maximal error (Remez), whose coefficients were computed for this purpose. Errors, measured against double precision at
-//! millions of points by the tests:
+//! A common `f32` sine computes in double precision, in software on such a processor. These reduce the argument in two
+//! or three parts (Cody and Waite, *Software manual for the elementary functions*, 1980) and evaluate a polynomial of
+//! least maximal error (Remez), whose coefficients were computed for this purpose. Errors, measured against double
+//! precision at millions of points by the tests:
 //!
 //! | function | range | largest error |
 //! |---|---|---|

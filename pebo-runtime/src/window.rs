@@ -14,13 +14,13 @@ use crate::{Hold, Real};
 /// (y(t) - y(t - T))/T - mean(phi_0) = mean(phi_1) eta
 /// ```
 ///
-/// It forgets completely after `NW` steps, and needs no bandwidth to be chosen. Until then the window grows from the first sample on.
-/// Steps of different length are weighted by their length. The cost is memory: `NW` numbers for each entry of both sides, which an
-/// [`Observer`](crate::Observer) copies at each step.
+/// It forgets completely after `NW` steps, and needs no bandwidth to be chosen. Until then the window grows from the
+/// first sample on. Steps of different length are weighted by their length. The cost is memory: `NW` numbers for each
+/// entry of both sides, which an [`Observer`](crate::Observer) copies at each step.
 ///
 /// Source: integral regressors: Middleton and Goodwin, *Adaptive computed torque control for rigid link manipulators*,
-/// Systems & Control Letters, 1988; over a window: Pan and Yu, *Composite learning robot control with guaranteed parameter
-/// convergence*, Automatica, 2018.
+/// Systems & Control Letters, 1988; over a window: Pan and Yu, *Composite learning robot control with guaranteed
+/// parameter convergence*, Automatica, 2018.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WindowedRegression<S: Real, const NR: usize, const NE: usize, const NW: usize> {

@@ -1,5 +1,5 @@
-//! Drift: a boost converter whose input voltage is 0.1 V off, the plain form beside the one without drift, in single and
-//! double precision. Prints the extension and the error of the current at every power of ten steps.
+//! Drift: a boost converter whose input voltage is 0.1 V off, the plain form beside the one without drift, in single
+//! and double precision. Prints the extension and the error of the current at every power of ten steps.
 //!
 //! Run with `cargo run --release -p tests --example drift [STEPS]`; a billion steps take some minutes.
 

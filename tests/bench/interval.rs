@@ -1,5 +1,5 @@
-//! Interval excitation: the regressor (1, sin 2t, cos t) for 3 s and zero after, theta = (1, -2, 0.5). Prints the time to 1 % of each
-//! estimator.
+//! Interval excitation: the regressor (1, sin 2t, cos t) for 3 s and zero after, theta = (1, -2, 0.5). Prints the time
+//! to 1 % of each estimator.
 //!
 //! Run with `cargo run --release -p tests --example interval`.
 

@@ -2,10 +2,10 @@
 //!
 //! Run with `cargo run --release -p tests --example settling`.
 //!
-//! Plant under the full-state controller of the paper for 0.6 s, so that all observers see the same data. Every sample of both outputs is
-//! multiplied by 1 + noise times a normal number. Settling: the time after which the error of a component of `z` stays
-//! below 1 % of its start. That of `x` differs by the noise of the sample that the left inverse takes, which no
-//! estimator can help; it is in the error at 10 ms.
+//! Plant under the full-state controller of the paper for 0.6 s, so that all observers see the same data. Every sample
+//! of both outputs is multiplied by 1 + noise times a normal number. Settling: the time after which the error of a
+//! component of `z` stays below 1 % of its start. That of `x` differs by the noise of the sample that the left inverse
+//! takes, which no estimator can help; it is in the error at 10 ms.
 
 mod converter;
 mod noise;
@@ -42,7 +42,8 @@ fn windowed<T: Estimator<f64, 2, 2> + 'static, const NW: usize>(estimator: T) ->
     Ok(Box::new(move |y, d, dt| observer.step(y, &[d].into(), dt)))
 }
 
-/// The immersion and invariance observer of the paper with the sign of `gamma_2` that its own dynamics need; trapezoidal rule.
+/// The immersion and invariance observer of the paper with the sign of `gamma_2` that its own dynamics need;
+/// trapezoidal rule.
 fn immersion([gamma_1, gamma_2]: [f64; 2]) -> Step {
     let mut before: Option<(Vector2<f64>, Vector2<f64>)> = None;
     Box::new(move |y, d, dt| {

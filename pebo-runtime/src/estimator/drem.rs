@@ -22,6 +22,8 @@ use crate::{Fault, Real};
 /// Method: implicit step, `error_new = error / (1 + gamma_i dt Delta^2)`, stable at any gain and step. The mixing is
 /// applied to `q - Q theta`, where it cancels nothing; the determinant is never divided by.
 ///
+/// A column of zeros in the regressor makes `Delta` 0, and no component moves: leave out an unknown that nothing depends on.
+///
 /// Units of `gamma`: 1/s, as `Delta` has none.
 ///
 /// Source: Aranovskiy, Bobtsov, Ortega, Pyrkin, *Performance enhancement of parameter estimators via dynamic regressor

@@ -9,13 +9,14 @@ use crate::{Fault, Real};
 
 /// A weighted least-squares problem, kept in triangular form.
 ///
-/// It stands for `minimise sum_i w_i (v_i - row_i d)^2`, with the information matrix `sum_i w_i row_i^T row_i = U^T D U`,
+/// It stands for `minimise sum_i w_i (v_i - row_i d)^2`, with the information matrix `sum_i w_i row_i^T row_i = U^T D
+/// U`,
 /// `U` unit upper triangular and `D` diagonal.
 ///
-/// Method: Givens rotations without square roots. Weights only ever grow and nothing is subtracted from `D`, so it stays positive
-/// and no row, weight or ratio between them makes the problem singular. The matrix itself is never formed: that would square the ratios.
-/// Reference: Gentleman, *Least squares computations by Givens transformations without square roots*, J. Inst. Maths
-/// Applics, 1973, and algorithm AS 75, 1974.
+/// Method: Givens rotations without square roots. Weights only ever grow and nothing is subtracted from `D`, so it
+/// stays positive and no row, weight or ratio between them makes the problem singular. The matrix itself is never
+/// formed: that would square the ratios. Reference: Gentleman, *Least squares computations by Givens transformations
+/// without square roots*, J. Inst. Maths Applics, 1973, and algorithm AS 75, 1974.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Information<S: Real, const N: usize> {
@@ -49,7 +50,8 @@ impl<S: Real, const N: usize> Information<S, N> {
         if !is_symmetric(covariance) {
             return Err(Fault::Gain);
         }
-        // covariance = V E V^T with V unit upper triangular, from the last column to the first; then U = V^-1, D = E^-1.
+        // covariance = V E V^T with V unit upper triangular, from the last column to the first; then U = V^-1, D =
+        // E^-1.
         let mut v = *covariance;
         let mut variances = SVector::<S, N>::zeros();
         for j in (0..N).rev() {

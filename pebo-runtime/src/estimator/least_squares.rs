@@ -16,7 +16,8 @@ use crate::{Fault, Real};
 ///
 /// Holds when: without forgetting (`beta = 0`) the estimate minimises the integral of the squared equation error plus
 /// `|theta - theta(0)|^2` in the norm of `R_0`: it settles as soon as the data determine it, and white noise leaves it
-/// the least variance of all unbiased estimates, up to the weight of `R_0`. With `beta > 0` and persistent excitation it follows a moving unknown with the time constant
+/// the least variance of all unbiased estimates, up to the weight of `R_0`. With `beta > 0` and persistent excitation
+/// it follows a moving unknown with the time constant
 /// `1/beta`. Since `R >= R_0` at all times, `P` never exceeds its start: no wind-up in directions without excitation,
 /// where the estimate rests.
 ///
@@ -47,7 +48,8 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
     /// `beta` in 1/s; 0 forgets nothing.
     ///
     /// # Errors
-    /// [`Fault::Gain`] unless each variance and its inverse is positive and finite, and the rate finite and not negative.
+    /// [`Fault::Gain`] unless each variance and its inverse is positive and finite, and the rate finite and not
+    /// negative.
     pub fn diagonal(variances: &SVector<S, NE>, beta: S) -> Result<Self, Fault> {
         Self::from_information(Information::from_variances(variances)?, beta)
     }

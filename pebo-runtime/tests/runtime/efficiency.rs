@@ -49,7 +49,8 @@ fn least_squares_reaches_the_cramer_rao_bound() {
         mean += error / f64::from(RUNS);
     }
     let ratio = squares.component_div(&bound);
-    // The variance of 20000 normal numbers is known to sqrt(2/20000) = 1 %: four of that, well inside the 10 % asked for.
+    // The variance of 20000 normal numbers is known to sqrt(2/20000) = 1 %: four of that, well inside the 10 % asked
+    // for.
     assert!((ratio - Vector2::new(1.0, 1.0)).abs().max() < 0.04, "{ratio}");
     // Unbiased: the mean of 20000 is known to 1/sqrt(20000) of the spread; four of that.
     let bias = mean.component_div(&bound.map(f64::sqrt)).abs().max();

@@ -60,7 +60,8 @@ fn interval_excitation_suffices_where_promised() {
     let (at_the_end, later) =
         (after(drem(kreisselmeier(1.0, 2.0), 10.0), 4), after(drem(kreisselmeier(1.0, 2.0), 10.0), 20));
     assert!(later > 0.05 && (later - at_the_end).abs() < 0.01 * later, "{at_the_end} {later}");
-    // These have memory: determinants above 0.005 from 3 s on and a gain of 1e5/s leave e^(-1e5 0.005^2 17) of the error.
+    // These have memory: determinants above 0.005 from 3 s on and a gain of 1e5/s leave e^(-1e5 0.005^2 17) of the
+    // error.
     assert!(after(drem(kreisselmeier(10.0, 0.0), 1e5), 20) < 1e-6);
     assert!(after(drem(response(gradient(3.0)), 1e5), 20) < 1e-6);
     assert!(after(drem(response(least_squares(100.0, 0.0)), 1e5), 20) < 1e-6);

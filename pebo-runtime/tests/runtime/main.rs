@@ -16,5 +16,6 @@ mod monitor;
 mod paper;
 mod real;
 mod sampling;
+mod settling;
 mod single;
 mod storm;

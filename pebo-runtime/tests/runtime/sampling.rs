@@ -77,7 +77,8 @@ proptest! {
 
 #[test]
 fn window_gives_the_state_at_once_and_forgets_completely() {
-    // A wrong start of chi is known after the first interval; after a kick that no one told, when the window is past it.
+    // A wrong start of chi is known after the first interval; after a kick that no one told, when the window is past
+    // it.
     let window = WindowedRegression::<f64, 1, 1, 10>::new(Hold::First);
     let gradient = Gradient::diagonal(&Vector1::new(1e9)).unwrap();
     let mut observer = Observer::with_regression(mass(), gradient, window, Vector1::new(3.0)).unwrap();
@@ -94,7 +95,8 @@ fn window_gives_the_state_at_once_and_forgets_completely() {
         y += x * 0.1 + next * 0.005;
         x += next * 0.1;
     }
-    // A gain of 1e9 leaves 1e-8 of 4, and the straight line through a parabola nothing: chi and y agree on the trapezoid.
+    // A gain of 1e9 leaves 1e-8 of 4, and the straight line through a parabola nothing: chi and y agree on the
+    // trapezoid.
     assert!(errors[1].abs() < 1e-7 && errors[30].abs() < 1e-12, "{errors:?}");
     assert!(errors[35].abs() > 1.0, "{errors:?}");
     assert!(errors[41].abs() < 1e-7 && errors[59].abs() < 1e-12, "{errors:?}");

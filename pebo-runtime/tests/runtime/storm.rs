@@ -1,4 +1,5 @@
-//! Random samples with random faults, many of them: no panic, no number that is not finite, no trace of a refused sample.
+//! Random samples with random faults, many of them: no panic, no number that is not finite, no trace of a refused
+//! sample.
 //!
 //! `STORM_STEPS` sets how many in all; ten million take a minute in a release build.
 

@@ -1,5 +1,6 @@
 //! The observer of the Cuk converter, case II, as a careful engineer writes it for this plant alone: no library, no
-//! generics, the same arithmetic in the same order as the emitted observer, and the same promise to keep the last good state.
+//! generics, the same arithmetic in the same order as the emitted observer, and the same promise to keep the last good
+//! state.
 
 use crate::converter::{ALPHA, GAINS};
 

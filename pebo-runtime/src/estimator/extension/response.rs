@@ -9,8 +9,8 @@ use crate::{Fault, Real};
 
 /// The response of an estimator as an extended regression.
 ///
-/// The error of a linear estimator obeys `theta_hat - eta = F (theta_hat(0) - eta)` with a matrix `F` that depends on the
-/// regressor alone, so
+/// The error of a linear estimator obeys `theta_hat - eta = F (theta_hat(0) - eta)` with a matrix `F` that depends on
+/// the regressor alone, so
 ///
 /// ```text
 /// (I - F) eta = theta_hat - F theta_hat(0)
@@ -19,10 +19,11 @@ use crate::{Fault, Real};
 /// is a square regression, and it keeps what excitation there ever was: without further excitation `F` rests.
 ///
 /// Holds when: the estimator is linear in the regressand and the start ([`Gradient`](crate::Gradient),
-/// [`NormalisedGradient`](crate::NormalisedGradient), [`LeastSquares`](crate::LeastSquares) are; a projected one is not)
-/// and `eta` is constant. `I - F` is regular as soon as the data determine `eta` (interval excitation).
+/// [`NormalisedGradient`](crate::NormalisedGradient), [`LeastSquares`](crate::LeastSquares) are; a projected one is
+/// not) and `eta` is constant. `I - F` is regular as soon as the data determine `eta` (interval excitation).
 ///
-/// Method: column `i` of `I - F` is the estimate of the same estimator, started at 0, when the unknown is the unit vector
+/// Method: column `i` of `I - F` is the estimate of the same estimator, started at 0, when the unknown is the unit
+/// vector
 /// `i`: no identity is subtracted, so little excitation keeps all its digits. The cost is that of `NE + 1` estimators.
 ///
 /// Source: Ortega, Romero, Aranovskiy, *A new least squares parameter estimator for nonlinear regression equations with

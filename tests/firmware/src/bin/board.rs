@@ -33,7 +33,8 @@ impl Report for Semihosting {
     }
 }
 
-/// The ticks that something takes: under `-icount shift=6` an instruction is 64 ns and a tick of the AN386's SysTick 40 ns.
+/// The ticks that something takes: under `-icount shift=6` an instruction is 64 ns and a tick of the AN386's SysTick 40
+/// ns.
 #[inline(never)]
 fn ticks(work: impl FnOnce() -> bool) -> Option<u32> {
     let before = SYST::get_current();

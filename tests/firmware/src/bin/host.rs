@@ -1,4 +1,5 @@
-//! The host's part. `host` prints the results that the board must print too; `host errors` prints them in plain numbers;
+//! The host's part. `host` prints the results that the board must print too; `host errors` prints them in plain
+//! numbers;
 //! `host count emitted` and `host count hand` run rounds of steps for an instruction counter.
 
 use pebo_firmware::by_hand::ByHand;
