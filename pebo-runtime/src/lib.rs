@@ -13,6 +13,7 @@
 //! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step; or [`WindowedRegression`], the integral form;
 //! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
 //! - [`Monitor`]: whether the data so far determine the unknown, and how well;
+//! - [`Limits`], [`Gap`], [`Drift`], [`State`]: what samples may be, intervals without one, forms without drift, saving;
 //! - [`Observer`]: one [`step`](Observer::step) a sample, which never panics and answers a bad sample with a [`Fault`].
 //!
 //! No heap, no `std`, no `unsafe`; `f32` and `f64`; every size is a constant.
