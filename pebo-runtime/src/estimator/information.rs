@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::sum::{all_finite, blemish};
+use crate::sum::all_finite;
 use crate::{Fault, Real};
 
 /// A weighted least-squares problem, kept in triangular form.
@@ -140,7 +140,8 @@ impl<S: Real, const N: usize> Information<S, N> {
     /// The vector that fits best.
     ///
     /// # Errors
-    /// [`Fault::State`] if an equation had infinite or NaN entries or its weight overflowed.
+    /// [`Fault::State`] if an equation had infinite or NaN factors or its weight overflowed. A right side that is not
+    /// finite is no fault here: the vector is not finite then either.
     pub fn solve(&self) -> Result<SVector<S, N>, Fault> {
         let mut solution = self.target;
         for i in (0..N).rev() {
@@ -149,8 +150,7 @@ impl<S: Real, const N: usize> Information<S, N> {
                 solution[i] -= known;
             }
         }
-        // Every other number goes into the solution.
-        if blemish(&self.weight) + blemish(&solution) == S::zero() { Ok(solution) } else { Err(Fault::State) }
+        if all_finite(&self.weight) { Ok(solution) } else { Err(Fault::State) }
     }
 
     /// The diagonal of `D`: the weight of each component given those after it.

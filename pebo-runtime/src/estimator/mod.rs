@@ -45,7 +45,8 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Advances by `dt` seconds, at whose end `regressand = regressor * eta` holds.
     ///
     /// # Errors
-    /// A [`Fault`] if the step cannot be computed; the estimator is then unspecified.
+    /// A [`Fault`] if the step cannot be computed; the estimator is then unspecified. Data that are not finite may also
+    /// show only in [`is_finite`](Self::is_finite), which an [`Observer`](crate::Observer) asks after every step.
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault>;
 
     /// The estimate of `eta`.

@@ -115,9 +115,9 @@ impl ByHand {
             let (first, last) = (rate - known_start[row], rate - known_end[row]);
             let behind = (first - self.regressand[row].value) * self.level;
             self.regressand[row].add(behind + (last - first) * self.slope);
-            for column in 0..2 {
+            for (entry, factor) in self.regressor[row].iter_mut().zip(phi_1[row]) {
                 // The factor is the same at both ends of the interval.
-                self.regressor[row][column].add((phi_1[row][column] - self.regressor[row][column].value) * self.level);
+                entry.add((factor - entry.value) * self.level);
             }
         }
         self.correct(dt);
@@ -134,7 +134,7 @@ impl ByHand {
         let mut upper = 0.0;
         let mut target = [0.0; 2];
         for row in 0..2 {
-            let [mut first, mut second] = phi[row];
+            let [first, mut second] = phi[row];
             let mut value = innovation[row];
             let mut share = dt;
             if first != 0.0 {
@@ -149,9 +149,8 @@ impl ByHand {
                 let (entry, above) = (value, target[0]);
                 value = entry - first * above;
                 target[0] = kept * above + taken * entry;
-                first = 0.0;
             }
-            if second != first {
+            if second != 0.0 {
                 let after = weight[1] + share * second * second;
                 let kept = weight[1] / after;
                 let taken = share * second / after;
