@@ -45,6 +45,7 @@ pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
 ///
 /// Trapezoidal rule: exact where h is linear in time over the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Integrator<S: Real, const NZ: usize> {
     chi: Sum<S, NZ, 1>,
 }
@@ -87,6 +88,7 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
 /// `(I - Q)^-1 (I + Q)`, `Q = dt (Lambda_0 + Lambda_1) / 4`, of second order and bounded for every step where `Lambda` is stable. As both
 /// parts advance by the same map, moving a shift between `xi` and `theta` commutes with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fundamental<S: Real, const NZ: usize> {
     xi: Sum<S, NZ, 1>,
     psi: Sum<S, NZ, NZ>,

@@ -16,11 +16,25 @@ pub enum Fault {
         /// Its place in `u`, from 0.
         index: usize,
     },
+    /// An output sample is out of the range that the application set.
+    OutputRange {
+        /// Its place in `y`, from 0.
+        index: usize,
+    },
+    /// An input sample is out of the range that the application set.
+    InputRange {
+        /// Its place in `u`, from 0.
+        index: usize,
+    },
     /// The sample time is not a positive finite number.
     Step,
+    /// More time has passed since the last accepted sample than the application allows.
+    Gap,
+    /// A range is empty or the longest time between two samples is not positive.
+    Limits,
     /// The filter's `alpha` is not a positive number.
     Filter,
-    /// A gain is not positive and finite, or a gain matrix is not symmetric and positive definite.
+    /// A gain or rate is out of its range, or a gain matrix is not symmetric and positive definite.
     Gain,
     /// The start of the extension or of the estimate, or a shift, is infinite or NaN.
     Start,
@@ -37,9 +51,13 @@ impl fmt::Display for Fault {
         match self {
             Self::Output { index } => write!(f, "output sample {index} is not finite"),
             Self::Input { index } => write!(f, "input sample {index} is not finite"),
+            Self::OutputRange { index } => write!(f, "output sample {index} is out of range"),
+            Self::InputRange { index } => write!(f, "input sample {index} is out of range"),
+            Self::Gap => f.write_str("too much time since the last accepted sample"),
+            Self::Limits => f.write_str("a range is empty or a time not positive"),
             Self::Step => f.write_str("the sample time is not positive and finite"),
             Self::Filter => f.write_str("the filter's alpha is not positive"),
-            Self::Gain => f.write_str("the gain is not symmetric, positive definite and finite"),
+            Self::Gain => f.write_str("a gain or rate is out of its range, or a gain matrix not positive definite"),
             Self::Start => f.write_str("the start value or shift is not finite"),
             Self::Singular => f.write_str("the extension cannot be advanced by this step: singular system"),
             Self::State => f.write_str("the new state would not be finite"),

@@ -15,6 +15,7 @@ use crate::{Fault, Real, Sum};
 
 /// How a signal is taken to run between two samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Hold {
     /// Held at the sample before: first order accurate.
     Zero,
@@ -24,6 +25,7 @@ pub enum Hold {
 
 /// The filter `alpha / (p + alpha)`, `p = d/dt` (the paper, equation regmod and before).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filter<S: Real> {
     alpha: S,
     hold: Hold,
@@ -33,6 +35,7 @@ pub struct Filter<S: Real> {
 
 /// What one step of a filter needs to know: how far it follows its input.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Weights<S: Real> {
     dt: S,
     /// On what the input is away from the filter at the start of the step: `1 - e^-a`.
@@ -87,6 +90,7 @@ fn slope<S: Real>(a: S, level: S) -> S {
 
 /// A vector or matrix behind a [`Filter`], element by element.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filtered<S: Real, const R: usize, const C: usize> {
     output: Sum<S, R, C>,
 }
@@ -116,5 +120,10 @@ impl<S: Real, const R: usize, const C: usize> Filtered<S, R, C> {
     /// Whether every number of the state is finite.
     pub fn is_finite(&self) -> bool {
         self.output.is_finite()
+    }
+
+    /// Zero if every number of the state is finite, else NaN.
+    pub(crate) fn blemish(&self) -> S {
+        self.output.blemish()
     }
 }

@@ -10,8 +10,10 @@
 //!
 //! - [`Model`]: the functions of one plant, written by hand or emitted by the generator;
 //! - [`Extension`]: [`Integrator`] (PEBO) or [`Fundamental`] (generalised PEBO);
-//! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step;
-//! - [`Estimator`]: [`Gradient`], or one of your own;
+//! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step; or [`WindowedRegression`], the integral form;
+//! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
+//! - [`Monitor`]: whether the data so far determine the unknown, and how well;
+//! - [`Limits`], [`Gap`], [`Drift`], [`State`]: what samples may be, intervals without one, forms without drift, saving;
 //! - [`Observer`]: one [`step`](Observer::step) a sample, which never panics and answers a bad sample with a [`Fault`].
 //!
 //! No heap, no `std`, no `unsafe`; `f32` and `f64`; every size is a constant.
@@ -77,23 +79,41 @@
 
 pub use nalgebra;
 
+#[cfg(feature = "serde")]
+mod array;
+mod decay;
+mod drift;
+mod eigenvalue;
 pub mod estimator;
 mod extension;
 mod fault;
 mod filter;
+mod gap;
+mod limits;
 mod linear;
 mod model;
+mod monitor;
 mod observer;
 mod real;
 mod regression;
+mod single;
 mod sum;
+mod window;
 
-pub use estimator::{Estimator, Gradient, Information};
+pub use drift::Drift;
+pub use estimator::{
+    Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
+    RegressorExtension, Response,
+};
 pub use extension::{Extension, Flow, Fundamental, Integrator};
 pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};
+pub use gap::Gap;
+pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
-pub use observer::Observer;
+pub use monitor::{Excitation, Monitor};
+pub use observer::{Observer, State};
 pub use real::Real;
-pub use regression::FilteredRegression;
+pub use regression::{FilteredRegression, RegressionOperator, Sides};
 pub use sum::Sum;
+pub use window::WindowedRegression;

@@ -1,9 +1,11 @@
 //! The scalar: `f32` or `f64`, with the functions that a formula may use.
 //!
 //! Emitted code is written for one concrete scalar and calls `Real::sin(x)`, which needs neither `std` nor any other
-//! import. Whatever a faster single-precision version of a function becomes, it belongs into the `f32` line at the end.
+//! import. Those of `f32` that have a version of their own are named in the last lines.
 
 use nalgebra::{ComplexField, RealField};
+
+use crate::single;
 
 /// A real scalar: `f32` or `f64`.
 ///
@@ -58,7 +60,7 @@ pub trait Real: RealField + Copy {
 }
 
 macro_rules! real {
-    ($scalar:ident, $($function:ident),+) => {
+    ($scalar:ident: $($function:ident),+; atan2 = $atan2:path $(, $own:ident = $path:path)*) => {
         impl Real for $scalar {
             const EPSILON: Self = $scalar::EPSILON;
 
@@ -77,7 +79,7 @@ macro_rules! real {
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
-                RealField::atan2(self, x)
+                $atan2(self, x)
             }
             #[inline]
             fn powf(self, exponent: Self) -> Self {
@@ -93,9 +95,21 @@ macro_rules! real {
                     ComplexField::$function(self)
                 }
             )+
+            $(
+                #[inline]
+                fn $own(self) -> Self {
+                    $path(self)
+                }
+            )*
         }
     };
 }
 
-real!(f64, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs);
-real!(f32, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs);
+real!(
+    f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs;
+    atan2 = RealField::atan2
+);
+real!(
+    f32: tan, asin, acos, sinh, cosh, tanh, exp_m1, ln, sqrt, abs;
+    atan2 = single::atan2, sin = single::sin, cos = single::cos, atan = single::atan, exp = single::exp
+);

@@ -12,6 +12,7 @@ use crate::Real;
 /// Source: Dekker, *A floating-point technique for extending the available precision*, Numer. Math., 1971; the error
 /// term is Knuth's (*The Art of Computer Programming* vol. 2, 4.2.2, theorem B), whichever operand is larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sum<S: Real, const R: usize, const C: usize> {
     value: SMatrix<S, R, C>,
     carry: SMatrix<S, R, C>,
@@ -42,11 +43,24 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
 
     /// Whether every number of the state is finite.
     pub fn is_finite(&self) -> bool {
-        all_finite(&self.value) && all_finite(&self.carry)
+        self.blemish() == S::zero()
+    }
+
+    /// [`blemish`] of every number of the state.
+    pub(crate) fn blemish(&self) -> S {
+        blemish(&self.value) + blemish(&self.carry)
     }
 }
 
 /// Whether every element is finite.
+#[inline]
 pub(crate) fn all_finite<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> bool {
-    matrix.iter().all(|&element| Real::is_finite(element))
+    blemish(matrix) == S::zero()
+}
+
+/// Zero if every element is finite, else NaN: zero times a finite number is zero and anything else is NaN, which a sum
+/// keeps. Two instructions an element and one branch at the end, where comparing each takes eight and a branch.
+#[inline]
+pub(crate) fn blemish<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> S {
+    matrix.iter().map(|&element| element * S::zero()).reduce(|sum, zero| sum + zero).unwrap_or(S::zero())
 }

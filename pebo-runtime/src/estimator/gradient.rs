@@ -14,6 +14,7 @@ use crate::{Fault, Real};
 ///
 /// Units of `Gamma`: those of `theta^2` over (regression equation)^2 and second.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gradient<S: Real, const NE: usize> {
     /// `Gamma^-1`.
     inertia: Information<S, NE>,

@@ -1,5 +1,7 @@
 //! Weighted linear equations in, one after another; the vector that fits them best out.
 
+use core::cmp::Ordering;
+
 use nalgebra::{SMatrix, SVector};
 
 use crate::sum::all_finite;
@@ -7,14 +9,16 @@ use crate::{Fault, Real};
 
 /// A weighted least-squares problem, kept in triangular form.
 ///
-/// It stands for `minimise sum_i w_i (v_i - row_i d)^2`, with the information matrix `sum_i w_i row_i^T row_i = U^T D U`,
+/// It stands for `minimise sum_i w_i (v_i - row_i d)^2`, with the information matrix `sum_i w_i row_i^T row_i = U^T D
+/// U`,
 /// `U` unit upper triangular and `D` diagonal.
 ///
-/// Method: Givens rotations without square roots. Weights only ever grow and nothing is subtracted from `D`, so it stays positive
-/// and no row, weight or ratio between them makes the problem singular. The matrix itself is never formed: that would square the ratios.
-/// Reference: Gentleman, *Least squares computations by Givens transformations without square roots*, J. Inst. Maths
-/// Applics, 1973, and algorithm AS 75, 1974.
+/// Method: Givens rotations without square roots. Weights only ever grow and nothing is subtracted from `D`, so it
+/// stays positive and no row, weight or ratio between them makes the problem singular. The matrix itself is never
+/// formed: that would square the ratios. Reference: Gentleman, *Least squares computations by Givens transformations
+/// without square roots*, J. Inst. Maths Applics, 1973, and algorithm AS 75, 1974.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Information<S: Real, const N: usize> {
     /// U above its diagonal.
     upper: SMatrix<S, N, N>,
@@ -46,7 +50,8 @@ impl<S: Real, const N: usize> Information<S, N> {
         if !is_symmetric(covariance) {
             return Err(Fault::Gain);
         }
-        // covariance = V E V^T with V unit upper triangular, from the last column to the first; then U = V^-1, D = E^-1.
+        // covariance = V E V^T with V unit upper triangular, from the last column to the first; then U = V^-1, D =
+        // E^-1.
         let mut v = *covariance;
         let mut variances = SVector::<S, N>::zeros();
         for j in (0..N).rev() {
@@ -86,30 +91,57 @@ impl<S: Real, const N: usize> Information<S, N> {
         let (mut row, mut value, mut weight) = (*row, value, weight);
         for i in 0..N {
             let lead = row[i];
-            if lead == S::zero() {
-                continue;
+            if lead != S::zero() {
+                let before = self.weight[i];
+                let after = before + weight * lead * lead;
+                let kept = before / after;
+                let taken = weight * lead / after;
+                self.weight[i] = after;
+                weight *= kept;
+                for k in i + 1..N {
+                    let (entry, above) = (row[k], self.upper[(i, k)]);
+                    row[k] = entry - lead * above;
+                    self.upper[(i, k)] = kept * above + taken * entry;
+                }
+                let (entry, above) = (value, self.target[i]);
+                value = entry - lead * above;
+                self.target[i] = kept * above + taken * entry;
             }
-            let before = self.weight[i];
-            let after = before + weight * lead * lead;
-            let kept = before / after;
-            let taken = weight * lead / after;
-            self.weight[i] = after;
-            weight *= kept;
-            for k in i + 1..N {
-                let (entry, above) = (row[k], self.upper[(i, k)]);
-                row[k] = entry - lead * above;
-                self.upper[(i, k)] = kept * above + taken * entry;
-            }
-            let (entry, above) = (value, self.target[i]);
-            value = entry - lead * above;
-            self.target[i] = kept * above + taken * entry;
         }
+    }
+
+    /// Multiplies every weight by a factor, `factor > 0`; the vector that fits best stays the same.
+    pub fn scale(&mut self, factor: S) {
+        self.weight *= factor;
+    }
+
+    /// Adds the equations of another problem, with their right sides, its weights multiplied by `factor >= 0`.
+    pub fn absorb_information(&mut self, other: &Self, factor: S) {
+        for i in 0..N {
+            let row = SVector::from_fn(|k, _| match k.cmp(&i) {
+                Ordering::Less => S::zero(),
+                Ordering::Equal => S::one(),
+                Ordering::Greater => other.upper[(i, k)],
+            });
+            self.absorb(&row, other.target[i], factor * other.weight[i]);
+        }
+    }
+
+    /// The vector that fits best, from which the unknown is counted from now on: every right side becomes 0.
+    ///
+    /// # Errors
+    /// [`Fault::State`] as in [`solve`](Self::solve).
+    pub fn take_solution(&mut self) -> Result<SVector<S, N>, Fault> {
+        let solution = self.solve()?;
+        self.target = SVector::zeros();
+        Ok(solution)
     }
 
     /// The vector that fits best.
     ///
     /// # Errors
-    /// [`Fault::State`] if an equation had infinite or NaN entries or its weight overflowed.
+    /// [`Fault::State`] if an equation had infinite or NaN factors or its weight overflowed. A right side that is not
+    /// finite is no fault here: the vector is not finite then either.
     pub fn solve(&self) -> Result<SVector<S, N>, Fault> {
         let mut solution = self.target;
         for i in (0..N).rev() {
@@ -118,7 +150,12 @@ impl<S: Real, const N: usize> Information<S, N> {
                 solution[i] -= known;
             }
         }
-        if self.is_finite() && all_finite(&solution) { Ok(solution) } else { Err(Fault::State) }
+        if all_finite(&self.weight) { Ok(solution) } else { Err(Fault::State) }
+    }
+
+    /// The diagonal of `D`: the weight of each component given those after it.
+    pub fn weight(&self) -> &SVector<S, N> {
+        &self.weight
     }
 
     /// Whether every number of the state is finite.

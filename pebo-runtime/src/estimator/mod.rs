@@ -1,10 +1,37 @@
 //! A regression `regressand = regressor * eta` in, step by step; an estimate of the constant `eta` out.
+//!
+//! | estimator | converges with | then follows a jump of `eta` |
+//! |---|---|---|
+//! | [`Gradient`], [`NormalisedGradient`] | persistent excitation | at the pace of the gain |
+//! | [`LeastSquares`], `beta = 0` | excitation during an interval, up to the weight of the start | ever more slowly |
+//! | [`LeastSquares`], `beta > 0` | the same | within `1/beta` |
+//! | [`Drem`] of [`Kreisselmeier`], `l > 0` | persistent excitation, each component by itself | within `1/l` and the gain's time |
+//! | [`Drem`] of [`Kreisselmeier`], `l = 0` | excitation during an interval | never |
+//! | [`Drem`] of the [`Response`] of a [`Gradient`] or [`LeastSquares`] | excitation during an interval | as that estimator |
+//! | [`FiniteTime`], [`once`](FiniteTime::once) | the same as its DREM, exactly and in finite time | as its DREM |
+//! | [`FiniteTime`], [`tracking`](FiniteTime::tracking) | the same | in finite time, if its extension forgets |
+//! | [`Bounded`] | as the estimator within | as the estimator within |
+//!
+//! Every one is stable at any gain and step. To add one, implement [`Estimator`] or, for DREM, [`RegressorExtension`].
 
+mod bounded;
+mod cramer;
+mod drem;
+mod extension;
+mod finite_time;
 mod gradient;
 mod information;
+mod least_squares;
+mod normalised;
 
+pub use bounded::Bounded;
+pub use drem::Drem;
+pub use extension::{Kreisselmeier, RegressorExtension, Response};
+pub use finite_time::FiniteTime;
 pub use gradient::Gradient;
 pub use information::Information;
+pub use least_squares::LeastSquares;
+pub use normalised::NormalisedGradient;
 
 use nalgebra::{SMatrix, SVector};
 
@@ -18,7 +45,8 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Advances by `dt` seconds, at whose end `regressand = regressor * eta` holds.
     ///
     /// # Errors
-    /// A [`Fault`] if the step cannot be computed; the estimator is then unspecified.
+    /// A [`Fault`] if the step cannot be computed; the estimator is then unspecified. Data that are not finite may also
+    /// show only in [`is_finite`](Self::is_finite), which an [`Observer`](crate::Observer) asks after every step.
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault>;
 
     /// The estimate of `eta`.

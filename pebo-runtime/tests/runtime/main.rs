@@ -1,13 +1,21 @@
 //! The runtime as its users see it. Every tolerance has its reason beside it.
 
 mod converter;
+mod noise;
 mod random;
 
 mod drift;
+mod efficiency;
+mod estimators;
 mod extension;
 mod fault;
 mod filter;
 mod gradient;
 mod kinds;
+mod monitor;
 mod paper;
 mod real;
+mod sampling;
+mod settling;
+mod single;
+mod storm;

@@ -1,0 +1,74 @@
+//! Bounds that the unknown is known to obey.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::Estimator;
+use crate::sum::{Sum, all_finite};
+use crate::{Fault, Real};
+
+/// An estimator whose estimate is projected onto bounds `lower <= eta <= upper`, component by component.
+///
+/// Holds when: the unknown obeys the bounds. Then the projection brings every component of the error closer to 0 or
+/// leaves it. What is projected is the estimate that goes out: the estimator's own keeps the exact form of its
+/// equations (least squares stays least squares, the response stays linear), and its stability needs no help.
+///
+/// A [`shift`](Estimator::shift) of the unknown moves the bounds along; a [`reset`](Estimator::reset) puts them back.
+///
+/// Source: Ioannou and Sun, *Robust adaptive control*, 1996, chapter 4 (parameter projection; there it acts
+/// on the adaptive law).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Bounded<S: Real, E, const NE: usize> {
+    estimator: E,
+    lower: SVector<S, NE>,
+    upper: SVector<S, NE>,
+    /// How far the unknown has moved.
+    moved: Sum<S, NE, 1>,
+}
+
+impl<S: Real, E, const NE: usize> Bounded<S, E, NE> {
+    /// Bounds on every component; an infinite one does not bind.
+    ///
+    /// # Errors
+    /// [`Fault::Start`] unless `lower <= upper` in every component.
+    pub fn new(estimator: E, lower: &SVector<S, NE>, upper: &SVector<S, NE>) -> Result<Self, Fault> {
+        if lower.iter().zip(upper.iter()).all(|(lower, upper)| lower <= upper) {
+            Ok(Self { estimator, lower: *lower, upper: *upper, moved: Sum::new(SVector::zeros()) })
+        } else {
+            Err(Fault::Start)
+        }
+    }
+
+    /// The estimator within.
+    pub fn estimator(&self) -> &E {
+        &self.estimator
+    }
+}
+
+impl<S: Real, E, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Bounded<S, E, NE>
+where
+    E: Estimator<S, NR, NE>,
+{
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
+        self.estimator.advance(regressor, regressand, dt)
+    }
+
+    fn estimate(&self) -> SVector<S, NE> {
+        let moved = self.moved.value();
+        self.estimator.estimate().sup(&(self.lower + moved)).inf(&(self.upper + moved))
+    }
+
+    fn shift(&mut self, shift: &SVector<S, NE>) {
+        self.estimator.shift(shift);
+        self.moved.add(shift);
+    }
+
+    fn reset(&mut self, estimate: &SVector<S, NE>) {
+        self.estimator.reset(estimate);
+        self.moved = Sum::new(SVector::zeros());
+    }
+
+    fn is_finite(&self) -> bool {
+        self.estimator.is_finite() && self.moved.is_finite() && all_finite(&self.estimate())
+    }
+}

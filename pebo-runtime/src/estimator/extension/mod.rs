@@ -1,0 +1,38 @@
+//! A regression of any shape in, a square one out, that remembers: the first half of DREM.
+
+mod kreisselmeier;
+mod response;
+
+pub use kreisselmeier::Kreisselmeier;
+pub use response::Response;
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::{Fault, Real};
+
+/// A regressor extension: keeps a square regression `vector = matrix * eta` that follows from all data so far.
+///
+/// `matrix` has no unit and eigenvalues between 0 and 1, 0 before any excitation; then its determinant is a measure of
+/// excitation of the same kind.
+pub trait RegressorExtension<S: Real, const NR: usize, const NE: usize>: Clone {
+    /// Advances by `dt` seconds, at whose end `regressand = regressor * eta` holds.
+    ///
+    /// # Errors
+    /// A [`Fault`] if the step cannot be computed; the extension is then unspecified.
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault>;
+
+    /// The factor of `eta`.
+    fn matrix(&self) -> SMatrix<S, NE, NE>;
+
+    /// The known side, in units of `eta`.
+    fn vector(&self) -> SVector<S, NE>;
+
+    /// Follows a move of the unknown from `eta` to `eta + shift`.
+    fn shift(&mut self, shift: &SVector<S, NE>);
+
+    /// Starts again with no memory of the past.
+    fn reset(&mut self);
+
+    /// Whether every number of the state is finite.
+    fn is_finite(&self) -> bool;
+}

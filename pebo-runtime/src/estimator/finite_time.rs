@@ -1,0 +1,150 @@
+//! DREM that has the unknown after a finite time, exactly.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Drem, Estimator, RegressorExtension};
+use crate::sum::all_finite;
+use crate::{Fault, Real};
+
+/// Finite-time DREM.
+///
+/// The error of the scalar estimators of [`Drem`] shrinks by a known factor `w_i` since a reference instant, so
+///
+/// ```text
+/// theta_i - eta_i = w_i (theta_i(ref) - eta_i)        w_i' = -gamma_i Delta^2 w_i
+/// estimate_i = theta_i(ref) + (theta_i - theta_i(ref)) / (1 - min(w_i, 1 - mu))
+/// ```
+///
+/// is `eta_i` from the moment on when `w_i <= 1 - mu`. Until then the clip `mu` bounds the amplification of noise: the
+/// estimate runs ahead of that of DREM by at most `1/mu`.
+///
+/// Holds when: the integral of `gamma_i Delta^2` reaches `-ln(1 - mu)` (interval excitation) and `eta` is constant.
+///
+/// - [`once`](Self::once): the reference is the start. As `w` goes to 0 this becomes DREM itself: a later jump of `eta`
+///   is followed at the pace of the gains only.
+/// - [`tracking`](Self::tracking): the reference moves on, at least every `period` seconds as long as there is
+///   excitation; after a jump the estimate is exact again when the reference and the extension's memory lie behind the
+///   jump, at most two periods of excitation later.
+///
+/// Method: implicit steps in theta and w with the same factor, so the identity holds to rounding at any gain and step.
+/// Two references are kept instead of a delay line: one in use, one that ripens.
+///
+/// Source: Ortega, Gerasimov, Barabanov, Nikiforov, *Adaptive control of linear multivariable systems using dynamic
+/// regressor extension and mixing estimators: removing the high-frequency gain assumptions*, Automatica, 2019
+/// (clip); tracking: Ortega, Bobtsov, Nikolaev, *Parameter identification with finite-convergence time alertness
+/// preservation*, IEEE Control Systems Letters, 2022.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FiniteTime<S: Real, X, const NE: usize> {
+    drem: Drem<S, X, NE>,
+    clip: S,
+    /// Age at which a ripe reference replaces the one in use; none keeps the first for ever.
+    period: Option<S>,
+    used: Reference<S, NE>,
+    ripening: Reference<S, NE>,
+}
+
+/// An instant in the past.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Reference<S: Real, const NE: usize> {
+    /// The estimate of DREM then.
+    theta: SVector<S, NE>,
+    /// What is left since of the error then.
+    weight: SVector<S, NE>,
+    age: S,
+}
+
+impl<S: Real, const NE: usize> Reference<S, NE> {
+    fn now(theta: &SVector<S, NE>) -> Self {
+        Self { theta: *theta, weight: SVector::repeat(S::one()), age: S::zero() }
+    }
+
+    fn contract(&mut self, kept: &SVector<S, NE>, dt: S) {
+        self.weight.component_mul_assign(kept);
+        self.age += dt;
+    }
+}
+
+impl<S: Real, X, const NE: usize> FiniteTime<S, X, NE> {
+    /// Exact once for a constant unknown; `clip` is `mu` above, `0 < mu < 1`.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless the clip is between 0 and 1.
+    pub fn once(drem: Drem<S, X, NE>, clip: S) -> Result<Self, Fault> {
+        if !(clip > S::zero() && clip < S::one()) {
+            return Err(Fault::Gain);
+        }
+        let start = Reference::now(drem.estimate());
+        Ok(Self { drem, clip, period: None, used: start, ripening: start })
+    }
+
+    /// Exact again after a jump; a reference serves for `period` seconds or until the next is ripe, whichever is later.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless the clip is between 0 and 1 and the period positive and finite.
+    pub fn tracking(drem: Drem<S, X, NE>, clip: S, period: S) -> Result<Self, Fault> {
+        if period > S::zero() && Real::is_finite(period) {
+            Ok(Self { period: Some(period), ..Self::once(drem, clip)? })
+        } else {
+            Err(Fault::Gain)
+        }
+    }
+
+    /// The estimate.
+    pub fn estimate(&self) -> SVector<S, NE> {
+        let Reference { theta, weight, .. } = &self.used;
+        let now = self.drem.estimate();
+        SVector::from_fn(|i, _| {
+            let gone = (S::one() - weight[i]).max(self.clip);
+            theta[i] + (now[i] - theta[i]) / gone
+        })
+    }
+
+    /// Whether the estimate is past the clip in every component: exact without noise.
+    pub fn has_arrived(&self) -> bool {
+        self.is_ripe(&self.used)
+    }
+
+    fn is_ripe(&self, reference: &Reference<S, NE>) -> bool {
+        reference.weight.iter().all(|&weight| weight <= S::one() - self.clip)
+    }
+}
+
+impl<S: Real, X, const NR: usize, const NE: usize> Estimator<S, NR, NE> for FiniteTime<S, X, NE>
+where
+    X: RegressorExtension<S, NR, NE>,
+{
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
+        let kept = self.drem.contract(regressor, regressand, dt)?;
+        self.used.contract(&kept, dt);
+        if let Some(period) = self.period {
+            self.ripening.contract(&kept, dt);
+            if self.ripening.age >= period && self.is_ripe(&self.ripening) {
+                self.used = self.ripening;
+                self.ripening = Reference::now(self.drem.estimate());
+            }
+        }
+        Ok(())
+    }
+
+    fn estimate(&self) -> SVector<S, NE> {
+        self.estimate()
+    }
+
+    fn shift(&mut self, shift: &SVector<S, NE>) {
+        self.drem.shift(shift);
+        self.used.theta += shift;
+        self.ripening.theta += shift;
+    }
+
+    fn reset(&mut self, estimate: &SVector<S, NE>) {
+        self.drem.reset(estimate);
+        self.used = Reference::now(estimate);
+        self.ripening = self.used;
+    }
+
+    fn is_finite(&self) -> bool {
+        self.drem.is_finite() && all_finite(&self.used.theta) && all_finite(&self.ripening.theta)
+    }
+}

@@ -1,0 +1,122 @@
+//! Recursive least squares that forgets, and never more than it started with.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Estimator, Information};
+use crate::decay::Decay;
+use crate::sum::{Sum, all_finite};
+use crate::{Fault, Real};
+
+/// Least squares with forgetting and bounded covariance.
+///
+/// ```text
+/// theta' = P Phi^T (vartheta - Phi theta)
+/// R'     = -beta (R - R_0) + Phi^T Phi        R = P^-1, R(0) = R_0
+/// ```
+///
+/// Holds when: without forgetting (`beta = 0`) the estimate minimises the integral of the squared equation error plus
+/// `|theta - theta(0)|^2` in the norm of `R_0`: it settles as soon as the data determine it, and white noise leaves it
+/// the least variance of all unbiased estimates, up to the weight of `R_0`. With `beta > 0` and persistent excitation
+/// it follows a moving unknown with the time constant
+/// `1/beta`. Since `R >= R_0` at all times, `P` never exceeds its start: no wind-up in directions without excitation,
+/// where the estimate rests.
+///
+/// Method: `R` in the triangular form of [`Information`], the regressor held over the step: the past decays by
+/// `e^(-beta dt)`, `1 - e^(-beta dt)` of `R_0` flows in, then each equation is absorbed by a rotation. Nothing is subtracted, so `R` stays
+/// positive definite at any step and gain, and the error never grows in the norm of `R`.
+///
+/// Units of `P`: `theta^2` over (regression equation)^2 and second, as the gain of [`Gradient`](super::Gradient): white
+/// noise of variance `s^2` in samples `dt` apart makes the covariance of the estimate `s^2 dt P`.
+///
+/// Source: Slotine and Li, *Applied nonlinear control*, 1991, chapter 8 (least squares with
+/// exponential forgetting);
+/// the bound by an inflow of `R_0`: Gunnarsson, *Combining tracking and regularization in recursive least squares
+/// identification*, CDC 1996.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LeastSquares<S: Real, const NE: usize> {
+    /// `R`, with the right side 0 between steps.
+    information: Information<S, NE>,
+    /// `R_0`.
+    floor: Information<S, NE>,
+    forgetting: Decay<S>,
+    theta: Sum<S, NE, 1>,
+}
+
+impl<S: Real, const NE: usize> LeastSquares<S, NE> {
+    /// Starts from the estimate 0 with a variance of each component (the diagonal of `P(0)`), and forgets at the rate
+    /// `beta` in 1/s; 0 forgets nothing.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless each variance and its inverse is positive and finite, and the rate finite and not
+    /// negative.
+    pub fn diagonal(variances: &SVector<S, NE>, beta: S) -> Result<Self, Fault> {
+        Self::from_information(Information::from_variances(variances)?, beta)
+    }
+
+    /// The same with a full matrix `P(0)`.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless `P(0)` is symmetric, positive definite and finite, and the rate finite and not negative.
+    pub fn full(covariance: &SMatrix<S, NE, NE>, beta: S) -> Result<Self, Fault> {
+        Self::from_information(Information::from_covariance(covariance)?, beta)
+    }
+
+    fn from_information(floor: Information<S, NE>, beta: S) -> Result<Self, Fault> {
+        let theta = Sum::new(SVector::zeros());
+        Ok(Self { information: floor, floor, forgetting: Decay::new(beta)?, theta })
+    }
+
+    /// The same from another estimate.
+    ///
+    /// # Errors
+    /// [`Fault::Start`] unless the estimate is finite.
+    pub fn starting_at(self, estimate: &SVector<S, NE>) -> Result<Self, Fault> {
+        if all_finite(estimate) { Ok(Self { theta: Sum::new(*estimate), ..self }) } else { Err(Fault::Start) }
+    }
+
+    /// The estimate.
+    pub fn estimate(&self) -> &SVector<S, NE> {
+        self.theta.value()
+    }
+
+    /// `R = P^-1`, in triangular form.
+    pub fn information(&self) -> &Information<S, NE> {
+        &self.information
+    }
+}
+
+impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSquares<S, NE> {
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
+        let share = self.forgetting.over(dt);
+        if share.lost == S::one() {
+            self.information = self.floor;
+        } else if share.lost > S::zero() {
+            self.information.scale(S::one() - share.lost);
+            self.information.absorb_information(&self.floor, share.lost);
+        }
+        let innovation = regressand - regressor * self.theta.value();
+        for (row, &error) in regressor.row_iter().zip(innovation.iter()) {
+            self.information.absorb(&row.transpose(), error, share.taken);
+        }
+        self.theta.add(&self.information.take_solution()?);
+        Ok(())
+    }
+
+    fn estimate(&self) -> SVector<S, NE> {
+        *self.theta.value()
+    }
+
+    fn shift(&mut self, shift: &SVector<S, NE>) {
+        self.theta.add(shift);
+    }
+
+    fn reset(&mut self, estimate: &SVector<S, NE>) {
+        self.theta = Sum::new(*estimate);
+        self.information = self.floor;
+    }
+
+    fn is_finite(&self) -> bool {
+        self.theta.is_finite() && self.information.is_finite()
+    }
+}

@@ -1,0 +1,53 @@
+//! Intervals without a usable output, and the input over all of them.
+
+use nalgebra::SVector;
+
+use crate::Real;
+
+/// What happened since the last accepted sample: time, and the integral of the input.
+///
+/// Tell it every interval; when a good sample ends one, [`step`](crate::Observer::step) the observer by what it covers.
+/// An observer then covers the whole gap with the mean of its inputs, exact to second order where `h` is affine in the
+/// input.
+///
+/// ```
+/// # use pebo_runtime::{Gap, nalgebra::SVector};
+/// let mut gap = Gap::new();
+/// gap.add(&SVector::from([1.0]), 0.1);        // the sample at the end of this interval is missing
+/// gap.add(&SVector::from([4.0]), 0.2);        // the one at the end of this is there
+/// let (u, dt) = gap.take();                   // observer.step(&y, &u, dt)
+/// assert!((u[0] - 3.0_f64).abs() < 1e-15 && (dt - 0.3_f64).abs() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Gap<S: Real, const NU: usize> {
+    time: S,
+    input: SVector<S, NU>,
+}
+
+impl<S: Real, const NU: usize> Gap<S, NU> {
+    /// No interval yet.
+    pub fn new() -> Self {
+        Self { time: S::zero(), input: SVector::zeros() }
+    }
+
+    /// Adds an interval of `dt` seconds with the input `u`. What is not finite or not positive in it is for the
+    /// observer to refuse.
+    pub fn add(&mut self, u: &SVector<S, NU>, dt: S) {
+        self.time += dt;
+        self.input += u * dt;
+    }
+
+    /// The mean input over all intervals, and their time; to be called when the observer has accepted nothing since the
+    /// first of them. Starts again with no interval.
+    pub fn take(&mut self) -> (SVector<S, NU>, S) {
+        let Self { time, input } = core::mem::take(self);
+        (input / time, time)
+    }
+}
+
+impl<S: Real, const NU: usize> Default for Gap<S, NU> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
