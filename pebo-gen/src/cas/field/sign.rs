@@ -269,8 +269,8 @@ impl Field<'_> {
             _ => {}
         }
         // Relations lead to earlier kernels, so this ends.
-        match self.plain_sign(&radicand?) {
-            Some(Sign::Positive) => Some(Sign::Positive),
+        match self.sign(&radicand?) {
+            Ok(Some(Sign::Positive)) => Some(Sign::Positive),
             _ => Some(Sign::NonNegative),
         }
     }
@@ -299,18 +299,22 @@ impl Field<'_> {
     /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
     fn sign_by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         let facts = self.facts_about(poly);
+        let mut found = None;
         for form in [Some(poly.clone()), self.with_sines(poly)?].into_iter().flatten() {
             if let Some(sign) = self.plain_sign(&form) {
                 return Ok(Some(sign));
             }
-            if let Some(sign) = self.above_facts(&form, &facts, MOST_FACTS) {
-                return Ok(Some(sign));
+            match self.above_facts(&form, &facts, MOST_FACTS) {
+                Some(Sign::Positive) => return Ok(Some(Sign::Positive)),
+                // Another form may show more.
+                Some(sign) => found = Some(sign),
+                None => {}
             }
-            if let Some(sign) = self.above_facts(&-&form, &facts, MOST_FACTS) {
-                return Ok((sign == Sign::Positive).then_some(Sign::Negative));
+            if self.above_facts(&-&form, &facts, MOST_FACTS) == Some(Sign::Positive) {
+                return Ok(Some(Sign::Negative));
             }
         }
-        Ok(None)
+        Ok(found)
     }
 
     /// The facts, and that no sine or cosine exceeds one.
@@ -328,6 +332,7 @@ impl Field<'_> {
 
     /// The sign of `poly = k * fact + rest` for a k > 0 that cancels a term, if the rest is not negative.
     fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
+        let mut found = None;
         for (fact, compared) in facts {
             let effort = poly.term_count() * fact.term_count();
             if *compared == Compared::NonZero || self.limit().spend(effort as u64).is_err() {
@@ -349,12 +354,12 @@ impl Field<'_> {
                     Some(Sign::NonNegative | Sign::Zero) if *compared == Compared::Positive => {
                         return Some(Sign::Positive);
                     }
-                    Some(Sign::NonNegative | Sign::Zero) => return Some(Sign::NonNegative),
+                    Some(Sign::NonNegative | Sign::Zero) => found = Some(Sign::NonNegative),
                     _ => {}
                 }
             }
         }
-        None
+        found
     }
 
     /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
