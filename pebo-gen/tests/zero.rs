@@ -184,6 +184,11 @@ const ZERO: &[(&str, &[&str])] = &[
     ("cos(atan(x)/2)^2 - (1 + 1/sqrt(1 + x^2))/2", &[]),
     ("sin(acos(x)/2) - sqrt((1 - x)/2)", &[]),
     ("asin(sin(x/2 + pi/8)) - x/2 - pi/8", &["x", "pi/2 - x"]),
+    // Facts about the functions that occur.
+    ("sqrt(cos(x)^2) - cos(x)", &["cos(x)"]),
+    ("abs(x - atan(x)) - x + atan(x)", &["x - atan(x)"]),
+    ("abs(x - sin(x)) + sin(x) - x", &["x - sin(x)"]),
+    ("sqrt(x - sqrt(x))^2 + sqrt(x) - x", &["x - sqrt(x)"]),
 ];
 
 const NON_ZERO: &[(&str, &[&str])] = &[
@@ -230,6 +235,11 @@ const NON_ZERO: &[(&str, &[&str])] = &[
     ("tan(3*pi/11) + 4*sin(2*pi/11) + sqrt(11)", &[]),
     ("cos(2*pi/7) - 0.6234898018587335305", &[]),
     ("abs(x^2 + x - 1) - x^2 - x + 1", &[]),
+    // Facts about the functions that occur.
+    ("sqrt(cos(x)^2) + cos(x)", &["cos(x)"]),
+    ("abs(x - atan(x)) + x - atan(x)", &["x - atan(x)"]),
+    ("abs(x - sin(x)) - sin(x) + x", &["x - sin(x)", "sin(x) - x^3/7"]),
+    ("sqrt(x - sqrt(x)) + x", &["x - sqrt(x)"]),
 ];
 
 /// Outside what the normal form covers, or without a value anywhere: neither answer may be given.

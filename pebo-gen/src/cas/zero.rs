@@ -18,6 +18,9 @@ const MOST_POINTS: usize = 64;
 /// Points at which the least precision is tried before the normal form.
 const GLIMPSES: usize = 3;
 
+/// Subexpressions of a short formula.
+const SHORT: usize = 50;
+
 /// The answer to whether an expression is zero.
 #[derive(Clone, Debug)]
 pub enum Answer {
@@ -51,26 +54,25 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
         return Answer::Zero;
     }
     // A cheap look first: what plainly differs from zero needs no normal form.
-    if let Some(witness) = domain.points(arena, &[expr]).take(GLIMPSES).find_map(|point| glimpse(arena, expr, point)) {
-        return Answer::NonZero(witness);
+    // Of a short formula the normal form costs no more than another look.
+    let glimpses = if arena.postorder(&[expr]).len() < SHORT { 1 } else { GLIMPSES };
+    let mut exists = false;
+    for point in domain.points(arena, &[expr]).take(glimpses) {
+        let Some(value) = arena.enclose(expr, &point, Precision::new(64)) else { continue };
+        if !value.contains_zero() {
+            return Answer::NonZero(Witness { point, value });
+        }
+        exists = true;
     }
     let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
         let fraction = field.fraction(expr)?;
         if fraction.is_zero() { Ok(()) } else { Err(field.doubt(&fraction)) }
     });
     match normal {
-        Ok(()) => match point_of(arena, expr, domain) {
-            Some(_) => Answer::Zero,
-            None => Answer::Open(Obstacle::NoPoint),
-        },
+        Ok(()) if exists || point_of(arena, expr, domain).is_some() => Answer::Zero,
+        Ok(()) => Answer::Open(Obstacle::NoPoint),
         Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
     }
-}
-
-/// Whether the least precision shows that the expression is not zero at the point.
-fn glimpse(arena: &Arena, expr: Expr, point: Point) -> Option<Witness> {
-    let value = arena.enclose(expr, &point, Precision::new(64)).filter(|value| !value.contains_zero())?;
-    Some(Witness { point, value })
 }
 
 /// Looks for a point of the domain at which the expression provably is not zero.

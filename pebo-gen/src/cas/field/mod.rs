@@ -142,12 +142,17 @@ pub struct Field<'a> {
     domain: Domain,
     /// Signs of expressions over the box that the facts state.
     boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
+    /// Kernels whose signs are being asked for.
+    asking: RefCell<BTreeSet<u32>>,
     /// How deep the question of a sign is nested.
     depth: Cell<u32>,
     refined: RefCell<bool>,
     parts: RefCell<Parts>,
     wholes: RefCell<Vec<Whole>>,
+    /// What is known of signs; empty until the first question of a sign.
     signs: RefCell<Vec<(Poly, Relation)>>,
+    asked: Cell<bool>,
+    roots: Vec<Expr>,
     /// What must hold for the expressions to have values.
     learned: RefCell<Vec<(Expr, Relation)>>,
     /// Parts of whose unknown signs something was made.
@@ -171,16 +176,19 @@ impl<'a> Field<'a> {
             angles: RefCell::default(),
             domain: domain_of(facts),
             boxed: RefCell::default(),
+            asking: RefCell::default(),
             depth: Cell::default(),
             refined: RefCell::new(false),
             parts: RefCell::default(),
             wholes: RefCell::default(),
             signs: RefCell::default(),
+            asked: Cell::default(),
+            roots: roots.to_vec(),
             learned: RefCell::default(),
             unsigned: RefCell::default(),
         };
         for _ in 0..MOST_ROUNDS {
-            field.restart(facts, roots)?;
+            field.restart();
             for root in roots {
                 field.fraction(*root)?;
             }
@@ -192,7 +200,7 @@ impl<'a> Field<'a> {
     }
 
     /// Forgets the kernels, but not the units, the parts and what was learned.
-    fn restart(&self, facts: &Facts, roots: &[Expr]) -> Result<(), Obstacle> {
+    fn restart(&self) {
         self.keep_parts();
         self.kernels.borrow_mut().clear();
         self.numbers.borrow_mut().clear();
@@ -203,8 +211,8 @@ impl<'a> Field<'a> {
         self.wholes.borrow_mut().clear();
         self.signs.borrow_mut().clear();
         self.unsigned.borrow_mut().clear();
+        self.asked.set(false);
         *self.refined.borrow_mut() = false;
-        self.learn(facts, roots)
     }
 
     fn work(&self) -> &Work {

@@ -160,6 +160,7 @@ impl Field<'_> {
 
     /// The range of an angle by the facts, if they bound it by right angles.
     pub(super) fn range_of_angle(&self, angle: &Fraction) -> Result<Option<Range>, Obstacle> {
+        self.learn()?;
         if self.signs.borrow().is_empty() {
             return Ok(None);
         }

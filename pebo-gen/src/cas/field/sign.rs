@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use crate::cas::enclosure::Point;
 use crate::cas::expr::{Expr, Node};
-use crate::cas::facts::{Facts, Relation as Compared};
+use crate::cas::facts::Relation as Compared;
 use crate::cas::function::Function;
 use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
@@ -52,9 +52,14 @@ impl Sign {
 impl Field<'_> {
     /// Takes in the facts that can be used: polynomial ones, those about functions that occur in the
     /// question, and what was learned in earlier rounds.
-    pub(super) fn learn(&self, facts: &Facts, roots: &[Expr]) -> Result<(), Obstacle> {
-        let occurring: BTreeSet<Expr> = self.arena.postorder(roots).into_iter().collect();
-        for (expr, compared) in facts.iter() {
+    ///
+    /// Most questions ask for no sign, so this waits for the first that does.
+    pub(super) fn learn(&self) -> Result<(), Obstacle> {
+        if self.asked.replace(true) {
+            return Ok(());
+        }
+        let occurring: BTreeSet<Expr> = self.arena.postorder(&self.roots).into_iter().collect();
+        for (expr, compared) in self.domain.facts.iter() {
             let foreign = |e: &Expr| match self.arena.node(*e) {
                 Node::Call(..) => !occurring.contains(e),
                 Node::Product(product) => {
@@ -115,6 +120,16 @@ impl Field<'_> {
 
     /// The sign of a polynomial.
     pub(super) fn sign(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        if let Some(number) = poly.to_constant() {
+            return Ok(Some(if number.is_zero() {
+                Sign::Zero
+            } else if number.is_negative() {
+                Sign::Negative
+            } else {
+                Sign::Positive
+            }));
+        }
+        self.learn()?;
         if let Some(sign) = self.plain_sign(poly) {
             return Ok(Some(sign));
         }
@@ -257,21 +272,31 @@ impl Field<'_> {
             let kernel = kernels.get(variable as usize)?;
             (kernel.expr, kernel.relation.as_ref().map(|relation| relation.value.clone()))
         };
+        let root = self.is_plain_root(expr);
+        if !root && !matches!(self.arena.node(expr), Node::Call(..)) {
+            return None;
+        }
+        // A fact may have the kernel itself in it: then its form is all that is known.
+        let by_form =
+            (root || matches!(self.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
+        if !self.asking.borrow_mut().insert(variable) {
+            return by_form;
+        }
+        let sign = self.sign_by_arguments(expr, radicand);
+        self.asking.borrow_mut().remove(&variable);
+        sign.or(by_form)
+    }
+
+    fn sign_by_arguments(&self, expr: Expr, radicand: Option<Poly>) -> Option<Sign> {
         match self.arena.node(expr) {
-            Node::Call(Function::Abs, _) => return Some(Sign::NonNegative),
             Node::Call(function @ (Function::Sin | Function::Cos), arguments) => {
-                return self.sign_on_circle(function, arguments[0]);
+                self.sign_on_circle(function, arguments[0])
             }
             Node::Call(function @ (Function::Asin | Function::Acos | Function::Atan | Function::Atan2), arguments) => {
-                return self.range_of_inverse(function, &arguments).ok()?.sign();
+                self.range_of_inverse(function, &arguments).ok()?.sign()
             }
-            _ if !self.is_plain_root(expr) => return None,
-            _ => {}
-        }
-        // Relations lead to earlier kernels, so this ends.
-        match self.sign(&radicand?) {
-            Ok(Some(Sign::Positive)) => Some(Sign::Positive),
-            _ => Some(Sign::NonNegative),
+            Node::Call(..) => None,
+            _ => self.sign(&radicand?).ok()?.filter(|sign| *sign == Sign::Positive),
         }
     }
 
