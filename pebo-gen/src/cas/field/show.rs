@@ -72,15 +72,18 @@ impl Field<'_> {
 
     /// A sum with its commonest kernel taken out of the terms that have it, repeatedly.
     fn grouped(&self, terms: Terms) -> Expr {
-        let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+        // How many terms have the kernel, and how many of them have something else besides.
+        let mut counts: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
         for (monomial, _) in &terms {
             for &(variable, _) in monomial.powers() {
-                *counts.entry(variable).or_default() += 1;
+                let count = counts.entry(variable).or_default();
+                count.0 += 1;
+                count.1 += usize::from(monomial.degree() > 1);
             }
         }
-        // The first of the commonest, so that the choice is the same every time.
+        // Of the commonest the one that saves most products, then the first: the same every time.
         let commonest = counts.iter().max_by_key(|(variable, count)| (**count, std::cmp::Reverse(**variable)));
-        let Some((&variable, _)) = commonest.filter(|(_, count)| **count > 1) else {
+        let Some((&variable, _)) = commonest.filter(|(_, count)| count.0 > 1) else {
             return self.arena.sum(terms.iter().map(|(monomial, coefficient)| self.term(monomial, coefficient)));
         };
         let (with, without): (Terms, Terms) = terms.into_iter().partition(|(m, _)| m.exponent(variable) > 0);
