@@ -1,0 +1,147 @@
+//! What is known of signs: the assumed inequalities, and what must hold for the expressions to have
+//! values.
+//!
+//! In: facts. Out: signs of polynomials that are positive combinations of facts plus what is not
+//! negative. Most questions ask for no sign, so nothing is read before the first that does.
+
+use std::collections::BTreeSet;
+
+use crate::cas::expr::{Expr, Node};
+use crate::cas::facts::Relation as Compared;
+use crate::cas::function::Function;
+use crate::cas::poly::Poly;
+
+use super::sign::Sign;
+use super::{Field, Obstacle};
+
+/// How many facts may be combined to show a sign.
+const MOST_FACTS: usize = 3;
+
+impl Field<'_> {
+    /// Takes in the facts that can be used: polynomial ones, those about functions that occur in the
+    /// question, and what was learned in earlier rounds.
+    ///
+    /// Most questions ask for no sign, so this waits for the first that does.
+    pub(super) fn learn(&self) -> Result<(), Obstacle> {
+        if self.asked.replace(true) {
+            return Ok(());
+        }
+        let occurring: BTreeSet<Expr> = self.arena.postorder(&self.roots).into_iter().collect();
+        for (expr, compared) in self.domain.facts.iter() {
+            let foreign = |e: &Expr| match self.arena.node(*e) {
+                Node::Call(..) => !occurring.contains(e),
+                Node::Product(product) => {
+                    product.factors.iter().any(|(_, exponent)| !exponent.is_integer()) && !occurring.contains(e)
+                }
+                _ => false,
+            };
+            if self.arena.postorder(&[expr]).iter().any(foreign) {
+                continue;
+            }
+            self.learn_sign(expr, compared)?;
+        }
+        let learned = self.learned.borrow().clone();
+        for (expr, compared) in learned {
+            self.learn_sign(expr, compared)?;
+        }
+        Ok(())
+    }
+
+    fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
+        let fraction = self.fraction(expr)?;
+        // n/d > 0 has the sign of n*d
+        let poly =
+            if fraction.den.is_constant() { fraction.num } else { fraction.num.mul(&fraction.den, self.limit())? };
+        self.signs.borrow_mut().push((poly, compared));
+        Ok(())
+    }
+
+    /// Learns the sign of what must have it for the expressions to have values. Where something was
+    /// already made of an unknown sign, the field starts again.
+    pub(super) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
+        let known = self.sign(poly)?;
+        let enough = match compared {
+            Compared::Positive => known == Some(Sign::Positive),
+            _ => known.is_some_and(Sign::is_positive_or_zero),
+        };
+        if enough || known == Some(Sign::Negative) {
+            return Ok(());
+        }
+        let entry = (self.show_polynomial(poly), compared);
+        if !self.learned.borrow().contains(&entry) {
+            self.learned.borrow_mut().push(entry);
+            if !self.unsigned.borrow().is_empty() {
+                *self.refined.borrow_mut() = true;
+            }
+        }
+        self.signs.borrow_mut().push((poly.clone(), compared));
+        Ok(())
+    }
+
+    /// As a positive combination of facts plus what is not negative, or the negation of that; also after
+    /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
+    pub(super) fn sign_by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        let facts = self.facts_about(poly);
+        let mut found = None;
+        for form in [Some(poly.clone()), self.with_sines(poly)?].into_iter().flatten() {
+            if let Some(sign) = self.plain_sign(&form) {
+                return Ok(Some(sign));
+            }
+            match self.above_facts(&form, &facts, MOST_FACTS) {
+                Some(Sign::Positive) => return Ok(Some(Sign::Positive)),
+                // Another form may show more.
+                Some(sign) => found = Some(sign),
+                None => {}
+            }
+            if self.above_facts(&-&form, &facts, MOST_FACTS) == Some(Sign::Positive) {
+                return Ok(Some(Sign::Negative));
+            }
+        }
+        Ok(found)
+    }
+
+    /// The facts, and that no sine or cosine exceeds one.
+    fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Compared)> {
+        let mut facts = self.signs.borrow().clone();
+        for &variable in poly.variables() {
+            if let Node::Call(Function::Sin | Function::Cos, _) = self.arena.node(self.kernel(variable)) {
+                let value = Poly::variable(variable);
+                facts.push((&Poly::one() - &value, Compared::NonNegative));
+                facts.push((&Poly::one() + &value, Compared::NonNegative));
+            }
+        }
+        facts
+    }
+
+    /// The sign of `poly = k * fact + rest` for a k > 0 that cancels a term, if the rest is not negative.
+    fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
+        let mut found = None;
+        for (fact, compared) in facts {
+            let effort = poly.term_count() * fact.term_count();
+            if *compared == Compared::NonZero || self.limit().spend(effort as u64).is_err() {
+                continue;
+            }
+            for (monomial, wanted) in fact.terms() {
+                let Some((_, present)) = poly.terms().find(|(candidate, _)| *candidate == monomial) else { continue };
+                if monomial.is_one() || wanted.is_negative() != present.is_negative() {
+                    continue;
+                }
+                // |wanted| * poly - |present| * fact
+                let rest = &poly.scale(&wanted.abs()) - &fact.scale(&present.abs());
+                let mut sign = self.plain_sign(&rest);
+                if sign.is_none() && most > 1 && rest.term_count() <= poly.term_count() {
+                    sign = self.above_facts(&rest, facts, most - 1);
+                }
+                match sign {
+                    Some(Sign::Positive) => return Some(Sign::Positive),
+                    Some(Sign::NonNegative | Sign::Zero) if *compared == Compared::Positive => {
+                        return Some(Sign::Positive);
+                    }
+                    Some(Sign::NonNegative | Sign::Zero) => found = Some(Sign::NonNegative),
+                    _ => {}
+                }
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,117 @@
+//! Signs of kernels: by what they are, by the ranges of their arguments, or by a fact about one alone.
+
+use crate::cas::expr::{Expr, Node};
+use crate::cas::facts::Relation as Compared;
+use crate::cas::function::Function;
+use crate::cas::integer::Integer;
+use crate::cas::poly::Poly;
+use crate::cas::rational::half;
+
+use super::Field;
+use super::sign::Sign;
+
+impl Field<'_> {
+    /// The sign of a kernel: by its nature or by a fact about it alone.
+    pub(super) fn kernel_sign(&self, variable: u32) -> Option<Sign> {
+        if self.kernels.borrow().get(variable as usize).is_some_and(|kernel| kernel.positive) {
+            return Some(Sign::Positive);
+        }
+        if let Some(sign) = self.sign_by_nature(variable) {
+            return Some(sign);
+        }
+        for (fact, compared) in self.signs.borrow().iter() {
+            if fact.variables() != [variable] {
+                continue;
+            }
+            // c v + d > 0 fixes the sign of v where the constant helps.
+            if fact.degree(variable) != 1 || *compared == Compared::NonZero {
+                continue;
+            }
+            let constant = fact
+                .terms()
+                .find(|(monomial, _)| monomial.is_one())
+                .map_or(Integer::ZERO, |(_, coefficient)| coefficient.clone());
+            let rising = !fact.leading_coefficient().is_negative();
+            // v > -d/c with d <= 0: positive; v < d/|c| with d <= 0: negative.
+            let strict = *compared == Compared::Positive || !constant.is_zero();
+            match (rising, constant.is_zero() || constant.is_negative()) {
+                (true, true) if strict => return Some(Sign::Positive),
+                (true, true) => return Some(Sign::NonNegative),
+                (false, true) if strict => return Some(Sign::Negative),
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// Roots and absolute values are not negative; a root of something positive is positive. A cosine
+    /// is positive where its angle is within the right half, a sine where it is within the upper one.
+    fn sign_by_nature(&self, variable: u32) -> Option<Sign> {
+        let (expr, radicand) = {
+            let kernels = self.kernels.borrow();
+            let kernel = kernels.get(variable as usize)?;
+            (kernel.expr, kernel.relation.as_ref().map(|relation| relation.value.clone()))
+        };
+        let root = self.is_plain_root(expr);
+        if !root && !matches!(self.arena.node(expr), Node::Call(..)) {
+            return None;
+        }
+        // A fact may have the kernel itself in it: then its form is all that is known.
+        let by_form =
+            (root || matches!(self.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
+        if !self.asking.borrow_mut().insert(variable) {
+            return by_form;
+        }
+        let sign = self.sign_by_arguments(expr, radicand);
+        self.asking.borrow_mut().remove(&variable);
+        sign.or(by_form)
+    }
+
+    fn sign_by_arguments(&self, expr: Expr, radicand: Option<Poly>) -> Option<Sign> {
+        match self.arena.node(expr) {
+            Node::Call(function @ (Function::Sin | Function::Cos), arguments) => {
+                self.sign_on_circle(function, arguments[0])
+            }
+            Node::Call(function @ (Function::Asin | Function::Acos | Function::Atan | Function::Atan2), arguments) => {
+                self.range_of_inverse(function, &arguments).ok()?.sign()
+            }
+            Node::Call(..) => None,
+            _ => self.sign(&radicand?).ok()?.filter(|sign| *sign == Sign::Positive),
+        }
+    }
+
+    /// The sign of a sine or cosine by the range of its angle.
+    fn sign_on_circle(&self, function: Function, angle: Expr) -> Option<Sign> {
+        if self.signs.borrow().is_empty() {
+            return None;
+        }
+        let right = self.scale(&self.fraction(self.arena.pi()).ok()?, &half()).ok()?;
+        let angle = self.fraction(angle).ok()?;
+        // From the middle of where the function is positive.
+        let angle = if function == Function::Sin { self.sub(&angle, &right).ok()? } else { angle };
+        let mut strict = true;
+        for distance in [self.sub(&right, &angle).ok()?, self.add(&right, &angle).ok()?] {
+            match self.sign_of(&distance).ok()?? {
+                Sign::Positive => {}
+                Sign::NonNegative => strict = false,
+                _ => return None,
+            }
+        }
+        Some(if strict { Sign::Positive } else { Sign::NonNegative })
+    }
+
+    /// Whether the polynomial is known to be zero nowhere by the nature of its kernels: exponentials,
+    /// and roots of what is positive.
+    pub fn never_zero(&self, poly: &Poly) -> bool {
+        let never = |variable: &u32| {
+            let (positive, radicand) = {
+                let kernel = &self.kernels.borrow()[*variable as usize];
+                let root = kernel.relation.as_ref().filter(|_| self.is_plain_root(kernel.expr));
+                (kernel.positive, root.map(|relation| relation.value.clone()))
+            };
+            let rooted = |radicand: Poly| self.sign(&radicand).is_ok_and(|sign| sign == Some(Sign::Positive));
+            positive || radicand.is_some_and(rooted)
+        };
+        poly.term_count() == 1 && poly.variables().iter().all(never)
+    }
+}

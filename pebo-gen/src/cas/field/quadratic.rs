@@ -1,0 +1,71 @@
+//! Signs of what is quadratic in a power of a variable, by its discriminant.
+
+use crate::cas::integer::Integer;
+use crate::cas::poly::Poly;
+
+use super::sign::Sign;
+use super::{Field, Obstacle};
+
+impl Field<'_> {
+    /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
+    /// out.
+    pub(super) fn sign_by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        const MOST_TERMS: usize = 40;
+        const DEEPEST: u32 = 3;
+        // Each step asks for the signs of polynomials in one variable less.
+        let depth = self.depth.get();
+        if poly.term_count() > MOST_TERMS || depth == DEEPEST {
+            return Ok(None);
+        }
+        self.depth.set(depth + 1);
+        let sign = self.sign_as_quadratic(poly);
+        self.depth.set(depth);
+        sign
+    }
+
+    fn sign_as_quadratic(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        for &variable in poly.variables() {
+            // Also in a power of the variable.
+            let degree = poly.degree(variable);
+            let (mut a, mut b, mut c) = (Poly::zero(), Poly::zero(), Poly::zero());
+            let mut quadratic = degree.is_multiple_of(2);
+            for (exponent, coefficient) in poly.coefficients_in(variable) {
+                match exponent {
+                    0 => c = coefficient,
+                    _ if exponent == degree => a = coefficient,
+                    _ if 2 * exponent == degree => b = coefficient,
+                    _ => quadratic = false,
+                }
+            }
+            if !quadratic {
+                continue;
+            }
+            if b.is_zero() || c.is_zero() {
+                continue;
+            }
+            let Some(upward) = self.sign(&a)? else { continue };
+            if upward == Sign::Negative {
+                (a, c) = (-&a, -&c);
+            }
+            let four = Integer::from(4);
+            let below = &a.mul(&c, self.limit())?.scale(&four) - &b.mul(&b, self.limit())?;
+            // 4 a poly = (2 a v^k + b)^2 + below; where a is zero, b is not unless below is zero.
+            let least = match self.sign(&below)? {
+                Some(Sign::Positive) => Sign::Positive,
+                Some(Sign::NonNegative | Sign::Zero)
+                    if matches!(upward, Sign::Positive | Sign::Negative)
+                        || self.sign(&c)?.is_some_and(Sign::is_positive_or_zero) =>
+                {
+                    Sign::NonNegative
+                }
+                _ => continue,
+            };
+            return Ok(match (upward, least) {
+                (Sign::Negative, Sign::Positive) => Some(Sign::Negative),
+                (Sign::Negative, _) => None,
+                (_, least) => Some(least),
+            });
+        }
+        Ok(None)
+    }
+}
