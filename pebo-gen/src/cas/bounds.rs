@@ -12,14 +12,14 @@ use super::expr::{Expr, Symbol};
 use super::interval::{Interval, Precision};
 use super::rational::{Rational, half};
 
-/// How many boxes are looked at before the question is given up.
+/// How many boxes a question of the normal form may take.
 const MOST_BOXES: usize = 256;
 
 /// Bits of the enclosures: the width of a box matters more.
 const PRECISION: Precision = Precision::new(64);
 
 /// A closed range for each symbol.
-type Box = BTreeMap<Symbol, (Rational, Rational)>;
+pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 impl Domain {
     /// Whether the expression is positive (true) or negative (false) throughout the domain.
@@ -29,23 +29,29 @@ impl Domain {
             return None;
         }
         let ranges = self.bounds(arena, &symbols);
-        let whole: Box = symbols.iter().map(|s| Some((*s, ranges.get(s)?.clone()))).collect::<Option<_>>()?;
-        let mut open = vec![whole];
-        let mut found: Option<bool> = None;
-        for _ in 0..MOST_BOXES {
-            let Some(part) = open.pop() else { return found };
-            match sign(arena, expr, &part) {
-                Some(sign) if found.is_none_or(|known| known == sign) => found = Some(sign),
-                Some(_) => return None,
-                None => open.extend(halves(part)),
-            }
-        }
-        None
+        let whole: Ranges = symbols.iter().map(|s| Some((*s, ranges.get(s)?.clone()))).collect::<Option<_>>()?;
+        sign_on_box(arena, expr, whole, MOST_BOXES)
     }
 }
 
+/// Whether the expression is positive (true) or negative (false) on the whole box, seen by dividing it
+/// into no more than so many boxes.
+pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
+    let mut open = vec![whole];
+    let mut found: Option<bool> = None;
+    for _ in 0..=most {
+        let Some(part) = open.pop() else { return found };
+        match sign(arena, expr, &part) {
+            Some(sign) if found.is_none_or(|known| known == sign) => found = Some(sign),
+            Some(_) => return None,
+            None => open.extend(halves(part)?),
+        }
+    }
+    None
+}
+
 /// The sign that one enclosure shows.
-fn sign(arena: &Arena, expr: Expr, part: &Box) -> Option<bool> {
+fn sign(arena: &Arena, expr: Expr, part: &Ranges) -> Option<bool> {
     let mut values = BTreeMap::new();
     for (symbol, (low, high)) in part {
         let ends = [low, high].map(|end| Interval::from_rational(end, PRECISION));
@@ -56,15 +62,18 @@ fn sign(arena: &Arena, expr: Expr, part: &Box) -> Option<bool> {
     (!value.contains_zero()).then(|| value.is_positive())
 }
 
-/// The box cut in two across its widest side.
-fn halves(part: Box) -> Vec<Box> {
-    let widest = part.iter().max_by_key(|(_, (low, high))| high - low).map(|(symbol, ends)| (*symbol, ends.clone()));
-    let Some((symbol, (low, high))) = widest else { return Vec::new() };
+/// The box cut in two across its widest side; none of a point.
+fn halves(part: Ranges) -> Option<[Ranges; 2]> {
+    let widest = part.iter().max_by_key(|(_, (low, high))| high - low)?;
+    let (symbol, (low, high)) = (*widest.0, widest.1.clone());
+    if low == high {
+        return None;
+    }
     let middle = &(&low + &high) * &half();
     let mut parts = [part.clone(), part];
     parts[0].insert(symbol, (low, middle.clone()));
     parts[1].insert(symbol, (middle, high));
-    parts.into()
+    Some(parts)
 }
 
 #[cfg(test)]

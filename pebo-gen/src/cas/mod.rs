@@ -3,7 +3,7 @@
 //! Knows neither plants nor spans. An [`Arena`] owns expressions; [`Expr`] is a copyable handle.
 
 mod arena;
-mod bounds;
+pub mod bounds;
 mod build;
 pub mod combination;
 mod derivative;
