@@ -9,6 +9,7 @@
 //! if everything is.
 
 pub mod analysis;
+mod builder;
 pub mod cas;
 pub mod emit;
 pub mod model;
@@ -18,6 +19,8 @@ pub mod report;
 #[cfg(feature = "simulate")]
 pub mod simulate;
 pub mod source;
+
+pub use builder::{BuildError, Builder, Built};
 
 use analysis::Derivation;
 use emit::{EmitError, Emitted, Scalar};
