@@ -21,7 +21,8 @@ fn main() -> Result<(), BuildError> {
     for (scalar, name) in [(Scalar::F64, "f64"), (Scalar::F32, "f32")] {
         for built in Builder::new().out_dir(out.join(name)).scalar(scalar).compile(&models)? {
             let (model, type_name) = (&built.model, &built.type_name);
-            writeln!(root, "#[path = {:?}]\npub mod {model}_{name};", built.path.display().to_string()).expect("a string");
+            writeln!(root, "#[path = {:?}]\npub mod {model}_{name};", built.path.display().to_string())
+                .expect("a string");
             writeln!(
                 table,
                 "    ({model:?}, {name:?}, |point| crate::evaluate(&{model}_{name}::{type_name}::new(&{model}_{name}::Parameters::default()), point)),"

@@ -113,7 +113,12 @@ fn read(arguments: TokenStream) -> Result<Read, Error> {
     derived.derivation.admit().map_err(|d| refused(render(d, &source, Colour::Never)))?;
     let emitted = derived.emit(scalar).map_err(|error| refused(error.to_string()))?;
     let tracked = file.display().to_string();
-    Ok(Read { emitted, tracked: quote!(const _: &[u8] = include_bytes!(#tracked);) })
+    Ok(Read {
+        emitted,
+        tracked: quote!(
+            const _: &[u8] = include_bytes!(#tracked);
+        ),
+    })
 }
 
 /// A type's name as a module's.

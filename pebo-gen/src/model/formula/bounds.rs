@@ -48,7 +48,8 @@ impl Measured {
     /// `-operand`.
     pub(in crate::model) fn negative(operand: Self, span: Span) -> Result<Self, Diagnostic> {
         let (depth, degree, parts) = (operand.depth, operand.degree, operand.parts);
-        Self { formula: Formula { span, term: Term::Negative(Box::new(operand.formula)) }, depth, degree, parts }.grown()
+        Self { formula: Formula { span, term: Term::Negative(Box::new(operand.formula)) }, depth, degree, parts }
+            .grown()
     }
 
     /// Two operands.

@@ -77,7 +77,7 @@ pub(super) fn no_estimate(hat: Span) -> Diagnostic {
 }
 
 /// A call with the wrong number of arguments.
-pub(in crate::model) fn argument_count(function: &Function, found: usize, span: Span) -> Diagnostic {
+pub(super) fn argument_count(function: &Function, found: usize, span: Span) -> Diagnostic {
     let (name, wanted) = (function.name, function.arguments);
     let found = if found == 0 { "none".to_owned() } else { found.to_string() };
     Diagnostic::error(Code::ArgumentCount, span, format!("`{name}` takes {wanted} and has {found}"))
@@ -85,7 +85,7 @@ pub(in crate::model) fn argument_count(function: &Function, found: usize, span: 
 }
 
 /// A call of something that is no function.
-pub(in crate::model) fn unknown_function(name: &str, span: Span) -> Diagnostic {
+pub(super) fn unknown_function(name: &str, span: Span) -> Diagnostic {
     let message = format!("{} is not a function", quoted(name));
     let diagnostic = Diagnostic::error(Code::UnknownFunction, span, message);
     match nearest(name, Function::names()) {

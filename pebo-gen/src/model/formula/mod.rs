@@ -34,7 +34,6 @@ use crate::source::Span;
 pub(super) use bounds::Measured;
 pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
-pub(super) use complaints::{argument_count, unknown_function};
 pub use functions::{FUNCTIONS, Function};
 pub(super) use lexer::greek;
 pub use parser::{Estimates, parse_comparison, parse_formula};

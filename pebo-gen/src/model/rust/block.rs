@@ -1,7 +1,7 @@
 //! Statements and patterns.
 
-use syn::{Block, Expr, Pat, Stmt};
 use syn::ext::IdentExt as _;
+use syn::{Block, Expr, Pat, Stmt};
 
 use super::evaluate::Reader;
 use super::value::{Locals, Value};

@@ -149,8 +149,12 @@ impl<'a> Reader<'a> {
         }
         if item.sig.inputs.len() != arguments.len() {
             let (name, wanted, found) = (&item.sig.ident, item.sig.inputs.len(), arguments.len());
-            return Err(Diagnostic::error(Code::ArgumentCount, call, format!("`{name}` takes {wanted} and has {found}"))
-                .help("give each argument that the function declares"));
+            return Err(Diagnostic::error(
+                Code::ArgumentCount,
+                call,
+                format!("`{name}` takes {wanted} and has {found}"),
+            )
+            .help("give each argument that the function declares"));
         }
         let mut locals = Locals::new();
         for (input, argument) in item.sig.inputs.iter().zip(arguments) {

@@ -5,9 +5,9 @@ use syn::{Expr, ExprCall, ExprMethodCall, Path};
 use super::evaluate::Reader;
 use super::items;
 use super::value::{Locals, Value};
-use super::{Places, unsupported};
-use crate::model::formula::{Decimal, Formula, Function, Measured, Operator, PI, Term, argument_count, unknown_function};
-use crate::source::{Diagnostic, Span, nearest};
+use super::{Places, refusal, unsupported};
+use crate::model::formula::{Decimal, Formula, Function, Measured, Operator, PI, Term};
+use crate::source::{Code, Diagnostic, Span, listed, nearest};
 
 /// Functions that Rust calls otherwise than formulas do, or that are not analytic, with what to do instead.
 const REFUSED: &[(&str, &str)] = &[
@@ -29,7 +29,8 @@ const REFUSED: &[(&str, &str)] = &[
 ];
 
 /// Methods that this module spells out itself.
-const OWN: &[&str] = &["powi", "powf", "recip", "mul_add", "hypot", "exp2", "log10", "log2", "sin_cos", "clone", "to_radians"];
+const OWN: &[&str] =
+    &["powi", "powf", "recip", "mul_add", "hypot", "exp2", "log10", "log2", "sin_cos", "clone", "to_radians"];
 
 type Constant = fn(Span) -> Result<Measured, Diagnostic>;
 
@@ -57,7 +58,11 @@ pub(super) fn mathematical(path: &Path) -> Option<Constant> {
 
 /// `name(..)` of the module, or `f64::name(a, ..)`.
 pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals) -> Result<Value, Diagnostic> {
-    let Expr::Path(path) = &*call.func else {
+    let function = bare(&call.func);
+    let Expr::Path(path) = function else {
+        if matches!(function, Expr::Closure(_)) {
+            return Err(refusal::expression(function, reader.places));
+        }
         return Err(unsupported(reader.places.of(&call.func), "this is no function that is known here")
             .help("call a function of the module by its name"));
     };
@@ -76,6 +81,11 @@ pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals
             call.args.iter().map(|argument| reader.value(argument, locals)).collect::<Result<_, _>>()?;
         return reader.run(item, arguments, place);
     }
+    // `f64::sin(a)`, or by the name of a trait that floating-point numbers have.
+    let of_type = path.path.segments.iter().rev().nth(1).map(|segment| segment.ident.to_string()).unwrap_or_default();
+    if !matches!(of_type.as_str(), "f64" | "f32") && !of_type.starts_with(char::is_uppercase) {
+        return Err(no_such_function(reader, path, &name));
+    }
     if name == "from" && call.args.len() == 1 {
         return reader.converted(&call.args[0], locals);
     }
@@ -86,6 +96,15 @@ pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals
     let receiver = reader.number(receiver, locals)?;
     let arguments: Vec<&Expr> = arguments.collect();
     applied_method(reader, &name, &last.ident, receiver, &arguments, &Expr::Call(call.clone()), locals)
+}
+
+/// An expression without the parentheses around it.
+fn bare(expr: &Expr) -> &Expr {
+    match expr {
+        Expr::Paren(inner) => bare(&inner.expr),
+        Expr::Group(inner) => bare(&inner.expr),
+        other => other,
+    }
 }
 
 /// `a.name(..)`.
@@ -111,8 +130,7 @@ fn applied_method(
     let at = reader.places.of(whole);
     let place = reader.places.of(ident);
     let expected = |count: usize| {
-        let message = format!("`{name}` takes {count} and has {}", arguments.len());
-        if arguments.len() == count { Ok(()) } else { Err(unsupported(place, message).help("see the method in Rust's library")) }
+        if arguments.len() == count { Ok(()) } else { Err(wrong_count(name, count, arguments.len(), at)) }
     };
     let number = match name {
         "powi" => {
@@ -169,12 +187,10 @@ fn applied_method(
                 return Err(unsupported(place, format!("`{name}` is not a function of formulas")).help(*help));
             }
             let Some(function) = Function::named(name) else { return Err(no_such_method(name, place)) };
+            expected(function.arguments - 1)?;
             let mut operands = vec![receiver];
             for argument in arguments {
                 operands.push(reader.number(argument, locals)?);
-            }
-            if operands.len() != function.arguments {
-                return Err(argument_count(function, operands.len(), at));
             }
             Measured::call(function, operands, at)?
         }
@@ -209,14 +225,23 @@ fn no_such_function(reader: &mut Reader<'_>, path: &syn::ExprPath, name: &str) -
     }
 }
 
+/// Arguments are those in parentheses, without what stands before the point.
+fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic {
+    let found = if found == 0 { "none".to_owned() } else { found.to_string() };
+    let arguments = ["", "b", "b, c"].get(wanted).copied().unwrap_or("..");
+    Diagnostic::error(Code::ArgumentCount, at, format!("`{name}` takes {wanted} in parentheses and has {found}"))
+        .help(format!("write `a.{name}({arguments})`"))
+}
+
 fn no_such_method(name: &str, place: Span) -> Diagnostic {
-    // `log` and `atan2` are methods with arguments of their own in Rust; all others are as in formulas.
-    let methods = OWN.iter().copied().chain(["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh"]);
-    let methods = methods.chain(["tanh", "exp", "ln", "sqrt", "abs"]);
-    match nearest(name, methods) {
-        Some(near) => unsupported(place, format!("`{name}` is not a function of formulas"))
-            .help(format!("did you mean `{near}`?")),
-        None => unknown_function(name, place),
+    // As Rust calls them.
+    let known =
+        ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "ln", "sqrt", "abs"];
+    let known = || known.into_iter().chain(OWN.iter().copied());
+    let diagnostic = Diagnostic::error(Code::UnknownFunction, place, format!("`{name}` is not a function of formulas"));
+    match nearest(name, known()) {
+        Some(near) => diagnostic.suggest(Some(near)),
+        None => diagnostic.help(format!("the functions are {}", listed(known()))),
     }
 }
 
@@ -231,6 +256,6 @@ fn decimal(text: &str, at: Span) -> Result<Measured, Diagnostic> {
 fn applied(name: &str, argument: Measured, at: Span) -> Result<Measured, Diagnostic> {
     match Function::named(name) {
         Some(function) => Measured::call(function, vec![argument], at),
-        None => Err(unknown_function(name, at)),
+        None => Err(no_such_method(name, at)),
     }
 }

@@ -50,8 +50,7 @@ pub(super) fn fields(item: &ItemStruct, places: &mut Places, diagnostics: &mut D
     let Fields::Named(named) = &item.fields else {
         let place = places.of(&item.ident);
         let message = format!("`{}` has no named fields", item.ident);
-        diagnostics
-            .push(unsupported(place, message).help("give each signal a name: `pub struct X { pub i1: f64 }`"));
+        diagnostics.push(unsupported(place, message).help("give each signal a name: `pub struct X { pub i1: f64 }`"));
         return Vec::new();
     };
     let mut names = Vec::new();

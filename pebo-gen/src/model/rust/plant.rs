@@ -56,7 +56,8 @@ pub(super) fn read(
         Some(item) => items::fields(item, places, diagnostics),
         None => {
             if let Some(what) = required {
-                diagnostics.push(missing(name.span, &format!("the struct `{letter}`, the {what}"), &format!("`pub struct {letter} {{ pub a: f64 }}`")));
+                let what = format!("the struct `{letter}`, the {what},");
+                diagnostics.push(missing(name.span, &what, &format!("pub struct {letter} {{ pub a: f64 }}")));
             }
             Vec::new()
         }
@@ -67,13 +68,19 @@ pub(super) fn read(
         u: signals("U", None, places),
         w: signals("W", None, places),
     };
+    // Functions of signals that are not known would only repeat it.
+    if diagnostics.has_errors() {
+        return None;
+    }
     let mut pass = Pass { reader: Reader::new(&items, places, diagnostics), signals, module: name.span };
     let (parameters, define) = pass.constants();
-    let f_x = pass.required("f_x", "pub fn f_x(x: &X, y: &Y, u: &U) -> X { X { .. } }").map(|item| pass.entries(item, 0));
+    let f_x =
+        pass.required("f_x", "pub fn f_x(x: &X, y: &Y, u: &U) -> X { X { .. } }").map(|item| pass.entries(item, 0));
     let f_y = pass.reader.items.function("f_y").map(|item| pass.entries(item, 0)).unwrap_or_default();
     let phi = pass.required("phi", "pub fn phi(x: &X, y: &Y) -> [f64; 1] { [x.a] }").map(|item| pass.list(item));
     let components = phi.as_ref().map_or(0, Vec::len);
-    let phi_left = pass.reader.items.function("phi_left").map(|item| pass.entries(item, components)).unwrap_or_default();
+    let phi_left =
+        pass.reader.items.function("phi_left").map(|item| pass.entries(item, components)).unwrap_or_default();
     let identities = pass.reader.items.function("identities").map(|item| pass.list(item)).unwrap_or_default();
     let (assume, angles) = pass.attribute(&arguments);
     let Signals { x, y, u, w } = pass.signals;
@@ -149,7 +156,7 @@ impl<'a> Pass<'a> {
     fn required(&mut self, name: &str, example: &str) -> Option<&'a ItemFn> {
         let found = self.reader.items.function(name);
         if found.is_none() {
-            self.reader.diagnostics.push(missing(self.module, &format!("the function `{name}`"), &format!("`{example}`")));
+            self.reader.diagnostics.push(missing(self.module, &format!("the function `{name}`"), example));
         }
         found
     }
@@ -179,8 +186,10 @@ impl<'a> Pass<'a> {
                 let name = path.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
                 match self.signals.of(&name) {
                     Some(fields) => Ok(Value::record(fields)),
-                    None => Err(unsupported(self.reader.places.of(ty), format!("`{name}` is none of the plant's signals"))
-                        .help("take X, Y, U or W, by value or by reference")),
+                    None => {
+                        Err(unsupported(self.reader.places.of(ty), format!("`{name}` is none of the plant's signals"))
+                            .help("take X, Y, U or W, by value or by reference"))
+                    }
                 }
             }
             Type::Array(_) if components > 0 => {
@@ -253,7 +262,9 @@ impl<'a> Pass<'a> {
     /// What the attribute says, in which signals are called by their names alone.
     fn attribute(&mut self, arguments: &Arguments) -> (Vec<Comparison>, Vec<Entry<Formula>>) {
         let mut locals = Locals::new();
-        for (letter, fields) in [("x", &self.signals.x), ("y", &self.signals.y), ("u", &self.signals.u), ("w", &self.signals.w)] {
+        for (letter, fields) in
+            [("x", &self.signals.x), ("y", &self.signals.y), ("u", &self.signals.u), ("w", &self.signals.w)]
+        {
             locals.push((letter.to_owned(), Value::record(fields)));
         }
         for field in [&self.signals.x, &self.signals.y, &self.signals.u, &self.signals.w].into_iter().flatten() {
@@ -290,8 +301,8 @@ impl<'a> Pass<'a> {
 }
 
 fn missing(module: Span, what: &str, example: &str) -> Diagnostic {
-    Diagnostic::error(Code::MissingItem, module, format!("{what}, is missing").replace("`, is", "` is"))
-        .help(format!("add it to the module, for example {example}"))
+    Diagnostic::error(Code::MissingItem, module, format!("{what} is missing"))
+        .help(format!("add it to the module, for example `{example}`"))
 }
 
 /// The name of the type that a function returns.

@@ -26,11 +26,12 @@ pub(super) fn expression(expr: &Expr, places: &mut Places) -> Diagnostic {
             .help("end the function with the expression that it returns"),
         Expr::Macro(e) => macro_call(&e.mac, places),
         Expr::Assign(e) => assignment(&e.eq_token, places),
-        Expr::Unsafe(e) => {
-            unsupported(places.of(&e.unsafe_token), "a formula has nothing unsafe").help("compute it with safe operations")
-        }
+        Expr::Unsafe(e) => unsupported(places.of(&e.unsafe_token), "a formula has nothing unsafe")
+            .help("compute it with safe operations"),
         Expr::Range(e) => unsupported(places.of(e), "a range is no number").help("write each component by itself"),
-        Expr::Lit(e) => unsupported(places.of(e), "this literal is no number").help("write a decimal, as 12.0 or 22e-6"),
+        Expr::Lit(e) => {
+            unsupported(places.of(e), "this literal is no number").help("write a decimal, as 12.0 or 22e-6")
+        }
         other => unsupported(places.of(other), "a formula has no such expression")
             .help("use + - * /, calls, fields and `let`"),
     }
@@ -59,10 +60,19 @@ pub(super) fn operator(op: &BinOp, places: &mut Places) -> Diagnostic {
 pub(super) fn statement(expr: &Expr, places: &mut Places) -> Diagnostic {
     match expr {
         Expr::Binary(binary) => operator(&binary.op, places),
-        Expr::If(_) | Expr::Match(_) | Expr::While(_) | Expr::ForLoop(_) | Expr::Loop(_) | Expr::Return(_)
-        | Expr::Macro(_) | Expr::Assign(_) | Expr::Unsafe(_) | Expr::Try(_) => expression(expr, places),
-        other => unsupported(places.of(other), "this statement does nothing")
-            .help("bind its value with `let`, or remove it"),
+        Expr::If(_)
+        | Expr::Match(_)
+        | Expr::While(_)
+        | Expr::ForLoop(_)
+        | Expr::Loop(_)
+        | Expr::Return(_)
+        | Expr::Macro(_)
+        | Expr::Assign(_)
+        | Expr::Unsafe(_)
+        | Expr::Try(_) => expression(expr, places),
+        other => {
+            unsupported(places.of(other), "this statement does nothing").help("bind its value with `let`, or remove it")
+        }
     }
 }
 
@@ -77,7 +87,8 @@ fn repetition(token: &impl ToTokens, what: &str, places: &mut Places) -> Diagnos
 }
 
 pub(super) fn mutable(token: &impl ToTokens, places: &mut Places) -> Diagnostic {
-    unsupported(places.of(token), "names in formulas do not change").help("remove `mut`, and bind new values to new names")
+    unsupported(places.of(token), "names in formulas do not change")
+        .help("remove `mut`, and bind new values to new names")
 }
 
 fn assignment(token: &impl ToTokens, places: &mut Places) -> Diagnostic {
