@@ -54,6 +54,12 @@ codes! {
     FileTooLarge "file-too-large" "a file is larger than a model can be"
         "Model files are limited to one megabyte. Models written by hand have a few kilobytes."
 
+    // Commands.
+
+    NotYet "not-yet" "a command that this version does not have"
+        "The command belongs to the interface of pebo-gen, and is not written yet. `pebo-gen --help` lists those that \
+         are."
+
     // YAML.
 
     EmptyFile "empty-file" "a model file has no content"
