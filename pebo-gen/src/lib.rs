@@ -9,6 +9,7 @@
 //! if everything is.
 
 pub mod analysis;
+mod builder;
 pub mod cas;
 pub mod emit;
 pub mod model;
@@ -18,6 +19,8 @@ pub mod report;
 #[cfg(feature = "simulate")]
 pub mod simulate;
 pub mod source;
+
+pub use builder::{BuildError, Builder, Built};
 
 use analysis::Derivation;
 use emit::{EmitError, Emitted, Scalar};
@@ -38,13 +41,17 @@ pub struct Derived {
 
 /// Derives the observer of a model file; the errors are those of a file that could not be read.
 pub fn derive(source: &Source) -> Result<Derived, Vec<Diagnostic>> {
-    let model = Model::parse(source)?;
-    let plant = Plant::resolve(&model)?;
-    let derivation = Derivation::derive(&plant);
-    Ok(Derived { model, plant, derivation })
+    Derived::of(Model::parse(source)?)
 }
 
 impl Derived {
+    /// Derives the observer of a model, whoever read it.
+    pub fn of(model: Model) -> Result<Self, Vec<Diagnostic>> {
+        let plant = Plant::resolve(&model)?;
+        let derivation = Derivation::derive(&plant);
+        Ok(Self { model, plant, derivation })
+    }
+
     /// Writes the observer as Rust, and proves that the written code computes what was derived.
     pub fn emit(&self, scalar: Scalar) -> Result<Emitted, EmitError> {
         let domain = self.plant.domain();

@@ -75,6 +75,58 @@ fn output_is_the_same_every_time() {
 }
 
 #[test]
+fn several_models_are_written_into_a_folder() {
+    let folder = Folder::new();
+    let small = folder.file("m.yaml", model("model", "model: small"));
+    let out = folder.0.path().display().to_string();
+    assert_eq!(run(&[CUK, &small, "-o", &out]).status.code(), Some(0));
+    assert!(folder.path("cuk.rs").exists() && folder.path("small.rs").exists());
+    let output = run(&[CUK, &small]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("help: make it, and name it with `-o FOLDER`"));
+}
+
+#[test]
+fn describes_itself() {
+    for (arguments, part) in [
+        (&["--help"][..], "Examples:"),
+        (&["--version"], env!("CARGO_PKG_VERSION")),
+        (&["completions", "bash"], "complete -F"),
+        (&["completions", "fish"], "complete -c pebo-gen"),
+        (&["man"], ".TH pebo-gen"),
+        (&["schema"], "json-schema.org"),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+        assert!(text(&output.stdout).contains(part), "{arguments:?}: {}", text(&output.stdout));
+    }
+}
+
+#[test]
+fn commands_to_come_say_so() {
+    for command in ["solve", "report", "certificate"] {
+        let output = run(&[command, CUK, "-o", "out"]);
+        assert_eq!(output.status.code(), Some(2));
+        let said = text(&output.stderr);
+        assert!(said.contains("error[not-yet]") && said.contains(command) && said.contains("help:"), "{said}");
+    }
+}
+
+#[test]
+fn long_lines_are_cut_to_the_terminal() {
+    let folder = Folder::new();
+    let long = folder.file("m.yaml", model("phi", &format!("phi: [x1{}, y2]", " + 0*y1".repeat(60))));
+    let widest = |columns: &str| {
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_pebo-gen")).args(["check", &long]).env("COLUMNS", columns).output();
+        let said = text(&output.expect("the program runs").stderr);
+        said.lines().filter(|line| line.contains('|')).map(|line| line.chars().count()).max().unwrap_or(0)
+    };
+    let (narrow, wide) = (widest("60"), widest("1000"));
+    assert!(narrow <= 80 && wide > 300, "{narrow} and {wide}");
+}
+
+#[test]
 fn a_refused_model_exits_with_1_and_writes_nothing() {
     let folder = Folder::new();
     let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));

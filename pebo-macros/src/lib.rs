@@ -1,24 +1,63 @@
-//! `#[pebo_model("models/cuk.yaml")]`: an observer from a model file, at compile time.
+//! `#[pebo_model]`: an observer at compile time, from a plant in plain Rust or from a model file.
 //!
-//! Put on an empty module, the attribute fills it with what `pebo-gen` would emit for the file; the
-//! crate that uses it depends on `pebo-runtime`. The path is relative to the crate's own folder, and the
-//! crate is built again when the file changes. A claim that is not proved is a compile error with the
-//! generator's diagnostics.
+//! The crate that uses the attribute depends on `pebo-runtime` as well, which the written code calls. A claim that is
+//! not proved is a compile error at the formula that is to blame, with the generator's diagnostics.
 
-use std::path::PathBuf;
+mod file;
+mod functions;
+mod plain;
+mod refusal;
 
-use pebo_gen::emit::Scalar;
-use pebo_gen::source::{Colour, Source, render};
 use proc_macro2::TokenStream;
-use quote::quote;
-use syn::spanned::Spanned as _;
-use syn::{Error, Item, ItemMod, LitStr};
+use syn::{Error, Item, LitStr};
 
-/// Fills an empty module with the observer of a model file.
+/// Writes the observer of a model.
+///
+/// On a module of plain Rust, the module is the model. `X`, `Y`, `U` and `W` are structs whose fields are the
+/// unmeasured states, the measured outputs, the inputs, and unmeasured signals that are not estimated; `f_x` and `f_y`
+/// are their rates, `phi` is the candidate transform, and constants are the parameters. `phi_left` and `identities`
+/// may be given likewise. All of them stay as they are, and can be called; the module gets besides them
+///
+/// - the module `observer`, which `pebo-gen` would emit for the model, and its items: the model's type, named like
+///   the module in camel case, `Parameters`, `Observer` and the sizes;
+/// - `h`, `phi_0`, `phi_1` and, unless it is given, `phi_left` as functions of the module's structs.
+///
+/// ```
+/// #[pebo_macros::pebo_model(assume(M > 0, L > 0))]
+/// pub mod pendulum {
+///     const M: f64 = 1.0;
+///     const L: f64 = 0.5;
+///     const G: f64 = 9.81;
+///
+///     pub struct X { pub p: f64 }
+///     pub struct Y { pub q: f64 }
+///     pub struct U { pub tau: f64 }
+///
+///     pub fn f_x(y: &Y, u: &U) -> X {
+///         X { p: u.tau - M * G * L * y.q.sin() }
+///     }
+///     pub fn f_y(x: &X) -> Y {
+///         Y { q: x.p / (M * L.powi(2)) }
+///     }
+///     pub fn phi(x: &X) -> [f64; 1] {
+///         [x.p]
+///     }
+/// }
+///
+/// let [rate] = pendulum::h(&pendulum::Y { q: 0.0 }, &pendulum::U { tau: 2.0 });
+/// assert_eq!(rate, 2.0);
+/// ```
+///
+/// The attribute takes `title = ".."` (else the module's documentation is the title), `reference = ".."`,
+/// `assume(L > 0, 0 < d < 1)` and `angles(q = 2.0 * PI)`.
+///
+/// With the path of a model file, relative to the crate's own folder, it stands on a unit struct, which becomes the
+/// model's type beside a module of the same name in snake case, or on an empty module, which it fills. The crate is
+/// built again when the file changes. `scalar = f32` writes for single precision.
 ///
 /// ```text
 /// #[pebo_macros::pebo_model("models/cuk.yaml")]
-/// pub mod cuk {}
+/// pub struct Cuk;
 /// ```
 #[proc_macro_attribute]
 pub fn pebo_model(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
@@ -26,39 +65,15 @@ pub fn pebo_model(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 }
 
 fn expand(arguments: TokenStream, item: TokenStream) -> Result<TokenStream, Error> {
-    let path: LitStr = syn::parse2(arguments).map_err(|e| {
-        Error::new(e.span(), "the model file's path is missing: write #[pebo_model(\"models/plant.yaml\")]")
-    })?;
-    let module = empty_module(item)?;
-    let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-    let file = folder.join(path.value());
-    let bytes = std::fs::read(&file).map_err(|e| {
-        Error::new(path.span(), format!("cannot read {}: {e}; the path is relative to the crate", path.value()))
-    })?;
-    let refused = |text: String| Error::new(path.span(), format!("{} is refused\n{text}", path.value()));
-    let source = Source::from_bytes(path.value(), bytes)
-        .map_err(|d| refused(render(&[d], &Source::unread(path.value()), Colour::Never)))?;
-    let derived = pebo_gen::derive(&source).map_err(|d| refused(render(&d, &source, Colour::Never)))?;
-    derived.derivation.admit().map_err(|d| refused(render(d, &source, Colour::Never)))?;
-    let emitted = derived.emit(Scalar::F64).map_err(|e| refused(e.to_string()))?;
-
-    let ItemMod { attrs, vis, ident, .. } = module;
-    let tokens = emitted.tokens;
-    let tracked = file.display().to_string();
-    Ok(quote! {
-        #(#attrs)* #vis mod #ident {
-            #tokens
-            // Makes the compiler look at the file when it decides whether to build again.
-            const _: &[u8] = include_bytes!(#tracked);
-        }
-    })
-}
-
-fn empty_module(item: TokenStream) -> Result<ItemMod, Error> {
-    let expected = "put this attribute on an empty module, as `pub mod plant {}`";
-    let item: Item = syn::parse2(item)?;
-    match item {
-        Item::Mod(module) if module.content.as_ref().is_some_and(|(_, items)| items.is_empty()) => Ok(module),
-        other => Err(Error::new(other.span(), expected)),
+    let named = arguments.clone().into_iter().next().is_some_and(|first| syn::parse2::<LitStr>(first.into()).is_ok());
+    match syn::parse2(item)? {
+        Item::Mod(module) if named => file::module(arguments, module),
+        Item::Mod(module) => Ok(plain::module(arguments, &module)),
+        Item::Struct(item) => file::structure(arguments, &item),
+        other => Err(Error::new_spanned(
+            other,
+            "this attribute stands on a module of plain Rust, or with the path of a model file on a unit struct\n\
+             help: write `pub mod plant { .. }`, or #[pebo_model(\"models/plant.yaml\")] `pub struct Plant;`",
+        )),
     }
 }

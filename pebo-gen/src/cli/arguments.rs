@@ -4,13 +4,24 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+const EXAMPLES: &str = "\
+Examples:
+  pebo-gen models/cuk.yaml -o src/cuk.rs          prove, then write the observer
+  pebo-gen models/*.yaml -o src/observers/        the same for several models, a file each
+  pebo-gen check models/*.yaml --format json      verdicts for programs, a line each
+  pebo-gen simulate models/cuk.yaml --plot cuk.svg
+  pebo-gen explain cascade-refuted                the longer story of a diagnostic
+  generate_model | pebo-gen -                     a model from standard input
+
+Exit status: 0 accepted, 1 a claim is refuted or undecided, 2 the input or the call is malformed.";
+
 /// Proves parameter-estimation-based observers and emits them as Rust.
 #[derive(Parser)]
 #[command(
     version,
     args_conflicts_with_subcommands = true,
     arg_required_else_help = true,
-    after_help = "Exit status: 0 accepted, 1 a claim is refuted or undecided, 2 the input or the call is malformed."
+    after_help = EXAMPLES
 )]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -27,14 +38,40 @@ pub(super) enum Command {
     Simulate(SimulateOptions),
     /// Tell the longer story of a diagnostic's code
     Explain(ExplainOptions),
+    /// Print a shell's completions
+    Completions(CompletionsOptions),
+    /// Print the manual page
+    Man,
+    /// Print the JSON schema of `check --format json`
+    Schema,
+    /// Propose a transform (not yet)
+    Solve(LaterOptions),
+    /// Write the derivation as a page (not yet)
+    Report(LaterOptions),
+    /// Write the proofs as a script (not yet)
+    Certificate(LaterOptions),
+}
+
+#[derive(Args)]
+pub(super) struct CompletionsOptions {
+    /// The shell
+    #[arg(value_enum)]
+    pub(super) shell: clap_complete::Shell,
+}
+
+#[derive(Args)]
+pub(super) struct LaterOptions {
+    /// What the command will take
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    pub(super) arguments: Vec<String>,
 }
 
 #[derive(Args)]
 pub(super) struct GenerateOptions {
-    /// The model file to check and turn into Rust; `-` reads standard input
-    #[arg(required = true)]
-    pub(super) model: Option<PathBuf>,
-    /// Write the Rust code here instead of to standard output
+    /// The model files to check and turn into Rust; `-` reads standard input
+    #[arg(required = true, value_name = "MODEL")]
+    pub(super) models: Vec<PathBuf>,
+    /// Write the Rust code here instead of to standard output; for several models a folder
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// The floating-point type of the emitted code

@@ -10,7 +10,18 @@ use super::arguments::{GenerateOptions, ScalarName};
 use super::{Ending, files, terminal};
 
 pub(super) fn run(options: &GenerateOptions) -> Ending {
-    let path = options.model.as_deref().unwrap_or(Path::new("-"));
+    let several = options.models.len() > 1;
+    if several && options.output.as_deref().is_none_or(|output| !output.is_dir()) {
+        terminal::say(
+            "error: several models need a folder to write to\n  = help: make it, and name it with `-o FOLDER`\n",
+        );
+        return Ending::Malformed;
+    }
+    let endings = options.models.iter().map(|model| one(model, options));
+    endings.max().unwrap_or(Ending::Malformed)
+}
+
+fn one(path: &Path, options: &GenerateOptions) -> Ending {
     let Some((source, derived)) = files::derive(path) else { return Ending::Malformed };
     terminal::say(&report::summary(&derived.plant, &derived.derivation));
     terminal::report(&derived.derivation.diagnostics, &source);
@@ -28,7 +39,12 @@ pub(super) fn run(options: &GenerateOptions) -> Ending {
             return Ending::Refused;
         }
     };
-    match files::write(options.output.as_deref().unwrap_or(Path::new("-")), &emitted.text) {
+    let output = match options.output.as_deref() {
+        Some(folder) if folder.is_dir() => folder.join(format!("{}.rs", derived.plant.name)),
+        Some(file) => file.to_owned(),
+        None => Path::new("-").to_owned(),
+    };
+    match files::write(&output, &emitted.text) {
         Ok(()) => Ending::Accepted,
         Err(diagnostic) => {
             terminal::report(&[diagnostic], &source);

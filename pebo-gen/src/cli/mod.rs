@@ -5,6 +5,8 @@ mod check;
 mod explain;
 mod files;
 mod generate;
+mod later;
+mod manual;
 mod simulate;
 mod terminal;
 
@@ -32,6 +34,12 @@ pub(crate) fn run() -> ExitCode {
         Some(Command::Check(options)) => check::run(&options),
         Some(Command::Simulate(options)) => simulate::run(&options),
         Some(Command::Explain(options)) => explain::run(&options),
+        Some(Command::Completions(options)) => manual::completions(&options),
+        Some(Command::Man) => manual::page(),
+        Some(Command::Schema) => manual::schema(),
+        Some(Command::Solve(_)) => later::refuse("solve", "write a candidate under `phi`, and let `check` judge it"),
+        Some(Command::Report(_)) => later::refuse("report", "`pebo-gen check MODEL` prints what is derived as text"),
+        Some(Command::Certificate(_)) => later::refuse("certificate", "`pebo-gen check MODEL` says what is proved"),
         None => generate::run(&arguments.generate),
     };
     ExitCode::from(ending as u8)

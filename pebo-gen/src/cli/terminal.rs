@@ -1,14 +1,14 @@
-//! Diagnostics on the terminal: coloured where it is one and the user did not refuse.
+//! Diagnostics on the terminal: coloured where it is one and the user did not refuse, as wide as it is.
 
 use std::io::Write as _;
 
 use anstream::ColorChoice;
-use pebo_gen::source::{Colour, Diagnostic, Source, render};
+use pebo_gen::source::{Colour, Diagnostic, Source, render_within};
 
 /// Writes diagnostics to standard error.
 pub(super) fn report(diagnostics: &[Diagnostic], source: &Source) {
     if !diagnostics.is_empty() {
-        say(&render(diagnostics, source, colour()));
+        say(&render_within(diagnostics, source, colour(), width()));
     }
 }
 
@@ -22,4 +22,10 @@ fn colour() -> Colour {
         ColorChoice::Never => Colour::Never,
         _ => Colour::Always,
     }
+}
+
+/// The columns of the terminal, or those that the user says it has; a file has no width.
+fn width() -> Option<usize> {
+    let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    said.or_else(|| terminal_size::terminal_size_of(std::io::stderr()).map(|(width, _)| usize::from(width.0)))
 }

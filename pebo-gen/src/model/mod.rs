@@ -1,18 +1,19 @@
 //! What the author wrote, with the place of every part.
 //!
-//! In: a [`Source`]. Out: a [`Model`], or every independent mistake in it. After this layer the
+//! In: a [`Source`] or a module's tokens. Out: a [`Model`], or every independent mistake in it. After this layer the
 //! file has the right shape, its formulas are parsed and bounded, every declared name is declared
 //! once, and maps that belong to declared names have entries for these and no others. Names
 //! *inside* formulas are not looked up here: that is what the plant layer does ([`unknown_name`]
 //! words its diagnostic).
 //!
-//! The passes: `yaml` reads the text, [`check()`] holds what was declared against itself. A front
-//! end that builds a [`Model`] from something else than YAML runs the same check.
+//! The passes: `yaml` reads text, [`rust`] reads tokens, and [`check()`] holds what was declared against itself,
+//! whichever of the two it is from.
 
 mod check;
 pub mod class;
 pub mod formula;
 mod names;
+pub mod rust;
 mod written;
 mod yaml;
 

@@ -13,6 +13,9 @@ use crate::cas::{Arena, Expr};
 pub use json::{check, malformed};
 pub use text::summary;
 
+/// The JSON schema of the objects that [`check`] and [`malformed`] give.
+pub const SCHEMA: &str = include_str!("check.schema.json");
+
 /// Comparisons with zero, as a reader would write them.
 fn conditions(arena: &Arena, conditions: &[(Expr, Relation)]) -> Vec<String> {
     conditions

@@ -54,6 +54,12 @@ codes! {
     FileTooLarge "file-too-large" "a file is larger than a model can be"
         "Model files are limited to one megabyte. Models written by hand have a few kilobytes."
 
+    // Commands.
+
+    NotYet "not-yet" "a command that this version does not have"
+        "The command belongs to the interface of pebo-gen, and is not written yet. `pebo-gen --help` lists those that \
+         are."
+
     // YAML.
 
     EmptyFile "empty-file" "a model file has no content"
@@ -96,6 +102,18 @@ codes! {
     SingularMatrix "singular-matrix" "a matrix has no inverse anywhere"
         "The inertia matrix M, the frame T and the inductance matrix L are inverted. This one has determinant zero \
          whatever the positions are."
+
+    // Models in plain Rust.
+
+    MissingItem "missing-item" "a struct or a function of the model is absent"
+        "A module under #[pebo_model] has at least the structs X and Y, whose fields are the unmeasured states and the \
+         measured outputs, and the functions f_x and phi. Besides, it may have the structs U (inputs) and W (unmeasured \
+         signals that are not estimated), the functions f_y, phi_left and identities, and constants, which are the \
+         parameters."
+    UnsupportedRust "unsupported-rust" "Rust that has no meaning in a model"
+        "The functions of a model are read as formulas: + - * /, the functions of floating-point numbers, let, fields, \
+         indices, and calls of other functions of the module. Branches, loops, closures, macros and assignments are not \
+         formulas. The reader accepts nothing that would mean something else than what the compiled function computes."
 
     // Names.
 

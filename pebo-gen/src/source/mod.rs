@@ -20,7 +20,7 @@ mod tests;
 
 pub use codes::Code;
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
-pub use render::{Colour, Located, render};
+pub use render::{Colour, Located, render, render_within};
 pub use span::Span;
 pub use spelling::{listed, nearest, quoted};
 pub use text::{Position, SIZE_LIMIT, Source};

@@ -16,9 +16,18 @@ pub enum Colour {
 /// The diagnostics as text, each with its excerpt of the source, separated by blank lines; ends
 /// with a newline.
 pub fn render(diagnostics: &[Diagnostic], source: &Source, colour: Colour) -> String {
+    render_within(diagnostics, source, colour, None)
+}
+
+/// The same, with excerpts cut to so many columns.
+pub fn render_within(diagnostics: &[Diagnostic], source: &Source, colour: Colour, width: Option<usize>) -> String {
     let renderer = match colour {
         Colour::Never => Renderer::plain(),
         Colour::Always => Renderer::styled(),
+    };
+    let renderer = match width {
+        Some(width) => renderer.term_width(width),
+        None => renderer,
     };
     let pictures: Vec<String> =
         diagnostics.iter().map(|diagnostic| renderer.render(&[picture(diagnostic, source)]) + "\n").collect();

@@ -31,6 +31,7 @@ mod tests;
 
 use crate::source::Span;
 
+pub(super) use bounds::Measured;
 pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
 pub use functions::{FUNCTIONS, Function};

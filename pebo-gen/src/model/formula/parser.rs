@@ -1,6 +1,6 @@
 //! Tokens to formulas, by precedence climbing.
 
-use super::bounds::{Measured, power_degree};
+use super::bounds::Measured;
 use super::complaints;
 use super::lexer::{Kind, Lexer, Token};
 use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, Function, LENGTH_LIMIT, Operator, Places, Term};
@@ -102,7 +102,8 @@ impl<'a> Parser<'a> {
             self.advance()?;
             // Powers group to the right: 2^3^2 is 2^(3^2). All others group to the left.
             let right = self.expression(if level == POWER { POWER } else { level + 1 })?;
-            left = binary(operator, left, right)?;
+            let span = left.formula.span.to(right.formula.span);
+            left = Measured::binary(operator, left, right, span)?;
         }
         self.depth -= 1;
         Ok(left)
@@ -121,10 +122,8 @@ impl<'a> Parser<'a> {
     fn negative(&mut self) -> Result<Measured, Diagnostic> {
         let sign = self.advance()?;
         let operand = self.expression(SIGN)?;
-        let (depth, degree) = (operand.depth(), operand.degree());
         let span = self.lexer.span(sign).to(operand.formula.span);
-        let term = Term::Negative(Box::new(operand.formula));
-        Measured::node(Formula { span, term }, depth, degree)
+        Measured::negative(operand, span)
     }
 
     fn group(&mut self) -> Result<Measured, Diagnostic> {
@@ -174,12 +173,10 @@ impl<'a> Parser<'a> {
     /// A call, from the parenthesis on.
     fn call(&mut self, function: &'static Function, name: Span) -> Result<Measured, Diagnostic> {
         let open = self.advance()?;
-        let (mut arguments, mut depth) = (Vec::new(), 0);
+        let mut arguments = Vec::new();
         if self.next.kind != Kind::Close {
             loop {
-                let argument = self.expression(SUM)?;
-                depth = depth.max(argument.depth());
-                arguments.push(argument.formula);
+                arguments.push(self.expression(SUM)?);
                 if self.next.kind != Kind::Comma {
                     break;
                 }
@@ -190,8 +187,7 @@ impl<'a> Parser<'a> {
         if arguments.len() != function.arguments {
             return Err(complaints::argument_count(function, arguments.len(), span));
         }
-        // A call is one unknown quantity to the algebra, whatever its arguments are.
-        Measured::node(Formula { span, term: Term::Call(function, arguments) }, depth, 1.0)
+        Measured::call(function, arguments, span)
     }
 
     /// Reads the parenthesis that closes `open`; gives the place of the whole.
@@ -215,16 +211,4 @@ fn operator(kind: Kind) -> Option<(Operator, u8)> {
         Kind::Power => (Operator::Power, POWER),
         _ => return None,
     })
-}
-
-fn binary(operator: Operator, left: Measured, right: Measured) -> Result<Measured, Diagnostic> {
-    let depth = left.depth().max(right.depth());
-    let degree = match operator {
-        Operator::Add | Operator::Subtract => left.degree().max(right.degree()),
-        Operator::Multiply | Operator::Divide => left.degree() + right.degree(),
-        Operator::Power => power_degree(left.degree(), &right.formula)?,
-    };
-    let span = left.formula.span.to(right.formula.span);
-    let term = Term::Binary(operator, Box::new(left.formula), Box::new(right.formula));
-    Measured::node(Formula { span, term }, depth, degree)
 }

@@ -1,0 +1,261 @@
+//! Calls: methods and functions of floating-point numbers, and functions of the module.
+
+use syn::{Expr, ExprCall, ExprMethodCall, Path};
+
+use super::evaluate::Reader;
+use super::items;
+use super::value::{Locals, Value};
+use super::{Places, refusal, unsupported};
+use crate::model::formula::{Decimal, Formula, Function, Measured, Operator, PI, Term};
+use crate::source::{Code, Diagnostic, Span, listed, nearest};
+
+/// Functions that Rust calls otherwise than formulas do, or that are not analytic, with what to do instead.
+const REFUSED: &[(&str, &str)] = &[
+    ("max", "a maximum has a corner: write the case that occurs, and say so under `assume`"),
+    ("min", "a minimum has a corner: write the case that occurs, and say so under `assume`"),
+    ("clamp", "limits belong into the control law; the plant is described where it is not saturated"),
+    ("signum", "write the sign that occurs, and say so under `assume`; `a.abs() / a` is the sign of `a`"),
+    ("floor", "a formula is continuous: leave out what rounds"),
+    ("ceil", "a formula is continuous: leave out what rounds"),
+    ("round", "a formula is continuous: leave out what rounds"),
+    ("trunc", "a formula is continuous: leave out what rounds"),
+    ("rem_euclid", "declare a state that is an angle in the attribute: `angles(q = 2.0 * PI)`"),
+    ("cbrt", "write `.powf(1.0 / 3.0)`, and say under `assume` that what is under the root is positive"),
+    ("exp_m1", "write `a.exp() - 1.0`"),
+    ("ln_1p", "write `(1.0 + a).ln()`"),
+    ("asinh", "write `(a + (a * a + 1.0).sqrt()).ln()`"),
+    ("acosh", "write `(a + (a * a - 1.0).sqrt()).ln()`"),
+    ("atanh", "write `((1.0 + a) / (1.0 - a)).ln() / 2.0`"),
+];
+
+/// Methods that this module spells out itself.
+const OWN: &[&str] =
+    &["powi", "powf", "recip", "mul_add", "hypot", "exp2", "log10", "log2", "sin_cos", "clone", "to_radians"];
+
+type Constant = fn(Span) -> Result<Measured, Diagnostic>;
+
+/// The constants of `core::f64::consts` that have an exact meaning.
+const CONSTANTS: &[(&str, Constant)] = &[
+    ("PI", |at| Ok(pi(at))),
+    ("TAU", |at| Measured::binary(Operator::Multiply, decimal("2", at)?, pi(at), at)),
+    ("FRAC_PI_2", |at| Measured::binary(Operator::Divide, pi(at), decimal("2", at)?, at)),
+    ("FRAC_PI_3", |at| Measured::binary(Operator::Divide, pi(at), decimal("3", at)?, at)),
+    ("FRAC_PI_4", |at| Measured::binary(Operator::Divide, pi(at), decimal("4", at)?, at)),
+    ("FRAC_PI_6", |at| Measured::binary(Operator::Divide, pi(at), decimal("6", at)?, at)),
+    ("FRAC_PI_8", |at| Measured::binary(Operator::Divide, pi(at), decimal("8", at)?, at)),
+    ("SQRT_2", |at| applied("sqrt", decimal("2", at)?, at)),
+    ("E", |at| applied("exp", decimal("1", at)?, at)),
+];
+
+/// The constant that a path like `std::f64::consts::PI` names; `PI` alone is one too, since the model has no other.
+pub(super) fn mathematical(path: &Path) -> Option<Constant> {
+    let last = path.segments.last()?;
+    let from_library = path.segments.iter().rev().nth(1).is_some_and(|segment| segment.ident == "consts");
+    let imported = path.segments.len() == 1 && last.ident != "E";
+    let row = CONSTANTS.iter().find(|(name, _)| last.ident == name)?;
+    (from_library || imported).then_some(row.1)
+}
+
+/// `name(..)` of the module, or `f64::name(a, ..)`.
+pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals) -> Result<Value, Diagnostic> {
+    let function = bare(&call.func);
+    let Expr::Path(path) = function else {
+        if matches!(function, Expr::Closure(_)) {
+            return Err(refusal::expression(function, reader.places));
+        }
+        return Err(unsupported(reader.places.of(&call.func), "this is no function that is known here")
+            .help("call a function of the module by its name"));
+    };
+    let Some(last) = path.path.segments.last() else {
+        return Err(unsupported(reader.places.of(path), "this is no function"));
+    };
+    let name = last.ident.to_string();
+    let first = path.path.segments.first().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let own = path.path.segments.len() == 1 || first == "self";
+    if own {
+        let place = reader.places.of(call);
+        let Some(item) = reader.items.function(&name) else {
+            return Err(no_such_function(reader, path, &name));
+        };
+        let arguments: Vec<Value> =
+            call.args.iter().map(|argument| reader.value(argument, locals)).collect::<Result<_, _>>()?;
+        return reader.run(item, arguments, place);
+    }
+    // `f64::sin(a)`, or by the name of a trait that floating-point numbers have.
+    let of_type = path.path.segments.iter().rev().nth(1).map(|segment| segment.ident.to_string()).unwrap_or_default();
+    if !matches!(of_type.as_str(), "f64" | "f32") && !of_type.starts_with(char::is_uppercase) {
+        return Err(no_such_function(reader, path, &name));
+    }
+    if name == "from" && call.args.len() == 1 {
+        return reader.converted(&call.args[0], locals);
+    }
+    let mut arguments = call.args.iter();
+    let Some(receiver) = arguments.next() else {
+        return Err(no_such_function(reader, path, &name));
+    };
+    let receiver = reader.number(receiver, locals)?;
+    let arguments: Vec<&Expr> = arguments.collect();
+    applied_method(reader, &name, &last.ident, receiver, &arguments, &Expr::Call(call.clone()), locals)
+}
+
+/// An expression without the parentheses around it.
+fn bare(expr: &Expr) -> &Expr {
+    match expr {
+        Expr::Paren(inner) => bare(&inner.expr),
+        Expr::Group(inner) => bare(&inner.expr),
+        other => other,
+    }
+}
+
+/// `a.name(..)`.
+pub(super) fn method(reader: &mut Reader<'_>, call: &ExprMethodCall, locals: &mut Locals) -> Result<Value, Diagnostic> {
+    let name = call.method.to_string();
+    if matches!(name.as_str(), "clone" | "into") && call.args.is_empty() {
+        return reader.value(&call.receiver, locals);
+    }
+    let receiver = reader.number(&call.receiver, locals)?;
+    let arguments: Vec<&Expr> = call.args.iter().collect();
+    applied_method(reader, &name, &call.method, receiver, &arguments, &Expr::MethodCall(call.clone()), locals)
+}
+
+fn applied_method(
+    reader: &mut Reader<'_>,
+    name: &str,
+    ident: &syn::Ident,
+    receiver: Measured,
+    arguments: &[&Expr],
+    whole: &Expr,
+    locals: &mut Locals,
+) -> Result<Value, Diagnostic> {
+    let at = reader.places.of(whole);
+    let place = reader.places.of(ident);
+    let expected = |count: usize| {
+        if arguments.len() == count { Ok(()) } else { Err(wrong_count(name, count, arguments.len(), at)) }
+    };
+    let number = match name {
+        "powi" => {
+            expected(1)?;
+            let exponent = exponent(reader, arguments[0], locals)?;
+            Measured::binary(Operator::Power, receiver, exponent, at)?
+        }
+        "powf" => {
+            expected(1)?;
+            let exponent = reader.number(arguments[0], locals)?;
+            Measured::binary(Operator::Power, receiver, exponent, at)?
+        }
+        "recip" => {
+            expected(0)?;
+            Measured::binary(Operator::Divide, decimal("1", at)?, receiver, at)?
+        }
+        "mul_add" => {
+            expected(2)?;
+            let (factor, term) = (reader.number(arguments[0], locals)?, reader.number(arguments[1], locals)?);
+            Measured::binary(Operator::Add, Measured::binary(Operator::Multiply, receiver, factor, at)?, term, at)?
+        }
+        "hypot" => {
+            expected(1)?;
+            let other = reader.number(arguments[0], locals)?;
+            let square = |a: Measured| Measured::binary(Operator::Power, a, decimal("2", at)?, at);
+            applied("sqrt", Measured::binary(Operator::Add, square(receiver)?, square(other)?, at)?, at)?
+        }
+        "exp2" => {
+            expected(0)?;
+            Measured::binary(Operator::Power, decimal("2", at)?, receiver, at)?
+        }
+        "log10" | "log2" => {
+            expected(0)?;
+            let base = decimal(name.trim_start_matches("log"), at)?;
+            Measured::binary(Operator::Divide, applied("log", receiver, at)?, applied("log", base, at)?, at)?
+        }
+        "to_radians" => {
+            expected(0)?;
+            let degree = Measured::binary(Operator::Divide, pi(at), decimal("180", at)?, at)?;
+            Measured::binary(Operator::Multiply, receiver, degree, at)?
+        }
+        "sin_cos" => {
+            expected(0)?;
+            let (sine, cosine) = (applied("sin", receiver.clone(), at)?, applied("cos", receiver, at)?);
+            return Ok(Value::List(vec![Value::Number(sine), Value::Number(cosine)]));
+        }
+        "log" => {
+            expected(1)?;
+            let base = reader.number(arguments[0], locals)?;
+            Measured::binary(Operator::Divide, applied("log", receiver, at)?, applied("log", base, at)?, at)?
+        }
+        _ => {
+            if let Some((_, help)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
+                return Err(unsupported(place, format!("`{name}` is not a function of formulas")).help(*help));
+            }
+            let Some(function) = Function::named(name) else { return Err(no_such_method(name, place)) };
+            expected(function.arguments - 1)?;
+            let mut operands = vec![receiver];
+            for argument in arguments {
+                operands.push(reader.number(argument, locals)?);
+            }
+            Measured::call(function, operands, at)?
+        }
+    };
+    Ok(Value::Number(number))
+}
+
+/// The exponent of `powi`: an integer, which is one in Rust too.
+fn exponent(reader: &mut Reader<'_>, expr: &Expr, locals: &mut Locals) -> Result<Measured, Diagnostic> {
+    if items::literal(expr).is_some_and(|text| text.trim_start_matches('-').bytes().all(|byte| byte.is_ascii_digit())) {
+        let before = std::mem::replace(&mut reader.integers, true);
+        let number = reader.number(expr, locals);
+        reader.integers = before;
+        return number;
+    }
+    Err(unsupported(reader.places.of(expr), "this exponent is not known here")
+        .help("write an integer, as in `a.powi(2)`; for other powers write `a.powf(0.5)`"))
+}
+
+fn no_such_function(reader: &mut Reader<'_>, path: &syn::ExprPath, name: &str) -> Diagnostic {
+    let place = reader.places.of(path);
+    let written = Places::path(&path.path);
+    let names = reader.items.functions.iter().map(|item| item.sig.ident.to_string()).collect::<Vec<_>>();
+    let diagnostic = unsupported(place, format!("the function `{written}` is not known here"))
+        .label("only functions of this module can be read");
+    if Function::named(name).is_some() || OWN.contains(&name) {
+        return diagnostic.help(format!("write it as a method, as in `a.{name}()`"));
+    }
+    match nearest(name, names.iter().map(String::as_str)) {
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None => diagnostic.help("move the function into the module"),
+    }
+}
+
+/// Arguments are those in parentheses, without what stands before the point.
+fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic {
+    let found = if found == 0 { "none".to_owned() } else { found.to_string() };
+    let arguments = ["", "b", "b, c"].get(wanted).copied().unwrap_or("..");
+    Diagnostic::error(Code::ArgumentCount, at, format!("`{name}` takes {wanted} in parentheses and has {found}"))
+        .help(format!("write `a.{name}({arguments})`"))
+}
+
+fn no_such_method(name: &str, place: Span) -> Diagnostic {
+    // As Rust calls them.
+    let known =
+        ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "ln", "sqrt", "abs"];
+    let known = || known.into_iter().chain(OWN.iter().copied());
+    let diagnostic = Diagnostic::error(Code::UnknownFunction, place, format!("`{name}` is not a function of formulas"));
+    match nearest(name, known()) {
+        Some(near) => diagnostic.suggest(Some(near)),
+        None => diagnostic.help(format!("the functions are {}", listed(known()))),
+    }
+}
+
+fn pi(at: Span) -> Measured {
+    Measured::leaf(Formula { span: at, term: Term::Name(PI.to_owned()) })
+}
+
+fn decimal(text: &str, at: Span) -> Result<Measured, Diagnostic> {
+    Ok(Measured::leaf(Formula { span: at, term: Term::Number(Decimal::parse(text, at)?) }))
+}
+
+fn applied(name: &str, argument: Measured, at: Span) -> Result<Measured, Diagnostic> {
+    match Function::named(name) {
+        Some(function) => Measured::call(function, vec![argument], at),
+        None => Err(no_such_method(name, at)),
+    }
+}

@@ -1,0 +1,67 @@
+//! The attribute on a module of plain Rust.
+
+use pebo_gen::Derived;
+use pebo_gen::emit::Scalar;
+use pebo_gen::model::Model;
+use pebo_gen::model::rust::Places;
+use pebo_gen::source::Diagnostic;
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+use syn::{Error, Item, ItemMod};
+
+use crate::functions::Functions;
+use crate::refusal;
+
+/// The module with what was derived of it, or with what is wrong with it.
+pub(crate) fn module(arguments: TokenStream, module: &ItemMod) -> TokenStream {
+    let ItemMod { attrs, vis, ident, content, .. } = module;
+    let mut places = Places::new();
+    let added = match derive(arguments, module, &mut places) {
+        Ok(derived) => additions(&derived, module),
+        Err(diagnostics) => refusal::errors(&diagnostics, &places),
+    };
+    // Also where the model is refused: what else is wrong with the module, the compiler says.
+    let items = content.iter().flat_map(|(_, items)| items);
+    let (outer, inner): (Vec<_>, Vec<_>) = attrs.iter().partition(|a| matches!(a.style, syn::AttrStyle::Outer));
+    quote! {
+        #(#outer)* #vis mod #ident {
+            #(#inner)*
+            #(#items)*
+            #added
+        }
+    }
+}
+
+fn derive(arguments: TokenStream, module: &ItemMod, places: &mut Places) -> Result<Derived, Vec<Diagnostic>> {
+    let model = Model::read_rust(arguments, module, places)?;
+    let derived = Derived::of(model)?;
+    derived.derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
+    Ok(derived)
+}
+
+fn additions(derived: &Derived, module: &ItemMod) -> TokenStream {
+    let scalar = scalar(module);
+    let emitted = match derived.emit(scalar) {
+        Ok(emitted) => emitted,
+        Err(refused) => return Error::new_spanned(&module.ident, refused.to_string()).into_compile_error(),
+    };
+    let tokens = &emitted.tokens;
+    let type_name = Ident::new(&emitted.type_name, Span::call_site());
+    let functions = Functions { derived, module, type_name: &type_name, scalar }.tokens();
+    quote! {
+        pub mod observer { #tokens }
+        pub use observer::*;
+        #functions
+    }
+}
+
+/// The type that the module computes in: that of its first state.
+fn scalar(module: &ItemMod) -> Scalar {
+    let items = module.content.iter().flat_map(|(_, items)| items);
+    let state = items.filter_map(|item| match item {
+        Item::Struct(item) if item.ident == "X" => item.fields.iter().next(),
+        _ => None,
+    });
+    let single = state.into_iter().any(|field| field.ty == syn::parse_quote!(f32));
+    if single { Scalar::F32 } else { Scalar::F64 }
+}

@@ -1,0 +1,4 @@
+#[pebo_macros::pebo_model]
+fn plant() {}
+
+fn main() {}

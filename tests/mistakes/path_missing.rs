@@ -1,0 +1,4 @@
+#[pebo_macros::pebo_model]
+struct Plant;
+
+fn main() {}

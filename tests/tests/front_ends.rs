@@ -1,0 +1,99 @@
+//! A plant in plain Rust is the plant in a model file: the same tokens, and functions that can be called.
+
+use std::path::Path;
+
+use pebo_gen::emit::Scalar;
+use pebo_gen::model::Model;
+use pebo_gen::model::rust::Places;
+use pebo_gen::source::Source;
+use pebo_gen::{Builder, Derived, derive};
+use pebo_runtime::nalgebra::SVector;
+use pebo_runtime::{Extension as _, Integrator, Model as _};
+
+/// Compiles the plants, and keeps their texts.
+macro_rules! plants {
+    ($($name:literal in $folder:literal,)*) => {
+        $(include!(concat!("plants/", $name, ".rs"));)*
+
+        /// Name, text in Rust, model file.
+        const PLANTS: &[(&str, &str, &str)] = &[$((
+            $name,
+            include_str!(concat!("plants/", $name, ".rs")),
+            concat!($folder, $name, ".yaml"),
+        )),*];
+    };
+}
+
+plants! {
+    "cuk" in "../models/",
+    "motor_flux" in "../models/",
+    "pendulum" in "../models/",
+    "pmsm" in "models/",
+    "prey" in "models/",
+    "rotating_frame" in "models/",
+}
+
+/// From the text of a module, as the attribute reads it.
+fn from_rust(text: &str) -> Derived {
+    let module: syn::ItemMod = syn::parse_str(text).expect("a module");
+    let attribute = module.attrs.iter().find(|a| a.path().segments.last().is_some_and(|s| s.ident == "pebo_model"));
+    let arguments = match &attribute.expect("the attribute").meta {
+        syn::Meta::List(list) => list.tokens.clone(),
+        _ => proc_macro2::TokenStream::new(),
+    };
+    let model = Model::read_rust(arguments, &module, &mut Places::new()).expect("a model");
+    Derived::of(model).expect("a plant")
+}
+
+fn from_file(path: &str) -> Derived {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a model file");
+    derive(&Source::new(path, text).expect("a text")).expect("a model")
+}
+
+#[test]
+fn three_ways_give_the_same_code() {
+    let out = tempfile::tempdir().expect("a folder");
+    for (name, text, file) in PLANTS {
+        for scalar in [Scalar::F64, Scalar::F32] {
+            let rust = from_rust(text).emit(scalar).expect("accepted");
+            let yaml = from_file(file).emit(scalar).expect("accepted");
+            assert_eq!(rust.tokens.to_string(), yaml.tokens.to_string(), "{name}");
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+            for (format, expected) in [(true, rust.text), (false, rust.tokens.to_string())] {
+                let builder = Builder::new().out_dir(out.path()).emit_rerun_if_changed(false);
+                let built = builder.scalar(scalar).format(format).compile(&[&path]).expect("accepted");
+                assert!(std::fs::read_to_string(&built[0].path).expect("a file") == expected, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_authors_functions_and_those_added_can_be_called() {
+    let (x, y, u) = (cuk::X { i1: 0.5, i3: -1.0 }, cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.25 });
+    let rate = cuk::f_x(&y, &u);
+    assert_eq!(rate, cuk::X { i1: (12.0 - 0.75 * 10.0) / 10e-3, i3: -(0.25 * 10.0 - 12.0) / 10e-3 });
+    let [h1, h3] = cuk::h(&y, &u);
+    assert!((h1 - rate.i1).abs() < 1e-9 && (h3 - rate.i3).abs() < 1e-9);
+    assert_eq!(cuk::phi_left(cuk::phi(&x), &y), x);
+    // y' = phi_0 + phi_1 theta, where chi + theta = phi(x, y).
+    let chi = [0.25, 2.0];
+    let theta = [0.25, -3.0];
+    let (phi_0, phi_1) = (cuk::phi_0(chi, &y, &u), cuk::phi_1(chi, &y, &u));
+    let f_y = cuk::f_y(&x, &y, &u);
+    for (row, rate) in [f_y.v2, f_y.v4].into_iter().enumerate() {
+        let regression = phi_0[row] + phi_1[row][0] * theta[0] + phi_1[row][1] * theta[1];
+        assert!((regression - rate).abs() < 1e-9 * rate.abs(), "row {row}: {regression} and {rate}");
+    }
+}
+
+#[test]
+fn the_type_and_the_observer_stand_in_the_module() {
+    let model = cuk::Cuk::new(&cuk::Parameters { e: 24.0, ..cuk::Parameters::default() });
+    let (y, u) = (SVector::from([10.0, -12.0]), SVector::from([0.25]));
+    assert!((model.h(&y, &u)[0] - (24.0 - 7.5) / 10e-3).abs() < 1e-9);
+    let zero = Integrator::new(SVector::zeros());
+    assert_eq!(model.phi_0(&zero, &y, &u).len(), cuk::NR);
+    fn is_an_observer(_: Option<cuk::Observer>) {}
+    is_an_observer(None);
+}
