@@ -5,13 +5,25 @@
 
 mod expansion;
 mod json;
+mod remarks;
 mod text;
 
+use crate::analysis::Verdict;
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr};
 
 pub use json::{check, malformed};
 pub use text::summary;
+
+/// A verdict in a word.
+fn name(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Proved => "proved",
+        Verdict::Refuted => "refuted",
+        Verdict::Undecided => "undecided",
+        Verdict::Skipped => "skipped",
+    }
+}
 
 /// Comparisons with zero, as a reader would write them.
 fn conditions(arena: &Arena, conditions: &[(Expr, Relation)]) -> Vec<String> {
