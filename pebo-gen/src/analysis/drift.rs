@@ -71,3 +71,48 @@ pub fn rebase_residuals(plant: &Plant, class: Class, regression: &Regression) ->
     }
     Some(residuals)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::source::Source;
+
+    fn of(lines: &str) -> Option<(Vec<String>, Vec<String>)> {
+        let text = format!("model: m\n{lines}\n");
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let drift = Drift::of(&plant, &Derivation::derive(&plant))?;
+        let names = |symbols: &[Symbol]| symbols.iter().map(|s| plant.arena.name(*s)).collect();
+        Some((names(&drift.integrators), names(&drift.integrated)))
+    }
+
+    fn named(integrators: &[&str], integrated: &[&str]) -> Option<(Vec<String>, Vec<String>)> {
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        Some((names(integrators), names(integrated)))
+    }
+
+    #[test]
+    fn what_integrates_a_signal_drifts_and_a_constant_does_not() {
+        let pendulum = "x: [p]\ny: [q]\nu: [tau]\nf_x: {p: tau - sin(q)}\nf_y: {q: p}\nphi: [p]";
+        assert_eq!(of(pendulum), named(&["chi1"], &["q", "tau"]));
+        // h1 is zero, also where it is not written so; h2 reads the input alone.
+        for zero in ["0", "sin(c)^2 + cos(c)^2 - 1"] {
+            let lines =
+                format!("x: [a, b]\ny: [c, d]\nu: [u]\nf_x: {{a: {zero}, b: u}}\nf_y: {{c: a, d: b}}\nphi: [a, b]");
+            assert_eq!(of(&lines), named(&["chi2"], &["u"]), "{zero}");
+        }
+    }
+
+    #[test]
+    fn a_component_that_the_extension_feeds_is_no_open_integrator() {
+        // a and b turn with the frame, c' = v alone.
+        let frame = "x: [a, b, c]\ny: [p, q]\nu: [w, v]\nf_x: {a: w*b, b: v - w*a, c: v}\n\
+                     f_y: {p: a, q: c}\nphi: [a, b, c]";
+        assert_eq!(of(frame), named(&["xi3"], &["v"]));
+    }
+
+    #[test]
+    fn without_a_cascade_nothing_is_said() {
+        assert_eq!(of("x: [x]\ny: [y]\nf_x: {x: x^2}\nf_y: {y: y}\nphi: [x]"), None);
+    }
+}

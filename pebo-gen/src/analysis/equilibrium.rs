@@ -13,13 +13,14 @@ use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
 use super::design::{Cascade, Derivation, Verdict};
 use super::solve::{Equation, solve};
-use super::tidy::shortest;
+use super::tidy::{shorter, shortest};
 
 /// What is known of where a plant rests.
 #[derive(Clone, Debug)]
@@ -78,8 +79,28 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let still = flow(plant, cascade).into_iter().all(vanishes);
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
-    let values = order.filter_map(|s| Some((s, shortest(arena, &there, *values.get(&s)?)))).collect();
+    let shown = |value: Expr| {
+        let short = shortest(arena, &there, value);
+        factored(arena, &there, value).map_or(short, |factored| shorter(arena, factored, short))
+    };
+    let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, &domain, rates.values()) }))
+}
+
+/// The value with repeated factors as powers.
+fn factored(arena: &Arena, domain: &Domain, value: Expr) -> Result<Expr, Obstacle> {
+    let field = Field::over(arena, &domain.facts, &[value])?;
+    let fraction = field.fraction(value)?;
+    let mut product = arena.one();
+    for (poly, side) in [(fraction.numerator(), 1), (fraction.denominator(), -1)] {
+        let parts = poly.square_free(field.limit())?;
+        product = arena.mul(product, arena.power(arena.number(Rational::from(parts.content)), &Rational::from(side)));
+        for (part, exponent) in parts.factors {
+            let part = field.show(&field.of_polynomial(&part)?);
+            product = arena.mul(product, arena.power(part, &Rational::from(side * i64::from(exponent))));
+        }
+    }
+    Ok(product)
 }
 
 /// z' as the cascade has it: `h`, or `Lambda phi + h`.
@@ -209,6 +230,9 @@ impl Search<'_> {
                     let kernels = field.kernels_of(symbols);
                     factor.variables().any(|kernel| kernels.contains(&kernel))
                 };
+                if rest.is_zero() && self.domain.shows(arena, arena.of_symbol(*symbol), Relation::NonZero) {
+                    continue;
+                }
                 let cost = Cost {
                     bends: holds(&states),
                     input: inputs.contains(symbol),
@@ -237,5 +261,101 @@ impl Search<'_> {
             Some((symbol, value))
         };
         Ok(candidates.into_iter().find_map(free))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::source::Source;
+
+    fn of(lines: &str) -> (Plant, Option<Equilibrium>) {
+        let text = format!("model: m\n{lines}\n");
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let equilibrium = Equilibrium::of(&plant, &Derivation::derive(&plant));
+        (plant, equilibrium)
+    }
+
+    /// The values of a point at which z rests and where the rank falls from 1.
+    fn at(lines: &str) -> String {
+        let (plant, equilibrium) = of(lines);
+        let Some(Equilibrium::At(point)) = equilibrium else { panic!("{lines}: {equilibrium:?}") };
+        assert!(point.still, "{lines}");
+        assert_eq!(point.rank, Some(1), "{lines}");
+        let arena = &plant.arena;
+        let shown = point.values.iter().map(|(s, value)| format!("{} = {}", arena.name(*s), arena.print(*value)));
+        shown.collect::<Vec<String>>().join(", ")
+    }
+
+    fn undecided(lines: &str) -> String {
+        let (_, equilibrium) = of(lines);
+        let Some(Equilibrium::Undecided(reason)) = equilibrium else { panic!("{lines}: {equilibrium:?}") };
+        reason
+    }
+
+    const BOOST: &str = "parameters: {L: 1, C: 1, R: 5, E: 12}\nx: [i]\ny: [v]\nu: [d]\n\
+                         f_x: {i: (E - (1 - d)*v)/L}\nf_y: {v: ((1 - d)*i - v/R)/C}\nphi: [i]";
+
+    #[test]
+    fn converters_rest_where_the_textbook_says() {
+        assert_eq!(at(&format!("{BOOST}\nassume: [0 < d < 1]")), "i = E/(R*(d - 1)^2), v = -E/(d - 1)");
+        let cuk = "parameters: {L1: 1, C2: 1, L3: 1, C4: 1, G: 1, E: 12}\nx: [i1, i3]\ny: [v2, v4]\nu: [d]\n\
+                   assume: [0 < d < 1]\nf_x: {i1: (E - (1 - d)*v2)/L1, i3: -(d*v2 + v4)/L3}\n\
+                   f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}\nphi: [i1, i3]";
+        assert_eq!(at(cuk), "i1 = G*E*d^2/(d - 1)^2, i3 = G*E*d/(d - 1), v2 = -E/(d - 1), v4 = E*d/(d - 1)");
+    }
+
+    #[test]
+    fn an_input_is_solved_for_where_no_state_is() {
+        let pendulum = "parameters: {m: 1, g: 9.81}\nx: [p]\ny: [q]\nu: [tau]\n\
+                        f_x: {p: tau - m*g*sin(q)}\nf_y: {q: p/m}\nphi: [p]";
+        assert_eq!(at(pendulum), "p = 0, tau = m*g*sin(q)");
+    }
+
+    #[test]
+    fn inverse_functions_solve_what_is_not_linear() {
+        let lines = "parameters: {a: 2}\nx: [x]\ny: [y]\nf_x: {x: a - exp(y)}\nf_y: {y: x}\nphi: [x]";
+        assert_eq!(at(lines), "x = 0, y = log(a)");
+    }
+
+    #[test]
+    fn a_state_that_the_assumptions_keep_from_zero_is_not_set_to_zero() {
+        let prey = "x: [x]\ny: [y]\nassume: [x > 0, y > 0]\nf_x: {x: x*(1 - y)}\nf_y: {y: y*(x - 2)}\nphi: [log(x)]";
+        assert_eq!(at(prey), "x = 2, y = 1");
+    }
+
+    #[test]
+    fn of_a_generalised_cascade_z_rests() {
+        let lines = "x: [a, b]\ny: [c]\nu: [u]\nf_x: {a: b, b: u - a}\nf_y: {c: a}\nphi: [a, b]";
+        let (_, equilibrium) = of(lines);
+        assert!(matches!(equilibrium, Some(Equilibrium::At(OperatingPoint { still: true, .. }))), "{equilibrium:?}");
+        assert_eq!(at(lines), "a = 0, b = 0, u = 0");
+    }
+
+    #[test]
+    fn a_point_outside_the_assumptions_is_none() {
+        let reason = undecided(&format!("{BOOST}\nassume: [0 < d < 1, v < 0]"));
+        assert_eq!(reason, "no operating point was found within the assumptions");
+        // A bound that the point meets, and one that only a part of the inputs meets.
+        at(&format!("{BOOST}\nassume: [0 < d < 1, v > 0]"));
+        at(&format!("{BOOST}\nassume: [0 < d < 1, v > 15]"));
+    }
+
+    #[test]
+    fn what_is_not_solved_is_said() {
+        let reason = undecided("x: [x]\ny: [y]\nf_x: {x: y + sin(y) - 1}\nf_y: {y: x}\nphi: [x]");
+        assert!(reason.starts_with("no rule solves `") && reason.contains("sin(y)"), "{reason}");
+        let reason = undecided("x: [x]\ny: [y, s]\nf_x: {x: s}\nf_y: {y: x}\nphi: [x]");
+        assert_eq!(reason, "give the rate of `s`");
+        let (_, none) = of("x: [x]\ny: [y]\nf_x: {x: x}\nf_y: {y: 1}\nphi: [x]");
+        assert!(none.is_none(), "the cascade is not proved: {none:?}");
+    }
+
+    #[test]
+    fn a_state_that_never_rests_is_named() {
+        let (plant, equilibrium) = of("x: [x]\ny: [y]\nu: [u]\nf_x: {x: 1 + u^2}\nf_y: {y: x}\nphi: [x]");
+        let Some(Equilibrium::Nowhere(symbol)) = equilibrium else { panic!("{equilibrium:?}") };
+        assert_eq!(plant.arena.name(symbol), "x");
     }
 }

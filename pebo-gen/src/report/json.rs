@@ -101,7 +101,7 @@ struct OperatingPointReport {
     /// What is determined there, in what is free.
     values: IndexMap<String, String>,
     /// Whether z' vanishes there by the cascade: `h`, of the generalised one `lambda z + h`.
-    still: bool,
+    still: Option<bool>,
     /// The rank of `[f; h_i]` at almost every point, and there: where it falls, Frobenius' theorem gives no transform.
     rank: Option<[usize; 2]>,
     /// Why there is none, or why that is open.
@@ -268,7 +268,7 @@ fn operating_point(arena: &Arena, equilibrium: Equilibrium) -> OperatingPointRep
     let without = |verdict, reason| OperatingPointReport {
         verdict: name(verdict),
         values: IndexMap::new(),
-        still: false,
+        still: None,
         rank: None,
         reason: Some(reason),
     };
@@ -276,7 +276,7 @@ fn operating_point(arena: &Arena, equilibrium: Equilibrium) -> OperatingPointRep
         Equilibrium::At(point) => OperatingPointReport {
             verdict: name(Verdict::Proved),
             values: point.values.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect(),
-            still: point.still,
+            still: Some(point.still),
             rank: point.rank.filter(|_| point.still).map(|rank| [rank, 0]),
             reason: None,
         },
