@@ -11,6 +11,8 @@ mod cascade;
 mod conditions;
 mod derive;
 mod design;
+mod drift;
+mod equilibrium;
 mod excitation;
 mod gpebo;
 mod identifiability;
@@ -32,3 +34,5 @@ pub use design::{
     Cascade, Claim, Class, Derivation, Excitation, Gram, Identifiability, LeftInverse, Origin, Outcome, Positive,
     Regression, RegressionKind, Verdict, Witness,
 };
+pub use drift::{Drift, rebase_residuals};
+pub use equilibrium::{Equilibrium, OperatingPoint};

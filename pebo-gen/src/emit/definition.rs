@@ -6,7 +6,7 @@ use Argument::{Eta, Extension, U, Y, Z};
 
 use super::error::EmitError;
 use crate::analysis::{Class, Derivation, LeftInverse, Outcome, Regression, RegressionKind};
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
 /// An argument of a function of `Model`.
@@ -172,34 +172,6 @@ impl<'a> Definitions<'a> {
             Size { name: "NR", value: self.regression.phi_0.len() },
             Size { name: "NE", value: self.regression.eta_symbols.len() },
         ]
-    }
-
-    /// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase`): the
-    /// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
-    /// not move. None where the unknowns are not theta itself, or stand under the derivative.
-    pub(super) fn rebase_residuals(&self, arena: &Arena) -> Option<Vec<Expr>> {
-        let unknowns = self.regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
-        if unknowns.ne(self.regression.theta.iter().copied()) || self.regression.kind == RegressionKind::Implicit {
-            return None;
-        }
-        let mut residuals = Vec::new();
-        for (phi_0, phi_1) in self.regression.phi_0.iter().zip(&self.regression.phi_1) {
-            let slopes: Vec<Expr> = self.chi.iter().map(|&chi| arena.derivative(*phi_0, chi)).collect();
-            for (column, &entry) in phi_1.iter().enumerate() {
-                let slope = match self.psi.get(column) {
-                    None => slopes[column],
-                    Some(psi) => {
-                        arena.sum(slopes.iter().zip(psi).map(|(&slope, &psi)| arena.mul(slope, arena.of_symbol(psi))))
-                    }
-                };
-                residuals.push(match self.regression.kind {
-                    RegressionKind::Static => arena.add(slope, entry),
-                    _ => arena.sub(slope, entry),
-                });
-                residuals.extend(self.chi.iter().map(|&chi| arena.derivative(entry, chi)));
-            }
-        }
-        Some(residuals)
     }
 }
 

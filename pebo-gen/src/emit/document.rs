@@ -4,21 +4,16 @@
 //! gives the same text.
 
 use super::definition::{Argument, Definitions};
-use super::literal::Scalar;
-use crate::analysis::{Class, Derivation, Excitation, Origin, RegressionKind};
+use super::module::Module;
+use crate::analysis::{Class, Derivation, Drift, Excitation, Origin, RegressionKind};
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Cost, Staged};
 
 /// The documentation of the module.
-pub(super) fn module(
-    plant: &Plant,
-    derivation: &Derivation,
-    definitions: &Definitions,
-    staged: &Staged,
-    scalar: Scalar,
-) -> Vec<String> {
+pub(super) fn module(module: &Module<'_>) -> Vec<String> {
+    let &Module { plant, derivation, definitions, staged, scalar, rebase } = module;
     let mut lines = Vec::new();
     let title = plant.title.as_deref().unwrap_or(&plant.name);
     lines.push(sentence(title));
@@ -37,6 +32,7 @@ pub(super) fn module(
     ]);
     lines.extend(equations(plant));
     lines.extend(observer(plant, definitions));
+    lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
     lines.extend(costs(definitions, staged));
     lines
@@ -129,6 +125,20 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     }
     lines.extend(text(blocks));
     lines
+}
+
+/// What the extension does under a constant bias, and what there is against it.
+fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
+    let Some(drift) = Drift::of(plant, derivation).filter(|drift| !drift.integrators.is_empty()) else {
+        return Vec::new();
+    };
+    let remedy = match (derivation.class, rebase) {
+        (Class::Pebo, true) => "`Observer::step_without_drift` keeps the extension bounded",
+        (Class::Gpebo, true) => "`Observer::rebase` moves what has grown into `theta`",
+        (_, false) => "start the observer anew before the extension loses its digits",
+    };
+    let integrators = listed(&plant.arena, drift.integrators.iter().copied());
+    vec![String::new(), format!("A constant bias makes {integrators} grow: {remedy}.")]
 }
 
 fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Vec<String> {

@@ -57,7 +57,7 @@ impl Module<'_> {
         let parameters = self.parameters(&mut scope);
         let ratios = self.ratios(&scope);
 
-        let lines = document::module(self.plant, self.derivation, self.definitions, self.staged, self.scalar);
+        let lines = document::module(self);
         let lines = lines.iter().map(|line| spaced(line));
         let uses = self.uses();
         let sizes = self.definitions.sizes().into_iter().map(|size| {

@@ -3,10 +3,10 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::{conditions, expansion};
+use super::{conditions, expansion, name};
 use crate::analysis::{
-    Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
-    RegressionKind, Verdict, Witness,
+    Cascade, Claim, Class, Derivation, Drift, Equilibrium, Excitation, Identifiability, LeftInverse, Origin, Outcome,
+    Regression, RegressionKind, Verdict, Witness,
 };
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
@@ -25,6 +25,9 @@ struct Report<'a> {
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
     identifiability: Option<IdentifiabilityReport>,
+    /// The components of the extension that a constant bias makes run away.
+    drift: Vec<String>,
+    operating_point: Option<OperatingPointReport>,
     /// What the proofs rest on besides the assumptions, as comparisons with zero.
     conditions: Vec<String>,
     diagnostics: Vec<Located<'a>>,
@@ -91,6 +94,20 @@ struct GramReport {
     positive: bool,
 }
 
+/// Where the plant rests under a constant input.
+#[derive(Serialize)]
+struct OperatingPointReport {
+    verdict: &'static str,
+    /// What is determined there, in what is free.
+    values: IndexMap<String, String>,
+    /// Whether z' vanishes there by the cascade: `h`, of the generalised one `lambda z + h`.
+    still: Option<bool>,
+    /// The rank of `[f; h_i]` at almost every point, and there: where it falls, Frobenius' theorem gives no transform.
+    rank: Option<[usize; 2]>,
+    /// Why there is none, or why that is open.
+    reason: Option<String>,
+}
+
 /// A point where an expression provably is not zero: exact coordinates, outward rounded bounds.
 #[derive(Serialize)]
 struct WitnessReport {
@@ -125,6 +142,10 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
         left_inverse: Some(left_inverse(plant, &derivation.left_inverse)),
         regression: Some(regression(plant, &derivation.regression)),
         identifiability: Some(identifiability(arena, &derivation.identifiability)),
+        drift: Drift::of(plant, derivation)
+            .map(|drift| drift.integrators.iter().map(|s| arena.name(*s)).collect())
+            .unwrap_or_default(),
+        operating_point: Equilibrium::of(plant, derivation).map(|equilibrium| operating_point(arena, equilibrium)),
         conditions: conditions(arena, &derivation.conditions),
         diagnostics: located(&derivation.diagnostics, source),
     };
@@ -143,6 +164,8 @@ pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Str
         left_inverse: None,
         regression: None,
         identifiability: None,
+        drift: Vec::new(),
+        operating_point: None,
         conditions: Vec::new(),
         diagnostics: located(diagnostics, source),
     })
@@ -155,15 +178,6 @@ fn line(report: &Report<'_>) -> String {
 
 fn located<'a>(diagnostics: &'a [Diagnostic], source: &Source) -> Vec<Located<'a>> {
     diagnostics.iter().map(|d| Located::new(d, source)).collect()
-}
-
-fn name(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Proved => "proved",
-        Verdict::Refuted => "refuted",
-        Verdict::Undecided => "undecided",
-        Verdict::Skipped => "skipped",
-    }
 }
 
 fn printed(arena: &Arena, exprs: &[Expr]) -> Vec<String> {
@@ -247,5 +261,26 @@ fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> Identifiabi
             determinant: arena.print(gram.determinant),
             positive: gram.positive.is_some(),
         }),
+    }
+}
+
+fn operating_point(arena: &Arena, equilibrium: Equilibrium) -> OperatingPointReport {
+    let without = |verdict, reason| OperatingPointReport {
+        verdict: name(verdict),
+        values: IndexMap::new(),
+        still: None,
+        rank: None,
+        reason: Some(reason),
+    };
+    match equilibrium {
+        Equilibrium::At(point) => OperatingPointReport {
+            verdict: name(Verdict::Proved),
+            values: point.values.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect(),
+            still: Some(point.still),
+            rank: point.rank.filter(|_| point.still).map(|rank| [rank, 0]),
+            reason: None,
+        },
+        Equilibrium::Nowhere(symbol) => without(Verdict::Refuted, format!("`{}` never rests", arena.name(symbol))),
+        Equilibrium::Undecided(reason) => without(Verdict::Undecided, reason),
     }
 }

@@ -5,8 +5,10 @@
 
 mod expansion;
 mod json;
+mod remarks;
 mod text;
 
+use crate::analysis::Verdict;
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr};
 
@@ -15,6 +17,16 @@ pub use text::summary;
 
 /// The JSON schema of the objects that [`check`] and [`malformed`] give.
 pub const SCHEMA: &str = include_str!("check.schema.json");
+
+/// A verdict in a word.
+fn name(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Proved => "proved",
+        Verdict::Refuted => "refuted",
+        Verdict::Undecided => "undecided",
+        Verdict::Skipped => "skipped",
+    }
+}
 
 /// Comparisons with zero, as a reader would write them.
 fn conditions(arena: &Arena, conditions: &[(Expr, Relation)]) -> Vec<String> {

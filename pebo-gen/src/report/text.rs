@@ -27,15 +27,23 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
         let mut lines = vec![match r.kind {
             Excitation::Instant => format!("instant: {regressor} has full column rank"),
-            Excitation::Excitation => format!("with excitation: {regressor} has full column rank over time"),
+            Excitation::Excitation => {
+                format!("with excitation: {regressor} has full column rank over time: keep the inputs moving")
+            }
             Excitation::Never => "never: a direction of the unknowns stays unseen".to_owned(),
         }];
         if !r.singular_where.is_empty() {
-            lines.push(format!("except where {}", listed(r.singular_where.iter().map(String::as_str))));
+            lines.push(format!(
+                "except where {}: do not stay there",
+                listed(r.singular_where.iter().map(String::as_str))
+            ));
         }
         lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
         lines
     });
+    for remark in super::remarks::of(plant, derivation) {
+        block(&mut text, remark.name, remark.verdict.map_or("", super::name), &remark.lines);
+    }
     let conditions = super::conditions(&plant.arena, &derivation.conditions);
     if !conditions.is_empty() && derivation.outcome == Outcome::Accepted {
         text.extend(["  where ", &conditions.join(", "), "\n"]);
@@ -76,20 +84,18 @@ fn expansion(text: &mut String, plant: &Plant) {
     text.extend([line.trim_end(), "\n"]);
 }
 
+/// A name, a verdict, and lines beside them.
+fn block(text: &mut String, name: &str, verdict: &str, lines: &[String]) {
+    let line = format!("  {name:<16} {verdict:<9}{}", lines.join(&format!("\n{INDENT}")));
+    text.extend([line.trim_end(), "\n"]);
+}
+
 fn claim<T>(text: &mut String, name: &str, claim: &Claim<T>, lines: impl Fn(&T) -> Vec<String>) {
-    let verdict = match claim.verdict {
-        Verdict::Proved => "proved",
-        Verdict::Refuted => "refuted",
-        Verdict::Undecided => "undecided",
-        Verdict::Skipped => "skipped",
-    };
     let shown = match (&claim.result, claim.verdict) {
         (Some(result), Verdict::Proved | Verdict::Refuted) => lines(result),
         _ => Vec::new(),
     };
-    let line = format!("  {name:<16} {verdict:<9}{}", shown.join(&format!("\n{INDENT}")));
-    text.push_str(line.trim_end());
-    text.push('\n');
+    block(text, name, super::name(claim.verdict), &shown);
 }
 
 fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
@@ -170,6 +176,10 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     if !linear {
         for (index, eta) in regression.eta.iter().enumerate() {
             lines.push(format!("eta{} = {}", index + 1, arena.print(*eta)));
+        }
+        if regression.eta.len() > plant.theta.len() {
+            let (unknowns, components) = (regression.eta.len(), plant.theta.len());
+            lines.push(format!("{unknowns} unknowns for {components} of theta: excite all of them"));
         }
     }
     lines

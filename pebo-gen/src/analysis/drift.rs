@@ -1,0 +1,118 @@
+//! Which components of the extension are open integrators, and what the runtime has against their drift
+//! (Ortega et al. 2015, remark R5).
+
+use crate::cas::zero::decide;
+use crate::cas::{Expr, Symbol};
+use crate::plant::Plant;
+
+use super::design::{Class, Derivation, Regression, RegressionKind, Verdict};
+
+/// The components of the extension that a constant bias makes run away.
+#[derive(Clone, Debug)]
+pub struct Drift {
+    /// Components with a rate that is free of the extension and was not shown to be zero.
+    pub integrators: Vec<Symbol>,
+    /// The outputs and inputs that they integrate.
+    pub integrated: Vec<Symbol>,
+}
+
+impl Drift {
+    /// The open integrators of an extension; none without a proved cascade.
+    pub fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
+        let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
+        let arena = &plant.arena;
+        let domain = plant.domain();
+        let zero = |expr: &Expr| decide(arena, *expr, &domain).is_zero();
+        let apart = |row: usize| cascade.lambda.as_ref().is_none_or(|lambda| lambda[row].iter().all(zero));
+        let open: Vec<usize> = (0..cascade.h.len()).filter(|row| apart(*row) && !zero(&cascade.h[*row])).collect();
+        let extension = match derivation.class {
+            Class::Pebo => &plant.chi,
+            Class::Gpebo => &plant.xi,
+        };
+        let rates: Vec<Expr> = open.iter().map(|row| cascade.h[*row]).collect();
+        let read = arena.symbols_of(&rates);
+        let signals = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied());
+        Some(Self {
+            integrators: open.iter().map(|row| extension[*row]).collect(),
+            integrated: signals.filter(|signal| read.contains(signal)).collect(),
+        })
+    }
+}
+
+/// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase` of the runtime): the
+/// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
+/// not move. None where the unknowns are not theta itself, or stand under the derivative.
+pub fn rebase_residuals(plant: &Plant, class: Class, regression: &Regression) -> Option<Vec<Expr>> {
+    let arena = &plant.arena;
+    let unknowns = regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
+    if unknowns.ne(regression.theta.iter().copied()) || regression.kind == RegressionKind::Implicit {
+        return None;
+    }
+    let extension = match class {
+        Class::Pebo => &plant.chi,
+        Class::Gpebo => &plant.xi,
+    };
+    let mut residuals = Vec::new();
+    for (phi_0, phi_1) in regression.phi_0.iter().zip(&regression.phi_1) {
+        let slopes: Vec<Expr> = extension.iter().map(|&chi| arena.derivative(*phi_0, chi)).collect();
+        for (column, &entry) in phi_1.iter().enumerate() {
+            let slope = match class {
+                Class::Pebo => slopes[column],
+                Class::Gpebo => arena.sum(
+                    slopes.iter().zip(&plant.psi).map(|(&slope, row)| arena.mul(slope, arena.of_symbol(row[column]))),
+                ),
+            };
+            residuals.push(match regression.kind {
+                RegressionKind::Static => arena.add(slope, entry),
+                RegressionKind::Dynamic | RegressionKind::Implicit => arena.sub(slope, entry),
+            });
+            residuals.extend(extension.iter().map(|&chi| arena.derivative(entry, chi)));
+        }
+    }
+    Some(residuals)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::source::Source;
+
+    fn of(lines: &str) -> Option<(Vec<String>, Vec<String>)> {
+        let text = format!("model: m\n{lines}\n");
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let drift = Drift::of(&plant, &Derivation::derive(&plant))?;
+        let names = |symbols: &[Symbol]| symbols.iter().map(|s| plant.arena.name(*s)).collect();
+        Some((names(&drift.integrators), names(&drift.integrated)))
+    }
+
+    fn named(integrators: &[&str], integrated: &[&str]) -> Option<(Vec<String>, Vec<String>)> {
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        Some((names(integrators), names(integrated)))
+    }
+
+    #[test]
+    fn what_integrates_a_signal_drifts_and_a_constant_does_not() {
+        let pendulum = "x: [p]\ny: [q]\nu: [tau]\nf_x: {p: tau - sin(q)}\nf_y: {q: p}\nphi: [p]";
+        assert_eq!(of(pendulum), named(&["chi1"], &["q", "tau"]));
+        // h1 is zero, also where it is not written so; h2 reads the input alone.
+        for zero in ["0", "sin(c)^2 + cos(c)^2 - 1"] {
+            let lines =
+                format!("x: [a, b]\ny: [c, d]\nu: [u]\nf_x: {{a: {zero}, b: u}}\nf_y: {{c: a, d: b}}\nphi: [a, b]");
+            assert_eq!(of(&lines), named(&["chi2"], &["u"]), "{zero}");
+        }
+    }
+
+    #[test]
+    fn a_component_that_the_extension_feeds_is_no_open_integrator() {
+        // a and b turn with the frame, c' = v alone.
+        let frame = "x: [a, b, c]\ny: [p, q]\nu: [w, v]\nf_x: {a: w*b, b: v - w*a, c: v}\n\
+                     f_y: {p: a, q: c}\nphi: [a, b, c]";
+        assert_eq!(of(frame), named(&["xi3"], &["v"]));
+    }
+
+    #[test]
+    fn without_a_cascade_nothing_is_said() {
+        assert_eq!(of("x: [x]\ny: [y]\nf_x: {x: x^2}\nf_y: {y: y}\nphi: [x]"), None);
+    }
+}

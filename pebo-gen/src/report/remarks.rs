@@ -1,0 +1,86 @@
+//! What to know in use, in a line each: where the plant rests, what drifts, how long theta holds.
+
+use crate::analysis::{Class, Derivation, Drift, Equilibrium, OperatingPoint, Outcome, Verdict, rebase_residuals};
+use crate::cas::Symbol;
+use crate::cas::zero::decide;
+use crate::plant::Plant;
+use crate::source::listed;
+
+/// A remark: its name, its verdict where one was reached, and its lines.
+pub(super) struct Remark {
+    pub(super) name: &'static str,
+    pub(super) verdict: Option<Verdict>,
+    pub(super) lines: Vec<String>,
+}
+
+/// The remarks on a plant with a proved cascade.
+pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
+    let mut remarks: Vec<Remark> = Equilibrium::of(plant, derivation)
+        .map(|equilibrium| match equilibrium {
+            Equilibrium::At(point) => (Verdict::Proved, rest(plant, derivation.class, &point)),
+            Equilibrium::Nowhere(symbol) => {
+                (Verdict::Refuted, vec![format!("none: `{}` never rests", plant.arena.name(symbol))])
+            }
+            Equilibrium::Undecided(reason) => (Verdict::Undecided, vec![format!(": {reason}")]),
+        })
+        .map(|(verdict, lines)| Remark { name: "operating point", verdict: Some(verdict), lines })
+        .into_iter()
+        .collect();
+    if derivation.outcome == Outcome::Accepted {
+        let drift = Drift::of(plant, derivation).filter(|drift| !drift.integrators.is_empty());
+        remarks.extend(drift.map(|drift| Remark {
+            name: "drift",
+            verdict: None,
+            lines: vec![grows(plant, &drift), format!("against it {}", remedy(plant, derivation))],
+        }));
+        let jump = "another constant after a jump of the state: start anew, or let the estimator forget".to_owned();
+        remarks.push(Remark { name: "theta", verdict: None, lines: vec![jump] });
+    }
+    remarks
+}
+
+/// The point, and what holds there.
+fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
+    let arena = &plant.arena;
+    let mut lines: Vec<String> = point
+        .values
+        .iter()
+        .map(|(symbol, value)| format!("{} = {}", arena.name(*symbol), arena.print(*value)))
+        .collect();
+    if point.still {
+        lines.push(match class {
+            Class::Pebo => "h = 0 there: chi rests but for a bias".to_owned(),
+            Class::Gpebo => "Lambda z + h = 0 there: z rests".to_owned(),
+        });
+        lines.extend(point.rank.filter(|rank| *rank > 0).map(|rank| {
+            format!("rank [f; h_i] is {rank} almost everywhere, 0 there: Frobenius does not apply, phi is explicit")
+        }));
+    }
+    lines
+}
+
+fn grows(plant: &Plant, drift: &Drift) -> String {
+    let names = |symbols: &[Symbol]| {
+        let names: Vec<String> = symbols.iter().map(|s| plant.arena.name(*s)).collect();
+        listed(names.iter().map(String::as_str))
+    };
+    let integrators = names(&drift.integrators);
+    if drift.integrated.is_empty() {
+        return format!("without end in {integrators}");
+    }
+    format!("in {integrators} under a constant bias of {}", names(&drift.integrated))
+}
+
+/// What the runtime has against drift.
+fn remedy(plant: &Plant, derivation: &Derivation) -> &'static str {
+    let domain = plant.domain();
+    let regression = derivation.regression.result.as_ref();
+    let rebase = regression
+        .and_then(|regression| rebase_residuals(plant, derivation.class, regression))
+        .is_some_and(|residuals| residuals.iter().all(|residual| decide(&plant.arena, *residual, &domain).is_zero()));
+    match (derivation.class, rebase) {
+        (Class::Pebo, true) => "use `step_without_drift`, and an estimator that forgets",
+        (Class::Gpebo, true) => "use `rebase`, and an estimator that forgets",
+        (_, false) => "start anew before the extension loses its digits",
+    }
+}
