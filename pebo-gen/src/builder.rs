@@ -124,7 +124,7 @@ impl Builder {
             write(&built.path, text)?;
             // An absolute path: relative ones start at the file that includes this one.
             let path = built.path.display().to_string();
-            index.push_str(&format!("#[path = {path:?}]\npub mod {};\n", built.model));
+            index.extend([format!("#[path = {path:?}]\n"), format!("pub mod {};\n", built.model)]);
         }
         write(&folder.join(&self.include_file), &index)?;
         Ok(texts.into_iter().map(|(built, _)| built).collect())

@@ -120,9 +120,10 @@ impl Functions<'_> {
 
     fn vector(&self, letter: &str, argument: &Ident) -> Option<TokenStream> {
         let fields = fields(self.structure(letter)?);
-        Some(match fields.is_empty() {
-            true => quote!(pebo_runtime::nalgebra::SVector::zeros()),
-            false => quote!(pebo_runtime::nalgebra::SVector::from([#(#argument.#fields),*])),
+        Some(if fields.is_empty() {
+            quote!(pebo_runtime::nalgebra::SVector::zeros())
+        } else {
+            quote!(pebo_runtime::nalgebra::SVector::from([#(#argument.#fields),*]))
         })
     }
 

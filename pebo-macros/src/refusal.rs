@@ -12,20 +12,14 @@ pub(crate) fn errors(diagnostics: &[Diagnostic], places: &Places) -> TokenStream
 }
 
 fn error(diagnostic: &Diagnostic, places: &Places) -> Error {
-    let mut text = format!("{} [{}]", diagnostic.message, diagnostic.code.name());
-    if !diagnostic.primary.text.is_empty() {
-        text.push_str(&format!("\n{}", diagnostic.primary.text));
-    }
+    let mut lines = vec![format!("{} [{}]", diagnostic.message, diagnostic.code.name())];
+    lines.extend(Some(diagnostic.primary.text.to_string()).filter(|label| !label.is_empty()));
     // The compiler underlines one place: the others are quoted.
-    for label in diagnostic.secondary.iter().filter(|label| !label.text.is_empty()) {
-        text.push_str(&format!("\nnote: {}: `{}`", label.text, places.text(label.span)));
-    }
-    for note in &diagnostic.notes {
-        text.push_str(&format!("\nnote: {note}"));
-    }
-    if let Some(help) = &diagnostic.help {
-        text.push_str(&format!("\nhelp: {help}"));
-    }
+    let labels = diagnostic.secondary.iter().filter(|label| !label.text.is_empty());
+    lines.extend(labels.map(|label| format!("note: {}: `{}`", label.text, places.text(label.span))));
+    lines.extend(diagnostic.notes.iter().map(|note| format!("note: {note}")));
+    lines.extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
+    let text = lines.join("\n");
     match places.ends(diagnostic.primary.span) {
         Some((first, last)) => Error::new_spanned(TokenStream::from_iter([first, last]), text),
         None => Error::new(proc_macro2::Span::call_site(), text),

@@ -56,6 +56,23 @@ fn the_smallest_model_and_its_code_are_real() {
 }
 
 #[test]
+fn the_ways_to_the_code_are_those_of_the_examples() {
+    let sources = [
+        include_str!("../examples/attribute/src/main.rs"),
+        include_str!("../examples/firmware/src/lib.rs"),
+        include_str!("../examples/build-script/build.rs"),
+    ];
+    // After the code of the smallest model and the example of use.
+    let shown = &blocks("rust")[2..];
+    assert_eq!(shown.len(), 4);
+    for block in shown {
+        assert!(sources.iter().any(|source| source.contains(block)), "{block}");
+    }
+    let refusal = include_str!("../mistakes/cascade_refuted.stderr");
+    assert_eq!(blocks("text")[2], refusal);
+}
+
+#[test]
 fn the_class_that_is_shown_is_accepted() {
     let class = blocks("yaml")[1];
     let leg = derived(&format!(

@@ -109,13 +109,10 @@ impl<'a> Reader<'a> {
     /// other components are read as well.
     fn element(&mut self, expr: &Expr, locals: &mut Locals) -> Value {
         let value = self.value(expr, locals);
-        match self.diagnostics.keep(value) {
-            Some(value) => value,
-            None => {
-                let span = self.places.of(expr);
-                Value::Number(Measured::leaf(Formula { span, term: Term::Number(Decimal::zero()) }))
-            }
-        }
+        self.diagnostics.keep(value).unwrap_or_else(|| {
+            let span = self.places.of(expr);
+            Value::Number(Measured::leaf(Formula { span, term: Term::Number(Decimal::zero()) }))
+        })
     }
 
     /// A number that may be written as an integer: what is converted to a float.
@@ -226,9 +223,8 @@ impl<'a> Reader<'a> {
             return Err(unsupported(place, format!("the constant `{name}` is no floating-point number"))
                 .help(format!("declare it as `const {}: f64`", item.ident)));
         }
-        let known: Vec<&str> =
+        let mut known: Vec<&str> =
             locals.iter().map(|(local, _)| local.as_str()).chain(self.constants.iter().map(String::as_str)).collect();
-        let mut known = known;
         known.sort_unstable();
         let written = Places::path(path);
         Err(unknown_name(&written, place, known))

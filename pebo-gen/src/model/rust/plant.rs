@@ -52,15 +52,15 @@ pub(super) fn read(
     }
     let arguments = Arguments::read(arguments, places, diagnostics);
     let items = Items::of(module);
-    let mut signals = |letter: &str, required: Option<&str>, places: &mut Places| match items.structure(letter) {
-        Some(item) => items::fields(item, places, diagnostics),
-        None => {
-            if let Some(what) = required {
-                let what = format!("the struct `{letter}`, the {what},");
-                diagnostics.push(missing(name.span, &what, &format!("pub struct {letter} {{ pub a: f64 }}")));
-            }
-            Vec::new()
+    let mut signals = |letter: &str, required: Option<&str>, places: &mut Places| {
+        if let Some(item) = items.structure(letter) {
+            return items::fields(item, places, diagnostics);
         }
+        if let Some(what) = required {
+            let what = format!("the struct `{letter}`, the {what},");
+            diagnostics.push(missing(name.span, &what, &format!("pub struct {letter} {{ pub a: f64 }}")));
+        }
+        Vec::new()
     };
     let signals = Signals {
         x: signals("X", Some("unmeasured states"), places),
