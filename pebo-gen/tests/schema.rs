@@ -51,9 +51,8 @@ fn departures(value: &Value, schema: &Value, at: &str, found: &mut Vec<String>) 
         for (name, field) in fields {
             let place = format!("{at}.{name}");
             match (schema["properties"].get(name), &schema["additionalProperties"]) {
-                (Some(schema), _) => departures(field, schema, &place, found),
                 (None, Value::Bool(false)) => found.push(format!("{place} is not in the schema")),
-                (None, schema) => departures(field, schema, &place, found),
+                (Some(schema), _) | (None, schema) => departures(field, schema, &place, found),
             }
         }
     }

@@ -5,7 +5,7 @@ use pebo_gen::emit::Scalar;
 use pebo_gen::model::Model;
 use pebo_gen::model::rust::Places;
 use pebo_gen::source::Diagnostic;
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
 use syn::{Error, Item, ItemMod};
 
@@ -48,11 +48,25 @@ fn additions(derived: &Derived, module: &ItemMod) -> TokenStream {
     let tokens = &emitted.tokens;
     let type_name = Ident::new(&emitted.type_name, Span::call_site());
     let functions = Functions { derived, module, type_name: &type_name, scalar }.tokens();
-    quote! {
+    let added = quote! {
         pub mod observer { #tokens }
         pub use observer::*;
         #functions
-    }
+    };
+    at(added, Span::call_site().located_at(module.ident.span()))
+}
+
+/// The tokens, all in one place. An attribute of several lines is a place that makes lints see line breaks inside
+/// of what is written.
+fn at(tokens: TokenStream, span: Span) -> TokenStream {
+    let moved = tokens.into_iter().map(|mut token| {
+        if let TokenTree::Group(group) = &token {
+            token = Group::new(group.delimiter(), at(group.stream(), span)).into();
+        }
+        token.set_span(span);
+        token
+    });
+    moved.collect()
 }
 
 /// The type that the module computes in: that of its first state.

@@ -32,17 +32,17 @@ pub(crate) mod cuk {
     }
 
     /// The share of the period in which the switch is open.
-    fn off(u: &U) -> f64 {
+    fn off(u: U) -> f64 {
         1.0 - u.d
     }
 
-    pub(crate) fn f_x(y: &Y, u: &U) -> X {
+    pub(crate) fn f_x(y: &Y, u: U) -> X {
         let Y { v2, v4 } = *y;
         let i1 = (E - off(u) * v2) / L1;
         X { i1, i3: -(u.d * v2 + v4) / L3 }
     }
 
-    pub(crate) fn f_y(x: &X, y: &Y, u: &U) -> Y {
+    pub(crate) fn f_y(x: &X, y: &Y, u: U) -> Y {
         Y { v2: (off(u) * x.i1 + u.d * x.i3) / C2, v4: (x.i3 - G * y.v4) / C4 }
     }
 
