@@ -160,6 +160,18 @@ fn several_models_in_one_call_end_with_the_worst_status() {
 }
 
 #[test]
+fn json_tells_what_drifts_and_where_the_plant_rests() {
+    let printed = text(&run(&["check", CUK, "--format", "json"]).stdout);
+    for part in [
+        r#""drift":["chi1","chi2"]"#,
+        r#""operating_point":{"verdict":"proved","values":{"i1":"G*E*d^2/(d - 1)^2","i3":"G*E*d/(d - 1)","#,
+        r#""still":true,"rank":[1,0],"reason":null}"#,
+    ] {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+}
+
+#[test]
 fn json_has_an_object_for_a_malformed_model_too() {
     let folder = Folder::new();
     let malformed = folder.file("m.yaml", "model: [");

@@ -15,7 +15,7 @@ use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide};
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::plant::Plant;
 
 use super::design::{Cascade, Derivation, Verdict};
@@ -253,8 +253,16 @@ impl Search<'_> {
         let arena = &self.plant.arena;
         let [states, _] = self.unknowns();
         let unknowns: Vec<Symbol> = states.iter().copied().collect();
+        // What cannot vanish says nothing of where its product does.
+        let bare = |formula: Expr| match arena.node(formula) {
+            Node::Product(product) => {
+                let may_vanish = |(base, _): &&(Expr, Rational)| !self.domain.shows(arena, *base, Relation::NonZero);
+                arena.multiply(&Rational::ONE, product.factors.iter().filter(may_vanish).cloned())
+            }
+            _ => formula,
+        };
         let equations: Vec<Equation> =
-            open.iter().map(|(formula, _)| Equation { formula: *formula, value: arena.zero() }).collect();
+            open.iter().map(|(formula, _)| Equation { formula: bare(*formula), value: arena.zero() }).collect();
         let candidates = solve(arena, self.domain, &equations, &unknowns)?;
         let free = |(symbol, values): (Symbol, Vec<Expr>)| {
             let value = values.into_iter().find(|value| !arena.depends_on(*value, &BTreeSet::from([symbol])))?;
@@ -317,6 +325,9 @@ mod tests {
     fn inverse_functions_solve_what_is_not_linear() {
         let lines = "parameters: {a: 2}\nx: [x]\ny: [y]\nf_x: {x: a - exp(y)}\nf_y: {y: x}\nphi: [x]";
         assert_eq!(at(lines), "x = 0, y = log(a)");
+        // A leg of length r > 0 hangs down.
+        let leg = "x: [p]\ny: [r, q]\nu: [v]\nassume: [r > 0]\nf_x: {p: -r*sin(q)}\nf_y: {r: v, q: p}\nphi: [p]";
+        assert_eq!(at(leg), "p = 0, q = 0, v = 0");
     }
 
     #[test]
