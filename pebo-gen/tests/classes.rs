@@ -353,11 +353,14 @@ fn a_rate_has_a_primitive_or_is_refused() {
     };
     let implicit = (Outcome::Accepted, Some(RegressionKind::Implicit));
     // (x + y) y' = u has the primitive x y + y^2/2.
-    for rate in ["u/x", "x/(1 + x)", "u/(x + y)", "(u + x)/(x^2 + x*y^2 + 1)"] {
+    for rate in ["u/x", "x/(1 + x)", "u/(x + y)", "(u + x)/(x + x*y^2 + 1)"] {
         assert_eq!(kind(rate), implicit, "{rate}");
     }
-    // No primitive: what multiplies the rate depends on the input, is no polynomial in y, or mixes theta with signals.
-    for rate in ["u/(x + u)", "u/(x + exp(y))", "u/(x + log(y))", "1/(1 + exp(-x^2))", "1/(1 + exp(x*y))"] {
+    // No primitive: what multiplies the rate depends on the input, is no polynomial in y, mixes theta with signals, or is
+    // not affine in the unknown.
+    let refused =
+        ["u/(x + u)", "u/(x + exp(y))", "u/(x + log(y))", "1/(1 + exp(-x^2))", "1/(1 + exp(x*y))", "u/(1 + x^2)"];
+    for rate in refused {
         assert_ne!(kind(rate).0, Outcome::Accepted, "{rate}");
     }
 }
