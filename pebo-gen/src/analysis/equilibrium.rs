@@ -3,23 +3,21 @@
 //! In: a plant with a proved cascade. Out: states, and inputs where the states leave equations, in those that
 //! stay free, with the proof that every rate vanishes there, and with it `h`.
 //!
-//! The equations are taken one at a time, each for a symbol that is linear in it, which is then replaced
-//! in all others; where none is linear, inverse functions may help. Division by what vanishes somewhere can
-//! lose operating points, never add one: what comes out is checked by the zero test within the assumed domain.
+//! Elimination proposes points; what comes out is checked by the zero test within the assumed domain.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
-use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide};
-use crate::cas::{Arena, Expr, Node, Symbol};
+use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
 use super::design::{Cascade, Derivation, Verdict};
-use super::solve::{Equation, solve};
+use super::elimination::Elimination;
 use super::tidy::{shorter, shortest};
 
 /// What is known of where a plant rests.
@@ -63,20 +61,27 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     if let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.shows(arena, **rate, Relation::NonZero)) {
         return Ok(Equilibrium::Nowhere(*symbol));
     }
-    let mut search = Search { plant, domain: &domain, values: BTreeMap::new() };
-    if let Some(left) = search.run(rates.values().copied().collect())? {
-        let reason = format!("no rule solves `{}` = 0", arena.print(left));
-        return Ok(Equilibrium::Undecided(reason));
-    }
-    let values = search.values;
-    let Some(there) = restricted(arena, &domain, &values) else {
-        return Ok(Equilibrium::Undecided("no operating point was found within the assumptions".to_owned()));
+    let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
+    let inputs = plant.u.iter().chain(&plant.w).copied().collect();
+    let mut doubtful = None;
+    let mut rests = |values: &BTreeMap<Symbol, Expr>| match checked(plant, &domain, values) {
+        Ok(there) => Some((values.clone(), there)),
+        Err(reason) => {
+            doubtful.get_or_insert(reason);
+            None
+        }
     };
-    let vanishes = |expr: Expr| decide(arena, arena.substitute(expr, &values), &there).is_zero();
-    if let Some((symbol, _)) = rates.iter().find(|(_, rate)| !vanishes(**rate)) {
-        return Ok(Equilibrium::Undecided(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))));
-    }
-    let still = flow(plant, cascade).into_iter().all(vanishes);
+    let search = Elimination { arena, domain: &domain, states, inputs };
+    let identities = plant.identities.iter().map(|identity| identity.expr);
+    let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
+    let (values, there) = match search.run(&equations, &mut rests)? {
+        Ok(found) => found,
+        Err(stuck) => {
+            let reason = doubtful.unwrap_or_else(|| format!("no rule solves `{}` = 0", arena.print(stuck)));
+            return Ok(Equilibrium::Undecided(reason));
+        }
+    };
+    let still = flow(plant, cascade).into_iter().all(|rate| vanishes(arena, rate, &values, &there));
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
     let shown = |value: Expr| {
@@ -85,6 +90,25 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     };
     let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, &domain, rates.values()) }))
+}
+
+/// The domain of the symbols that stay free, with the proof that every rate and identity vanishes there; else the
+/// reason.
+fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
+    let arena = &plant.arena;
+    let there = restricted(arena, domain, values)
+        .ok_or_else(|| "no operating point was found within the assumptions".to_owned())?;
+    match plant.rates().iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
+        Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
+        None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
+            Err("the identities were not shown to hold where the plant rests".to_owned())
+        }
+        None => Ok(there),
+    }
+}
+
+fn vanishes(arena: &Arena, expr: Expr, values: &BTreeMap<Symbol, Expr>, there: &Domain) -> bool {
+    decide(arena, arena.substitute(expr, values), there).is_zero()
 }
 
 /// The value with repeated factors as powers.
@@ -147,131 +171,6 @@ fn restricted(arena: &Arena, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -
     (constant.iter().all(holds) && there.points(arena, &all).any(|point| exists(&point))).then_some(there)
 }
 
-/// The equations with what they have determined so far.
-struct Search<'a> {
-    plant: &'a Plant,
-    domain: &'a Domain,
-    values: BTreeMap<Symbol, Expr>,
-}
-
-/// How little a step of elimination assumes; the least is taken.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Cost {
-    /// Whether the symbol's factor holds states, which may vanish.
-    bends: bool,
-    /// Whether the symbol is an input, which the author would rather choose.
-    input: bool,
-    /// Whether the factor holds inputs.
-    driven: bool,
-    /// Terms of factor and rest.
-    terms: usize,
-}
-
-impl Search<'_> {
-    /// Determines symbols until every equation holds; else one that does not.
-    fn run(&mut self, mut equations: Vec<Expr>) -> Result<Option<Expr>, Obstacle> {
-        let arena = &self.plant.arena;
-        loop {
-            equations = arena.substitute_all(&equations, &self.values);
-            let field = Field::over(arena, &self.domain.facts, &equations)?;
-            let mut open = Vec::new();
-            for equation in &equations {
-                let fraction = field.fraction(*equation)?;
-                if !fraction.is_zero() {
-                    open.push((field.show(&fraction), fraction));
-                }
-            }
-            let Some((first, _)) = open.first() else { return Ok(None) };
-            let next = match self.linear(&field, &open)? {
-                Some(next) => Some(next),
-                None => self.inverted(&open)?,
-            };
-            let Some((symbol, value)) = next else { return Ok(Some(*first)) };
-            let replaced = BTreeMap::from([(symbol, value)]);
-            for known in self.values.values_mut() {
-                *known = arena.substitute(*known, &replaced);
-            }
-            self.values.insert(symbol, value);
-            equations = open.into_iter().map(|(equation, _)| equation).collect();
-        }
-    }
-
-    /// The states, then the inputs, that are not determined.
-    fn unknowns(&self) -> [BTreeSet<Symbol>; 2] {
-        let plant = self.plant;
-        let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
-        let inputs = plant.u.iter().chain(&plant.w).copied();
-        [
-            states.filter(|s| !self.values.contains_key(s)).collect(),
-            inputs.filter(|s| !self.values.contains_key(s)).collect(),
-        ]
-    }
-
-    /// A symbol that stands to the first power in an equation, in no kernel but itself.
-    fn linear(&self, field: &Field<'_>, open: &[(Expr, Fraction)]) -> Result<Option<(Symbol, Expr)>, Obstacle> {
-        let arena = field.arena();
-        let [states, inputs] = self.unknowns();
-        let mut best: Option<(Cost, Symbol, Expr)> = None;
-        for (_, fraction) in open {
-            let numerator = fraction.numerator();
-            for symbol in states.union(&inputs) {
-                let kernels = field.kernels_of(&BTreeSet::from([*symbol]));
-                let mut kernels = numerator.variables().iter().filter(|kernel| kernels.contains(kernel));
-                let (Some(kernel), None) = (kernels.next(), kernels.next()) else { continue };
-                if numerator.degree(*kernel) != 1 || arena.as_symbol(field.kernel(*kernel)) != Some(*symbol) {
-                    continue;
-                }
-                let mut factor = Fraction::zero();
-                let mut rest = Fraction::zero();
-                for (power, coefficient) in numerator.collect(&[*kernel]) {
-                    *(if power.is_one() { &mut rest } else { &mut factor }) = field.of_polynomial(&coefficient)?;
-                }
-                let holds = |symbols: &BTreeSet<Symbol>| {
-                    let kernels = field.kernels_of(symbols);
-                    factor.variables().any(|kernel| kernels.contains(&kernel))
-                };
-                if rest.is_zero() && self.domain.shows(arena, arena.of_symbol(*symbol), Relation::NonZero) {
-                    continue;
-                }
-                let cost = Cost {
-                    bends: holds(&states),
-                    input: inputs.contains(symbol),
-                    driven: holds(&inputs),
-                    terms: factor.numerator().term_count() + rest.numerator().term_count(),
-                };
-                if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                    let value = field.show(&field.div(&rest, &factor)?.opposite());
-                    best = Some((cost, *symbol, value));
-                }
-            }
-        }
-        Ok(best.map(|(_, symbol, value)| (symbol, value)))
-    }
-
-    /// A state that inverse functions give.
-    fn inverted(&self, open: &[(Expr, Fraction)]) -> Result<Option<(Symbol, Expr)>, Obstacle> {
-        let arena = &self.plant.arena;
-        let [states, _] = self.unknowns();
-        let unknowns: Vec<Symbol> = states.iter().copied().collect();
-        // What cannot vanish says nothing of where its product does.
-        let bare = |formula: Expr| match arena.node(formula) {
-            Node::Product(product) => {
-                let may_vanish = |(base, _): &&(Expr, Rational)| !self.domain.shows(arena, *base, Relation::NonZero);
-                arena.multiply(&Rational::ONE, product.factors.iter().filter(may_vanish).cloned())
-            }
-            _ => formula,
-        };
-        let equations: Vec<Equation> =
-            open.iter().map(|(formula, _)| Equation { formula: bare(*formula), value: arena.zero() }).collect();
-        let candidates = solve(arena, self.domain, &equations, &unknowns)?;
-        let free = |(symbol, values): (Symbol, Vec<Expr>)| {
-            let value = values.into_iter().find(|value| !arena.depends_on(*value, &BTreeSet::from([symbol])))?;
-            Some((symbol, value))
-        };
-        Ok(candidates.into_iter().find_map(free))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -328,6 +227,37 @@ mod tests {
         // A leg of length r > 0 hangs down.
         let leg = "x: [p]\ny: [r, q]\nu: [v]\nassume: [r > 0]\nf_x: {p: -r*sin(q)}\nf_y: {r: v, q: p}\nphi: [p]";
         assert_eq!(at(leg), "p = 0, q = 0, v = 0");
+    }
+
+    #[test]
+    fn one_factor_of_a_product_vanishes() {
+        // An aircraft that takes off upright hovers; without thrust it does not.
+        let aircraft = "parameters: [g]\nx: [vx, vz]\ny: [px, pz, q]\nu: [thrust, turn]\n\
+                        f_x: {vx: -sin(q)*thrust, vz: cos(q)*thrust - g}\nf_y: {px: vx, pz: vz, q: turn}\n\
+                        phi: [vx, vz]";
+        assert_eq!(at(aircraft), "vx = 0, vz = 0, q = 0, thrust = g, turn = 0");
+        let lorenz = "parameters: [s, r, b]\nassume: [b > 0, s > 0]\nx: [b1, b2]\ny: [a]\n\
+                      f_x: {b1: r*a - b1 - a*b2, b2: a*b1 - b*b2}\nf_y: {a: s*(b1 - a)}\nphi: [b1, b2]";
+        assert_eq!(at(lorenz), "b1 = 0, b2 = 0, a = 0");
+        let away = "x: [x]\ny: [y]\nassume: [y > 1]\nf_x: {x: (y - 3)^2*y}\nf_y: {y: x}\nphi: [x]";
+        assert_eq!(at(away), "x = 0, y = 3");
+    }
+
+    #[test]
+    fn identities_hold_where_the_plant_rests() {
+        // A point on the unit circle does not rest at its centre.
+        let circle = "x: [c, s]\ny: [q]\nu: [v, w]\nidentities: [c^2 + s^2 - 1]\n\
+                      f_x: {c: -s*w, s: c*w}\nf_y: {q: v*c}\nphi: [c, s]";
+        assert_eq!(at(circle), "c = 0, s = 1, w = 0");
+        let motor = std::fs::read_to_string("../models/motor_flux.yaml").unwrap();
+        let lines = motor.lines().filter(|line| !line.starts_with("model:")).collect::<Vec<_>>().join("\n");
+        assert_eq!(at(&lines), "l1 = lambda_m + L*v1/R, l2 = L*v2/R, i1 = v1/R, i2 = v2/R, omega = 0");
+    }
+
+    #[test]
+    fn a_parameter_is_not_solved_for() {
+        let reason = undecided("parameters: [g]\nx: [x]\ny: [y]\nf_x: {x: -g}\nf_y: {y: x}\nphi: [x]");
+        assert_eq!(reason, "no rule solves `-g` = 0");
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod conditions;
 mod derive;
 mod design;
 mod drift;
+mod elimination;
 mod equilibrium;
 mod excitation;
 mod gpebo;

@@ -105,7 +105,7 @@ fn turned_out(arena: &Arena, domain: &Domain, equation: Equation, unknowns: &[Sy
         let Equation { formula, value } = equation;
         let alone = |e: &Expr| arena.depends_on(*e, &open);
         equation = match arena.node(formula) {
-            Node::Symbol(_) => return Some(equation),
+            Node::Symbol(symbol) => return open.contains(&symbol).then_some(equation),
             Node::Sum(sum) => {
                 let (inner, rest): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(t, _)| alone(t));
                 let [(term, slope)] = inner.as_slice() else { return None };

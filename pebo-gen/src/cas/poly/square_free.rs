@@ -36,6 +36,25 @@ impl Poly {
         Ok(SquareFree { content, factors })
     }
 
+    /// Factors that hold some of the variables, once each, as far as contents and multiplicities tell them apart: the
+    /// polynomial vanishes where one of them does, or a polynomial in the other variables.
+    pub fn factors_in(&self, variables: &[u32], work: &Work) -> Result<Vec<Self>, TooLarge> {
+        let monomial = self.monomial_content();
+        let mut rest = self.over_monomial(&monomial);
+        let alone = monomial.powers().iter().map(|(variable, _)| *variable);
+        let mut factors: Vec<Self> = alone.filter(|v| variables.contains(v)).map(Self::variable).collect();
+        for variable in variables {
+            if rest.variables().contains(variable) {
+                // All that is not in the content holds the variable.
+                let lower = rest.content_in(&[*variable], work)?;
+                let held = rest.over(&lower, work)?.square_free(work)?.factors;
+                factors.extend(held.into_iter().map(|(factor, _)| factor));
+                rest = lower;
+            }
+        }
+        Ok(factors)
+    }
+
     /// For a polynomial that is primitive in the variable.
     fn yun(&self, variable: u32, factors: &mut BTreeMap<u32, Self>, work: &Work) -> Result<(), TooLarge> {
         let derivative = self.derivative(variable);

@@ -238,6 +238,23 @@ proptest! {
         }
     }
 
+    /// Without what is free of the variables, and with every multiplicity, the product of the factors is the polynomial's.
+    #[test]
+    fn factors_in_variables(a in poly(4, 2), b in poly(4, 2), c in poly(3, 2)) {
+        let inner = [0, 1];
+        let mut rest = mul(&c, &mul(&a, &mul(&b, &b)));
+        prop_assume!(!rest.is_zero());
+        for factor in rest.clone().factors_in(&inner, &work()).expect("small") {
+            prop_assert!(factor.variables().iter().any(|v| inner.contains(v)));
+            let mut times = 0;
+            while let Some(quotient) = rest.div_exact(&factor, &work()).expect("small") {
+                (rest, times) = (quotient, times + 1);
+            }
+            prop_assert!(times > 0);
+        }
+        prop_assert!(rest.variables().iter().all(|v| !inner.contains(v)));
+    }
+
     #[test]
     fn bases(a in poly(3, 2), b in poly(3, 2), c in poly(3, 2)) {
         let given = [mul(&a, &b), mul(&b, &c), mul(&a, &mul(&c, &c))];

@@ -1,0 +1,237 @@
+//! Symbols at which equations hold: one equation at a time, for one symbol at a time.
+//!
+//! In: formulas that are to vanish, states and inputs to determine, and a check of what comes out. Out: the first values
+//! that the check accepts, in symbols that stay free, or a formula that no rule makes vanish.
+//!
+//! An equation is taken for a symbol in which one of its factors is linear, which is then replaced in all others; where
+//! none is, a factor may be quadratic, or inverse functions may help. Division by what vanishes somewhere can lose solutions, never add one,
+//! and where a product vanishes, each factor in turn is tried.
+
+use std::cell::Cell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
+use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::poly::Poly;
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Symbol};
+
+use super::solve::{Equation, solve};
+
+/// What is to be determined.
+pub(super) struct Elimination<'a> {
+    pub arena: &'a Arena,
+    /// Where the symbols lie.
+    pub domain: &'a Domain,
+    /// Symbols to determine first.
+    pub states: BTreeSet<Symbol>,
+    /// Symbols to determine where the states leave equations: the author would rather choose them.
+    pub inputs: BTreeSet<Symbol>,
+}
+
+/// Values of symbols, in those that are free.
+type Values = BTreeMap<Symbol, Expr>;
+
+/// A factor of an equation.
+struct Factor {
+    equation: usize,
+    poly: Poly,
+}
+
+/// A symbol that makes a factor of an equation vanish.
+struct Step {
+    cost: Cost,
+    equation: usize,
+    symbol: Symbol,
+    /// The factor's coefficients by powers of the symbol, the constant first: two, or three.
+    coefficients: Vec<Fraction>,
+}
+
+/// How little a step assumes; the least is taken.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Cost {
+    /// Whether the factor is quadratic in the symbol, which then has two values.
+    quadratic: bool,
+    /// Whether the symbol's factor holds states, which may vanish.
+    bends: bool,
+    /// Whether the symbol is an input.
+    input: bool,
+    /// Whether the factor holds inputs.
+    driven: bool,
+    /// Terms of factor and rest.
+    terms: usize,
+}
+
+/// The partial solutions that a search visits at most. One without alternatives visits as many as there are symbols to
+/// determine.
+const MOST_VISITS: usize = 200;
+
+impl Elimination<'_> {
+    /// The first solution that the check accepts; else a formula that was not made to vanish.
+    pub(super) fn run<T>(
+        &self,
+        equations: &[Expr],
+        accept: &mut impl FnMut(&Values) -> Option<T>,
+    ) -> Result<Result<T, Expr>, Obstacle> {
+        let visits = Cell::new(0);
+        let mut stuck = None;
+        let found = self.search(equations, &Values::new(), accept, &visits, &mut stuck)?;
+        Ok(found.ok_or_else(|| stuck.unwrap_or_else(|| self.arena.zero())))
+    }
+
+    fn search<T>(
+        &self,
+        equations: &[Expr],
+        values: &Values,
+        accept: &mut impl FnMut(&Values) -> Option<T>,
+        visits: &Cell<usize>,
+        stuck: &mut Option<Expr>,
+    ) -> Result<Option<T>, Obstacle> {
+        visits.set(visits.get() + 1);
+        if visits.get() > MOST_VISITS {
+            return Ok(None);
+        }
+        let arena = self.arena;
+        let equations = arena.substitute_all(equations, values);
+        let field = Field::over(arena, &self.domain.facts, &equations)?;
+        let mut open = Vec::new();
+        for equation in &equations {
+            let fraction = field.fraction(*equation)?;
+            if !fraction.is_zero() {
+                open.push((field.show(&fraction), fraction));
+            }
+        }
+        let Some((first, _)) = open.first() else { return Ok(accept(values)) };
+        let unknown = self.unknown(values);
+        let mut factors = Vec::new();
+        let kernels: Vec<u32> = field.kernels_of(&unknown).into_iter().collect();
+        for (equation, (_, fraction)) in open.iter().enumerate() {
+            let polys = fraction.numerator().factors_in(&kernels, field.limit())?;
+            // No choice of the unknowns makes this one vanish.
+            if polys.is_empty() {
+                stuck.get_or_insert(open[equation].0);
+                return Ok(None);
+            }
+            factors.extend(polys.into_iter().map(|poly| Factor { equation, poly }));
+        }
+        let alternatives = self.alternatives(&field, &open, &factors, &unknown)?;
+        let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+        for (symbol, value) in alternatives {
+            let replaced = BTreeMap::from([(symbol, value)]);
+            let known = values.iter().map(|(symbol, known)| (*symbol, arena.substitute(*known, &replaced)));
+            let values = known.chain([(symbol, value)]).collect();
+            if let Some(found) = self.search(&formulas, &values, accept, visits, stuck)? {
+                return Ok(Some(found));
+            }
+        }
+        stuck.get_or_insert(*first);
+        Ok(None)
+    }
+
+    /// The symbols that are not determined: states and inputs.
+    fn unknown(&self, values: &Values) -> BTreeSet<Symbol> {
+        self.states.union(&self.inputs).copied().filter(|s| !values.contains_key(s)).collect()
+    }
+
+    /// The ways to make one equation vanish, the one that assumes least first.
+    fn alternatives(
+        &self,
+        field: &Field<'_>,
+        open: &[(Expr, Fraction)],
+        factors: &[Factor],
+        unknown: &BTreeSet<Symbol>,
+    ) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
+        let mut steps = Vec::new();
+        for factor in factors {
+            self.steps(field, factor, unknown, &mut steps)?;
+        }
+        steps.sort_by_key(|step| step.cost);
+        let Some(chosen) = steps.first().map(|step| step.equation) else {
+            let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+            let mut found = self.inverted(&together, unknown)?;
+            for factor in factors {
+                found.extend(self.inverted(&[field.show(&field.of_polynomial(&factor.poly)?)], unknown)?);
+            }
+            return Ok(found);
+        };
+        let mut found = Vec::new();
+        for step in steps.iter().filter(|step| step.equation == chosen) {
+            found.extend(self.values(field, step)?.into_iter().map(|value| (step.symbol, value)));
+        }
+        for factor in factors.iter().filter(|factor| factor.equation == chosen) {
+            found.extend(self.inverted(&[field.show(&field.of_polynomial(&factor.poly)?)], unknown)?);
+        }
+        Ok(found)
+    }
+
+    /// The symbols that stand to the first or second power in a factor, in no kernel but themselves.
+    fn steps(
+        &self,
+        field: &Field<'_>,
+        factor: &Factor,
+        unknown: &BTreeSet<Symbol>,
+        steps: &mut Vec<Step>,
+    ) -> Result<(), Obstacle> {
+        let arena = self.arena;
+        for symbol in unknown {
+            let kernels = field.kernels_of(&BTreeSet::from([*symbol]));
+            let mut kernels = factor.poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
+            let (Some(kernel), None) = (kernels.next(), kernels.next()) else { continue };
+            let degree = factor.poly.degree(kernel);
+            if degree > 2 || arena.as_symbol(field.kernel(kernel)) != Some(*symbol) {
+                continue;
+            }
+            let mut coefficients = vec![Fraction::zero(); degree as usize + 1];
+            for (power, coefficient) in factor.poly.collect(&[kernel]) {
+                coefficients[power.degree() as usize] = field.of_polynomial(&coefficient)?;
+            }
+            let nowhere_zero = || self.domain.shows(arena, arena.of_symbol(*symbol), Relation::NonZero);
+            if coefficients[0].is_zero() && nowhere_zero() {
+                continue;
+            }
+            let slope = &coefficients[degree as usize];
+            let holds = |symbols: &BTreeSet<Symbol>| {
+                let kernels = field.kernels_of(&symbols.intersection(unknown).copied().collect());
+                slope.variables().any(|kernel| kernels.contains(&kernel))
+            };
+            let cost = Cost {
+                quadratic: degree == 2,
+                bends: holds(&self.states),
+                input: self.inputs.contains(symbol),
+                driven: holds(&self.inputs),
+                terms: coefficients.iter().map(|c| c.numerator().term_count()).sum(),
+            };
+            steps.push(Step { cost, equation: factor.equation, symbol: *symbol, coefficients });
+        }
+        Ok(())
+    }
+
+    /// The roots of a step's polynomial.
+    fn values(&self, field: &Field<'_>, step: &Step) -> Result<Vec<Expr>, Obstacle> {
+        let arena = self.arena;
+        let [rest, slope, bend @ ..] = step.coefficients.as_slice() else { return Ok(Vec::new()) };
+        let [bend] = bend else { return Ok(vec![field.show(&field.div(rest, slope)?.opposite())]) };
+        let middle = field.div(slope, &field.scale(bend, &Rational::from(-2))?)?;
+        let apart = field.sub(&field.mul(&middle, &middle)?, &field.div(rest, bend)?)?;
+        let (middle, apart) = (field.show(&middle), arena.sqrt(field.show(&apart)));
+        Ok(vec![arena.add(middle, apart), arena.sub(middle, apart)])
+    }
+
+    /// States that inverse functions give.
+    fn inverted(&self, formulas: &[Expr], unknown: &BTreeSet<Symbol>) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
+        let arena = self.arena;
+        let unknown: Vec<Symbol> = unknown.intersection(&self.states).copied().collect();
+        let equations: Vec<Equation> =
+            formulas.iter().map(|formula| Equation { formula: *formula, value: arena.zero() }).collect();
+        let candidates = solve(arena, self.domain, &equations, &unknown)?;
+        let free = |(symbol, values): (Symbol, Vec<Expr>)| {
+            values
+                .into_iter()
+                .filter(|value| !arena.depends_on(*value, &BTreeSet::from([symbol])))
+                .map(|value| (symbol, value))
+                .collect::<Vec<_>>()
+        };
+        Ok(candidates.into_iter().flat_map(free).collect())
+    }
+}
