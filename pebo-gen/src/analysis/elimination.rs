@@ -51,8 +51,8 @@ struct Step {
 /// How little a step assumes; the least is taken.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Cost {
-    /// Whether the factor is quadratic in the symbol, which then has two values.
-    quadratic: bool,
+    /// The factor's degree in the symbol: the number of its values.
+    degree: u32,
     /// Whether the symbol's factor holds states, which may vanish.
     bends: bool,
     /// Whether the symbol is an input.
@@ -196,7 +196,7 @@ impl Elimination<'_> {
                 slope.variables().any(|kernel| kernels.contains(&kernel))
             };
             let cost = Cost {
-                quadratic: degree == 2,
+                degree,
                 bends: holds(&self.states),
                 input: self.inputs.contains(symbol),
                 driven: holds(&self.inputs),
