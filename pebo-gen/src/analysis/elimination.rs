@@ -184,7 +184,8 @@ impl Elimination<'_> {
             }
             let mut coefficients = vec![Fraction::zero(); degree as usize + 1];
             for (power, coefficient) in factor.poly.collect(&[kernel]) {
-                coefficients[power.degree() as usize] = field.of_polynomial(&coefficient)?;
+                let exponent = power.powers().first().map_or(0, |(_, exponent)| *exponent);
+                coefficients[exponent as usize] = field.of_polynomial(&coefficient)?;
             }
             let nowhere_zero = || self.domain.shows(arena, arena.of_symbol(*symbol), Relation::NonZero);
             if coefficients[0].is_zero() && nowhere_zero() {
