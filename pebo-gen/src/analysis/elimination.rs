@@ -121,8 +121,10 @@ impl Elimination<'_> {
             let replaced = BTreeMap::from([(symbol, value)]);
             let known = values.iter().map(|(symbol, known)| (*symbol, arena.substitute(*known, &replaced)));
             let values = known.chain([(symbol, value)]).collect();
-            if let Some(found) = self.search(&formulas, &values, accept, visits, stuck)? {
-                return Ok(Some(found));
+            // Values at which another equation has no value are none.
+            match self.search(&formulas, &values, accept, visits, stuck) {
+                Ok(None) | Err(Obstacle::DivisionByZero) => {}
+                found => return found,
             }
         }
         stuck.get_or_insert(*first);
@@ -147,20 +149,22 @@ impl Elimination<'_> {
             self.steps(field, factor, unknown, &mut steps)?;
         }
         steps.sort_by_key(|step| step.cost);
-        let Some(chosen) = steps.first().map(|step| step.equation) else {
-            let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
-            let mut found = self.inverted(&together, unknown)?;
-            for factor in factors {
-                found.extend(self.inverted(&[field.show(&field.of_polynomial(&factor.poly)?)], unknown)?);
-            }
-            return Ok(found);
-        };
+        let chosen = steps.first().map(|step| step.equation);
         let mut found = Vec::new();
-        for step in steps.iter().filter(|step| step.equation == chosen) {
+        for step in steps.iter().filter(|step| Some(step.equation) == chosen) {
             found.extend(self.values(field, step)?.into_iter().map(|value| (step.symbol, value)));
         }
-        for factor in factors.iter().filter(|factor| factor.equation == chosen) {
-            found.extend(self.inverted(&[field.show(&field.of_polynomial(&factor.poly)?)], unknown)?);
+        if chosen.is_none() {
+            let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+            found.extend(self.inverted(&together, unknown)?);
+        }
+        for factor in factors.iter().filter(|factor| chosen.is_none_or(|chosen| factor.equation == chosen)) {
+            let formula = field.show(&field.of_polynomial(&factor.poly)?);
+            found.extend(self.inverted(&[formula], unknown)?);
+            // For each state by itself too, as if the others were given.
+            for symbol in unknown {
+                found.extend(self.inverted(&[formula], &BTreeSet::from([*symbol]))?);
+            }
         }
         Ok(found)
     }

@@ -10,15 +10,14 @@ use std::collections::BTreeMap;
 use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
-use crate::cas::field::{Field, Obstacle};
-use crate::cas::rational::Rational;
+use crate::cas::field::Obstacle;
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
 use super::design::{Cascade, Derivation, Verdict};
 use super::elimination::Elimination;
-use super::tidy::{shorter, shortest};
+use super::tidy::shortest;
 
 /// What is known of where a plant rests.
 #[derive(Clone, Debug)]
@@ -84,11 +83,7 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let still = flow(plant, cascade).into_iter().all(|rate| vanishes(arena, rate, &values, &there));
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
-    let shown = |value: Expr| {
-        let short = shortest(arena, &there, value);
-        factored(arena, &there, value).map_or(short, |factored| shorter(arena, factored, short))
-    };
-    let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
+    let values = order.filter_map(|s| Some((s, shortest(arena, &there, *values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, &domain, rates.values()) }))
 }
 
@@ -109,22 +104,6 @@ fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> R
 
 fn vanishes(arena: &Arena, expr: Expr, values: &BTreeMap<Symbol, Expr>, there: &Domain) -> bool {
     decide(arena, arena.substitute(expr, values), there).is_zero()
-}
-
-/// The value with repeated factors as powers.
-fn factored(arena: &Arena, domain: &Domain, value: Expr) -> Result<Expr, Obstacle> {
-    let field = Field::over(arena, &domain.facts, &[value])?;
-    let fraction = field.fraction(value)?;
-    let mut product = arena.one();
-    for (poly, side) in [(fraction.numerator(), 1), (fraction.denominator(), -1)] {
-        let parts = poly.square_free(field.limit())?;
-        product = arena.mul(product, arena.power(arena.number(Rational::from(parts.content)), &Rational::from(side)));
-        for (part, exponent) in parts.factors {
-            let part = field.show(&field.of_polynomial(&part)?);
-            product = arena.mul(product, arena.power(part, &Rational::from(side * i64::from(exponent))));
-        }
-    }
-    Ok(product)
 }
 
 /// z' as the cascade has it: `h`, or `Lambda phi + h`.
@@ -241,6 +220,13 @@ mod tests {
         assert_eq!(at(lorenz), "b1 = 0, b2 = 0, a = 0");
         let away = "x: [x]\ny: [y]\nassume: [y > 1]\nf_x: {x: (y - 3)^2*y}\nf_y: {y: x}\nphi: [x]";
         assert_eq!(at(away), "x = 0, y = 3");
+    }
+
+    #[test]
+    fn roots_of_two_states_may_be_level() {
+        let tanks = "parameters: [a]\nx: [h1]\ny: [h2]\nu: [q]\nassume: [h1 > 0, h2 > 0, a > 0]\n\
+                     f_x: {h1: q - a*sqrt(h1)}\nf_y: {h2: a*sqrt(h1) - a*sqrt(h2)}\nphi: [h1 + h2]";
+        assert_eq!(at(tanks), "h2 = h1, q = a*sqrt(h1)");
     }
 
     #[test]

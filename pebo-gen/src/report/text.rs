@@ -51,19 +51,21 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     text
 }
 
-/// More columns than a reader would look at in one line.
-const MOST_COLUMNS: usize = 3;
+/// A longer matrix nobody reads in one line; JSON has it.
+const MOST_CHARACTERS: usize = 300;
 
 /// `Phi_1' Phi_1` with its determinant.
 fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = Vec::new();
-    if gram.matrix.len() <= MOST_COLUMNS {
-        let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
-        let rows: Vec<String> = gram.matrix.iter().map(row).collect();
-        lines.push(format!("Phi_1' Phi_1 = [{}]", rows.join(", ")));
+    let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
+    let rows = gram.matrix.iter().map(row).collect::<Vec<_>>().join(", ");
+    let determinant = arena.print(gram.determinant);
+    if rows.len() <= MOST_CHARACTERS {
+        lines.extend([format!("Phi_1' Phi_1 = [{rows}]"), format!("its determinant {determinant}")]);
+    } else {
+        lines.push(format!("the determinant of Phi_1' Phi_1, {determinant}"));
     }
-    lines.push(format!("its determinant {}", arena.print(gram.determinant)));
     lines.extend(gram.positive.map(|positive| match positive {
         Positive::Assumed => "is positive wherever the assumptions hold: every input excites".to_owned(),
         Positive::Divided => {

@@ -11,6 +11,9 @@ use crate::cas::rational::Rational;
 use super::Field;
 use super::fraction::{Fraction, primitive};
 
+/// The numbers of terms from which on a polynomial may be a power, and up to which it is worth looking.
+const TERMS_OF_POWERS: std::ops::RangeInclusive<usize> = 3..=200;
+
 /// Terms of a polynomial, to be grouped.
 type Terms = Vec<(Monomial, Integer)>;
 
@@ -20,8 +23,10 @@ impl Field<'_> {
         let (above, num) = primitive(&fraction.num);
         let (below, den) = primitive(&fraction.den);
         let coefficient = Rational::new(above, below).unwrap_or(Rational::ZERO);
-        let mut factors = self.factors(&num, 1);
-        factors.extend(self.factors(&den, -1));
+        let powers =
+            |poly: &Poly, exponent| self.powers(poly, exponent).unwrap_or_else(|| self.factors(poly, exponent));
+        let mut factors = powers(&num, 1);
+        factors.extend(powers(&den, -1));
         self.arena.multiply(&coefficient, factors)
     }
 
@@ -54,6 +59,24 @@ impl Field<'_> {
             factors.push((rest, Rational::from(-1)));
             self.arena.multiply(&(&scale * &Rational::from(above)), factors)
         }))
+    }
+
+    /// The square-free factors with their multiplicities, to a common power; none where that is no shorter, or takes
+    /// too long.
+    fn powers(&self, poly: &Poly, exponent: i64) -> Option<Vec<(Expr, Rational)>> {
+        if !TERMS_OF_POWERS.contains(&poly.term_count()) {
+            return None;
+        }
+        let parts = poly.square_free(self.limit()).ok()?;
+        let repeated = parts.factors.iter().any(|(factor, times)| *times > 1 && factor.term_count() > 1);
+        let shown = |(factor, times): &(Poly, u32)| {
+            let times = exponent * i64::from(*times);
+            self.factors(factor, 1).into_iter().map(move |(base, power)| (base, &power * &Rational::from(times)))
+        };
+        repeated.then(|| {
+            let content = (self.arena.number(Rational::from(parts.content.clone())), Rational::from(exponent));
+            parts.factors.iter().flat_map(shown).chain([content]).collect()
+        })
     }
 
     /// The monomial content and the rest, to a common power.
@@ -119,4 +142,35 @@ fn divided(monomial: &Monomial, content: &Monomial) -> Monomial {
 
 fn common(a: &Monomial, b: &Monomial) -> Monomial {
     Monomial::new(a.powers().iter().map(|&(v, e)| (v, e.min(b.exponent(v)))))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cas::Arena;
+    use crate::cas::facts::Facts;
+
+    use super::Field;
+
+    #[test]
+    fn powers_of_sums_are_shown_as_such() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let [sum, difference] = [arena.add(a, b), arena.sub(a, b)];
+        let square = arena.mul(sum, sum);
+        let cases = [
+            (square, "(a + b)^2"),
+            (arena.product([square, sum, difference]), "(a + b)^3*(a - b)"),
+            (arena.product([square, a, arena.number(6)]), "6*a*(a + b)^2"),
+            (arena.div(arena.product([square, square]), arena.add(c, c)), "(a + b)^4/(2*c)"),
+            // Factors of one multiplicity are not told apart.
+            (arena.div(c, arena.sub(arena.number(1), square)), "-c/(a*(a + 2*b) + b^2 - 1)"),
+        ];
+        for (expr, expected) in cases {
+            let expanded = arena.sub(arena.add(expr, c), c);
+            let facts = Facts::default();
+            let field = Field::over(&arena, &facts, &[expanded]).expect("rational");
+            let fraction = field.fraction(expanded).expect("rational");
+            assert_eq!(arena.print(field.show(&fraction)), expected);
+        }
+    }
 }
