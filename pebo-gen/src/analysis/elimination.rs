@@ -121,9 +121,9 @@ impl Elimination<'_> {
             let replaced = BTreeMap::from([(symbol, value)]);
             let known = values.iter().map(|(symbol, known)| (*symbol, arena.substitute(*known, &replaced)));
             let values = known.chain([(symbol, value)]).collect();
-            // Values at which another equation has no value are none.
+            // Where another equation has no value, or none that is understood, there may be a better one.
             match self.search(&formulas, &values, accept, visits, stuck) {
-                Ok(None) | Err(Obstacle::DivisionByZero) => {}
+                Ok(None) | Err(Obstacle::DivisionByZero | Obstacle::Kernel(_)) => {}
                 found => return found,
             }
         }
