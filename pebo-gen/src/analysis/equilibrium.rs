@@ -76,9 +76,12 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let (values, there) = match search.run(&equations, &mut rests)? {
         Ok(found) => found,
         Err(stuck) => {
-            let reason = doubtful.unwrap_or_else(|| match arena.symbols_of(&[stuck]).is_empty() {
-                false => format!("no rule solves `{}` = 0", arena.print(stuck)),
-                true => "the ways of solving for it that were tried end in contradictions".to_owned(),
+            let contradiction = arena.symbols_of(&[stuck]).is_empty();
+            let reason = doubtful.unwrap_or_else(|| {
+                if contradiction {
+                    return "the ways of solving for it that were tried end in contradictions".to_owned();
+                }
+                format!("no rule solves `{}` = 0", arena.print(stuck))
             });
             return Ok(Equilibrium::Undecided(reason));
         }
