@@ -13,6 +13,7 @@ use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::oriented::oriented;
 use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Node, Symbol};
@@ -81,7 +82,8 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
     let shown = |value: Expr| {
         let short = shortest(arena, &there, value);
-        factored(arena, &there, value).map_or(short, |factored| shorter(arena, factored, short))
+        let shown = factored(arena, &there, value).map_or(short, |factored| shorter(arena, factored, short));
+        oriented(arena, &there, shown)
     };
     let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, &domain, rates.values()) }))
@@ -307,11 +309,11 @@ mod tests {
 
     #[test]
     fn converters_rest_where_the_textbook_says() {
-        assert_eq!(at(&format!("{BOOST}\nassume: [0 < d < 1]")), "i = E/(R*(d - 1)^2), v = -E/(d - 1)");
+        assert_eq!(at(&format!("{BOOST}\nassume: [0 < d < 1]")), "i = E/(R*(1 - d)^2), v = E/(1 - d)");
         let cuk = "parameters: {L1: 1, C2: 1, L3: 1, C4: 1, G: 1, E: 12}\nx: [i1, i3]\ny: [v2, v4]\nu: [d]\n\
                    assume: [0 < d < 1]\nf_x: {i1: (E - (1 - d)*v2)/L1, i3: -(d*v2 + v4)/L3}\n\
                    f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}\nphi: [i1, i3]";
-        assert_eq!(at(cuk), "i1 = G*E*d^2/(d - 1)^2, i3 = G*E*d/(d - 1), v2 = -E/(d - 1), v4 = E*d/(d - 1)");
+        assert_eq!(at(cuk), "i1 = G*E*d^2/(1 - d)^2, i3 = -G*E*d/(1 - d), v2 = E/(1 - d), v4 = -E*d/(1 - d)");
     }
 
     #[test]
