@@ -169,12 +169,19 @@ struct Cost {
     terms: usize,
 }
 
+/// Parts of all equations together. A remark is not worth minutes: elimination makes the equations longer at each
+/// step, and those of a chain of four bodies, which this ends, took more than 100 s.
+const MOST_PARTS: usize = 600;
+
 impl Search<'_> {
     /// Determines symbols until every equation holds; else one that does not.
     fn run(&mut self, mut equations: Vec<Expr>) -> Result<Option<Expr>, Obstacle> {
         let arena = &self.plant.arena;
         loop {
             equations = arena.substitute_all(&equations, &self.values);
+            if arena.postorder(&equations).len() > MOST_PARTS {
+                return Err(Obstacle::TooLarge);
+            }
             let field = Field::over(arena, &self.domain.facts, &equations)?;
             let mut open = Vec::new();
             for equation in &equations {
