@@ -164,7 +164,7 @@ fn json_tells_what_drifts_and_where_the_plant_rests() {
     let printed = text(&run(&["check", CUK, "--format", "json"]).stdout);
     for part in [
         r#""drift":["chi1","chi2"]"#,
-        r#""operating_point":{"verdict":"proved","values":{"i1":"G*E*d^2/(d - 1)^2","i3":"G*E*d/(d - 1)","#,
+        r#""operating_point":{"verdict":"proved","values":{"i1":"G*E*d^2/(1 - d)^2","i3":"-G*E*d/(1 - d)","#,
         r#""still":true,"rank":[1,0],"reason":null}"#,
     ] {
         assert!(printed.contains(part), "{part}: {printed}");

@@ -88,6 +88,30 @@ fn values_of_every_model() {
     assert!(compared > 1000, "only {compared} values were compared");
 }
 
+/// The velocities of a mechanical model are the rates of its outputs: what the regression says of z without theta.
+#[test]
+fn velocities_are_the_rates_of_the_outputs() {
+    use pebo_runtime::nalgebra::SVector;
+    use pebo_runtime::{Extension as _, Integrator, Model as _};
+    macro_rules! velocities {
+        ($($module:ident :: $model:ident),*) => {$({
+            use tests::emitted::$module::{$model, NU, NY, NZ, Parameters};
+            let model = $model::new(&Parameters::default());
+            for trial in 0..20 {
+                let mut draw = Draw(trial);
+                let z = SVector::<f64, NZ>::from_fn(|_, _| draw.next());
+                let y = SVector::<f64, NY>::from_fn(|_, _| draw.next());
+                let velocity = model.velocity(&z, &y);
+                let rates = model.phi_0(&Integrator::new(z), &y, &SVector::<f64, NU>::zeros());
+                // Two ways to round some 64 operations, as above.
+                let off = (velocity - rates).norm() / rates.norm();
+                assert!(off < 128.0 * f64::EPSILON, "{}: {velocity} {rates}", stringify!($module));
+            }
+        })*};
+    }
+    velocities!(cart_pendulum_f64::CartPendulum, inertia_wheel_f64::InertiaWheel, robotic_leg_f64::RoboticLeg);
+}
+
 /// Compares every value that the emitted functions return with an enclosure of the derived formula.
 fn compare(derived: &Derived, evaluate: tests::Evaluate, tolerance: f64, trial: u64) -> usize {
     let plant = &derived.plant;

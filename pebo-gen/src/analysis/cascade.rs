@@ -166,6 +166,9 @@ fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
     (mended != phi && arena.depends_on(mended, &plant.hidden())).then_some(mended)
 }
 
+/// Characters of a formula that a reader takes in at a glance.
+const LONGEST: usize = 60;
+
 fn refuted(
     plant: &Plant,
     index: usize,
@@ -177,6 +180,8 @@ fn refuted(
     let arena = &plant.arena;
     let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
     let shown = arena.print(residual);
+    // What the label shows at length is not said again.
+    let term = if shown.len() <= LONGEST { format!("`{shown}`") } else { "this term".to_owned() };
     let component = index + 1;
     let diagnostic = Diagnostic::error(
         Code::CascadeRefuted,
@@ -187,8 +192,8 @@ fn refuted(
         ),
     )
     .label(format!("its derivative keeps the term `{shown}`"))
-    .note(format!("d(phi)/dt must be a function of y and u alone, but `{shown}` survives in z{component}'"))
-    .note(witness.sentence(arena));
+    .note(format!("d(phi)/dt must be a function of y and u alone, but {term} survives in z{component}'"))
+    .note(witness.sentence_on(arena, &term));
     match mend {
         Some(mend) => diagnostic.help(format!("use `{}` for this component", arena.print(mend))),
         None => diagnostic.help("choose a phi whose derivative along the plant is free of the unmeasured states"),
@@ -227,6 +232,11 @@ impl Witness {
 
     /// What the witness shows, as a reader would say it: `-G*v4/C4 = 9 where C4 = 1, ..`.
     pub fn sentence(&self, arena: &Arena) -> String {
+        self.sentence_on(arena, &format!("`{}`", arena.print(self.expr)))
+    }
+
+    /// The same with other words for the expression.
+    pub(super) fn sentence_on(&self, arena: &Arena, what: &str) -> String {
         let entries: Vec<String> = self
             .point
             .iter()
@@ -240,7 +250,7 @@ impl Witness {
             format!("between {} and {}", short(low), short(high))
         };
         let place = if entries.is_empty() { "everywhere".to_owned() } else { format!("where {}", entries.join(", ")) };
-        format!("`{}` is {value} {place}", arena.print(self.expr))
+        format!("{what} is {value} {place}")
     }
 }
 

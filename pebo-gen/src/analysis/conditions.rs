@@ -38,7 +38,7 @@ fn factors(arena: &Arena, expr: Expr) -> Vec<Expr> {
 
 impl Domain {
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
-    pub(super) fn shows(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+    pub(crate) fn shows(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
         let shown = || {
             let field = Field::over(arena, &self.facts, &[expr])?;
             let fraction = field.fraction(expr)?;

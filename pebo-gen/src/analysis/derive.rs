@@ -1,5 +1,6 @@
 //! The order of the claims: what each builds on.
 
+use crate::cas::facts::Relation;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
@@ -48,6 +49,11 @@ impl Derivation {
             _ => (regression, identifiability),
         };
         let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
+        let mut conditions = conditions::remaining(plant, &plant.assumed());
+        for constant in identifiability.result.iter().flat_map(|result| &result.constants) {
+            let known = conditions.iter().any(|(expr, _)| expr == constant);
+            conditions.extend((!known).then_some((*constant, Relation::NonZero)));
+        }
         Self {
             outcome: outcome(&verdicts),
             class,
@@ -55,7 +61,7 @@ impl Derivation {
             left_inverse,
             regression,
             identifiability,
-            conditions: conditions::remaining(plant, &plant.assumed()),
+            conditions,
             diagnostics: found,
         }
     }

@@ -143,6 +143,8 @@ pub struct Identifiability {
     pub kind: Excitation,
     /// Where the regressor loses rank, each as a readable condition.
     pub singular_where: Vec<String>,
+    /// Combinations of parameters without a known sign that must not vanish for the rank to be what it is.
+    pub constants: Vec<Expr>,
     /// A direction of eta that no trajectory shows, where there is one.
     pub direction: Option<Vec<Expr>>,
     /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.

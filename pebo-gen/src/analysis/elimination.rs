@@ -63,21 +63,37 @@ struct Cost {
     terms: usize,
 }
 
-/// The partial solutions that a search visits at most. One without alternatives visits as many as there are symbols to
-/// determine.
-const MOST_VISITS: usize = 200;
+/// The partial solutions that a search visits at most from one start. One without alternatives visits as many as there
+/// are symbols to determine.
+const MOST_VISITS: usize = 100;
+
+/// Parts of all equations together, past which a branch is given up: elimination makes them longer at each step, and
+/// what would come out nobody reads.
+const MOST_PARTS: usize = 600;
 
 impl Elimination<'_> {
-    /// The first solution that the check accepts; else a formula that was not made to vanish.
+    /// The first solution that the check accepts, by the first of the starts that has one; else a formula that was not
+    /// made to vanish. A start is values to begin with.
     pub(super) fn run<T>(
         &self,
         equations: &[Expr],
+        starts: &[Values],
         accept: &mut impl FnMut(&Values) -> Option<T>,
     ) -> Result<Result<T, Expr>, Obstacle> {
-        let visits = Cell::new(0);
         let mut stuck = None;
-        let found = self.search(equations, &Values::new(), accept, &visits, &mut stuck)?;
-        Ok(found.ok_or_else(|| stuck.unwrap_or_else(|| self.arena.zero())))
+        let mut obstacle = None;
+        for start in starts {
+            match self.search(equations, start, accept, &Cell::new(0), &mut stuck) {
+                Ok(Some(found)) => return Ok(Ok(found)),
+                Ok(None) => {}
+                Err(other) => obstacle = obstacle.or(Some(other)),
+            }
+        }
+        match (stuck, obstacle) {
+            (Some(stuck), _) => Ok(Err(stuck)),
+            (None, Some(obstacle)) => Err(obstacle),
+            (None, None) => Err(Obstacle::TooLarge),
+        }
     }
 
     fn search<T>(
@@ -94,6 +110,9 @@ impl Elimination<'_> {
         }
         let arena = self.arena;
         let equations = arena.substitute_all(equations, values);
+        if arena.postorder(&equations).len() > MOST_PARTS {
+            return Err(Obstacle::TooLarge);
+        }
         let field = Field::over(arena, &self.domain.facts, &equations)?;
         let mut open = Vec::new();
         for equation in &equations {

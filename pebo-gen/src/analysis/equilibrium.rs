@@ -11,6 +11,7 @@ use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
+use crate::cas::oriented::oriented;
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
@@ -73,7 +74,9 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let search = Elimination { arena, domain: &domain, states, inputs };
     let identities = plant.identities.iter().map(|identity| identity.expr);
     let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
-    let (values, there) = match search.run(&equations, &mut rests)? {
+    // Where it is too hard to find where the unmeasured states rest, they may rest at zero, as momenta do.
+    let still = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
+    let (values, there) = match search.run(&equations, &[BTreeMap::new(), still], &mut rests)? {
         Ok(found) => found,
         Err(stuck) => {
             let contradiction = arena.symbols_of(&[stuck]).is_empty();
@@ -89,7 +92,8 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let still = flow(plant, cascade).into_iter().all(|rate| vanishes(arena, rate, &values, &there));
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
-    let values = order.filter_map(|s| Some((s, shortest(arena, &there, *values.get(&s)?)))).collect();
+    let shown = |value: Expr| oriented(arena, &there, shortest(arena, &there, value));
+    let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, &domain, rates.values()) }))
 }
 
@@ -191,11 +195,11 @@ mod tests {
 
     #[test]
     fn converters_rest_where_the_textbook_says() {
-        assert_eq!(at(&format!("{BOOST}\nassume: [0 < d < 1]")), "i = E/(R*(d - 1)^2), v = -E/(d - 1)");
+        assert_eq!(at(&format!("{BOOST}\nassume: [0 < d < 1]")), "i = E/(R*(1 - d)^2), v = E/(1 - d)");
         let cuk = "parameters: {L1: 1, C2: 1, L3: 1, C4: 1, G: 1, E: 12}\nx: [i1, i3]\ny: [v2, v4]\nu: [d]\n\
                    assume: [0 < d < 1]\nf_x: {i1: (E - (1 - d)*v2)/L1, i3: -(d*v2 + v4)/L3}\n\
                    f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}\nphi: [i1, i3]";
-        assert_eq!(at(cuk), "i1 = G*E*d^2/(d - 1)^2, i3 = G*E*d/(d - 1), v2 = -E/(d - 1), v4 = E*d/(d - 1)");
+        assert_eq!(at(cuk), "i1 = G*E*d^2/(1 - d)^2, i3 = -G*E*d/(1 - d), v2 = E/(1 - d), v4 = -E*d/(1 - d)");
     }
 
     #[test]
@@ -233,6 +237,15 @@ mod tests {
         let tanks = "parameters: [a]\nx: [h1]\ny: [h2]\nu: [q]\nassume: [h1 > 0, h2 > 0, a > 0]\n\
                      f_x: {h1: q - a*sqrt(h1)}\nf_y: {h2: a*sqrt(h1) - a*sqrt(h2)}\nphi: [h1 + h2]";
         assert_eq!(at(tanks), "h2 = h1, q = a*sqrt(h1)");
+    }
+
+    #[test]
+    fn what_turns_in_many_ways_rests_without_turning() {
+        let satellite = "x: [a, b, c]\ny: [q0, q1, q2, q3]\nu: [t1, t2, t3]\n\
+                         f_x: {a: t1, b: t2, c: t3}\nidentities: [q0^2 + q1^2 + q2^2 + q3^2 - 1]\n\
+                         f_y: {q0: -(q1*a + q2*b + q3*c)/2, q1: (q0*a - q3*b + q2*c)/2,\n\
+                         \x20 q2: (q3*a + q0*b - q1*c)/2, q3: (q1*b - q2*a + q0*c)/2}\nphi: [a, b, c]";
+        assert_eq!(at(satellite), "a = 0, b = 0, c = 0, q0 = sqrt(1 - q1^2 - q2^2 - q3^2), t1 = 0, t2 = 0, t3 = 0");
     }
 
     #[test]

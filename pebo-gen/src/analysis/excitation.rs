@@ -11,6 +11,7 @@ use crate::cas::bounds::{Ranges, sign_on_box};
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::oriented::oriented;
 use crate::cas::rational::Rational;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
@@ -44,7 +45,8 @@ fn worked_out(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>], columns: usiz
     let product = gram(&field, &rows, columns)?;
     let written = |i: usize, j: usize| arena.sum(phi_1.iter().map(|row| arena.mul(row[i], row[j])));
     let entry = |i: usize, j: usize, product: &Fraction| {
-        shorter(arena, written(i, j), shortest(arena, domain, field.show(product)))
+        let shown = shorter(arena, written(i, j), shortest(arena, domain, field.show(product)));
+        oriented(arena, domain, shown)
     };
     let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
     let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
@@ -59,7 +61,7 @@ fn worked_out(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>], columns: usiz
         on_box(plant, domain, shown, square).then_some(Positive::Divided)
     };
     let determinant = if square { arena.mul(shown, shown) } else { shown };
-    Ok(Gram { matrix, determinant, positive })
+    Ok(Gram { matrix, determinant: oriented(arena, domain, determinant), positive })
 }
 
 /// Whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.

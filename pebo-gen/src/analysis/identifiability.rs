@@ -19,7 +19,7 @@ use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
-use super::singular::singular_where;
+use super::singular::{constant_factors, singular_where};
 use super::{excitation, pencil};
 
 /// Points that are tried before a rank counts as deficient.
@@ -40,7 +40,13 @@ pub(super) fn prove(
     let mut stack = effective(arena, &flow, regression);
     let answer = |kind, direction, verdict| Claim {
         verdict,
-        result: Some(Identifiability { kind, singular_where: Vec::new(), direction, gram: None }),
+        result: Some(Identifiability {
+            kind,
+            singular_where: Vec::new(),
+            constants: Vec::new(),
+            direction,
+            gram: None,
+        }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
@@ -49,6 +55,7 @@ pub(super) fn prove(
         let result = Identifiability {
             kind: Excitation::Instant,
             singular_where: if shown { singular_where(plant, domain, &phi_1) } else { Vec::new() },
+            constants: if shown { constant_factors(plant, domain, &phi_1) } else { Vec::new() },
             direction: None,
             gram: if shown { excitation::of(plant, domain, &phi_1) } else { None },
         };
@@ -71,16 +78,21 @@ pub(super) fn prove(
             Err(obstacle) => return open(plant, &obstacle, found),
         };
         // No derivative adds to a rank that one derivative did not raise.
-        let settled = next.len() == unseen.len();
+        let settled = next.directions.len() == unseen.directions.len();
         unseen = next;
         if settled {
             break;
         }
     }
-    let Some(direction) = unseen.into_iter().next() else {
+    let Some(direction) = unseen.directions.into_iter().next() else {
         return open(plant, &Obstacle::NoWitness, found);
     };
-    found.push(never(plant, domain, &direction, regression, left_inverse));
+    let refusal = never(plant, domain, &direction, regression, left_inverse);
+    found.push(if unseen.special_values {
+        refusal.note("this holds for the values of the parameters that are given, not for values in general")
+    } else {
+        refusal
+    });
     answer(Excitation::Never, Some(direction), Verdict::Refuted)
 }
 
@@ -198,12 +210,20 @@ fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
 
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
 /// parameters where these values are nothing special.
-fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Vec<Vec<Expr>>, Obstacle> {
+fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Unseen, Obstacle> {
     let values: BTreeMap<Symbol, Expr> = domain.fixed.iter().map(|(s, v)| (*s, arena.number(v.clone()))).collect();
     let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &values)).collect();
     let special = null_vectors(arena, domain, &valued, columns)?;
     let general = null_vectors(arena, domain, rows, columns)?;
-    Ok(if special.len() > general.len() { special } else { general })
+    let special_values = special.len() > general.len();
+    Ok(Unseen { directions: if special_values { special } else { general }, special_values })
+}
+
+/// Directions of the unknowns that no row sees.
+struct Unseen {
+    directions: Vec<Vec<Expr>>,
+    /// Whether other values of the parameters leave fewer.
+    special_values: bool,
 }
 
 /// Vectors that every row provably annihilates.

@@ -132,7 +132,7 @@ fn refused(
         None => "the plant is observable (PBH), which does not give a transform (Proposition 2, claim C1)".to_owned(),
         Some(blind) => blind,
     };
-    Ok(Diagnostic::error(
+    let refusal = Diagnostic::error(
         Code::CascadeRefuted,
         linear.span,
         "no transform T1 x + T2 y of this plant moves by known signals: no PEBO exists",
@@ -141,10 +141,12 @@ fn refused(
     .note(format!(
         "along x = ({}) the rates of the outputs show nothing, A21 x = 0, yet A11 x is not zero",
         entries.join(", ")
-    ))
-    .note(witness.sentence(arena))
-    .note(observability)
-    .help("measure further outputs, until every row of A11 is a combination of rows of A21"))
+    ));
+    // Of a number there is nothing to show.
+    let refusal = if arena.as_number(witness.expr).is_some() { refusal } else { refusal.note(witness.sentence(arena)) };
+    Ok(refusal
+        .note(observability)
+        .help("measure further outputs, until every row of A11 is a combination of rows of A21"))
 }
 
 /// The matrix at the values of the parameters that have one.

@@ -17,17 +17,42 @@ pub(super) fn singular_where(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]
     conditions(plant, domain, phi_1).unwrap_or_default()
 }
 
-fn conditions(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> Result<Vec<String>, Obstacle> {
+/// Combinations of the parameters whose vanishing would make the columns dependent, and of which no sign is known:
+/// nothing that a signal could mend.
+pub(super) fn constant_factors(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> Vec<Expr> {
     let arena = &plant.arena;
-    let entries: Vec<Expr> = phi_1.iter().flatten().copied().collect();
-    let field = Field::over(arena, &domain.facts, &entries)?;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let found = || -> Result<Vec<Expr>, Obstacle> {
+        let field = Field::over(arena, &domain.facts, &phi_1.concat())?;
+        let mut found = Vec::new();
+        for factor in factors(&field, volume(&field, phi_1)?.numerator())? {
+            let value = field.of_polynomial(&factor)?;
+            let expr = field.show(&value);
+            let signed = field.is_positive(&value)? || field.is_positive(&value.opposite())?;
+            if arena.symbols_of(&[expr]).is_subset(&constants) && !signed {
+                found.push(expr);
+            }
+        }
+        Ok(found)
+    };
+    found().unwrap_or_default()
+}
+
+/// The determinant of a square matrix, of any other that of `Phi' Phi`.
+fn volume(field: &Field<'_>, phi_1: &[Vec<Expr>]) -> Result<Fraction, Obstacle> {
     let matrix = phi_1
         .iter()
         .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>())
         .collect::<Result<Vec<_>, _>>()?;
     let columns = matrix.first().map_or(0, Vec::len);
-    let square = if matrix.len() == columns { matrix } else { gram(&field, &matrix, columns)? };
-    let determinant = determinant(&field, square)?;
+    let square = if matrix.len() == columns { matrix } else { gram(field, &matrix, columns)? };
+    determinant(field, square)
+}
+
+fn conditions(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> Result<Vec<String>, Obstacle> {
+    let arena = &plant.arena;
+    let field = Field::over(arena, &domain.facts, &phi_1.concat())?;
+    let determinant = volume(&field, phi_1)?;
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
     let mut found = Vec::new();
     for factor in factors(&field, determinant.numerator())? {

@@ -2,6 +2,7 @@
 
 use crate::cas::domain::Domain;
 use crate::cas::field::Field;
+use crate::cas::oriented::oriented;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Node};
 
@@ -11,10 +12,9 @@ pub(super) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
         let fraction = field.fraction(expr)?;
         Ok([field.show(&fraction), field.show_apart(&fraction)])
     });
-    match normal {
-        Ok(forms) => forms.into_iter().fold(expr, |best, form| shorter(arena, best, form)),
-        Err(_) => expr,
-    }
+    let forms = normal.into_iter().flatten();
+    let turned = |form: Expr| [form, oriented(arena, domain, form)];
+    [expr].into_iter().chain(forms).flat_map(turned).fold(expr, |best, form| shorter(arena, best, form))
 }
 
 /// The shorter of an expression and its normal form, the latter only if the zero test confirms it.

@@ -85,13 +85,27 @@ impl Echelon {
 /// Solves `matrix * unknowns = right` for rows `[matrix | right]` with the right side in the last
 /// column; none where there is no solution, zero for unknowns that are free.
 pub fn solve(field: &Field<'_>, rows: Vec<Vec<Fraction>>, unknowns: usize) -> Result<Option<Vec<Fraction>>, Obstacle> {
+    Ok(solve_each(field, rows, unknowns)?.into_iter().next().flatten())
+}
+
+/// As [`solve`] for several right sides, which are the columns behind those of the matrix: one elimination serves
+/// them all.
+pub fn solve_each(
+    field: &Field<'_>,
+    rows: Vec<Vec<Fraction>>,
+    unknowns: usize,
+) -> Result<Vec<Option<Vec<Fraction>>>, Obstacle> {
+    let width = rows.first().map_or(unknowns, Vec::len);
     let (echelon, rest) = Echelon::of(field, rows, unknowns)?;
-    if rest.iter().any(|row| !row[unknowns].is_zero()) {
-        return Ok(None);
-    }
-    let mut solution = vec![Fraction::zero(); unknowns];
-    for (column, row) in echelon.rows() {
-        solution[column] = row[unknowns].clone();
-    }
-    Ok(Some(solution))
+    let solution = |right: usize| {
+        if rest.iter().any(|row| !row[right].is_zero()) {
+            return None;
+        }
+        let mut solution = vec![Fraction::zero(); unknowns];
+        for (column, row) in echelon.rows() {
+            solution[column] = row[right].clone();
+        }
+        Some(solution)
+    };
+    Ok((unknowns..width).map(solution).collect())
 }

@@ -16,6 +16,7 @@ pub mod function;
 pub mod integer;
 pub mod interval;
 pub mod linear;
+pub mod oriented;
 pub mod poly;
 mod print;
 pub mod rational;

@@ -55,6 +55,9 @@ pub(super) enum Shape {
     Matrix(&'static str, &'static str),
 }
 
+/// The function that a mechanical model has besides those of `Model`.
+pub(super) const VELOCITY: &str = "velocity";
+
 /// One function.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
@@ -129,6 +132,9 @@ impl<'a> Definitions<'a> {
         functions.push(vector("theta", &[Eta], "NZ", regression.theta.clone()));
         let states = left_inverse.x.iter().map(|state| state.1).collect();
         functions.push(vector("phi_left", &[Z, Y], "NX", states));
+        if let Some(crate::plant::Class::Mechanical(mechanical)) = &plant.class {
+            functions.push(vector(VELOCITY, &[Z, Y], "NY", mechanical.velocities.clone()));
+        }
         Ok(Self {
             functions,
             regression,

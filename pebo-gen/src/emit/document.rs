@@ -3,7 +3,7 @@
 //! In: plant, derivation and programs. Out: lines of documentation. No date, no path: the same model
 //! gives the same text.
 
-use super::definition::{Argument, Definitions};
+use super::definition::{Argument, Definitions, VELOCITY};
 use super::module::Module;
 use crate::analysis::{Class, Derivation, Drift, Excitation, Origin, RegressionKind};
 use crate::cas::facts::Relation;
@@ -257,6 +257,9 @@ pub(super) fn function(name: &str, kind: RegressionKind) -> &'static str {
         "primitive_0" => "The outputs whose rates the regression gives.",
         "primitive_1" => "The factors of the unknowns under the derivative, by columns.",
         "theta" => "`theta` from the unknowns of the regression.",
+        VELOCITY => {
+            "The rates of the outputs, `M^-1 p`, from the coordinates: of an observer `extension().coordinates(&theta())`."
+        }
         _ => "The recovered states.",
     }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::definition::{Argument, Definition, Part, Shape};
+use super::definition::{Argument, Definition, Part, Shape, VELOCITY};
 use super::document;
 use super::expression::{Piece, ident};
 use super::module::{Module, Scope, doc};
@@ -81,11 +81,13 @@ impl Module<'_> {
         let long = permission::for_length(statements.len() + program.outputs.len());
         let (name, doc) =
             (ident(definition.name), doc(document::function(definition.name, self.definitions.regression.kind)));
+        // What the trait does not know is the model's own.
+        let visibility = (definition.name == VELOCITY).then(|| quote!(#[must_use] pub));
         quote! {
             #doc
             #similar
             #long
-            fn #name(&self, #(#arguments),*) -> #returned {
+            #visibility fn #name(&self, #(#arguments),*) -> #returned {
                 #(#statements)*
                 #result
             }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
-use super::definition::{Argument, Definitions};
+use super::definition::{Argument, Definitions, VELOCITY};
 use super::describe::describe;
 use super::document;
 use super::error::EmitError;
@@ -47,13 +47,11 @@ impl Module<'_> {
         self.check_numbers()?;
         let mut scope = self.scope();
         let model = self.model(&mut scope);
-        let functions: Vec<TokenStream> = self
-            .definitions
-            .functions
-            .iter()
-            .zip(&self.staged.programs)
-            .map(|(definition, program)| self.function(definition, program, &mut scope))
-            .collect();
+        let (mut functions, mut own) = (Vec::new(), None);
+        for (definition, program) in self.definitions.functions.iter().zip(&self.staged.programs) {
+            let function = self.function(definition, program, &mut scope);
+            if definition.name == VELOCITY { own = Some(function) } else { functions.push(function) }
+        }
         let parameters = self.parameters(&mut scope);
         let ratios = self.ratios(&scope);
 
@@ -72,6 +70,7 @@ impl Module<'_> {
             RegressionKind::Dynamic | RegressionKind::Implicit => "Dynamic",
         });
         let precision = permission::for_numbers(self.scalar, self.staged.programs.iter().flat_map(numbers));
+        let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
         let rebase = self.rebase.then(|| {
             quote! {
                 /// `phi_0` is affine in the extension with the factor `phi_1`: the observer may move a
@@ -93,6 +92,7 @@ impl Module<'_> {
                 const REGRESSION: Regression = Regression::#regression;
                 #(#functions)*
             }
+            #own
             #rebase
             /// The observer of this model, with the gradient estimator unless another is named.
             pub type Observer<E = Gradient<#scalar, NE>> =

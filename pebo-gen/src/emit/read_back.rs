@@ -11,7 +11,7 @@ use proc_macro2::TokenStream;
 use quote::ToTokens;
 use syn::{FnArg, ImplItem, Item, Pat, Stmt};
 
-use super::definition::{Argument, Definitions};
+use super::definition::{Argument, Definitions, VELOCITY};
 use super::error::EmitError;
 use super::literal::Scalar;
 use super::value::{Scope, Value, expression, unreadable};
@@ -126,6 +126,9 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                 }
                 Some("Rebase") if item.items.is_empty() => {}
                 Some("Model") => model(plant, definitions, item, &globals, &stored, &mut read)?,
+                None if only_function(item)?.sig.ident == VELOCITY => {
+                    model(plant, definitions, item, &globals, &stored, &mut read)?;
+                }
                 None => {
                     let mut scope = globals.clone();
                     let function = only_function(item)?;
@@ -194,7 +197,7 @@ fn signature(function: &str) -> Option<&'static [Argument]> {
         "phi_0" | "phi_1" => &[Extension, Y, U],
         "primitive_0" | "primitive_1" => &[Extension, Y],
         "theta" => &[Eta],
-        "phi_left" => &[Z, Y],
+        "phi_left" | VELOCITY => &[Z, Y],
         _ => return None,
     })
 }

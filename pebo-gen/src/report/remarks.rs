@@ -3,7 +3,7 @@
 use crate::analysis::{Class, Derivation, Drift, Equilibrium, OperatingPoint, Outcome, Verdict, rebase_residuals};
 use crate::cas::Symbol;
 use crate::cas::zero::decide;
-use crate::plant::Plant;
+use crate::plant::{Class as PlantClass, Plant};
 use crate::source::listed;
 
 /// A remark: its name, its verdict where one was reached, and its lines.
@@ -26,6 +26,7 @@ pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         .map(|(verdict, lines)| Remark { name: "operating point", verdict: Some(verdict), lines })
         .into_iter()
         .collect();
+    remarks.extend(special(plant).map(|line| Remark { name: "values", verdict: None, lines: vec![line] }));
     if derivation.outcome == Outcome::Accepted {
         let drift = Drift::of(plant, derivation).filter(|drift| !drift.integrators.is_empty());
         remarks.extend(drift.map(|drift| Remark {
@@ -33,10 +34,24 @@ pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
             verdict: None,
             lines: vec![grows(plant, &drift), format!("against it {}", remedy(plant, derivation))],
         }));
-        let jump = "another constant after a jump of the state: start anew, or let the estimator forget".to_owned();
+        let jump =
+            "another constant after a jump of the state: then start anew, or let the estimator forget".to_owned();
         remarks.push(Remark { name: "theta", verdict: None, lines: vec![jump] });
     }
     remarks
+}
+
+/// On which values the verdict rests, where it is another than in general.
+fn special(plant: &Plant) -> Option<String> {
+    let Some(PlantClass::Linear(linear)) = &plant.class else { return None };
+    let arena = &plant.arena;
+    let value = |symbol: &Symbol| {
+        let parameter = plant.parameters.iter().find(|p| p.symbol == *symbol)?;
+        Some(format!("{} = {}", arena.name(*symbol), arena.print(arena.number(parameter.value.clone()?))))
+    };
+    let values: Vec<String> = linear.special.iter().filter_map(value).collect();
+    let given = listed(values.iter().map(String::as_str));
+    (!values.is_empty()).then(|| format!("the ranks are others for {given} than in general: the verdict is for these"))
 }
 
 /// The point, and what holds there.
@@ -53,7 +68,7 @@ fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
             Class::Gpebo => "Lambda z + h = 0 there: z rests".to_owned(),
         });
         lines.extend(point.rank.filter(|rank| *rank > 0).map(|rank| {
-            format!("rank [f; h_i] is {rank} almost everywhere, 0 there: Frobenius does not apply, phi is explicit")
+            format!("rank [f; h_i] falls from {rank} to 0 there: Frobenius' theorem gives no phi, this one is explicit")
         }));
     }
     lines

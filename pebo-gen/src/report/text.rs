@@ -33,10 +33,13 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
             Excitation::Never => "never: a direction of the unknowns stays unseen".to_owned(),
         }];
         if !r.singular_where.is_empty() {
-            lines.push(format!(
-                "except where {}: do not stay there",
-                listed(r.singular_where.iter().map(String::as_str))
-            ));
+            let places = listed(r.singular_where.iter().map(String::as_str));
+            let excluded = r.gram.as_ref().is_some_and(|gram| gram.positive.is_some());
+            lines.push(if excluded {
+                format!("but where {places}, which the assumptions exclude")
+            } else {
+                format!("except where {places}: do not stay there")
+            });
         }
         lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
         lines
@@ -181,7 +184,9 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         }
         if regression.eta.len() > plant.theta.len() {
             let (unknowns, components) = (regression.eta.len(), plant.theta.len());
-            lines.push(format!("{unknowns} unknowns for {components} of theta: excite all of them"));
+            lines.push(format!(
+                "{unknowns} unknowns stand for {components} of theta: the inputs have to excite all {unknowns}"
+            ));
         }
     }
     lines

@@ -22,6 +22,10 @@ const RELATIVE: f64 = 1e-10;
 /// For states that pass through zero: far below any value of interest in SI units.
 const ABSOLUTE: f64 = 1e-12;
 
+/// A rate this small is zero: over years it moves nothing by as much as [`ABSOLUTE`]. The library divides by the square
+/// of a step's error, which for a rate that fades away becomes too small to be divided by.
+const STILL: f64 = 1e-100;
+
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
@@ -156,7 +160,9 @@ impl<const N: usize> ODE<f64, [f64; N]> for Equation {
         let count = place.len();
         table[place.clone()].copy_from_slice(&state[..count]);
         formulas.run(table, values);
-        rates[..count].copy_from_slice(values);
+        for (rate, &value) in rates.iter_mut().zip(values.iter()) {
+            *rate = if value.abs() < STILL { 0.0 } else { value };
+        }
         rates[count..].fill(0.0);
     }
 }

@@ -177,6 +177,7 @@ impl Sketch {
                 kind: Excitation::Instant,
                 gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
+                constants: Vec::new(),
                 direction: None,
             }),
             diagnostics: Vec::new(),

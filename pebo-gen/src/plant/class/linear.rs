@@ -7,9 +7,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::cas::Expr;
+use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
-use crate::cas::linear::solve;
+use crate::cas::linear::solve_each;
+use crate::cas::{Expr, Symbol};
 use crate::model::{Formula as Written, Lti};
 use crate::plant::Matrix;
 use crate::plant::matrix::dot;
@@ -17,7 +18,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::shape::{self, Size};
 use super::{Class, Expansion, Names, Place, Proposal, Stop, unresolved};
-use crate::plant::plant::{Formula, Output, State};
+use crate::plant::plant::{Assumption, Formula, Output, State};
 
 /// A linear plant.
 #[derive(Clone, Debug)]
@@ -32,6 +33,8 @@ pub struct Linear {
     pub t2: Matrix,
     /// Whether T1 and T2 are the author's.
     pub given: bool,
+    /// The parameters whose values make ranks of A11 and A21 others than in general: the values were written in.
+    pub special: Vec<Symbol>,
     /// Rows of A11 that are no combination of rows of A21: no transform exists if there is one.
     pub unsolved: Vec<usize>,
     /// Where A11 stands.
@@ -82,6 +85,7 @@ pub(super) fn expand(
     };
     let special = [valued(&a11), valued(&a21)];
     let blocks = [a12, a22, b1, b2, t1, t2];
+    let valued_symbols = arena.symbols_of(&[a11.entries(), a21.entries()].concat());
     let differ = ranks(&a11, &a21).map_err(open)? != ranks(&special[0], &special[1]).map_err(open)?;
     let [a12, a22, b1, b2, t1, t2] = if differ {
         [a11, a21] = special;
@@ -89,12 +93,15 @@ pub(super) fn expand(
     } else {
         blocks
     };
+    let special =
+        if differ { valued_symbols.into_iter().filter(|s| values.contains_key(s)).collect() } else { Vec::new() };
     let (t1, t2, unsolved) = if written.t1.is_some() {
         (t1, t2, Vec::new())
     } else {
         let (t2, unsolved) = transform(place, &a11, &a21).map_err(open)?;
         (Matrix::identity(arena, nx), t2, unsolved)
     };
+    let conditions = denominators(place, &t2, first.span).map_err(open)?;
     let symbols = |list: &[crate::cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (x, y, u) = (symbols(names.x), symbols(names.y), symbols(names.u));
     let rate = |row: usize, [a, b, c]: [&Matrix; 3]| {
@@ -124,13 +131,14 @@ pub(super) fn expand(
         y: outputs.collect(),
         phi: phi.collect(),
         proposal,
-        conditions: Vec::new(),
+        conditions,
         class: Some(Class::Linear(Linear {
             a11,
             a21,
             t1,
             t2,
             given: written.t1.is_some(),
+            special,
             unsolved,
             span: first.span,
         })),
@@ -142,18 +150,17 @@ fn transform(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, V
     let arena = place.arena;
     let entries = [a11.entries(), a21.entries()].concat();
     let field = Field::over(arena, &place.domain.facts, &entries)?;
+    // A21' T2' = -A11', a right side for each row of A11.
+    let mut system = Vec::new();
+    for column in 0..a11.height() {
+        let left = a21.column(column).into_iter().map(|e| field.fraction(e));
+        let right = a11.column(column).into_iter().map(|e| Ok(field.fraction(e)?.opposite()));
+        system.push(left.chain(right).collect::<Result<Vec<_>, _>>()?);
+    }
     let mut unsolved = Vec::new();
     let mut rows = Vec::new();
-    for (index, row) in a11.rows().iter().enumerate() {
-        // A21' t = -A11', the right side in the last column.
-        let mut system = Vec::new();
-        for (column, entry) in row.iter().enumerate() {
-            let left = a21.column(column);
-            let mut line = left.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
-            line.push(field.fraction(*entry)?.opposite());
-            system.push(line);
-        }
-        if let Some(solution) = solve(&field, system, a21.height())? {
+    for (index, solution) in solve_each(&field, system, a21.height())?.into_iter().enumerate() {
+        if let Some(solution) = solution {
             rows.push(solution.iter().map(|e| field.show(e)).collect());
         } else {
             unsolved.push(index);
@@ -161,6 +168,20 @@ fn transform(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, V
         }
     }
     Ok((Matrix::new(rows), unsolved))
+}
+
+/// What must not vanish for the entries to have values: a rank that holds in general falls there.
+fn denominators(place: &Place<'_>, matrix: &Matrix, span: Span) -> Result<Vec<Assumption>, Obstacle> {
+    let arena = place.arena;
+    let field = Field::over(arena, &place.domain.facts, &matrix.entries())?;
+    let mut found: Vec<Assumption> = Vec::new();
+    for entry in matrix.entries() {
+        let below = field.show(&field.of_polynomial(field.fraction(entry)?.denominator())?);
+        if arena.as_number(below).is_none() && found.iter().all(|other| other.expr != below) {
+            found.push(Assumption { expr: below, relation: Relation::NonZero, span });
+        }
+    }
+    Ok(found)
 }
 
 /// `x = T1^+ (z - T2 y)` with `T1^+ = (T1' T1)^-1 T1'`, and the regression of claim C3:

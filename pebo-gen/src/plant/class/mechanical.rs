@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::oriented::oriented;
 use crate::cas::rational::half;
 use crate::cas::{Expr, Symbol};
 use crate::model::{Formula as Written, Mechanical as WrittenClass};
@@ -150,7 +151,8 @@ pub(super) fn expand(
 fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let products = matrix.apply(place.arena, vector);
     let field = Field::over(place.arena, &place.domain.facts, &products)?;
-    products.iter().map(|e| Ok(field.show(&field.fraction(*e)?))).collect()
+    let over_one = |e: &Expr| Ok(oriented(place.arena, place.domain, field.show(&field.fraction(*e)?)));
+    products.iter().map(over_one).collect()
 }
 
 /// Where the column of T stands that a component of z is made of: its first entry that is not zero.

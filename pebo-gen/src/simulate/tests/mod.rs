@@ -2,6 +2,7 @@
 
 mod figure;
 mod flow;
+mod identity;
 mod refusal;
 mod run;
 

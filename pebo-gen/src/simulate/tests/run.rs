@@ -1,10 +1,9 @@
 use crate::analysis::Derivation;
 use crate::plant::Plant;
-use crate::simulate::run::Machine;
 use crate::simulate::{Overrides, Scenario, Trace};
 use crate::source::Code;
 
-use super::{CUK, CUK_CASE_2, SPRING, read, resolve, run, with};
+use super::{CUK_CASE_2, SPRING, read, resolve, run, with};
 
 fn short(duration: f64) -> Overrides {
     Overrides { duration: Some(duration), ..Overrides::default() }
@@ -49,24 +48,6 @@ fn a_run_can_be_repeated() {
     assert_eq!(first, scenario.run(&mut |_| {}).unwrap().csv());
     assert_eq!((reports.first(), reports.last()), (Some(&0.0), Some(&1.0)));
     assert!(reports.is_sorted() && reports.len() < 1000);
-}
-
-#[test]
-fn the_coordinates_are_extension_and_theta_all_along() {
-    // The trapezoidal rule errs by dt^2/12 times the change of h', 5e6 A/s^2: 2e-16 A at this step.
-    let overrides = Overrides { step: Some(2e-8), ..short(1e-4) };
-    let scenario = resolve(CUK, &overrides).unwrap();
-    let mut machine = Machine::start(&scenario).unwrap();
-    // phi = (i1, i3), chi(0) = 0.
-    let theta = [0.5, -1.0];
-    for sample in 1..=scenario.samples() {
-        machine.control().unwrap();
-        machine.advance(sample).unwrap();
-        let truth = &machine.table[scenario.layout.x.clone()];
-        for (z, x) in machine.observer.coordinates(&theta).iter().zip(truth) {
-            assert!((z - x).abs() < 1e-9 * x.abs().max(1e-3), "{sample}: {z} {x}");
-        }
-    }
 }
 
 /// The control signal at the first row and at the last.
@@ -122,7 +103,7 @@ fn estimates_converge_at_every_size_and_in_every_class() {
 }
 
 /// A generalised cascade: a vector that turns with a known speed.
-const ROTATION: &str = "
+pub(super) const ROTATION: &str = "
 model: rotation
 x: [a, b]
 y: [q]

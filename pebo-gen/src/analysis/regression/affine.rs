@@ -1,0 +1,109 @@
+//! Rates that are affine in the transform: `f_y = A(y, u) + B(y, u) phi`, and the linear regression they make.
+
+use std::collections::BTreeMap;
+
+use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
+use crate::analysis::tidy::{shortest, shortest_equal};
+use crate::cas::combination::combine;
+use crate::cas::domain::Domain;
+use crate::cas::field::{Field, Obstacle};
+use crate::cas::zero::{Answer, decide};
+use crate::cas::{Expr, Symbol};
+use crate::plant::Plant;
+use crate::plant::matrix::dot;
+
+/// One output as an affine function of the transform.
+pub(super) struct Row {
+    /// The part free of x.
+    pub(super) known: Expr,
+    /// The coefficients of the components of the transform, free of x.
+    pub(super) factors: Vec<Expr>,
+}
+
+/// Writes an output's rate over {1, phi}, and proves it.
+pub(super) fn decompose(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<Row>, Obstacle> {
+    let arena = &plant.arena;
+    let phi = plant.transform();
+    if let Some((known, factors)) = plant.proposal.rates.get(&plant.y[index].symbol) {
+        let rebuilt = arena.add(*known, dot(arena, factors, &phi));
+        if decide(arena, arena.sub(rate, rebuilt), domain).is_zero() {
+            return Ok(Some(Row { known: *known, factors: factors.clone() }));
+        }
+    }
+    let mut roots = phi.clone();
+    roots.push(rate);
+    let field = Field::over(arena, &domain.facts, &roots)?;
+    let mut basis = vec![arena.one()];
+    basis.extend(&phi);
+    let Some(coefficients) = combine(&field, rate, &basis, &plant.hidden())? else { return Ok(None) };
+    let coefficients: Vec<Expr> = coefficients.iter().map(|c| field.show(c)).collect();
+    let rebuilt = arena.sum(coefficients.iter().zip(&basis).map(|(c, b)| arena.mul(*c, *b)));
+    match decide(arena, arena.sub(rate, rebuilt), domain) {
+        Answer::Zero => {}
+        Answer::Open(obstacle) => return Err(obstacle),
+        Answer::NonZero(_) => return Err(Obstacle::NoWitness),
+    }
+    let mut parts = coefficients.into_iter();
+    let known = parts.next().unwrap_or_else(|| arena.zero());
+    // Where the transform is the state itself, the author's own coefficients may be shorter.
+    let factors = parts
+        .zip(&phi)
+        .map(|(factor, component)| match arena.as_symbol(*component) {
+            Some(state) => shortest_equal(arena, domain, factor, &[arena.derivative(rate, state)]),
+            None => factor,
+        })
+        .collect();
+    Ok(Some(Row { known, factors }))
+}
+
+/// `Phi_0` and `Phi_1` of affine rows.
+pub(super) fn linear(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: Option<&LeftInverse>,
+    rows: Vec<usize>,
+    affine: &[Row],
+) -> Regression {
+    let arena = &plant.arena;
+    let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };
+    let chi: Vec<Expr> = extension.iter().map(|s| arena.of_symbol(*s)).collect();
+    let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
+    // The left inverse at chi: where the rate is affine in z, the author's formula there is `Phi_0`.
+    let at_chi: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(chi.iter().copied()).collect();
+    let states: BTreeMap<Symbol, Expr> =
+        left_inverse.iter().flat_map(|l| &l.x).map(|(s, formula)| (*s, arena.substitute(*formula, &at_chi))).collect();
+    let mut phi_0 = Vec::new();
+    let mut phi_1 = Vec::new();
+    for (row, output) in affine.iter().zip(&rows) {
+        let known =
+            arena.add(row.known, arena.sum(row.factors.iter().zip(&chi).map(|(factor, chi)| arena.mul(*factor, *chi))));
+        let written = plant.y[*output].rate.map(|rate| arena.substitute(rate.expr, &states));
+        let candidates: Vec<Expr> = written
+            .into_iter()
+            .filter(|w| !arena.depends_on(*w, &plant.hidden()))
+            .chain([shortest(arena, domain, known)])
+            .collect();
+        phi_0.push(shortest_equal(arena, domain, known, &candidates));
+        phi_1.push(match &cascade.lambda {
+            None => row.factors.clone(),
+            Some(_) => (0..theta.len())
+                .map(|column| {
+                    let terms = row.factors.iter().zip(&plant.psi);
+                    arena.sum(terms.map(|(factor, psi)| arena.mul(*factor, arena.of_symbol(psi[column]))))
+                })
+                .collect(),
+        });
+    }
+    Regression {
+        kind: RegressionKind::Dynamic,
+        rows,
+        phi_0,
+        phi_1,
+        primitive_0: Vec::new(),
+        primitive_1: Vec::new(),
+        eta: theta.clone(),
+        theta: plant.eta(theta.len()).iter().map(|s| arena.of_symbol(*s)).collect(),
+        eta_symbols: plant.eta(theta.len()),
+    }
+}

@@ -1,0 +1,126 @@
+//! Why there is no regression, with the point that shows it.
+
+use std::collections::BTreeMap;
+
+use crate::analysis::design::{Claim, LeftInverse, Regression, Verdict, Witness};
+use crate::cas::Expr;
+use crate::cas::Symbol;
+use crate::cas::domain::Domain;
+use crate::cas::field::Obstacle;
+use crate::cas::rational::Rational;
+use crate::cas::zero::refute;
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic, Span};
+
+/// Every rate that is given depends on a signal that nobody knows.
+pub(super) fn hidden_by_signals(
+    plant: &Plant,
+    domain: &Domain,
+    veiled: &[(usize, Expr, Span)],
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    let mut verdict = Verdict::Refuted;
+    for (index, rate, span) in veiled {
+        let seen = plant.w.iter().find_map(|w| {
+            let slope = arena.derivative(*rate, *w);
+            refute(arena, slope, domain).map(|point| (*w, Witness::of(slope, &point)))
+        });
+        let Some((signal, witness)) = seen else {
+            verdict = Verdict::Undecided;
+            found.push(undecided(plant, *index, *span, &Obstacle::NoWitness));
+            continue;
+        };
+        let (output, signal) = (arena.name(plant.y[*index].symbol), arena.name(signal));
+        found.push(
+            Diagnostic::error(
+                Code::RegressionNonlinear,
+                *span,
+                format!("the rate of {output} depends on the unmeasured signal {signal}"),
+            )
+            .label(format!("nothing can be learnt from {output} while {signal} is unknown"))
+            .note(format!("its derivative in {signal}: {}", witness.sentence(arena)))
+            .help(format!(
+                "declare {signal} under `u` if it is measured, give `f_y` for an output whose rate is free of it, or an \
+                 identity under `identities`"
+            )),
+        );
+    }
+    Claim { verdict, result: None }
+}
+
+/// A generalised cascade whose outputs may be linear in functions of theta.
+pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic {
+    let output = plant.arena.name(plant.y[index].symbol);
+    Diagnostic::error(
+        Code::RegressionUndecided,
+        span,
+        format!("it could not be decided whether the rate of {output} is linear in functions of theta"),
+    )
+    .label("not an affine function of phi with coefficients in y and u")
+    .note("obstacle: functions of theta are not sought for a generalised cascade, z = xi + Psi theta")
+    .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
+}
+
+/// A point at which the rate, as a function of z, has a second derivative, or a bend.
+pub(super) fn nonlinear(
+    plant: &Plant,
+    domain: &Domain,
+    rate: Expr,
+    left_inverse: Option<&LeftInverse>,
+) -> Option<Witness> {
+    let arena = &plant.arena;
+    let inverse: BTreeMap<Symbol, Expr> = left_inverse?.x.iter().copied().collect();
+    let in_z = arena.substitute(rate, &inverse);
+    if arena.depends_on(in_z, &plant.hidden()) {
+        return None;
+    }
+    // Back at z = phi(x, y), so that the domain of x is the one that is searched.
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    for (index, first) in plant.z.iter().enumerate() {
+        for second in &plant.z[index..] {
+            let curvature = arena.derivative(arena.derivative(in_z, *first), *second);
+            let curvature = arena.substitute(curvature, &transform);
+            if let Some(point) = refute(arena, curvature, domain) {
+                return Some(Witness::of(curvature, &point));
+            }
+        }
+    }
+    // Pieces of lines have no second derivative, but the middle of a chord shows the bend.
+    plant.z.iter().find_map(|z| {
+        let moved = |by: i64| {
+            let place = arena.add(arena.of_symbol(*z), arena.number(by));
+            arena.substitute(in_z, &BTreeMap::from([(*z, place)]))
+        };
+        let ends = arena.add(moved(4), moved(-4));
+        let bend = arena.sub(ends, arena.scale(in_z, &Rational::from(2)));
+        let bend = arena.substitute(bend, &transform);
+        refute(arena, bend, domain).map(|point| Witness::of(bend, &point))
+    })
+}
+
+pub(super) fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness, stands_against: &str) -> Diagnostic {
+    let arena = &plant.arena;
+    let output = arena.name(plant.y[index].symbol);
+    Diagnostic::error(
+        Code::RegressionNonlinear,
+        span,
+        format!("the rate of {output} is not linear in the unknowns"),
+    )
+    .label("not an affine function of phi with coefficients in y and u")
+    .note(format!("as a function of z it bends: {}", witness.sentence(arena)))
+    .note(stands_against)
+    .help("choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
+           an identity under `identities`")
+}
+
+pub(super) fn undecided(plant: &Plant, index: usize, span: Span, obstacle: &Obstacle) -> Diagnostic {
+    let output = plant.y.get(index).map_or_else(String::new, |o| format!(" of {}", plant.arena.name(o.symbol)));
+    Diagnostic::error(
+        Code::RegressionUndecided,
+        span,
+        format!("it could not be decided whether the rate{output} is linear in the unknowns"),
+    )
+    .note(format!("obstacle: {obstacle}"))
+    .help("simplify the formula, or state signs under `assume`")
+}

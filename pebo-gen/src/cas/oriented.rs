@@ -1,0 +1,88 @@
+//! Denominators as a reader would write them: with the sign that the assumptions tell.
+//!
+//! In: an expression and a domain. Out: the same value, with `1 - d` in place of `d - 1` below a fraction bar, or
+//! squared, where it is known that `d < 1`. Turning a factor round is exact; that it is known to be positive lets it
+//! meet its own root, as in `sqrt(r)/r`.
+
+use super::domain::Domain;
+use super::facts::Relation;
+use super::rational::Rational;
+use super::{Arena, Expr, Node, Product};
+
+/// The expression with known negative denominators turned round, in sums term by term.
+pub fn oriented(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+    match arena.node(expr) {
+        Node::Sum(sum) => {
+            let terms = sum.terms.iter().map(|(term, coefficient)| {
+                let term = match arena.node(*term) {
+                    Node::Product(product) => turned(arena, domain, &product),
+                    _ => *term,
+                };
+                arena.scale(term, coefficient)
+            });
+            arena.sum(terms.chain([arena.number(sum.constant.clone())]))
+        }
+        Node::Product(product) => turned(arena, domain, &product),
+        _ => expr,
+    }
+}
+
+fn turned(arena: &Arena, domain: &Domain, product: &Product) -> Expr {
+    let two = Rational::from(2);
+    let is_even = |exponent: &Rational| exponent.checked_div(&two).is_some_and(|half| half.is_integer());
+    let mut coefficient = product.coefficient.clone();
+    let mut factors = product.factors.clone();
+    let mut changed = false;
+    for (base, exponent) in &mut factors {
+        let below = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
+        if !below || !matches!(arena.node(*base), Node::Sum(_)) {
+            continue;
+        }
+        let opposite = arena.neg(*base);
+        if domain.shows(arena, opposite, Relation::Positive) {
+            *base = opposite;
+            changed = true;
+            if !is_even(exponent) {
+                coefficient = -&coefficient;
+            }
+        }
+    }
+    if !changed {
+        return arena.multiply(&coefficient, factors);
+    }
+    // A sum above the bar takes a sign that is left.
+    if coefficient.is_negative()
+        && let Some((base, _)) =
+            factors.iter_mut().find(|(base, power)| power.is_one() && matches!(arena.node(*base), Node::Sum(_)))
+    {
+        *base = arena.neg(*base);
+        coefficient = -&coefficient;
+    }
+    arena.multiply(&coefficient, factors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_to_be_negative_is_turned_round() {
+        let arena = Arena::new();
+        let [a, b, d] = ["a", "b", "d"].map(|name| arena.variable(name));
+        let low = arena.sub(d, arena.one());
+        let mut domain = Domain::default();
+        let shown = |domain: &Domain, expr: Expr| arena.print(oriented(&arena, domain, expr));
+        let squared = arena.div(a, arena.mul(low, low));
+        let fraction = arena.neg(arena.div(a, low));
+        let before = arena.print(fraction);
+        assert_eq!(shown(&domain, fraction), before, "without an assumption there is no sign");
+        domain.facts.assume(arena.sub(arena.one(), d), Relation::Positive);
+        assert_eq!(shown(&domain, fraction), "a/(1 - d)");
+        assert_eq!(shown(&domain, squared), "a/(1 - d)^2");
+        assert_eq!(shown(&domain, arena.add(b, fraction)), "b + a/(1 - d)");
+        assert_eq!(shown(&domain, arena.div(arena.sub(a, b), low)), "(b - a)/(1 - d)");
+        assert_eq!(shown(&domain, arena.mul(a, low)), arena.print(arena.mul(a, low)), "nothing is below a bar");
+        let root = arena.sqrt(arena.sub(arena.one(), d));
+        assert_eq!(shown(&domain, arena.div(root, low)), "-1/sqrt(1 - d)");
+    }
+}
