@@ -41,7 +41,7 @@ pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
     fn is_finite(&self) -> bool;
 }
 
-/// `chi' = h(y, u)`, so that `z = chi + theta` (the paper, equations for chi and theta in Proposition 1).
+/// `chi' = h(y, u)`, so that `z = chi + theta` (the paper, Section 2.2, equations 8, 11 and 12).
 ///
 /// Trapezoidal rule: exact where h is linear in time over the step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -23,7 +23,7 @@ pub enum Hold {
     First,
 }
 
-/// The filter `alpha / (p + alpha)`, `p = d/dt` (the paper, equation regmod and before).
+/// The filter `alpha / (p + alpha)`, `p = d/dt` (the paper, Section 5.3, at the filtered regression).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filter<S: Real> {

@@ -43,7 +43,7 @@ pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
 
 /// The filtered regression.
 ///
-/// This equals `alpha (primitive_0 - F primitive_0) - F phi_0` of the paper (equation regmod, `F = alpha/(p + alpha)`,
+/// This equals `alpha (primitive_0 - F primitive_0) - F phi_0` of the paper (Section 5.3, `F = alpha/(p + alpha)`,
 /// output filter started at the output) to the last term, without the cancellation between its large parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

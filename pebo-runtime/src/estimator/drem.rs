@@ -27,7 +27,7 @@ use crate::{Fault, Real};
 /// Units of `gamma`: 1/s, as `Delta` has none.
 ///
 /// Source: Aranovskiy, Bobtsov, Ortega, Pyrkin, *Performance enhancement of parameter estimators via dynamic regressor
-/// extension and mixing*, IEEE TAC, 2017; Cramer's rule: Ortega, Aranovskiy, Pyrkin, Astolfi,
+/// extension and mixing*, IEEE TAC, 2017, arXiv:1509.02763; Cramer's rule: Ortega, Aranovskiy, Pyrkin, Astolfi,
 /// Bobtsov, *New results on parameter estimation via dynamic regressor extension and mixing*, IEEE TAC, 2021.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

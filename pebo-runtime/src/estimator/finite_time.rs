@@ -32,7 +32,7 @@ use crate::{Fault, Real};
 /// Source: Ortega, Gerasimov, Barabanov, Nikiforov, *Adaptive control of linear multivariable systems using dynamic
 /// regressor extension and mixing estimators: removing the high-frequency gain assumptions*, Automatica, 2019
 /// (clip); tracking: Ortega, Bobtsov, Nikolaev, *Parameter identification with finite-convergence time alertness
-/// preservation*, IEEE Control Systems Letters, 2022.
+/// preservation*, IEEE Control Systems Letters, 2022, Section I.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FiniteTime<S: Real, X, const NE: usize> {

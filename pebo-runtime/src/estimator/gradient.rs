@@ -6,7 +6,8 @@ use super::{Estimator, Information};
 use crate::sum::{Sum, all_finite};
 use crate::{Fault, Real};
 
-/// The gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta)` (the paper, equation `theta_hat`).
+/// The gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta)` (the paper, Section 5.3, the equation
+/// after the filtered regression; it has no number).
 ///
 /// One step is the implicit (backward) Euler step, which needs no bound on gain times step: with consistent data
 /// `error_new = (I + dt Gamma Phi^T Phi)^-1 error`, so the error never grows in the norm of `Gamma^-1`. The step is the
