@@ -15,7 +15,7 @@ use super::derived::{LARGEST, pad};
 use super::settings::{self, Covariance, Extension};
 
 /// The most unknowns of DREM: one instance of each kind is compiled for each number up to it.
-pub(super) const MOST_MIXED: usize = 8;
+pub(super) const MOST_MIXED: usize = 6;
 
 /// An estimator of a model that was padded to the size N.
 #[derive(Debug)]
@@ -40,8 +40,6 @@ impl<const N: usize> Chosen<N> {
                 3 => mixed::<3, N>(gain, extension)?,
                 4 => mixed::<4, N>(gain, extension)?,
                 5 => mixed::<5, N>(gain, extension)?,
-                6 => mixed::<6, N>(gain, extension)?,
-                7 => mixed::<7, N>(gain, extension)?,
                 MOST_MIXED => mixed::<MOST_MIXED, N>(gain, extension)?,
                 // None and more were refused with the settings.
                 _ => return Err(Fault::Gain),

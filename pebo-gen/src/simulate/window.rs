@@ -77,32 +77,59 @@ pub(super) struct Window<const N: usize> {
     hold: Hold,
     samples: usize,
     /// Integrals over the steps in the window with their lengths, the oldest first.
-    steps: VecDeque<(Sides<f64, N, N>, f64)>,
+    steps: VecDeque<Step<N>>,
+    /// How many of the newest make up the front.
+    recent: usize,
+    total: Total<N>,
+    /// Full, it becomes the total.
+    front: Total<N>,
+}
+
+/// Both sides integrated over a step, and its length.
+type Step<const N: usize> = (Sides<f64, N, N>, f64);
+
+#[derive(Clone, Debug)]
+struct Total<const N: usize> {
     known: Sum<f64, N, 1>,
     factor: Sum<f64, N, N>,
     duration: Sum<f64, 1, 1>,
 }
 
-impl<const N: usize> Window<N> {
-    pub(super) fn new(samples: usize, hold: Hold) -> Self {
+impl<const N: usize> Total<N> {
+    fn nothing() -> Self {
         Self {
-            hold,
-            samples,
-            steps: VecDeque::new(),
             known: Sum::new(SVector::zeros()),
             factor: Sum::new(SMatrix::zeros()),
             duration: Sum::new(SVector::zeros()),
         }
     }
 
+    fn add(&mut self, (sides, length): &Step<N>) {
+        self.known.add(&sides.known);
+        self.factor.add(&sides.factor);
+        self.duration.add(&SVector::repeat(*length));
+    }
+
+    fn is_finite(&self) -> bool {
+        self.known.is_finite() && self.factor.is_finite() && self.duration.is_finite()
+    }
+}
+
+impl<const N: usize> Window<N> {
+    pub(super) fn new(samples: usize, hold: Hold) -> Self {
+        let (total, front) = (Total::nothing(), Total::nothing());
+        Self { hold, samples, steps: VecDeque::new(), recent: 0, total, front }
+    }
+
     fn inverse_duration(&self) -> f64 {
-        if self.duration.value().x > 0.0 { 1.0 / self.duration.value().x } else { 0.0 }
+        let duration = self.total.duration.value().x;
+        if duration > 0.0 { 1.0 / duration } else { 0.0 }
     }
 }
 
 impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
     fn advance(&mut self, [start, end]: [&Sides<f64, N, N>; 2], dt: f64) {
-        let step = match self.hold {
+        let sides = match self.hold {
             Hold::Zero => Sides { known: start.known * dt, factor: start.factor * dt },
             Hold::First => Sides {
                 known: (start.known + end.known) * (0.5 * dt),
@@ -112,30 +139,38 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
         if self.steps.len() == self.samples
             && let Some((oldest, length)) = self.steps.pop_front()
         {
-            self.known.add(&-oldest.known);
-            self.factor.add(&-oldest.factor);
-            self.duration.add(&SVector::repeat(-length));
+            self.total.add(&(Sides { known: -oldest.known, factor: -oldest.factor }, -length));
         }
-        self.steps.push_back((step, dt));
-        self.known.add(&step.known);
-        self.factor.add(&step.factor);
-        self.duration.add(&SVector::repeat(dt));
+        let step = (sides, dt);
+        self.total.add(&step);
+        self.front.add(&step);
+        self.steps.push_back(step);
+        self.recent += 1;
+        if self.recent == self.samples {
+            self.recent = 0;
+            self.total = std::mem::replace(&mut self.front, Total::nothing());
+        }
     }
 
     fn regressand(&self) -> SVector<f64, N> {
-        self.known.value() * self.inverse_duration()
+        self.total.known.value() * self.inverse_duration()
     }
 
     fn regressor(&self) -> SMatrix<f64, N, N> {
-        self.factor.value() * self.inverse_duration()
+        self.total.factor.value() * self.inverse_duration()
     }
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
-        self.known = Sum::new(SVector::zeros());
-        for (step, _) in &mut self.steps {
-            let offset = step.factor * shift;
-            step.known += offset;
-            self.known.add(&step.known);
+        self.total.known = Sum::new(SVector::zeros());
+        self.front.known = Sum::new(SVector::zeros());
+        let older = self.steps.len() - self.recent;
+        for (place, (sides, _)) in self.steps.iter_mut().enumerate() {
+            let offset = sides.factor * shift;
+            sides.known += offset;
+            self.total.known.add(&sides.known);
+            if place >= older {
+                self.front.known.add(&sides.known);
+            }
         }
     }
 
@@ -144,7 +179,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
     }
 
     fn is_finite(&self) -> bool {
-        // What is not finite makes a sum so, and stays in it.
-        self.known.is_finite() && self.factor.is_finite() && self.duration.is_finite()
+        // What is not finite makes a sum so at once.
+        self.total.is_finite() && self.front.is_finite()
     }
 }

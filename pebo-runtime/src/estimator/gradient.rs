@@ -56,7 +56,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
 impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradient<S, NE> {
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
         let innovation = regressand - regressor * self.theta.value();
-        let mut step = self.inertia;
+        let mut step = self.inertia.without_target();
         for (row, &error) in regressor.row_iter().zip(innovation.iter()) {
             step.absorb(&row.transpose(), error, dt);
         }
@@ -78,5 +78,9 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradien
 
     fn is_finite(&self) -> bool {
         self.theta.is_finite()
+    }
+
+    fn blemish(&self) -> S {
+        self.theta.blemish()
     }
 }
