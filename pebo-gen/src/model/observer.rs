@@ -179,14 +179,18 @@ impl Observer {
             (self.filter.as_slice(), "the filter frequency must be positive"),
         ];
         for (numbers, message) in positive {
-            numbers.iter().for_each(|number| within(number, |value| value > 0.0, message, above_zero));
+            for number in numbers {
+                within(number, |value| value > 0.0, message, above_zero);
+            }
         }
         let not_negative = [
             (&self.forgetting, "the rate of forgetting must not be negative", "write 0 to forget nothing"),
             (&self.normalisation, "the normalisation must not be negative", "write 0 for the gradient as it is"),
         ];
         for (number, message, help) in not_negative {
-            number.iter().for_each(|number| within(number, |value| value >= 0.0, message, help));
+            if let Some(number) = number {
+                within(number, |value| value >= 0.0, message, help);
+            }
         }
         if let Some(clip) = &self.clip {
             let help = "write a number above 0 and below 1: 0.1 amplifies noise ten times at most";

@@ -108,7 +108,8 @@ impl Section<'_> {
             return Some(Operator::Filter(self.written.filter.as_ref()?.value.to_f64()));
         };
         // A whole number above zero, which the model's own check has seen to.
-        let samples = (1..=LONGEST).find(|samples| window.value.to_f64() == super::timing::real(*samples as u64));
+        let wanted = window.value.to_f64();
+        let samples = (1..=LONGEST).zip(1_u64..).find(|(_, number)| super::timing::real(*number) >= wanted);
         if samples.is_none() {
             let message = format!("a window of {} samples is too long to be simulated", window.value.text());
             self.problems.push(
@@ -116,7 +117,7 @@ impl Section<'_> {
                     .help(format!("the simulator has room for {LONGEST} samples: simulate the emitted code")),
             );
         }
-        samples.map(Operator::Window)
+        samples.map(|(samples, _)| Operator::Window(samples))
     }
 
     fn estimator(&mut self) -> Option<Estimator> {
