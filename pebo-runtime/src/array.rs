@@ -23,6 +23,7 @@ pub(crate) fn serialize<T: Serialize, const N: usize, W: Serializer>(
 pub(crate) fn deserialize<'de, T: Deserialize<'de> + Copy, const N: usize, R: Deserializer<'de>>(
     deserializer: R,
 ) -> Result<[T; N], R::Error> {
+    const { assert!(N > 0, "nothing is written for an array without elements") };
     deserializer.deserialize_tuple(N, Elements(PhantomData))
 }
 

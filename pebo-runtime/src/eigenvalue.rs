@@ -11,6 +11,7 @@ const SWEEPS: usize = 12;
 ///
 /// Method: Jacobi's, by rows (Golub and Van Loan, *Matrix computations*, 2013, Section 8.5).
 pub(crate) fn smallest_eigenvalue<S: Real, const N: usize>(matrix: &SMatrix<S, N, N>) -> S {
+    const { assert!(N > 0, "a matrix without entries has no eigenvalue") };
     let mut a = *matrix;
     for _ in 0..SWEEPS {
         let mut rotated = false;

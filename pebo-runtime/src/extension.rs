@@ -8,6 +8,7 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 use crate::linear::solve;
+use crate::sum::as_blemish;
 use crate::{Fault, Real, Sum};
 
 /// The flow `z' = lambda z + h` of the transformed coordinates at one instant.
@@ -39,9 +40,14 @@ pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
 
     /// Whether every number of the state is finite.
     fn is_finite(&self) -> bool;
+
+    /// The same as a number, 0 or NaN, see [`Estimator::blemish`](crate::Estimator::blemish).
+    fn blemish(&self) -> S {
+        as_blemish(self.is_finite())
+    }
 }
 
-/// `chi' = h(y, u)`, so that `z = chi + theta` (the paper, equations for chi and theta in Proposition 1).
+/// `chi' = h(y, u)`, so that `z = chi + theta` (the paper, Section 2.2, equations 8, 11 and 12).
 ///
 /// Trapezoidal rule: exact where h is linear in time over the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +84,10 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
 
     fn is_finite(&self) -> bool {
         self.chi.is_finite()
+    }
+
+    fn blemish(&self) -> S {
+        self.chi.blemish()
     }
 }
 

@@ -23,7 +23,7 @@ pub enum Hold {
     First,
 }
 
-/// The filter `alpha / (p + alpha)`, `p = d/dt` (the paper, equation regmod and before).
+/// The filter `alpha / (p + alpha)`, `p = d/dt` (the paper, Section 5.3, at the filtered regression).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filter<S: Real> {
@@ -61,15 +61,24 @@ impl<S: Real> Filter<S> {
     /// The weights of a step of `dt` seconds, `dt > 0`.
     pub fn weights(&mut self, dt: S) -> Weights<S> {
         if self.weights.dt != dt {
-            let a = self.alpha * dt;
-            let level = -Real::exp_m1(-a);
-            let slope = match self.hold {
-                Hold::Zero => S::zero(),
-                Hold::First => slope(a, level),
-            };
-            self.weights = Weights { dt, level, slope };
+            self.weights = Weights::new(self.alpha, self.hold, dt);
         }
         self.weights
+    }
+}
+
+impl<S: Real> Weights<S> {
+    /// Values in and out, and a call: what a step of the usual length computes stays in registers.
+    #[cold]
+    #[inline(never)]
+    fn new(alpha: S, hold: Hold, dt: S) -> Self {
+        let a = alpha * dt;
+        let level = -Real::exp_m1(-a);
+        let slope = match hold {
+            Hold::Zero => S::zero(),
+            Hold::First => slope(a, level),
+        };
+        Self { dt, level, slope }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::Real;
+use crate::{Real, Sum};
 
 /// What happened since the last accepted sample: time, and the integral of the input.
 ///
@@ -21,28 +21,28 @@ use crate::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gap<S: Real, const NU: usize> {
-    time: S,
-    input: SVector<S, NU>,
+    time: Sum<S, 1, 1>,
+    input: Sum<S, NU, 1>,
 }
 
 impl<S: Real, const NU: usize> Gap<S, NU> {
     /// No interval yet.
     pub fn new() -> Self {
-        Self { time: S::zero(), input: SVector::zeros() }
+        Self { time: Sum::new(SVector::zeros()), input: Sum::new(SVector::zeros()) }
     }
 
     /// Adds an interval of `dt` seconds with the input `u`. What is not finite or not positive in it is for the
     /// observer to refuse.
     pub fn add(&mut self, u: &SVector<S, NU>, dt: S) {
-        self.time += dt;
-        self.input += u * dt;
+        self.time.add(&SVector::repeat(dt));
+        self.input.add(&(u * dt));
     }
 
     /// The mean input over all intervals, and their time; to be called when the observer has accepted nothing since the
     /// first of them. Starts again with no interval.
     pub fn take(&mut self) -> (SVector<S, NU>, S) {
         let Self { time, input } = core::mem::take(self);
-        (input / time, time)
+        (input.value() / time.value().x, time.value().x)
     }
 }
 

@@ -9,10 +9,11 @@ use crate::{Extension, Real};
 pub enum Regression {
     /// `d/dt [primitive_0 + primitive_1 eta] = phi_0 + phi_1 eta`.
     ///
-    /// With `primitive_0 = y` and `primitive_1 = 0` this is `y' = phi_0 + phi_1 eta` (the paper, equation linreg); a
+    /// With `primitive_0 = y` and `primitive_1 = 0` this is `y' = phi_0 + phi_1 eta` (the paper, Section 3,
+    /// remark R2); a
     /// `primitive_1` admits an unknown that multiplies a derivative.
     Dynamic,
-    /// `phi_0 = phi_1 eta` at every instant (the paper, equation newreg: `Y = S^T eta`).
+    /// `phi_0 = phi_1 eta` at every instant (the paper, Section 5.2: `Y = S^T eta`).
     Static,
 }
 

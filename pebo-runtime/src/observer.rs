@@ -379,7 +379,8 @@ impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
         R: RegressionOperator<S, NR, NE>,
         E: Estimator<S, NR, NE>,
     {
-        self.extension.is_finite() && self.regression.is_finite() && self.estimator.is_finite()
+        // One branch for all.
+        self.extension.blemish() + self.regression.blemish() + self.estimator.blemish() == S::zero()
     }
 }
 

@@ -9,6 +9,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::sum::as_blemish;
 use crate::{Filter, Filtered, Real};
 
 /// Both sides of `known = factor * eta` at one instant.
@@ -39,11 +40,16 @@ pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
 
     /// Whether every number of the state is finite.
     fn is_finite(&self) -> bool;
+
+    /// The same as a number, 0 or NaN, see [`Estimator::blemish`](crate::Estimator::blemish).
+    fn blemish(&self) -> S {
+        as_blemish(self.is_finite())
+    }
 }
 
 /// The filtered regression.
 ///
-/// This equals `alpha (primitive_0 - F primitive_0) - F phi_0` of the paper (equation regmod, `F = alpha/(p + alpha)`,
+/// This equals `alpha (primitive_0 - F primitive_0) - F phi_0` of the paper (Section 5.3, `F = alpha/(p + alpha)`,
 /// output filter started at the output) to the last term, without the cancellation between its large parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -96,6 +102,10 @@ impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> fo
     }
 
     fn is_finite(&self) -> bool {
-        self.regressand.blemish() + self.regressor.blemish() == S::zero()
+        self.blemish() == S::zero()
+    }
+
+    fn blemish(&self) -> S {
+        self.regressand.blemish() + self.regressor.blemish()
     }
 }

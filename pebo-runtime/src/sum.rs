@@ -58,6 +58,12 @@ pub(crate) fn all_finite<S: Real, const R: usize, const C: usize>(matrix: &SMatr
     blemish(matrix) == S::zero()
 }
 
+/// The [`blemish`] that stands for a yes or no.
+#[inline]
+pub(crate) fn as_blemish<S: Real>(finite: bool) -> S {
+    if finite { S::zero() } else { Real::from_f64(f64::NAN) }
+}
+
 /// Zero if every element is finite, else NaN: zero times a finite number is zero and anything else is NaN, which a sum
 /// keeps. Two instructions an element and one branch at the end, where comparing each takes eight and a branch.
 #[inline]

@@ -30,9 +30,46 @@ pub struct WindowedRegression<S: Real, const NR: usize, const NE: usize, const N
     steps: [Integral<S, NR, NE>; NW],
     /// Where the oldest step is, and the next will be.
     oldest: usize,
+    /// Over the window.
+    total: Total<S, NR, NE>,
+    /// Over the steps at the front of the ring, since it was last begun. Full, it becomes the total: so what was lost
+    /// beside an outlier is not lost for ever.
+    front: Total<S, NR, NE>,
+}
+
+/// Integrals of both sides, and the time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Total<S: Real, const NR: usize, const NE: usize> {
     known: Sum<S, NR, 1>,
     factor: Sum<S, NR, NE>,
     duration: Sum<S, 1, 1>,
+}
+
+impl<S: Real, const NR: usize, const NE: usize> Total<S, NR, NE> {
+    fn nothing() -> Self {
+        Self {
+            known: Sum::new(SVector::zeros()),
+            factor: Sum::new(SMatrix::zeros()),
+            duration: Sum::new(SVector::zeros()),
+        }
+    }
+
+    fn add(&mut self, step: &Integral<S, NR, NE>) {
+        self.known.add(&step.known);
+        self.factor.add(&step.factor);
+        self.duration.add(&SVector::repeat(step.dt));
+    }
+
+    fn remove(&mut self, step: &Integral<S, NR, NE>) {
+        self.known.add(&-step.known);
+        self.factor.add(&-step.factor);
+        self.duration.add(&SVector::repeat(-step.dt));
+    }
+
+    fn is_finite(&self) -> bool {
+        self.known.is_finite() && self.factor.is_finite() && self.duration.is_finite()
+    }
 }
 
 /// Both sides integrated over one step.
@@ -54,19 +91,12 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> WindowedRegress
     /// An empty window; `hold` says how the sides run between two samples.
     pub fn new(hold: Hold) -> Self {
         const { assert!(NW > 0, "a window holds at least one step") };
-        Self {
-            hold,
-            steps: [Integral::empty(); NW],
-            oldest: 0,
-            known: Sum::new(SVector::zeros()),
-            factor: Sum::new(SMatrix::zeros()),
-            duration: Sum::new(SVector::zeros()),
-        }
+        Self { hold, steps: [Integral::empty(); NW], oldest: 0, total: Total::nothing(), front: Total::nothing() }
     }
 
     /// The window's length in s: that of the last `NW` steps, or of all if there were fewer.
     pub fn duration(&self) -> S {
-        self.duration.value().x
+        self.total.duration.value().x
     }
 
     /// `1/T`, or 0 for the empty window.
@@ -89,23 +119,26 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> RegressionOpera
             },
         };
         if let Some(slot) = self.steps.get_mut(self.oldest) {
-            self.known.add(&-slot.known);
-            self.factor.add(&-slot.factor);
-            self.duration.add(&SVector::repeat(-slot.dt));
+            self.total.remove(slot);
             *slot = step;
         }
-        self.known.add(&step.known);
-        self.factor.add(&step.factor);
-        self.duration.add(&SVector::repeat(dt));
-        self.oldest = if self.oldest + 1 < NW { self.oldest + 1 } else { 0 };
+        self.total.add(&step);
+        self.front.add(&step);
+        if self.oldest + 1 < NW {
+            self.oldest += 1;
+        } else {
+            self.oldest = 0;
+            self.total = self.front;
+            self.front = Total::nothing();
+        }
     }
 
     fn regressand(&self) -> SVector<S, NR> {
-        self.known.value() * self.inverse_duration()
+        self.total.known.value() * self.inverse_duration()
     }
 
     fn regressor(&self) -> SMatrix<S, NR, NE> {
-        self.factor.value() * self.inverse_duration()
+        self.total.factor.value() * self.inverse_duration()
     }
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
@@ -114,9 +147,13 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> RegressionOpera
             step.known += offset;
         }
         // Summed anew: what leaves the window later must be what the sum holds.
-        self.known = Sum::new(SVector::zeros());
-        for step in &self.steps {
-            self.known.add(&step.known);
+        self.total.known = Sum::new(SVector::zeros());
+        self.front.known = Sum::new(SVector::zeros());
+        for (place, step) in self.steps.iter().enumerate() {
+            self.total.known.add(&step.known);
+            if place < self.oldest {
+                self.front.known.add(&step.known);
+            }
         }
     }
 
@@ -125,9 +162,8 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> RegressionOpera
     }
 
     fn is_finite(&self) -> bool {
-        self.known.is_finite()
-            && self.factor.is_finite()
-            && self.duration.is_finite()
+        self.total.is_finite()
+            && self.front.is_finite()
             && self.steps.iter().all(|step| all_finite(&step.known) && all_finite(&step.factor))
     }
 }

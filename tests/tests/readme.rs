@@ -4,11 +4,12 @@ use std::path::Path;
 
 use pebo_gen::analysis::Outcome;
 use pebo_gen::emit::Scalar;
+use pebo_gen::model::Estimator;
 use pebo_gen::simulate::{Overrides, figure};
 use pebo_gen::source::{Colour, Source, render};
 use pebo_gen::{Derived, derive, report};
 use pebo_runtime::nalgebra::SVector;
-use pebo_runtime::{Fault, Filter, Gradient, Hold};
+use pebo_runtime::{Bounded, Fault, Filter, Gradient, Hold, LeastSquares, WindowedRegression};
 use tests::emitted::cuk_f64 as cuk;
 
 const README: &str = include_str!("../../README.md");
@@ -41,11 +42,48 @@ fn estimate_currents() -> Result<SVector<f64, 2>, Fault> {
     observer.step(&SVector::from([v2, v4]), &SVector::from([duty_cycle]), 10e-6)
 }
 
+fn estimate_with_a_window() -> Result<SVector<f64, 2>, Fault> {
+    let estimator = LeastSquares::diagonal(&SVector::from([1e6, 1e10]), 100.0)?;
+    let mut observer = pebo_runtime::Observer::with_regression(
+        cuk::Cuk::new(&cuk::Parameters::default()),
+        Bounded::new(estimator, &SVector::repeat(-100.0), &SVector::from([50.0, 100.0]))?,
+        WindowedRegression::<f64, { cuk::NR }, { cuk::NE }, 100>::new(Hold::First),
+        SVector::zeros(),
+    )?;
+    observer.step(&SVector::from([10.0, -12.0]), &SVector::from([0.68]), 10e-6)
+}
+
 #[test]
-fn the_example_of_use_runs() {
+fn the_examples_of_use_run() {
     assert_eq!(estimate_currents(), Ok(SVector::zeros()));
-    let usage = blocks("rust").into_iter().find(|b| b.contains("estimate_currents")).expect("the example");
-    assert!(USAGE.contains(usage));
+    assert_eq!(estimate_with_a_window(), Ok(SVector::zeros()));
+    for name in ["estimate_currents", "estimate_with_a_window"] {
+        let usage = blocks("rust").into_iter().find(|block| block.contains(name)).expect("the example");
+        assert!(USAGE.contains(usage), "{name}");
+    }
+}
+
+#[test]
+fn the_section_observer_that_is_shown_runs() {
+    let section = blocks("yaml").into_iter().find(|block| block.starts_with("observer:")).expect("the section");
+    let case_2 = model("cuk_case2.yaml");
+    let (before, rest) = case_2.split_once("observer:\n").expect("a section to replace");
+    let (_, after) = rest.split_once("simulation:\n").expect("a section behind it");
+    let text = format!("{before}{section}simulation:\n{after}");
+    let overrides = Overrides { duration: Some(2e-3), every: Some(1e-5), ..Overrides::default() };
+    let trace = derived(&text).scenario(&overrides).expect("a closed loop").run(&mut |_| {}).expect("a run to the end");
+    for name in ["i1_error", "v4_error"] {
+        let errors = trace.column(name).expect("a recovered state");
+        let late = errors[100..].iter().fold(0.0_f64, |largest, error| largest.max(error.abs()));
+        assert!(late < 1e-3 * errors[0].abs(), "{name}: {late} of {}", errors[0]);
+    }
+    // The table of keys is that of the reader.
+    for estimator in Estimator::ALL {
+        let list = |keys: &[&str]| keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
+        let row = format!("| `{}` | {} | {} |", estimator.name(), list(estimator.needs()), list(estimator.admits()));
+        let shown = README.replace("`gain` in 1/s", "`gain`").replace("| |", "|  |");
+        assert!(shown.contains(&row), "{row}");
+    }
 }
 
 #[test]
@@ -62,8 +100,8 @@ fn the_ways_to_the_code_are_those_of_the_examples() {
         include_str!("../examples/firmware/src/lib.rs"),
         include_str!("../examples/build-script/build.rs"),
     ];
-    // After the code of the smallest model and the example of use.
-    let shown = &blocks("rust")[2..];
+    // After the code of the smallest model and the examples of use.
+    let shown = &blocks("rust")[3..];
     assert_eq!(shown.len(), 4);
     for block in shown {
         assert!(sources.iter().any(|source| source.contains(block)), "{block}");

@@ -36,10 +36,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
             }
         }
     }
-    pass.positive(model.observer.filter.as_ref(), "the filter frequency");
-    for gain in &model.observer.gain {
-        pass.positive(Some(gain), "a gain");
-    }
+    model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
         pass.simulation(simulation, &scope, &model.w);
     }

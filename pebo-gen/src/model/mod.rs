@@ -13,6 +13,7 @@ mod check;
 pub mod class;
 pub mod formula;
 mod names;
+mod observer;
 pub mod rust;
 mod written;
 mod yaml;
@@ -24,7 +25,8 @@ pub use check::check;
 pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Function, Operator, Relation, Term};
 pub use names::unknown_name;
-pub use written::{Baseline, Entry, Hold, Model, Observer, Panel, Piece, Scale, Simulation, Spanned};
+pub use observer::{Bounds, Estimator, Hold, Observer};
+pub use written::{Baseline, Entry, Model, Panel, Piece, Scale, Simulation, Spanned};
 
 use crate::source::{Diagnostic, Diagnostics, Source};
 

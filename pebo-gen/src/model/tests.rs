@@ -3,7 +3,7 @@
 mod hostile;
 mod mistakes;
 
-use super::{Hold, Model, Scale};
+use super::{Estimator, Hold, Model, Scale};
 use crate::source::{Diagnostic, Source};
 
 /// The design's example.
@@ -20,7 +20,7 @@ f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}
 phi: [i1, i3]
 ";
 
-/// Every key of the schema.
+/// Every key of the schema, but for those of other estimators.
 const REST: &str = "\
 reference: a paper
 w: [omega]
@@ -28,7 +28,7 @@ define: {p: v2*i1}
 phi_left: {i3: z2}
 identities: [i1 - i1]
 angles: {i1: 2*pi}
-observer: {estimator: gradient, gain: 1e7, filter: 500, hold: first-order, extension: [0, 1]}
+observer: {estimator: gradient, gain: 1e7, bounds: {lower: -1, upper: [2, 3]}, filter: 500, hold: first-order, extension: [0, 1]}
 simulation:
   duration: 0.5
   step: 1e-6
@@ -82,6 +82,29 @@ fn every_key_is_read() {
     assert_eq!(simulation.baselines[0].value.state.len(), 1);
     let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale).collect();
     assert_eq!(scales, [Scale::Log, Scale::Linear]);
+}
+
+#[test]
+fn every_estimator_has_its_settings() {
+    let sections = [
+        "gain: 2",
+        "estimator: normalised-gradient, gain: [2, 3], normalisation: 0",
+        "estimator: least-squares, covariance: 1e6, window: 100",
+        "estimator: drem, gain: 1, regressor_gain: 3, forgetting: 0",
+        "estimator: finite-time-drem, gain: 1, regressor_gain: [3, 4], forgetting: 5, clip: 0.1, period: 0.01",
+        "estimator: gradient-drem, gain: 1, regressor_gain: 3",
+        "estimator: least-squares-drem, gain: 1, covariance: [3, 3], forgetting: 10",
+    ];
+    for (section, estimator) in sections.iter().zip(Estimator::ALL) {
+        let observer = parse(&format!("{CUK}observer: {{{section}}}\n")).expect(section).observer;
+        assert_eq!(observer.estimator(), estimator, "{section}");
+        for key in estimator.needs() {
+            assert!(observer.place(key).is_some(), "{section}: {key}");
+        }
+    }
+    for (estimator, name) in Estimator::ALL.iter().zip(Estimator::NAMES) {
+        assert_eq!(estimator.name(), *name);
+    }
 }
 
 #[test]

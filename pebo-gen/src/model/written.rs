@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::class::Class;
 use super::formula::{Comparison, Decimal, Formula};
+use super::observer::Observer;
 use crate::source::Span;
 
 /// A value and where it stands.
@@ -71,32 +72,6 @@ pub struct Model {
     pub observer: Observer,
     /// What to simulate.
     pub simulation: Option<Simulation>,
-}
-
-/// How the observer is built; what is left out, the generator chooses.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Observer {
-    /// The estimator's name, as `gradient`.
-    pub estimator: Option<Spanned<String>>,
-    /// One gain for each unknown, or one for all.
-    pub gain: Vec<Spanned<Decimal>>,
-    /// The filters' corner frequency in rad/s.
-    pub filter: Option<Spanned<Decimal>>,
-    /// How samples are joined to signals.
-    pub hold: Option<Spanned<Hold>>,
-    /// The extension chi at the start: one value each; empty for zeros.
-    pub extension: Vec<Spanned<Decimal>>,
-}
-
-/// How samples are joined to signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Hold {
-    /// Constant between samples.
-    ZeroOrder,
-    /// Straight lines between samples.
-    FirstOrder,
 }
 
 /// A closed loop to simulate.

@@ -9,11 +9,13 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Extension, Fault, Filter, Fundamental, Gradient, Integrator, Model, Observer, Regression};
+use pebo_runtime::{Bounded, Extension, Fault, Fundamental, Integrator, Model, Observer, Regression};
 
 use crate::program::{Interpreter, Program};
 
+use super::estimator::{Chosen, padded};
 use super::observer::Design;
+use super::window::Passage;
 
 /// The largest size.
 pub(super) const LARGEST: usize = 16;
@@ -133,7 +135,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
             ny: design.outputs,
             nu: design.inputs,
             nz: design.coordinates,
-            ne: design.gains.len(),
+            ne: design.unknowns,
             rows: design.rows.clone(),
             h: Function::new(&design.h),
             lambda: design.lambda.as_ref().map(Function::new),
@@ -160,10 +162,8 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     }
 }
 
-fn pad<const N: usize>(values: &[f64]) -> SVector<f64, N> {
-    let mut padded = SVector::<f64, N>::zeros();
-    padded.as_mut_slice()[..values.len()].copy_from_slice(values);
-    padded
+pub(super) fn pad<const N: usize>(values: &[f64]) -> SVector<f64, N> {
+    padded(values, 0.0)
 }
 
 fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N> {
@@ -236,19 +236,18 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 }
 
-type Inner<X, K, const N: usize> = Observer<Derived<X, K, N>, Gradient<f64, N>, N, N, N, N, N, N>;
+type Inner<X, K, const N: usize> = Observer<Derived<X, K, N>, Bounded<f64, Chosen<N>, N>, N, N, N, N, N, N, Passage<N>>;
 
 /// The runtime's observer at size N.
 struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
 
 impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
-        // A gain of a padded unknown has no effect, but must be one.
-        let mut gains = SVector::<f64, N>::repeat(1.0);
-        gains.as_mut_slice()[..design.gains.len()].copy_from_slice(&design.gains);
-        let gradient = Gradient::diagonal(&gains)?;
-        let filter = Filter::new(design.filter, design.hold)?;
-        Ok(Self(Observer::new(Derived::new(design), gradient, filter, pad(&design.chi_0))?))
+        let settings = &design.settings;
+        let [lower, upper] = settings.bounds.each_ref().map(|bounds| padded(bounds, 0.0));
+        let estimator = Bounded::new(Chosen::new(&settings.estimator)?, &lower, &upper)?;
+        let passage = Passage::new(settings)?;
+        Ok(Self(Observer::with_regression(Derived::new(design), estimator, passage, pad(&settings.chi_0))?))
     }
 }
 

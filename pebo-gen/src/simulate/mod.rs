@@ -14,6 +14,7 @@
 mod control;
 mod curve;
 mod derived;
+mod estimator;
 mod failure;
 pub mod figure;
 mod flow;
@@ -25,9 +26,11 @@ mod rival;
 mod run;
 mod scenario;
 mod scope;
+mod settings;
 mod signal;
 mod timing;
 mod trace;
+mod window;
 
 #[cfg(test)]
 mod tests;

@@ -2,20 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use pebo_runtime::Hold;
-
-use crate::analysis::{Derivation, Regression, RegressionKind};
+use crate::analysis::{Derivation, RegressionKind};
 use crate::cas::{Expr, Symbol};
-use crate::model::{self, Decimal, Spanned};
 use crate::program::Program;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::derived::LARGEST;
 use super::layout::program;
 use super::scope::Names;
-
-/// The estimators that the runtime library has.
-const ESTIMATORS: &[&str] = &["gradient"];
+use super::settings::Settings;
 
 /// An observer, ready to be interpreted.
 #[derive(Debug)]
@@ -47,14 +42,10 @@ pub(super) struct Design {
     pub(super) theta: Program,
     /// From z, y to the recovered states.
     pub(super) phi_left: Program,
-    /// The filter's alpha.
-    pub(super) filter: f64,
-    /// How samples are joined.
-    pub(super) hold: Hold,
-    /// A gain for each eta.
-    pub(super) gains: Vec<f64>,
-    /// The extension at the start.
-    pub(super) chi_0: Vec<f64>,
+    /// The number of unknowns eta.
+    pub(super) unknowns: usize,
+    /// Regression and estimator.
+    pub(super) settings: Settings,
 }
 
 impl Design {
@@ -107,10 +98,8 @@ impl Design {
             outputs: plant.y.len(),
             inputs: plant.u.len(),
             coordinates: plant.phi.len(),
-            filter: settings.filter,
-            hold: settings.hold,
-            gains: settings.gains,
-            chi_0: settings.chi_0,
+            unknowns: regression.eta.len(),
+            settings,
         };
         problems.keep(design.admit_size(span))?;
         Some(design)
@@ -118,7 +107,7 @@ impl Design {
 
     /// The largest number of quantities of one kind.
     pub(super) fn size(&self) -> usize {
-        let regression = self.phi_0.outputs.len().max(self.gains.len());
+        let regression = self.phi_0.outputs.len().max(self.unknowns);
         let plant = self.outputs.max(self.inputs).max(self.coordinates);
         plant.max(regression).max(self.recovered.len())
     }
@@ -132,64 +121,5 @@ impl Design {
         Err(Diagnostic::error(Code::SimulationUnsupported, span, message).help(format!(
             "the simulator has room for {LARGEST} states, outputs, inputs or unknowns: simulate the emitted code"
         )))
-    }
-}
-
-/// The section `observer`, complete.
-struct Settings {
-    filter: f64,
-    hold: Hold,
-    gains: Vec<f64>,
-    chi_0: Vec<f64>,
-}
-
-impl Settings {
-    fn resolve(names: &Names, regression: &Regression, problems: &mut Diagnostics) -> Option<Self> {
-        let (written, section) = (&names.model.observer, names.section());
-        let lacking = |what: &str, help: &str| {
-            let message = format!("the simulation needs {what}");
-            Diagnostic::error(Code::SimulationIncomplete, section, message).help(help)
-        };
-        if let Some(estimator) = written.estimator.as_ref().filter(|e| !ESTIMATORS.contains(&e.value.as_str())) {
-            let message = format!("there is no estimator `{}`", estimator.value);
-            problems.push(
-                Diagnostic::error(Code::WrongChoice, estimator.span, message)
-                    .help(format!("write one of `{}`", ESTIMATORS.join("`, `"))),
-            );
-        }
-        if written.filter.is_none() {
-            problems.push(lacking("the observer's filter", "add `observer: {filter: 1}`, in rad/s"));
-        }
-        if written.gain.is_empty() {
-            problems.push(lacking("the estimator's gain", "add `observer: {gain: 1}`, or a list with one each"));
-        }
-        let gains = values(&written.gain, regression.eta.len(), "a gain for each unknown", problems);
-        let chi_0 = values(&written.extension, names.plant.phi.len(), "a start for each component of phi", problems);
-        Some(Self {
-            filter: written.filter.as_ref()?.value.to_f64(),
-            hold: match written.hold.as_ref().map(|hold| hold.value) {
-                Some(model::Hold::ZeroOrder) => Hold::Zero,
-                Some(model::Hold::FirstOrder) | None => Hold::First,
-            },
-            gains: gains?,
-            chi_0: chi_0?,
-        })
-    }
-}
-
-/// As many values as needed: all given, or one for all, or zeros where the list is empty.
-fn values(written: &[Spanned<Decimal>], count: usize, what: &str, problems: &mut Diagnostics) -> Option<Vec<f64>> {
-    match written {
-        [] => Some(vec![0.0; count]),
-        [one] => Some(vec![one.value.to_f64(); count]),
-        all if all.len() == count => Some(all.iter().map(|value| value.value.to_f64()).collect()),
-        all => {
-            let message = format!("{} values where {what} is expected, {count} in all", all.len());
-            problems.push(
-                Diagnostic::error(Code::WrongShape, all[0].span.to(all[all.len() - 1].span), message)
-                    .help(format!("write {count} values, or one for all")),
-            );
-            None
-        }
     }
 }

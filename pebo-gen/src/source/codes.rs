@@ -88,6 +88,11 @@ codes! {
         "A key expects a name, a number, a formula, a list or a map, and found another of these."
     WrongChoice "wrong-choice" "a word that is none of the choices"
         "The key accepts only the words that the help lists."
+    SettingConflict "setting-conflict" "settings of the observer that do not go together"
+        "Each estimator has settings of its own: gain for gradient; gain, normalisation for normalised-gradient; \
+         covariance, forgetting for least-squares; gain, regressor_gain, forgetting for drem, and clip, period besides \
+         for finite-time-drem; gain, regressor_gain for gradient-drem; gain, covariance, forgetting for \
+         least-squares-drem. All have bounds. The regression goes through a filter or through a window, not both."
     EmptyList "empty-list" "a list must not be empty"
         "A model has at least one unmeasured state, one output and one component of phi."
     ClassConflict "class-conflict" "a class beside what it gives"

@@ -27,7 +27,7 @@ use crate::{Fault, Real};
 /// Units of `gamma`: 1/s, as `Delta` has none.
 ///
 /// Source: Aranovskiy, Bobtsov, Ortega, Pyrkin, *Performance enhancement of parameter estimators via dynamic regressor
-/// extension and mixing*, IEEE TAC, 2017; Cramer's rule: Ortega, Aranovskiy, Pyrkin, Astolfi,
+/// extension and mixing*, IEEE TAC, 2017, arXiv:1509.02763; Cramer's rule: Ortega, Aranovskiy, Pyrkin, Astolfi,
 /// Bobtsov, *New results on parameter estimation via dynamic regressor extension and mixing*, IEEE TAC, 2021.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -71,7 +71,7 @@ impl<S: Real, X, const NE: usize> Drem<S, X, NE> {
         determinant(&self.extension.matrix())
     }
 
-    /// One step; returns the factor by which the error of each component shrank.
+    /// One step; returns the share of the error of each component that went.
     pub(crate) fn contract<const NR: usize>(
         &mut self,
         regressor: &SMatrix<S, NR, NE>,
@@ -85,9 +85,15 @@ impl<S: Real, X, const NE: usize> Drem<S, X, NE> {
         let matrix = self.extension.matrix();
         let mixed = adjugate_times(&matrix, &(self.extension.vector() - matrix * self.theta.value()));
         let delta = determinant(&matrix);
-        let kept = self.gains.map(|gain| S::one() / (S::one() + gain * dt * delta * delta));
-        self.theta.add(&SVector::from_fn(|i, _| self.gains[i] * dt * delta * mixed[i] * kept[i]));
-        Ok(kept)
+        // An infinite gain times a determinant of 0 would not be a number. At a third of the digits of the largest
+        // number nothing is kept of an error that is seen at all.
+        let most = S::one() / (S::EPSILON * S::EPSILON * S::EPSILON);
+        let taken = self.gains.map(|gain| {
+            let reach = (gain * dt).min(most) * delta;
+            reach / (S::one() + reach * delta)
+        });
+        self.theta.add(&taken.component_mul(&mixed));
+        Ok(taken * delta)
     }
 
     /// The estimate.

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Drem, Estimator, RegressorExtension};
-use crate::sum::all_finite;
+use crate::sum::{Sum, all_finite};
 use crate::{Fault, Real};
 
 /// Finite-time DREM.
@@ -32,7 +32,7 @@ use crate::{Fault, Real};
 /// Source: Ortega, Gerasimov, Barabanov, Nikiforov, *Adaptive control of linear multivariable systems using dynamic
 /// regressor extension and mixing estimators: removing the high-frequency gain assumptions*, Automatica, 2019
 /// (clip); tracking: Ortega, Bobtsov, Nikolaev, *Parameter identification with finite-convergence time alertness
-/// preservation*, IEEE Control Systems Letters, 2022.
+/// preservation*, IEEE Control Systems Letters, 2022, Section I.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FiniteTime<S: Real, X, const NE: usize> {
@@ -50,19 +50,22 @@ pub struct FiniteTime<S: Real, X, const NE: usize> {
 struct Reference<S: Real, const NE: usize> {
     /// The estimate of DREM then.
     theta: SVector<S, NE>,
-    /// What is left since of the error then.
-    weight: SVector<S, NE>,
-    age: S,
+    /// What is gone since of the error then, `1 - w`. In steps that take less than the resolution of 1, `w` itself would
+    /// stand still.
+    gone: Sum<S, NE, 1>,
+    age: Sum<S, 1, 1>,
 }
 
 impl<S: Real, const NE: usize> Reference<S, NE> {
     fn now(theta: &SVector<S, NE>) -> Self {
-        Self { theta: *theta, weight: SVector::repeat(S::one()), age: S::zero() }
+        Self { theta: *theta, gone: Sum::new(SVector::zeros()), age: Sum::new(SVector::zeros()) }
     }
 
-    fn contract(&mut self, kept: &SVector<S, NE>, dt: S) {
-        self.weight.component_mul_assign(kept);
-        self.age += dt;
+    /// Loses a share of the rest.
+    fn contract(&mut self, lost: &SVector<S, NE>, dt: S) {
+        let more = self.gone.value().zip_map(lost, |gone, lost| (S::one() - gone) * lost);
+        self.gone.add(&more);
+        self.age.add(&SVector::repeat(dt));
     }
 }
 
@@ -93,12 +96,9 @@ impl<S: Real, X, const NE: usize> FiniteTime<S, X, NE> {
 
     /// The estimate.
     pub fn estimate(&self) -> SVector<S, NE> {
-        let Reference { theta, weight, .. } = &self.used;
+        let Reference { theta, gone, .. } = &self.used;
         let now = self.drem.estimate();
-        SVector::from_fn(|i, _| {
-            let gone = (S::one() - weight[i]).max(self.clip);
-            theta[i] + (now[i] - theta[i]) / gone
-        })
+        SVector::from_fn(|i, _| theta[i] + (now[i] - theta[i]) / gone.value()[i].max(self.clip))
     }
 
     /// Whether the estimate is past the clip in every component: exact without noise.
@@ -107,7 +107,7 @@ impl<S: Real, X, const NE: usize> FiniteTime<S, X, NE> {
     }
 
     fn is_ripe(&self, reference: &Reference<S, NE>) -> bool {
-        reference.weight.iter().all(|&weight| weight <= S::one() - self.clip)
+        reference.gone.value().iter().all(|&gone| gone >= self.clip)
     }
 }
 
@@ -116,11 +116,11 @@ where
     X: RegressorExtension<S, NR, NE>,
 {
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
-        let kept = self.drem.contract(regressor, regressand, dt)?;
-        self.used.contract(&kept, dt);
+        let lost = self.drem.contract(regressor, regressand, dt)?;
+        self.used.contract(&lost, dt);
         if let Some(period) = self.period {
-            self.ripening.contract(&kept, dt);
-            if self.ripening.age >= period && self.is_ripe(&self.ripening) {
+            self.ripening.contract(&lost, dt);
+            if self.ripening.age.value().x >= period && self.is_ripe(&self.ripening) {
                 self.used = self.ripening;
                 self.ripening = Reference::now(self.drem.estimate());
             }

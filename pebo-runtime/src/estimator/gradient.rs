@@ -6,7 +6,8 @@ use super::{Estimator, Information};
 use crate::sum::{Sum, all_finite};
 use crate::{Fault, Real};
 
-/// The gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta)` (the paper, equation `theta_hat`).
+/// The gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta)` (the paper, Section 5.3, the equation
+/// after the filtered regression; it has no number).
 ///
 /// One step is the implicit (backward) Euler step, which needs no bound on gain times step: with consistent data
 /// `error_new = (I + dt Gamma Phi^T Phi)^-1 error`, so the error never grows in the norm of `Gamma^-1`. The step is the
@@ -55,7 +56,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
 impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradient<S, NE> {
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
         let innovation = regressand - regressor * self.theta.value();
-        let mut step = self.inertia;
+        let mut step = self.inertia.without_target();
         for (row, &error) in regressor.row_iter().zip(innovation.iter()) {
             step.absorb(&row.transpose(), error, dt);
         }
@@ -77,5 +78,9 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradien
 
     fn is_finite(&self) -> bool {
         self.theta.is_finite()
+    }
+
+    fn blemish(&self) -> S {
+        self.theta.blemish()
     }
 }

@@ -127,6 +127,11 @@ impl<S: Real, const N: usize> Information<S, N> {
         }
     }
 
+    /// The same weights with right sides of 0, which the compiler then knows and need not fetch.
+    pub(crate) fn without_target(&self) -> Self {
+        Self { target: SVector::zeros(), ..*self }
+    }
+
     /// The vector that fits best, from which the unknown is counted from now on: every right side becomes 0.
     ///
     /// # Errors

@@ -25,6 +25,9 @@ use crate::{Fault, Real};
 /// `e^(-beta dt)`, `1 - e^(-beta dt)` of `R_0` flows in, then each equation is absorbed by a rotation. Nothing is subtracted, so `R` stays
 /// positive definite at any step and gain, and the error never grows in the norm of `R`.
 ///
+/// In `f32` a weight takes in no more than the last `2^24` samples or so: at a rate below `2^-24/dt`, 0.6/s in steps of
+/// 100 ns, the estimator forgets faster than asked, and one with `beta = 0` is that of so many samples.
+///
 /// Units of `P`: `theta^2` over (regression equation)^2 and second, as the gain of [`Gradient`](super::Gradient): white
 /// noise of variance `s^2` in samples `dt` apart makes the covariance of the estimate `s^2 dt P`.
 ///

@@ -35,6 +35,7 @@ pub use normalised::NormalisedGradient;
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::sum::as_blemish;
 use crate::{Fault, Real};
 
 /// Estimates `NE` constants from `NR` linear equations a sample.
@@ -61,4 +62,10 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
 
     /// Whether every number of the state is finite.
     fn is_finite(&self) -> bool;
+
+    /// The same as a number, 0 or NaN, which an [`Observer`](crate::Observer) adds to others at every step: to be written
+    /// where that is cheaper, as the sum of all numbers times zero.
+    fn blemish(&self) -> S {
+        as_blemish(self.is_finite())
+    }
 }

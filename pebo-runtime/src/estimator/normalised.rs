@@ -39,7 +39,8 @@ impl<S: Real, const NE: usize> NormalisedGradient<S, NE> {
 
 impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for NormalisedGradient<S, NE> {
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
-        let size = S::one() + self.mu * regressor.norm_squared();
+        // mu first: nothing overflows at mu = 0.
+        let size = regressor.iter().fold(S::one(), |size, &entry| size + self.mu * entry * entry);
         self.gradient.advance(regressor, regressand, dt / size)
     }
 

@@ -8,6 +8,7 @@ mod drift;
 mod efficiency;
 mod estimators;
 mod extension;
+mod extremes;
 mod fault;
 mod filter;
 mod gradient;

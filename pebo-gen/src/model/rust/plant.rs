@@ -10,7 +10,8 @@ use super::items::{self, Items};
 use super::value::{Locals, Value};
 use super::{Places, unsupported};
 use crate::model::formula::{Comparison, Decimal, Formula};
-use crate::model::written::{Entry, Model, Observer, Spanned};
+use crate::model::observer::Observer;
+use crate::model::written::{Entry, Model, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Signals by the struct that declares them.

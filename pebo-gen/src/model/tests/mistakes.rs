@@ -44,6 +44,22 @@ fn each_gives_one_diagnostic() {
         ("step: 1e-6", "step: -1", NumberOutOfRange, "-1"),
         ("filter: 500", "filter: 0", NumberOutOfRange, "0"),
         ("gain: 1e7", "gain: [1e7, -2]", NumberOutOfRange, "-2"),
+        ("gain: 1e7", "gain: 1e7, covariance: [2, 3]", SettingConflict, "2, 3"),
+        ("gain: 1e7", "gain: 1e7, window: 10", SettingConflict, "10"),
+        ("estimator: gradient, gain: 1e7", "clip: 0.2", SettingConflict, "0.2"),
+        ("estimator: gradient, gain: 1e7", "estimator: least-squares, gain: 1", SettingConflict, "1"),
+        ("estimator: gradient, gain: 1e7", "estimator: drem, gain: 1, regressor_gain: 0", NumberOutOfRange, "0"),
+        ("estimator: gradient, gain: 1e7", "estimator: least-squares, covariance: -1", NumberOutOfRange, "-1"),
+        ("estimator: gradient, gain: 1e7", "estimator: least-squares, forgetting: -1", NumberOutOfRange, "-1"),
+        ("estimator: gradient", "estimator: normalised-gradient, normalisation: -2", NumberOutOfRange, "-2"),
+        ("estimator: gradient", "estimator: finite-time-drem, clip: 1", NumberOutOfRange, "1"),
+        ("estimator: gradient", "estimator: finite-time-drem, clip: 0", NumberOutOfRange, "0"),
+        ("estimator: gradient", "estimator: finite-time-drem, period: 0", NumberOutOfRange, "0"),
+        ("filter: 500", "window: 2.5", NumberOutOfRange, "2.5"),
+        ("filter: 500", "window: 0", NumberOutOfRange, "0"),
+        ("filter: 500", "window: [1]", WrongShape, "[1]"),
+        ("upper: [2, 3]", "uper: 2", UnknownKey, "uper"),
+        ("estimator: gradient, gain: 1e7", "estimator: least-square, covariance: 2", WrongChoice, "least-square"),
         ("0.2: 30*t", "0.0: 30*t", NumberOutOfRange, "0.0"),
         ("hold: first-order", "hold: first_order", WrongChoice, "first_order"),
         ("feedback: copy", "feedback: cpoy", WrongChoice, "cpoy"),
@@ -107,6 +123,7 @@ fn help_names_the_nearest() {
         found[0].help.as_deref().unwrap_or_default().to_owned()
     };
     assert_eq!(help("parameters", "paramters"), "did you mean `parameters`?");
+    assert_eq!(help("phi:", "observer: {estimator: lest-squares}\nphi:"), "did you mean `least-squares`?");
     assert_eq!(help("f_y: {v2", "f_y: {v22"), "did you mean `v2`?");
     assert_eq!(help("x: [i1", "x: [λ"), "spell it out: `lambda`");
     assert_eq!(help("[i1, i3]\ny", "i1\ny"), "write for example `x: [i1, i3]`");

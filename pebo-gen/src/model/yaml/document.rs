@@ -7,7 +7,8 @@ use serde::Deserialize;
 
 use crate::model::class::{Electromechanical, Lti, Mechanical};
 use crate::model::formula::Decimal;
-use crate::model::written::{Entry, Observer, Scale, Spanned};
+use crate::model::observer::Observer;
+use crate::model::written::{Entry, Scale, Spanned};
 
 /// A text with its place: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;

@@ -1,5 +1,7 @@
 //! The keys of a model file, and the shape of the value behind each.
 
+use crate::model::observer::Estimator;
+
 /// The shape that a value must have.
 #[derive(Debug)]
 pub(super) enum Shape {
@@ -67,6 +69,8 @@ const fn optional(name: &'static str, shape: Shape, example: &'static str) -> Ke
 
 const TEXTS: Shape = Shape::List(&Shape::Text);
 const NUMBERS: Shape = Shape::List(&Shape::Number);
+/// For each unknown, or one number for all.
+const ONE_OR_EACH: Shape = Shape::OneOrMore(&Shape::Number);
 const FORMULAS: Shape = Shape::List(&Shape::Formula);
 const RATES: Shape = Shape::Map(&Shape::Formula);
 
@@ -133,13 +137,24 @@ const ELECTROMECHANICAL: &[Key] = &[
     optional("load", Shape::Formula, "load: m*g"),
 ];
 
+/// Settings of the estimators belong to some of them: [`Estimator`] has which.
 const OBSERVER: &[Key] = &[
-    optional("estimator", Shape::Text, "estimator: gradient"),
-    optional("gain", Shape::OneOrMore(&Shape::Number), "gain: [1e7, 1e7]"),
+    optional("estimator", Shape::Choice(Estimator::NAMES), "estimator: gradient"),
+    optional("gain", ONE_OR_EACH, "gain: [1e7, 1e7]"),
+    optional("covariance", ONE_OR_EACH, "covariance: 1e6"),
+    optional("regressor_gain", ONE_OR_EACH, "regressor_gain: [1, 1]"),
+    optional("forgetting", Shape::Number, "forgetting: 100"),
+    optional("normalisation", Shape::Number, "normalisation: 1"),
+    optional("clip", Shape::Number, "clip: 0.1"),
+    optional("period", Shape::Number, "period: 0.01"),
+    optional("bounds", Shape::Record(BOUNDS), "bounds: {lower: [-1, 0], upper: 5}"),
     optional("filter", Shape::Number, "filter: 500"),
+    optional("window", Shape::Number, "window: 100"),
     optional("hold", Shape::Choice(&["zero-order", "first-order"]), "hold: zero-order"),
     optional("extension", NUMBERS, "extension: [0, 0]"),
 ];
+
+const BOUNDS: &[Key] = &[optional("lower", ONE_OR_EACH, "lower: [-1, 0]"), optional("upper", ONE_OR_EACH, "upper: 5")];
 
 const SIMULATION: &[Key] = &[
     optional("duration", Shape::Number, "duration: 0.1"),

@@ -130,10 +130,12 @@ impl Fitter<'_> {
             return Some(spanned(text, span));
         }
         let message = format!("{} is none of the choices", quoted(text));
-        self.diagnostics.push(
-            Diagnostic::error(Code::WrongChoice, span, message)
-                .help(format!("write one of {}", listed(words.iter().copied()))),
-        );
+        let choices = listed(words.iter().copied());
+        let diagnostic = Diagnostic::error(Code::WrongChoice, span, message);
+        self.diagnostics.push(match nearest(text, words.iter().copied()) {
+            Some(near) => diagnostic.suggest(Some(near)).note(format!("the choices are {choices}")),
+            None => diagnostic.help(format!("write one of {choices}")),
+        });
         None
     }
 

@@ -1,5 +1,6 @@
 //! Scenarios from model files in, what they do out.
 
+mod estimator;
 mod figure;
 mod flow;
 mod identity;

@@ -73,7 +73,8 @@ impl<S: Real, const NR: usize, const NE: usize> RegressorExtension<S, NR, NE> fo
     }
 
     fn vector(&self) -> SVector<S, NE> {
-        self.correlation.value().component_mul(&self.gains) * self.scale()
+        let scale = self.scale();
+        self.correlation.value().zip_map(&self.gains, |entry, gain| entry * (gain * scale))
     }
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
@@ -86,6 +87,7 @@ impl<S: Real, const NR: usize, const NE: usize> RegressorExtension<S, NR, NE> fo
     }
 
     fn is_finite(&self) -> bool {
-        self.gramian.is_finite() && self.correlation.is_finite()
+        // A trace that overflows would make all of the regression 0.
+        self.gramian.is_finite() && self.correlation.is_finite() && self.scale() > S::zero()
     }
 }

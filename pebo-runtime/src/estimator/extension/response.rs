@@ -27,9 +27,12 @@ use crate::{Fault, Real};
 /// `i`: no identity is subtracted, so little excitation keeps all its digits. The cost is that of `NE + 1` estimators.
 ///
 /// Source: Ortega, Romero, Aranovskiy, *A new least squares parameter estimator for nonlinear regression equations with
-/// relaxed excitation conditions and forgetting factor*, Systems & Control Letters, 2022 (least squares);
+/// relaxed excitation conditions and forgetting factor*, Systems & Control Letters, 2022 (least squares; Proposition 1
+/// of its preprint, arXiv:2205.00099);
+/// Korotina, Romero, Aranovskiy, Bobtsov, Ortega, *A new on-line exponential parameter estimator without persistent
+/// excitation*, Systems & Control Letters, 2022 (gradient);
 /// Bobtsov, Yi, Ortega, Astolfi, *Generation of new exciting regressors for consistent on-line estimation of unknown
-/// constant parameters*, IEEE TAC, 2022 (gradient).
+/// constant parameters*, IEEE TAC, 2022, arXiv:2104.02210 (the scalar regressions of DREM).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(

@@ -1,0 +1,228 @@
+//! The section `observer`: how the observer is built, in the words of the file, and held against itself.
+
+use serde::Deserialize;
+
+use super::formula::Decimal;
+use super::written::Spanned;
+use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
+
+/// How the observer is built; what is left out, the generator chooses.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Observer {
+    /// The estimator; a gradient if absent.
+    pub estimator: Option<Spanned<Estimator>>,
+    /// One gain for each unknown, or one for all: of a gradient, or of the scalar estimators of DREM in 1/s.
+    pub gain: Vec<Spanned<Decimal>>,
+    /// The diagonal of the covariance at the start, which is also its bound, of least squares.
+    pub covariance: Vec<Spanned<Decimal>>,
+    /// The diagonal of Gamma in DREM's regressor extension: Kreisselmeier's, or the gradient's.
+    pub regressor_gain: Vec<Spanned<Decimal>>,
+    /// The rate at which the past is forgotten, in 1/s; zero if absent.
+    pub forgetting: Option<Spanned<Decimal>>,
+    /// `mu` of a gradient divided by `1 + mu |Phi|^2`.
+    pub normalisation: Option<Spanned<Decimal>>,
+    /// `mu` of finite-time DREM, between 0 and 1.
+    pub clip: Option<Spanned<Decimal>>,
+    /// Seconds after which finite-time DREM counts from a new instant, which makes it track; it never does if absent.
+    pub period: Option<Spanned<Decimal>>,
+    /// Between what the unknowns are known to be.
+    pub bounds: Bounds,
+    /// The filters' corner frequency in rad/s.
+    pub filter: Option<Spanned<Decimal>>,
+    /// In place of the filter, the samples of the window of the integral form.
+    pub window: Option<Spanned<Decimal>>,
+    /// How samples are joined to signals.
+    pub hold: Option<Spanned<Hold>>,
+    /// The extension chi at the start: one value each; empty for zeros.
+    pub extension: Vec<Spanned<Decimal>>,
+}
+
+/// Between what the unknowns are known to be: one number for each, or one for all; empty where there is no bound.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Bounds {
+    /// From below.
+    pub lower: Vec<Spanned<Decimal>>,
+    /// From above.
+    pub upper: Vec<Spanned<Decimal>>,
+}
+
+/// How samples are joined to signals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hold {
+    /// Constant between samples.
+    ZeroOrder,
+    /// Straight lines between samples.
+    FirstOrder,
+}
+
+/// The estimators of the runtime library.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Estimator {
+    /// The paper's.
+    #[default]
+    Gradient,
+    /// The same, of a speed that does not depend on the size of the regressor.
+    NormalisedGradient,
+    /// With forgetting and bounded covariance.
+    LeastSquares,
+    /// On Kreisselmeier's regressor extension.
+    Drem,
+    /// The same, exact after a finite time.
+    FiniteTimeDrem,
+    /// On the response of a gradient.
+    GradientDrem,
+    /// On the response of least squares.
+    LeastSquaresDrem,
+}
+
+impl Estimator {
+    /// All of them, in the order of [`NAMES`](Self::NAMES).
+    pub const ALL: [Self; 7] = [
+        Self::Gradient,
+        Self::NormalisedGradient,
+        Self::LeastSquares,
+        Self::Drem,
+        Self::FiniteTimeDrem,
+        Self::GradientDrem,
+        Self::LeastSquaresDrem,
+    ];
+
+    /// Their names in a file.
+    pub const NAMES: &[&str] = &[
+        "gradient",
+        "normalised-gradient",
+        "least-squares",
+        "drem",
+        "finite-time-drem",
+        "gradient-drem",
+        "least-squares-drem",
+    ];
+
+    /// Its name in a file.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().zip(Self::NAMES).find(|(estimator, _)| **estimator == self).map_or("", |(_, name)| name)
+    }
+
+    /// The settings without which it cannot run.
+    pub fn needs(self) -> &'static [&'static str] {
+        match self {
+            Self::Gradient => &["gain"],
+            Self::NormalisedGradient => &["gain", "normalisation"],
+            Self::LeastSquares => &["covariance"],
+            Self::Drem | Self::GradientDrem => &["gain", "regressor_gain"],
+            Self::FiniteTimeDrem => &["gain", "regressor_gain", "clip"],
+            Self::LeastSquaresDrem => &["gain", "covariance"],
+        }
+    }
+
+    /// The settings that it may have besides.
+    pub fn admits(self) -> &'static [&'static str] {
+        match self {
+            Self::Gradient | Self::NormalisedGradient | Self::GradientDrem => &[],
+            Self::LeastSquares | Self::LeastSquaresDrem | Self::Drem => &["forgetting"],
+            Self::FiniteTimeDrem => &["forgetting", "period"],
+        }
+    }
+
+    fn has(self, key: &str) -> bool {
+        self.needs().contains(&key) || self.admits().contains(&key)
+    }
+}
+
+impl Observer {
+    /// The estimator, whether or not it is written.
+    pub fn estimator(&self) -> Estimator {
+        self.estimator.as_ref().map_or_else(Estimator::default, |estimator| estimator.value)
+    }
+
+    /// Where a setting of estimators is, if it is written.
+    pub fn place(&self, key: &str) -> Option<Span> {
+        let all = |values: &[Spanned<Decimal>]| Some(values.first()?.span.to(values.last()?.span));
+        let one = |value: &Option<Spanned<Decimal>>| value.as_ref().map(|value| value.span);
+        match key {
+            "gain" => all(&self.gain),
+            "covariance" => all(&self.covariance),
+            "regressor_gain" => all(&self.regressor_gain),
+            "forgetting" => one(&self.forgetting),
+            "normalisation" => one(&self.normalisation),
+            "clip" => one(&self.clip),
+            "period" => one(&self.period),
+            _ => None,
+        }
+    }
+
+    /// Reports settings out of their range, and those that do not go together.
+    pub(super) fn check(&self, diagnostics: &mut Diagnostics) {
+        // An estimator that was misspelt is absent, and nobody knows what it has.
+        let known = self.estimator.is_some() || !diagnostics.has_errors();
+        for key in ["gain", "covariance", "regressor_gain", "forgetting", "normalisation", "clip", "period"] {
+            let estimator = self.estimator();
+            if let Some(place) = self.place(key).filter(|_| known && !estimator.has(key)) {
+                diagnostics.push(self.stranger(key, place));
+            }
+        }
+        let mut within = |number: &Spanned<Decimal>, admitted: fn(f64) -> bool, message: &str, help: &str| {
+            if !admitted(number.value.to_f64()) {
+                diagnostics.push(Diagnostic::error(Code::NumberOutOfRange, number.span, message).help(help));
+            }
+        };
+        let above_zero = "write a number above zero";
+        let positive = [
+            (self.gain.as_slice(), "a gain must be positive"),
+            (self.covariance.as_slice(), "a covariance must be positive"),
+            (self.regressor_gain.as_slice(), "a gain must be positive"),
+            (self.period.as_slice(), "the period must be positive"),
+            (self.filter.as_slice(), "the filter frequency must be positive"),
+        ];
+        for (numbers, message) in positive {
+            for number in numbers {
+                within(number, |value| value > 0.0, message, above_zero);
+            }
+        }
+        let not_negative = [
+            (&self.forgetting, "the rate of forgetting must not be negative", "write 0 to forget nothing"),
+            (&self.normalisation, "the normalisation must not be negative", "write 0 for the gradient as it is"),
+        ];
+        for (number, message, help) in not_negative {
+            if let Some(number) = number {
+                within(number, |value| value >= 0.0, message, help);
+            }
+        }
+        if let Some(clip) = &self.clip {
+            let help = "write a number above 0 and below 1: 0.1 amplifies noise ten times at most";
+            within(clip, |value| value > 0.0 && value < 1.0, "the clip must be between 0 and 1", help);
+        }
+        if let Some(window) = &self.window {
+            let whole = |value: f64| value >= 1.0 && value.fract() == 0.0;
+            within(window, whole, "a window is a number of samples", "write a whole number above zero");
+        }
+        if let (Some(filter), Some(window)) = (&self.filter, &self.window) {
+            let message = "a window beside a filter";
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, window.span, message)
+                    .also(filter.span, "the filter")
+                    .help("remove one of them: the regression goes through a filter or a window"),
+            );
+        }
+    }
+
+    /// A setting that the estimator does not have.
+    fn stranger(&self, key: &str, place: Span) -> Diagnostic {
+        let estimator = self.estimator();
+        let message = format!("the estimator `{}` has no `{key}`", estimator.name());
+        let others = Estimator::ALL.into_iter().filter(|other| other.has(key)).map(Estimator::name);
+        let own = estimator.needs().iter().chain(estimator.admits()).copied();
+        let diagnostic = Diagnostic::error(Code::SettingConflict, place, message)
+            .note(format!("`{key}` is a setting of {}", listed(others)));
+        match &self.estimator {
+            Some(estimator) => diagnostic
+                .also(estimator.span, "which was chosen here")
+                .help(format!("remove it, or choose another estimator: this one has {}", listed(own))),
+            None => diagnostic.help("add `estimator:` with one that has it: without, it is a gradient"),
+        }
+    }
+}
