@@ -82,7 +82,7 @@ impl Loop {
     fn worst(&self, overrides: &Overrides) -> f64 {
         let scenario = self.scenario(overrides);
         let (plant, arena, layout) = (&self.plant, &self.plant.arena, &scenario.layout);
-        let (extension, moves, start) = self.extension(&scenario.design.chi_0);
+        let (extension, moves, start) = self.extension(&scenario.design.settings.chi_0);
         let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
         let mut rates: Vec<Expr> = states.iter().map(|s| plant.rates()[s]).collect();
         rates.extend(moves);
@@ -145,7 +145,7 @@ impl Loop {
         let mut machine = Machine::start(&scenario).unwrap();
         let mut z = vec![0.0; plant.phi.len()];
         z_of.run(&machine.table[..symbols.len()], &mut z);
-        let theta: Vec<f64> = z.iter().zip(&scenario.design.chi_0).map(|(z, chi)| z - chi).collect();
+        let theta: Vec<f64> = z.iter().zip(&scenario.design.settings.chi_0).map(|(z, chi)| z - chi).collect();
         let mut worst = vec![(0.0_f64, 0.0_f64); z.len()];
         for sample in 1..=SAMPLES * refined {
             machine.control().unwrap();
