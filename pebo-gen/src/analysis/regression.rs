@@ -13,15 +13,15 @@ use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide, refute};
 use crate::cas::{Expr, Symbol};
-use crate::plant::Plant;
 use crate::plant::matrix::dot;
+use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict, Witness};
 use super::left_inverse::is_whole_turns;
 use super::separation::{self, Recovered, Separated};
 use super::tidy::{shortest, shortest_equal};
-use super::{implicit, relations};
+use super::{blame, implicit, relations};
 
 const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
     polynomials, exponentials, sines and cosines of z go";
@@ -116,7 +116,9 @@ pub(super) fn prove(
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         if let Some(witness) = bend {
-            found.push(refuted(plant, index, span, &witness, &stands_against));
+            let bends = |term| nonlinear(plant, domain, term, left_inverse).is_some();
+            let places = blame::summands(plant, index, bends);
+            found.push(refuted(plant, index, &places, &witness, &stands_against));
         } else {
             verdict = Verdict::Undecided;
             found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));
@@ -288,6 +290,7 @@ fn turned_away(
 ) -> Option<Claim<Regression>> {
     let arena = &plant.arena;
     let turn = arena.mul(arena.number(2), arena.pi());
+    let mut ambiguous = false;
     for &index in &recovered.turning {
         let turned = |expr: Expr, symbol: Symbol| {
             let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
@@ -300,6 +303,8 @@ fn turned_away(
                 None => arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s)),
             };
             if kept {
+                // What a turn moves is an angle; one that was declared as such needs no warning.
+                ambiguous |= plant.period(state).is_none() && !arena.is_zero(shift);
                 continue;
             }
             // Whether the outputs themselves are blind to the turn, or only the formula for theta.
@@ -309,7 +314,7 @@ fn turned_away(
             return Some(Claim { verdict, result: None });
         }
     }
-    found.extend((!recovered.turning.is_empty()).then(|| up_to_turns(plant)));
+    found.extend(ambiguous.then(|| up_to_turns(plant)));
     None
 }
 
@@ -353,11 +358,12 @@ fn hidden_by_signals(
             found.push(undecided(plant, *index, *span, &Obstacle::NoWitness));
             continue;
         };
+        let places = blame::summands(plant, *index, |term| arena.depends_on(term, &BTreeSet::from([signal])));
         let (output, signal) = (arena.name(plant.y[*index].symbol), arena.name(signal));
         found.push(
             Diagnostic::error(
                 Code::RegressionNonlinear,
-                *span,
+                places.first().map_or(*span, |place| place.span),
                 format!("the rate of {output} depends on the unmeasured signal {signal}"),
             )
             .label(format!("nothing can be learnt from {output} while {signal} is unknown"))
@@ -522,14 +528,17 @@ fn nonlinear(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: Option<&L
     })
 }
 
-fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness, stands_against: &str) -> Diagnostic {
+fn refuted(plant: &Plant, index: usize, places: &[Formula], witness: &Witness, stands_against: &str) -> Diagnostic {
     let arena = &plant.arena;
     let output = arena.name(plant.y[index].symbol);
-    Diagnostic::error(
+    let (first, others) = places.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
+    let diagnostic = Diagnostic::error(
         Code::RegressionNonlinear,
-        span,
+        first,
         format!("the rate of {output} is not linear in the unknowns"),
-    )
+    );
+    let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "nor is this"));
+    diagnostic
     .label("not an affine function of phi with coefficients in y and u")
     .note(format!("as a function of z it bends: {}", witness.sentence(arena)))
     .note(stands_against)
