@@ -15,9 +15,10 @@ pub mod formula;
 mod names;
 pub mod rust;
 mod written;
+#[cfg(feature = "yaml")]
 mod yaml;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "yaml"))]
 mod tests;
 
 pub use check::check;
@@ -26,8 +27,10 @@ pub use formula::{Comparison, Decimal, Formula, Function, Operator, Relation, Te
 pub use names::unknown_name;
 pub use written::{Baseline, Entry, Hold, Model, Observer, Panel, Piece, Scale, Simulation, Spanned};
 
+#[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};
 
+#[cfg(feature = "yaml")]
 impl Model {
     /// Reads a model file.
     pub fn parse(source: &Source) -> Result<Self, Vec<Diagnostic>> {

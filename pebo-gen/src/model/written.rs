@@ -3,6 +3,7 @@
 //! These are the sections of a model file, in its words. Lists keep the order of the file, except
 //! where [`Model::ordered`] says otherwise.
 
+#[cfg(feature = "yaml")]
 use serde::Deserialize;
 
 use super::class::Class;
@@ -10,7 +11,8 @@ use super::formula::{Comparison, Decimal, Formula};
 use crate::source::Span;
 
 /// A value and where it stands.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
@@ -19,7 +21,8 @@ pub struct Spanned<T> {
 }
 
 /// A named value: `name: value` in a map.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
 pub struct Entry<T> {
     /// The name.
     pub name: Spanned<String>,
@@ -74,8 +77,9 @@ pub struct Model {
 }
 
 /// How the observer is built; what is left out, the generator chooses.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Observer {
     /// The estimator's name, as `gradient`.
     pub estimator: Option<Spanned<String>>,
@@ -90,8 +94,9 @@ pub struct Observer {
 }
 
 /// How samples are joined to signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
 pub enum Hold {
     /// Constant between samples.
     ZeroOrder,
@@ -157,8 +162,9 @@ pub struct Panel {
 }
 
 /// The divisions of an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
 pub enum Scale {
     /// Equal differences are equally far apart.
     #[default]
