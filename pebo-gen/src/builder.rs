@@ -10,7 +10,7 @@ use crate::source::{Colour, Source, render};
 
 /// Writes the observers of model files, from a crate's build script.
 ///
-/// In `build.rs`, with `pebo-gen` (`default-features = false`) among the build dependencies:
+/// In `build.rs`, with `pebo-gen` (`default-features = false, features = ["yaml"]`) among the build dependencies:
 ///
 /// ```no_run
 /// pebo_gen::Builder::new().compile(&["models/cuk.yaml"])?;

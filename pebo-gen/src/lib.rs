@@ -5,10 +5,11 @@
 //! ```
 //!
 //! A model file describes a plant and a candidate transform (Ortega, Bobtsov, Pyrkin and Aranovskiy
-//! 2015). [`derive()`] says what is proved of it, claim by claim; [`Derived::emit`] writes the observer
+//! 2015). `derive` says what is proved of it, claim by claim; [`Derived::emit`] writes the observer
 //! if everything is.
 
 pub mod analysis;
+#[cfg(feature = "yaml")]
 mod builder;
 pub mod cas;
 pub mod emit;
@@ -20,13 +21,16 @@ pub mod report;
 pub mod simulate;
 pub mod source;
 
+#[cfg(feature = "yaml")]
 pub use builder::{BuildError, Builder, Built};
 
 use analysis::Derivation;
 use emit::{EmitError, Emitted, Scalar};
 use model::Model;
 use plant::Plant;
-use source::{Diagnostic, Source};
+use source::Diagnostic;
+#[cfg(feature = "yaml")]
+use source::Source;
 
 /// A model with everything that was derived of it.
 #[derive(Debug)]
@@ -40,6 +44,7 @@ pub struct Derived {
 }
 
 /// Derives the observer of a model file; the errors are those of a file that could not be read.
+#[cfg(feature = "yaml")]
 pub fn derive(source: &Source) -> Result<Derived, Vec<Diagnostic>> {
     Derived::of(Model::parse(source)?)
 }

@@ -147,6 +147,68 @@ fn a_failed_write_leaves_the_old_file() {
     assert!(text(&output.stderr).contains("error[cannot-write]"), "{}", text(&output.stderr));
 }
 
+/// A full disk, for whatever is written to standard output.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_in_a_diagnostic() {
+    for arguments in [
+        &[CUK][..],
+        &["check", CUK],
+        &["check", CUK, "--format", "json"],
+        &["simulate", CUK, "--step", "1e-4", "--csv", "-"],
+        &["explain", "not-yet"],
+        &["completions", "bash"],
+        &["man"],
+        &["schema"],
+        &["--help"],
+        &["--version"],
+    ] {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("a device that is full");
+        let output = Command::new(env!("CARGO_BIN_EXE_pebo-gen")).args(arguments).stdout(full).output();
+        let output = output.expect("the program runs");
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains("error[cannot-write]") && said.contains("help:"), "{arguments:?}: {said}");
+        assert!(said.contains("no space left on device"), "{arguments:?}: {said}");
+    }
+}
+
+/// What the call sets is refused as the call's: no line of the model file is at fault.
+#[test]
+fn settings_of_the_call_are_refused_without_the_file() {
+    for (arguments, code, message, help) in [
+        (&["--step", "0"][..], "number-out-of-range", "`step` of the call is 0", "above zero"),
+        (&["--step", "-1"], "number-out-of-range", "`step` of the call is -1", "above zero"),
+        (&["--every", "-1"], "number-out-of-range", "`every` of the call is -1", "above zero"),
+        (&["--every", "NaN"], "number-out-of-range", "`every` of the call is NaN", "above zero"),
+        (&["--step", "2"], "number-out-of-range", "longer than the duration of 1 s", "a shorter `step`"),
+        (&["--step", "1e-30"], "simulation-too-long", "`step` of the call, 1e-30 s", "a longer step"),
+        (&["--step", "1e-8", "--every", "1e-8"], "simulation-too-long", "rows", "a larger `every`"),
+        (&["--feedback", "trueth"], "wrong-choice", "the call", "did you mean `truth`?"),
+    ] {
+        let output = run(&[&["simulate", CUK], arguments].concat());
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        for part in [&format!("error[{code}]"), message, help] {
+            assert!(said.contains(part), "{arguments:?}: no {part} in {said}");
+        }
+        assert!(!said.contains("cuk.yaml"), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn colour_is_for_terminals() {
+    let folder = Folder::new();
+    let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));
+    let escapes = |variable: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_pebo-gen")).args(["check", &refused]).env(variable, "1").output();
+        text(&output.expect("the program runs").stderr).contains('\u{1b}')
+    };
+    // Here the stream is a pipe.
+    assert!(!escapes("UNRELATED") && !escapes("NO_COLOR"));
+    assert!(escapes("CLICOLOR_FORCE"));
+}
+
 #[test]
 fn several_models_in_one_call_end_with_the_worst_status() {
     let folder = Folder::new();

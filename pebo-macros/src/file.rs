@@ -134,3 +134,34 @@ fn snake(name: &str) -> String {
     }
     snake
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(model: &str) -> String {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(file.path(), model).expect("a file that can be written");
+        let path = file.path().display().to_string();
+        read(quote!(#path)).err().expect("a refusal").to_string().replace(&path, "plant.yaml")
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_file_is_shown_with_its_place_and_an_excerpt() {
+        let model = "model: m\nx: [a]\ny: [b]\nu: [c]\nf_x: {a: c - a^2}\nf_y: {b: a}\nphi: [a]\n";
+        let said = refused(model);
+        for part in [
+            "plant.yaml is refused",
+            "error[cascade-refuted]",
+            "--> plant.yaml:7:7",
+            "7 | phi: [a]",
+            "5 | f_x: {a: c - a^2}",
+        ] {
+            assert!(said.contains(part), "no `{part}` in\n{said}");
+        }
+        let said = refused(&model.replace("f_y:", "f_yy:"));
+        for part in ["error[unknown-key]", "--> plant.yaml:6:1", "6 | f_yy: {b: a}", "did you mean `f_y`?"] {
+            assert!(said.contains(part), "no `{part}` in\n{said}");
+        }
+    }
+}

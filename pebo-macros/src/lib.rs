@@ -2,7 +2,10 @@
 //!
 //! The crate that uses the attribute depends on `pebo-runtime` as well, which the written code calls. A claim that is
 //! not proved is a compile error at the formula that is to blame, with the generator's diagnostics.
+//!
+//! Model files need the feature `files`, which is a default one. Without it there is less to compile.
 
+#[cfg(feature = "files")]
 mod file;
 mod functions;
 mod plain;
@@ -65,12 +68,20 @@ pub fn pebo_model(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 }
 
 fn expand(arguments: TokenStream, item: TokenStream) -> Result<TokenStream, Error> {
-    let named = arguments.clone().into_iter().next().is_some_and(|first| syn::parse2::<LitStr>(first.into()).is_ok());
-    match syn::parse2(item)? {
-        Item::Mod(module) if named => file::module(arguments, module),
-        Item::Mod(module) => Ok(plain::module(arguments, &module)),
-        Item::Struct(item) => file::structure(arguments, &item),
-        other => Err(Error::new_spanned(
+    let path = arguments.clone().into_iter().next().and_then(|first| syn::parse2::<LitStr>(first.into()).ok());
+    match (syn::parse2(item)?, path) {
+        (Item::Mod(module), None) => Ok(plain::module(arguments, &module)),
+        #[cfg(feature = "files")]
+        (Item::Mod(module), Some(_)) => file::module(arguments, module),
+        #[cfg(feature = "files")]
+        (Item::Struct(item), _) => file::structure(arguments, &item),
+        #[cfg(not(feature = "files"))]
+        (_, Some(path)) => Err(Error::new(
+            path.span(),
+            "pebo-macros was built without the feature `files`, which reads model files\n\
+             help: remove `default-features = false` from the dependency, or add `features = [\"files\"]`",
+        )),
+        (other, _) => Err(Error::new_spanned(
             other,
             "this attribute stands on a module of plain Rust, or with the path of a model file on a unit struct\n\
              help: write `pub mod plant { .. }`, or #[pebo_model(\"models/plant.yaml\")] `pub struct Plant;`",

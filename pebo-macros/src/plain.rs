@@ -7,7 +7,7 @@ use pebo_gen::model::rust::Places;
 use pebo_gen::source::Diagnostic;
 use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
-use syn::{Error, Item, ItemMod};
+use syn::{Error, Item, ItemMod, Type};
 
 use crate::functions::Functions;
 use crate::refusal;
@@ -69,13 +69,23 @@ fn at(tokens: TokenStream, span: Span) -> TokenStream {
     moved.collect()
 }
 
-/// The type that the module computes in: that of its first state.
+/// The type that the module computes in: that of its first state, perhaps by another name.
 fn scalar(module: &ItemMod) -> Scalar {
-    let items = module.content.iter().flat_map(|(_, items)| items);
-    let state = items.filter_map(|item| match item {
+    let items = || module.content.iter().flat_map(|(_, items)| items);
+    let state = items().find_map(|item| match item {
         Item::Struct(item) if item.ident == "X" => item.fields.iter().next(),
         _ => None,
     });
-    let single = state.into_iter().any(|field| field.ty == syn::parse_quote!(f32));
-    if single { Scalar::F32 } else { Scalar::F64 }
+    let alias = |ty: &Type| {
+        items().find_map(|item| match item {
+            Item::Type(alias) if is_named(ty, &alias.ident.to_string()) => Some((*alias.ty).clone()),
+            _ => None,
+        })
+    };
+    let ty = state.map(|field| alias(&field.ty).unwrap_or_else(|| field.ty.clone()));
+    if ty.is_some_and(|ty| is_named(&ty, "f32")) { Scalar::F32 } else { Scalar::F64 }
+}
+
+fn is_named(ty: &Type, name: &str) -> bool {
+    matches!(ty, Type::Path(path) if path.path.is_ident(name))
 }

@@ -14,11 +14,18 @@ pub(crate) fn errors(diagnostics: &[Diagnostic], places: &Places) -> TokenStream
 fn error(diagnostic: &Diagnostic, places: &Places) -> Error {
     let mut lines = vec![format!("{} [{}]", diagnostic.message, diagnostic.code.name())];
     lines.extend(Some(diagnostic.primary.text.to_string()).filter(|label| !label.is_empty()));
-    // The compiler underlines one place: the others are quoted.
+    // The compiler underlines one place: the others are quoted, with their line.
     let labels = diagnostic.secondary.iter().filter(|label| !label.text.is_empty());
-    lines.extend(labels.map(|label| format!("note: {}: `{}`", label.text, places.text(label.span))));
+    lines.extend(labels.map(|label| {
+        let line = places.ends(label.span).map(|(first, _)| format!(" (line {})", first.span().unwrap().line()));
+        format!("note: {}: `{}`{}", label.text, places.text(label.span), line.unwrap_or_default())
+    }));
     lines.extend(diagnostic.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
+    // Proposals are written in the grammar of model files.
+    if diagnostic.help.iter().any(|help| help.contains("z1") || help.contains('^')) {
+        lines.push("note: there, `z1` is `z[0]`, and `a^2` is `a.powi(2)`".to_owned());
+    }
     let text = lines.join("\n");
     match places.ends(diagnostic.primary.span) {
         Some((first, last)) => Error::new_spanned(TokenStream::from_iter([first, last]), text),

@@ -39,3 +39,13 @@ fn a_struct_keeps_its_name() {
     let (y, u) = (SVector::from([10.0, -12.0]), SVector::from([0.68]));
     assert_eq!(renamed.h(&y, &u), emitted.h(&y, &u));
 }
+
+/// What cargo looks at when it decides whether to build again.
+#[test]
+fn the_compiler_is_told_of_the_files() {
+    let program = std::env::current_exe().expect("this test");
+    let listed = std::fs::read_to_string(program.with_extension("d")).expect("cargo writes what a program depends on");
+    for file in ["models/cuk.yaml", "models/cuk_case2.yaml"] {
+        assert!(listed.contains(file), "{file} is not in {listed}");
+    }
+}

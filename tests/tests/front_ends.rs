@@ -25,6 +25,7 @@ macro_rules! plants {
 }
 
 plants! {
+    "ball" in "models/",
     "cuk" in "../models/",
     "motor_flux" in "../models/",
     "pendulum" in "../models/",

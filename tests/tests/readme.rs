@@ -102,7 +102,7 @@ fn the_ways_to_the_code_are_those_of_the_examples() {
     ];
     // After the code of the smallest model and the examples of use.
     let shown = &blocks("rust")[3..];
-    assert_eq!(shown.len(), 4);
+    assert_eq!(shown.len(), 3);
     for block in shown {
         assert!(sources.iter().any(|source| source.contains(block)), "{block}");
     }

@@ -17,7 +17,7 @@ use crate::source::{Code, Diagnostic, listed};
 use super::design::{Cascade, Claim, Class, Verdict, Witness};
 use super::killing::{self, Column};
 use super::tidy::{proved_shortest, shortest};
-use super::{gpebo, pencil};
+use super::{blame, gpebo, pencil};
 
 /// One component of the derivative of the transform.
 enum Component {
@@ -62,6 +62,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         residual.push(match component {
             Component::Bound { residual, witness, through } => {
                 let refusal = refuted(plant, index, *residual, witness, through, *mend);
+                let refusal = blame::cascade(plant, domain, index, refusal);
                 found.push(structure(plant, domain, index, refusal));
                 first.get_or_insert_with(|| witness.clone());
                 *residual

@@ -1,5 +1,6 @@
 //! The order of the claims: what each builds on.
 
+use crate::cas::Expr;
 use crate::cas::facts::Relation;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
@@ -11,7 +12,7 @@ impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
     pub fn derive(plant: &Plant) -> Self {
         let domain = plant.domain();
-        let mut found = Vec::new();
+        let mut found: Vec<Diagnostic> = nothing_assumed(plant).into_iter().collect();
         let (class, cascade) = cascade::prove(plant, &domain, &mut found);
         let left_inverse = left_inverse::prove(plant, &domain, &mut found);
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
@@ -86,4 +87,16 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     } else {
         Outcome::Undecided
     }
+}
+
+/// A claim about no values at all is true: that no point satisfies the assumptions is worth knowing.
+fn nothing_assumed(plant: &Plant) -> Option<Diagnostic> {
+    let (first, last) = (plant.assumptions.first()?, plant.assumptions.last()?);
+    let assumed: Vec<Expr> = plant.assumptions.iter().map(|assumption| assumption.expr).collect();
+    plant.assumed().points(&plant.arena, &assumed).next().is_none().then(|| {
+        let message = "no values were found that satisfy all assumptions together";
+        Diagnostic::warning(Code::ContradictoryAssumptions, first.span.to(last.span), message)
+            .note("if there are none, the claims say nothing")
+            .help("see that the assumptions do not exclude one another")
+    })
 }

@@ -277,12 +277,15 @@ fn never(
     let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
     let linear = regression.eta.iter().all(|e| arena.as_symbol(*e).is_some_and(|s| plant.theta.contains(&s)));
     let unknown = if linear { "theta" } else { "eta" };
-    let mut diagnostic = Diagnostic::error(
-        Code::NeverIdentifiable,
-        at_phi(plant),
-        format!("no input and no trajectory identifies {unknown}"),
-    )
-    .label(format!("{unknown} can move along ({}) unseen by the outputs", entries.join(", ")));
+    let moving = regression.eta.iter().zip(direction).filter(|(_, d)| linear && !arena.is_zero(**d));
+    let component = |e: Expr| plant.theta.iter().position(|theta| arena.as_symbol(e) == Some(*theta));
+    let moving: Vec<Span> = moving.filter_map(|(e, _)| Some(plant.phi.get(component(*e)?)?.span)).collect();
+    let (first, others) = moving.split_first().map_or((at_phi(plant), &[][..]), |(first, rest)| (*first, rest));
+    let diagnostic =
+        Diagnostic::error(Code::NeverIdentifiable, first, format!("no input and no trajectory identifies {unknown}"));
+    let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(*other, "together with this"));
+    let mut diagnostic =
+        diagnostic.label(format!("{unknown} can move along ({}) unseen by the outputs", entries.join(", ")));
     if linear && let Some(left_inverse) = left_inverse {
         let harmless = left_inverse.x.iter().all(|(_, formula)| {
             let slope = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(*formula, *z), *d));

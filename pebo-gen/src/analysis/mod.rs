@@ -7,6 +7,7 @@
 //! Holds after: what is called proved was shown by exact algebra, what is called refuted by a rational
 //! point with a rigorous enclosure or by an exact null vector; everything else is undecided and says why.
 
+mod blame;
 mod cascade;
 mod conditions;
 mod derive;

@@ -19,7 +19,7 @@ use crate::plant::Plant;
 use crate::source::{Diagnostic, Span};
 
 use super::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
-use super::separation;
+use super::{blame, separation};
 use affine::{decompose, linear};
 use functions::{over_parameterised, under_derivative};
 use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};
@@ -111,7 +111,9 @@ pub(super) fn prove(
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         if let Some(witness) = bend {
-            found.push(refuted(plant, index, span, &witness, &stands_against));
+            let bends = |term| nonlinear(plant, domain, term, left_inverse).is_some();
+            let places = blame::summands(plant, index, bends);
+            found.push(refuted(plant, index, &places, &witness, &stands_against));
         } else {
             verdict = Verdict::Undecided;
             found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));

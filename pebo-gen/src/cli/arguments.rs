@@ -112,10 +112,10 @@ pub(super) struct SimulateOptions {
     #[arg(long, value_name = "FILE.csv")]
     pub(super) csv: Option<PathBuf>,
     /// Seconds between rows of the output; by default a thousandth of the duration
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) every: Option<f64>,
     /// The sampling period, instead of the model file's
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) step: Option<f64>,
     /// Whose estimates the control law uses: observer, truth, or a baseline's name
     #[arg(long, value_name = "NAME")]

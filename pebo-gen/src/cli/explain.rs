@@ -1,11 +1,9 @@
 //! `pebo-gen explain`: the longer story of a diagnostic.
 
-use std::io::Write as _;
-
 use pebo_gen::source::{Code, nearest};
 
 use super::arguments::ExplainOptions;
-use super::{Ending, terminal};
+use super::{Ending, standard, terminal};
 
 pub(super) fn run(options: &ExplainOptions) -> Ending {
     let Some(code) = Code::from_name(&options.code) else {
@@ -17,6 +15,17 @@ pub(super) fn run(options: &ExplainOptions) -> Ending {
         terminal::say(&format!("error: there is no diagnostic `{}`\n  = help: {help}\n", options.code));
         return Ending::Malformed;
     };
-    let _ = writeln!(std::io::stdout().lock(), "{}: {}\n\n{}", code.name(), code.title(), code.explanation());
-    Ending::Accepted
+    standard::print(story(code).as_bytes())
+}
+
+/// Title, explanation, example, and where the paper speaks of it.
+fn story(code: Code) -> String {
+    let example = code.example().lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
+    let paper = code.paper().map_or_else(String::new, |place| format!("\nIn Ortega et al. 2015: {place}.\n"));
+    format!(
+        "{}: {}\n\n{}\n\nExample, with what to do instead:\n\n{example}\n{paper}",
+        code.name(),
+        code.title(),
+        code.explanation()
+    )
 }

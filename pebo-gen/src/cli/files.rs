@@ -6,7 +6,7 @@ use std::path::Path;
 use pebo_gen::Derived;
 use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
 
-use super::terminal;
+use super::{standard, terminal};
 
 /// Reads a model file, or standard input for `-`; the error comes with a source to show it beside.
 pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
@@ -14,7 +14,7 @@ pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
     let bytes = bytes_of(path).map_err(|error| {
         let message = format!("cannot read {name}: {}", reason(&error));
         let diagnostic =
-            Diagnostic::error(Code::CannotRead, Span::point(0), message).help("check the path and the permissions");
+            Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("check the path and the permissions");
         Box::new((Source::unread(&name), diagnostic))
     })?;
     Source::from_bytes(&name, bytes).map_err(|diagnostic| Box::new((Source::unread(&name), diagnostic)))
@@ -53,11 +53,12 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
 
 /// Writes a file beside its place and moves it there, or to standard output for `-`.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
-    let result =
-        if is_standard(path) { std::io::stdout().lock().write_all(text.as_bytes()) } else { replace(path, text) };
-    result.map_err(|error| {
+    if is_standard(path) {
+        return standard::write(text.as_bytes());
+    }
+    replace(path, text).map_err(|error| {
         let message = format!("cannot write {}: {}", path.display(), reason(&error));
-        Diagnostic::error(Code::CannotWrite, Span::point(0), message)
+        Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
             .help("check that the folder exists and can be written to")
     })
 }
@@ -83,7 +84,7 @@ pub(super) fn is_standard(path: &Path) -> bool {
 }
 
 /// The operating system's reason, without the number it puts behind it.
-fn reason(error: &std::io::Error) -> String {
+pub(super) fn reason(error: &std::io::Error) -> String {
     let text = error.to_string();
     let plain = text.split(" (os error").next().unwrap_or(&text);
     let mut letters = plain.chars();

@@ -7,7 +7,7 @@ use super::{Ending, terminal};
 /// Says so, and what to do until then.
 pub(super) fn refuse(command: &str, instead: &str) -> Ending {
     let message = format!("`pebo-gen {command}` is not written yet");
-    let diagnostic = Diagnostic::error(Code::NotYet, Span::point(0), message).help(instead);
+    let diagnostic = Diagnostic::error(Code::NotYet, Span::NOWHERE, message).help(instead);
     terminal::report(&[diagnostic], &Source::unread(format!("pebo-gen {}", env!("CARGO_PKG_VERSION"))));
     Ending::Malformed
 }

@@ -8,6 +8,7 @@ mod generate;
 mod later;
 mod manual;
 mod simulate;
+mod standard;
 mod terminal;
 
 use std::process::ExitCode;
@@ -29,7 +30,10 @@ enum Ending {
 
 /// Runs the command of the process's arguments.
 pub(crate) fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(answer) => return ExitCode::from(said(&answer) as u8),
+    };
     let ending = match arguments.command {
         Some(Command::Check(options)) => check::run(&options),
         Some(Command::Simulate(options)) => simulate::run(&options),
@@ -43,4 +47,13 @@ pub(crate) fn run() -> ExitCode {
         None => generate::run(&arguments.generate),
     };
     ExitCode::from(ending as u8)
+}
+
+/// Says what the parser of arguments has to say: help and version to standard output, mistakes to standard error.
+fn said(answer: &clap::Error) -> Ending {
+    match answer.print() {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => standard::refuse(standard::unwritten(&error)),
+        _ if answer.use_stderr() => Ending::Malformed,
+        _ => Ending::Accepted,
+    }
 }

@@ -2,6 +2,7 @@
 //!
 //! The types are generic in what an entry is: a text as it is read, a [`Formula`] as it is meant.
 
+#[cfg(feature = "yaml")]
 use serde::Deserialize;
 
 use super::formula::{Decimal, Formula};
@@ -20,8 +21,9 @@ pub enum Class {
 }
 
 /// A matrix as written.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
 pub struct Matrix<F> {
     /// Where it stands.
     pub span: Span,
@@ -32,9 +34,10 @@ pub struct Matrix<F> {
 }
 
 /// `x' = A11 x + A12 y + B1 u`, `y' = A21 x + A22 y + B2 u`; a block that is absent is zero.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>"))]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
+#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
 #[allow(missing_docs)]
 pub struct Lti<F> {
     pub a11: Option<Matrix<F>>,
@@ -49,9 +52,10 @@ pub struct Lti<F> {
 
 /// The energy `p' M^-1 p / 2 + V(q)` with forces `G(q) u`, and a frame `T(q)`: the momenta are x, the
 /// positions y.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>"))]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
+#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
 #[allow(missing_docs)]
 pub struct Mechanical<F> {
     pub m: Option<Matrix<F>>,
@@ -62,22 +66,23 @@ pub struct Mechanical<F> {
 
 /// The fluxes `L(q) i + mu(q)` with `d/dt(..) = -R i + B u`: the position is x, the currents are the first
 /// outputs y.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(bound(deserialize = "F: Deserialize<'de>"))]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(bound(deserialize = "F: Deserialize<'de>")))]
+#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
 pub struct Electromechanical<F> {
     /// The number of coils, to be held against the rest.
     pub coils: Option<Spanned<Decimal>>,
     /// Inductances in the position.
-    #[serde(rename = "L")]
+    #[cfg_attr(feature = "yaml", serde(rename = "L"))]
     pub inductance: Option<Matrix<F>>,
     /// Flux of permanent magnets in the position.
     pub mu: Option<Matrix<F>>,
     /// Resistances.
-    #[serde(rename = "R")]
+    #[cfg_attr(feature = "yaml", serde(rename = "R"))]
     pub resistance: Option<Matrix<F>>,
     /// How voltages act on coils.
-    #[serde(rename = "B")]
+    #[cfg_attr(feature = "yaml", serde(rename = "B"))]
     pub voltages: Option<Matrix<F>>,
     /// The declared name of the speed: an output, an input or an unmeasured signal.
     pub speed: Option<Spanned<String>>,
@@ -89,6 +94,7 @@ pub struct Electromechanical<F> {
     pub load: Option<F>,
 }
 
+#[cfg(feature = "yaml")]
 impl<F> Matrix<F> {
     /// The matrix of what `change` makes of the entries.
     fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Matrix<G> {
@@ -97,6 +103,7 @@ impl<F> Matrix<F> {
     }
 }
 
+#[cfg(feature = "yaml")]
 impl<F> Lti<F> {
     pub(super) fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Lti<G> {
         let mut matrix = |block: Option<Matrix<F>>| block.map(|block| block.map(change));
@@ -113,6 +120,7 @@ impl<F> Lti<F> {
     }
 }
 
+#[cfg(feature = "yaml")]
 impl<F> Mechanical<F> {
     pub(super) fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Mechanical<G> {
         Mechanical {
@@ -124,6 +132,7 @@ impl<F> Mechanical<F> {
     }
 }
 
+#[cfg(feature = "yaml")]
 impl<F> Electromechanical<F> {
     pub(super) fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Electromechanical<G> {
         Electromechanical {

@@ -16,9 +16,10 @@ mod names;
 mod observer;
 pub mod rust;
 mod written;
+#[cfg(feature = "yaml")]
 mod yaml;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "yaml"))]
 mod tests;
 
 pub use check::check;
@@ -28,8 +29,10 @@ pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
 pub use written::{Baseline, Entry, Model, Panel, Piece, Scale, Simulation, Spanned};
 
+#[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};
 
+#[cfg(feature = "yaml")]
 impl Model {
     /// Reads a model file.
     pub fn parse(source: &Source) -> Result<Self, Vec<Diagnostic>> {

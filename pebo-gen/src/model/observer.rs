@@ -1,5 +1,6 @@
 //! The section `observer`: how the observer is built, in the words of the file, and held against itself.
 
+#[cfg(feature = "yaml")]
 use serde::Deserialize;
 
 use super::formula::Decimal;
@@ -7,8 +8,9 @@ use super::written::Spanned;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
 /// How the observer is built; what is left out, the generator chooses.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Observer {
     /// The estimator; a gradient if absent.
     pub estimator: Option<Spanned<Estimator>>,
@@ -39,8 +41,9 @@ pub struct Observer {
 }
 
 /// Between what the unknowns are known to be: one number for each, or one for all; empty where there is no bound.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Bounds {
     /// From below.
     pub lower: Vec<Spanned<Decimal>>,
@@ -49,8 +52,9 @@ pub struct Bounds {
 }
 
 /// How samples are joined to signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
 pub enum Hold {
     /// Constant between samples.
     ZeroOrder,
@@ -59,8 +63,9 @@ pub enum Hold {
 }
 
 /// The estimators of the runtime library.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
 pub enum Estimator {
     /// The paper's.
     #[default]

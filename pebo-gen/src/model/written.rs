@@ -3,6 +3,7 @@
 //! These are the sections of a model file, in its words. Lists keep the order of the file, except
 //! where [`Model::ordered`] says otherwise.
 
+#[cfg(feature = "yaml")]
 use serde::Deserialize;
 
 use super::class::Class;
@@ -11,7 +12,8 @@ use super::observer::Observer;
 use crate::source::Span;
 
 /// A value and where it stands.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
@@ -20,7 +22,8 @@ pub struct Spanned<T> {
 }
 
 /// A named value: `name: value` in a map.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
 pub struct Entry<T> {
     /// The name.
     pub name: Spanned<String>,
@@ -132,8 +135,9 @@ pub struct Panel {
 }
 
 /// The divisions of an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
 pub enum Scale {
     /// Equal differences are equally far apart.
     #[default]

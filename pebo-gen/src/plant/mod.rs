@@ -10,12 +10,14 @@
 
 pub mod class;
 mod conditions;
+mod contradiction;
 mod formula;
 pub mod matrix;
 #[allow(clippy::module_inception)]
 mod plant;
 mod resolve;
 mod scope;
+mod terms;
 
 pub use class::{Class, Proposal};
 pub use formula::lower;

@@ -45,6 +45,8 @@ pub struct Plant {
     pub angles: Vec<(Symbol, Formula)>,
     /// The domain that the author assumes.
     pub assumptions: Vec<Assumption>,
+    /// The summands of the rates as they are written, each where it stands.
+    pub terms: BTreeMap<Symbol, Vec<Formula>>,
     /// What the formulas ask of their parts to have values: denominators, radicands and the like.
     pub conditions: Vec<Assumption>,
     /// The coordinates z1.. of the transform.

@@ -14,6 +14,7 @@ use super::class;
 use super::formula::{exact, lower};
 use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, assumed};
 use super::scope::Scope;
+use super::terms;
 
 impl Plant {
     /// Resolves the names and numbers of a model.
@@ -60,6 +61,7 @@ impl Plant {
 
         let assumptions: Vec<Assumption> =
             problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
+        super::contradiction::find(&arena, &assumptions, &parameters, &mut problems);
         let on_states = with(&[&x, &y]);
         let dynamics = match &model.class {
             None => explicit(&arena, &scope, model, (&x, &y), &mut problems, |formula| {
@@ -88,14 +90,8 @@ impl Plant {
             let formula = confined(&arena, expr, entry.value.span, &on_transform, "phi_left(z, y)")?;
             Ok((arena.symbol(&entry.name.value), formula))
         }));
-        let mut conditions = conditions;
-        let written = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value);
-        let written = written.chain(&model.phi).chain(&model.identities).chain(model.define.iter().map(|d| &d.value));
-        let written = written.chain(model.class.iter().flat_map(model::Class::formulas));
-        for formula in written {
-            // What fails here was reported where the formula itself was lowered.
-            let _ = super::conditions::collect(&arena, &scope, formula, &mut conditions);
-        }
+        let conditions = asked(&arena, &scope, model, conditions);
+        let terms = terms::of_rates(&arena, &scope, model);
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
         problems.propagate()?;
         Ok(Self {
@@ -113,6 +109,7 @@ impl Plant {
             phi_left: (!phi_left.is_empty()).then_some(phi_left),
             identities,
             angles,
+            terms,
             conditions,
             assumptions,
             z,
@@ -123,6 +120,19 @@ impl Plant {
             arena,
         })
     }
+}
+
+/// What the formulas ask of their parts to have values, beside what a class asks already.
+fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
+    let mut conditions = of_class;
+    let written = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value);
+    let written = written.chain(&model.phi).chain(&model.identities).chain(model.define.iter().map(|d| &d.value));
+    let written = written.chain(model.class.iter().flat_map(model::Class::formulas));
+    for formula in written {
+        // What fails here was reported where the formula itself was lowered.
+        let _ = super::conditions::collect(arena, scope, formula, &mut conditions);
+    }
+    conditions
 }
 
 /// The equations as the author wrote them.

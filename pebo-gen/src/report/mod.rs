@@ -4,6 +4,7 @@
 //! text. Formulas are in the model file's grammar.
 
 mod expansion;
+#[cfg(feature = "yaml")]
 mod json;
 mod remarks;
 mod text;
@@ -12,6 +13,7 @@ use crate::analysis::Verdict;
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr};
 
+#[cfg(feature = "yaml")]
 pub use json::{check, malformed};
 pub use text::summary;
 

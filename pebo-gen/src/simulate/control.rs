@@ -1,7 +1,7 @@
 //! The control law: which estimates it sees, and what it does with them.
 
 use crate::cas::Expr;
-use crate::source::{Code, Diagnostic, Diagnostics, listed, nearest};
+use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
 use super::Overrides;
 use super::layout::rival_estimate;
@@ -23,8 +23,16 @@ pub(super) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
     if choices.contains(&name) {
         return Some(name.to_owned());
     }
-    let span = written.map_or_else(|| names.section(), |feedback| feedback.span);
-    let diagnostic = Diagnostic::error(Code::WrongChoice, span, format!("`{name}` gives no estimates"));
+    let diagnostic = match written {
+        Some(written) if overrides.feedback.is_none() => {
+            Diagnostic::error(Code::WrongChoice, written.span, format!("`{name}` gives no estimates"))
+        }
+        _ => Diagnostic::error(
+            Code::WrongChoice,
+            Span::NOWHERE,
+            format!("`{name}`, which the call names for feedback, gives no estimates"),
+        ),
+    };
     problems.push(match nearest(name, choices.iter().copied()) {
         Some(near) => diagnostic.suggest(Some(near)),
         None => diagnostic.help(format!("choose one of {}", listed(choices))),

@@ -154,7 +154,7 @@ impl Resolution<'_> {
             );
         }
         let columns = columns(plant, &design.recovered, &rivals);
-        problems.keep(admit_table(&timing, columns.len(), span));
+        problems.keep(admit_table(&timing, columns.len()));
         let estimates: Vec<Expr> = rivals.iter().flat_map(|rival| rival.estimates.iter().map(|e| e.1)).collect();
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
@@ -249,12 +249,13 @@ fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String>
     columns
 }
 
-fn admit_table(timing: &Timing, columns: usize, span: Span) -> Result<(), Diagnostic> {
+/// Only a call asks for a table that is too large: a file does not say how often rows are written.
+fn admit_table(timing: &Timing, columns: usize) -> Result<(), Diagnostic> {
     let columns = u64::try_from(columns).unwrap_or(u64::MAX);
     let values = super::timing::real(timing.rows()) * super::timing::real(columns);
     if values <= MOST_VALUES {
         return Ok(());
     }
     let message = format!("the table would have {} rows of {columns} values", timing.rows());
-    Err(Diagnostic::error(Code::SimulationTooLong, span, message).help("choose a larger `--every`"))
+    Err(Diagnostic::error(Code::SimulationTooLong, Span::NOWHERE, message).help("choose a larger `every` for the call"))
 }

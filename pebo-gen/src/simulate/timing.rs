@@ -33,26 +33,31 @@ impl Timing {
         span: Span,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
-        let duration = setting("duration", simulation.duration.as_ref(), overrides.duration, span);
-        let step = setting("step", simulation.step.as_ref(), overrides.step, span);
-        let every = overrides.every.map(|every| exact("every", every, span)).transpose();
+        let duration = Setting::resolve("duration", simulation.duration.as_ref(), overrides.duration, span);
+        let step = Setting::resolve("step", simulation.step.as_ref(), overrides.step, span);
+        let every = overrides.every.map(|every| Setting::called("every", every)).transpose();
         let (duration, step, every) = (problems.keep(duration), problems.keep(step), problems.keep(every));
         let (duration, step, every) = (duration?, step?, every?);
         for (name, period) in [("step", Some(&step)), ("every", every.as_ref())] {
-            if period.is_some_and(|period| (&duration - period).is_negative()) {
-                let message = format!("`{name}` is longer than the duration of {} s", duration.to_f64());
+            let Some(period) = period else { continue };
+            if (&duration.seconds - &period.seconds).is_negative() {
+                let message = format!("{} is longer than the duration of {} s", period.said(name), duration.to_f64());
                 problems.push(
-                    Diagnostic::error(Code::NumberOutOfRange, span, message)
+                    Diagnostic::error(Code::NumberOutOfRange, period.span, message)
                         .help(format!("choose a shorter `{name}`, or a longer `duration`")),
                 );
                 return None;
             }
         }
-        let intervals = duration.checked_div(&step)?.to_f64();
+        let intervals = duration.seconds.checked_div(&step.seconds)?.to_f64();
         if intervals > MOST_SAMPLES {
-            let message = format!("the simulation has {intervals:.3e} samples");
+            let message = format!(
+                "the simulation has {intervals:.3e} samples: {} goes so often into {} s",
+                step.said("step"),
+                duration.to_f64()
+            );
             problems.push(
-                Diagnostic::error(Code::SimulationTooLong, span, message)
+                Diagnostic::error(Code::SimulationTooLong, step.span, message)
                     .help(format!("choose a longer step or a shorter duration: at most {MOST_SAMPLES:.0e} samples")),
             );
             return None;
@@ -60,10 +65,10 @@ impl Timing {
         // A last interval that is a rounding error of a division is none.
         let samples = (intervals - 1e-9).ceil().max(1.0);
         let stride = match every {
-            Some(every) => every.checked_div(&step)?.to_f64(),
+            Some(every) => every.seconds.checked_div(&step.seconds)?.to_f64(),
             None => intervals / ROWS,
         };
-        let fraction = (step.numerator().to_f64(), step.denominator().to_f64());
+        let fraction = (step.seconds.numerator().to_f64(), step.seconds.denominator().to_f64());
         Some(Self { step: step.to_f64(), samples: whole(samples), fraction, stride: stride.max(1.0) })
     }
 
@@ -88,33 +93,62 @@ impl Timing {
     }
 }
 
-/// A setting of the call, else of the file.
-fn setting(
-    name: &str,
-    written: Option<&Spanned<crate::model::Decimal>>,
-    called: Option<f64>,
+/// A time that the file or the call sets.
+struct Setting {
+    seconds: Rational,
+    /// Where; nowhere in the file if the call sets it.
     span: Span,
-) -> Result<Rational, Diagnostic> {
-    match (called, written) {
-        (Some(value), _) => exact(name, value, span),
-        (None, Some(written)) => positive(name, Rational::from_decimal(written.value.text()).ok(), written.span),
-        (None, None) => {
-            Err(Diagnostic::error(Code::SimulationIncomplete, span, format!("the simulation has no {name}"))
-                .help(format!("add `{name}:` in seconds under `simulation`")))
+}
+
+impl Setting {
+    /// That of the call, else that of the file.
+    fn resolve(
+        name: &str,
+        written: Option<&Spanned<crate::model::Decimal>>,
+        called: Option<f64>,
+        section: Span,
+    ) -> Result<Self, Diagnostic> {
+        match (called, written) {
+            (Some(seconds), _) => Self::called(name, seconds),
+            (None, Some(written)) => {
+                let text = written.value.text();
+                Self::positive(name, text, Rational::from_decimal(text).ok(), written.span)
+            }
+            (None, None) => {
+                Err(Diagnostic::error(Code::SimulationIncomplete, section, format!("the simulation has no {name}"))
+                    .help(format!("add `{name}:` in seconds under `simulation`")))
+            }
         }
     }
-}
 
-/// A setting of the call as the decimal that was meant.
-fn exact(name: &str, value: f64, span: Span) -> Result<Rational, Diagnostic> {
-    positive(name, Rational::from_decimal(&format!("{value:e}")).ok(), span)
-}
+    /// A setting of the call as the decimal that was meant.
+    fn called(name: &str, seconds: f64) -> Result<Self, Diagnostic> {
+        let exact = Rational::from_decimal(&format!("{seconds:e}")).ok();
+        Self::positive(name, &seconds.to_string(), exact, Span::NOWHERE)
+    }
 
-fn positive(name: &str, value: Option<Rational>, span: Span) -> Result<Rational, Diagnostic> {
-    value.filter(|value| value.signum() > 0).ok_or_else(|| {
-        Diagnostic::error(Code::NumberOutOfRange, span, format!("`{name}` must be positive"))
-            .help("write a number of seconds above zero")
-    })
+    fn positive(name: &str, text: &str, seconds: Option<Rational>, span: Span) -> Result<Self, Diagnostic> {
+        if let Some(seconds) = seconds.filter(|seconds| seconds.signum() > 0) {
+            return Ok(Self { seconds, span });
+        }
+        let whose = if span == Span::NOWHERE { " of the call" } else { "" };
+        let message = format!("`{name}`{whose} is {text}, and must be positive");
+        Err(Diagnostic::error(Code::NumberOutOfRange, span, message)
+            .help("give a number of seconds above zero, as 1e-5"))
+    }
+
+    /// The setting as messages call it.
+    fn said(&self, name: &str) -> String {
+        let whose = if self.span == Span::NOWHERE { " of the call" } else { "" };
+        let seconds = self.to_f64();
+        // Without exponent, numbers far from 1 are rows of zeros.
+        let shown = if (1e-4..1e6).contains(&seconds) { seconds.to_string() } else { format!("{seconds:e}") };
+        format!("`{name}`{whose}, {shown} s,")
+    }
+
+    fn to_f64(&self) -> f64 {
+        self.seconds.to_f64()
+    }
 }
 
 #[expect(clippy::cast_precision_loss, reason = "samples are fewer than 2^53")]

@@ -1,11 +1,12 @@
 //! The one table of diagnostic codes.
 //!
-//! A row is a variant, the name that programs and people see, a title, and the explanation that
-//! `pebo-gen explain CODE` prints. To add a code is to add a row; a code that was released keeps
-//! its name.
+//! A row is a variant, the name that programs and people see, a title, the explanation that
+//! `pebo-gen explain CODE` prints, and the place in the paper that it is about, where there is one. Each has an input
+//! that provokes it, with its mend, in `examples`, which tests run. To add a code is to add a row and an example; a
+//! code that was released keeps its name.
 
 macro_rules! codes {
-    ($($(#[$group:meta])* $variant:ident $name:literal $title:literal $explanation:literal)*) => {
+    ($($(#[$group:meta])* $variant:ident $name:literal $title:literal $explanation:literal $(=> $paper:literal)?)*) => {
         /// What kind of mistake or finding a diagnostic is about.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Code {
@@ -29,6 +30,17 @@ macro_rules! codes {
             /// The explanation: a paragraph or two.
             pub fn explanation(self) -> &'static str {
                 match self { $(Self::$variant => $explanation),* }
+            }
+
+            /// An input that provokes it, with its mend as a comment: a model file, a module of Rust, or after `$ ` a
+            /// command of a shell.
+            pub fn example(self) -> &'static str {
+                match self { $(Self::$variant => include_str!(concat!("examples/", $name, ".txt"))),* }
+            }
+
+            /// The place in Ortega et al. 2015 that it is about, where there is one.
+            pub fn paper(self) -> Option<&'static str> {
+                match self { $(Self::$variant => None$(.or(Some($paper)))?),* }
             }
 
             /// The code of that name.
@@ -98,15 +110,19 @@ codes! {
     ClassConflict "class-conflict" "a class beside what it gives"
         "A model written by class (lti, mechanical or electromechanical) has its equations f_x and f_y and its transform \
          phi from the class. They cannot be given besides, nor can a second class."
+        => "Sections 4, 5.1 and 5.2"
     ClassUnresolved "class-unresolved" "the matrices of a class could not be worked out"
         "Expanding a class inverts matrices exactly. Here the algebra met an obstacle, which the message names; simpler \
          formulas, or parameters with values, may avoid it."
+        => "Sections 4, 5.1 and 5.2"
     NotSymmetric "not-symmetric" "a matrix that must be symmetric is not"
         "The inertia matrix M and the inductance matrix L are those of an energy, hence symmetric. The message names a \
          pair of entries that differ."
+        => "Sections 5.1 and 5.2"
     SingularMatrix "singular-matrix" "a matrix has no inverse anywhere"
         "The inertia matrix M, the frame T and the inductance matrix L are inverted. This one has determinant zero \
          whatever the positions are."
+        => "Sections 5.1 and 5.2"
 
     // Models in plain Rust.
 
@@ -170,6 +186,7 @@ codes! {
     MisplacedEstimate "misplaced-estimate" "hat() where there is no estimate"
         "hat(x) is the observer's estimate of the state x. It has a meaning in the control law, in the definitions, \
          baselines and panels of a simulation, and nowhere else."
+        => "Section 2.4, Corollary 1"
     ComparisonExpected "comparison-expected" "an assumption without a comparison"
         "An assumption compares formulas with < <= > >= or !=, as 0 < d < 1."
     FormulaTooDeep "formula-too-deep" "a formula is nested too deep"
@@ -186,14 +203,19 @@ codes! {
     MisplacedName "misplaced-name" "a formula depends on what its place does not allow"
         "The transform is a function of x and y, the left inverse one of z and y, a period one of parameters. A formula \
          that depends on anything else, perhaps through a definition, cannot stand there."
+        => "Section 2.2, Assumption 1"
     DivisionByZero "division-by-zero" "a formula divides by zero"
         "A denominator is zero whatever the values of the names in it are, so the formula has no value anywhere."
     NoRealValue "no-real-value" "a formula has no real value"
         "A constant is outside of the domain of the function it is put into: the logarithm of a number that is not \
          positive, the root of a negative number, the inverse sine of a number beyond 1."
+    ContradictoryAssumptions "contradictory-assumptions" "assumptions that cannot hold together"
+        "No values satisfy both of the assumptions shown, or the model's own parameters violate one: there is nothing \
+         that a claim could be made of."
     MissingRate "missing-rate" "a rate is needed that the model does not give"
         "The transform phi uses an output whose derivative stands nowhere. Its own derivative along the plant, which \
          must be h(y, u), then cannot be formed. Give the output's rate under f_y."
+        => "Section 2.2, Assumption 1 (ii)"
 
     // Claims.
 
@@ -201,31 +223,41 @@ codes! {
         "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone (or, for the \
          generalised cascade, linear in phi besides). The residual shown remains for any choice, and the witness is a \
          point where it is certainly not constant in x. Change phi, or let `pebo-gen solve` propose one."
+        => "Section 2.2, Assumption 1 (ii)"
     CascadeUndecided "cascade-undecided" "the cascade claim is neither proved nor refuted"
         "Claim C1 could not be decided; the obstacle names the expression that the algebra does not cover. Nothing is \
          emitted without a proof."
+        => "Section 2.2, Assumption 1 (ii)"
     LeftInverseRefuted "left-inverse-refuted" "phi_left does not invert phi"
         "Claim C2: phi_left(phi(x, y), y) = x. The witness is a state that phi_left does not return. If it holds only \
          up to a period, say so under angles; if only in a part of the state space, under assume."
+        => "Section 2.2, Assumption 1 (i)"
     LeftInverseUndecided "left-inverse-undecided" "the left inverse is neither proved nor refuted"
         "Claim C2 could not be decided; the obstacle names what the algebra does not cover. An assumption on signs \
          often decides roots."
+        => "Section 2.2, Assumption 1 (i)"
     LeftInverseUnderivable "left-inverse-underivable" "no left inverse was found"
         "phi_left is absent and could not be derived from phi. Give it under phi_left; if phi does not determine x, \
          no left inverse exists."
+        => "Section 2.2, Assumption 1 (i)"
     RegressionNonlinear "regression-nonlinear" "the outputs do not give a linear regression"
         "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them that \
          can be listed. Another phi, or an identity for a static regression, may help."
+        => "Section 2.2, Proposition 1, and Section 2.3"
     UnknownUpToTurns "unknown-up-to-turns" "theta is determined only up to whole turns"
         "The rates of the outputs depend on theta through its sine and cosine, from which atan2 gives it up to whole \
          turns. For a state that is an angle this is all there is to know; for another it is an ambiguity."
+        => "Section 5.2"
     RegressionUndecided "regression-undecided" "the regression is neither proved nor refuted"
         "Claim C3 could not be decided; the obstacle names what the algebra does not cover."
+        => "Section 2.2, Proposition 1, and Section 2.3"
     NeverIdentifiable "never-identifiable" "the regressor never determines theta"
         "Claim C4: there is a direction of theta, shown in the message, that no input makes visible in the outputs. \
          Measure another signal, or choose a phi with fewer components."
+        => "Section 2.3, Assumption 2"
     IdentifiabilityUndecided "identifiability-undecided" "identifiability is neither proved nor refuted"
         "Claim C4 could not be decided; the obstacle says which rank is unknown."
+        => "Section 2.3, Assumption 2"
 
     // Simulation.
 

@@ -10,16 +10,18 @@
 
 mod codes;
 mod diagnostic;
+#[cfg(feature = "yaml")]
 mod render;
 mod span;
 mod spelling;
 mod text;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "yaml"))]
 mod tests;
 
 pub use codes::Code;
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
+#[cfg(feature = "yaml")]
 pub use render::{Colour, Located, render, render_within};
 pub use span::Span;
 pub use spelling::{listed, nearest, quoted};

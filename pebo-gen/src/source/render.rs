@@ -41,12 +41,14 @@ fn picture<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
         Severity::Note => Level::NOTE,
     };
     let title = level.primary_title(diagnostic.message.as_ref()).id(diagnostic.code.name());
-    let snippet = Snippet::source(source.text())
-        .path(source.name())
-        .annotation(annotation(AnnotationKind::Primary, &diagnostic.primary, source))
-        .annotations(diagnostic.secondary.iter().map(|label| annotation(AnnotationKind::Context, label, source)));
+    let snippet = (diagnostic.primary.span != Span::NOWHERE).then(|| {
+        Snippet::source(source.text())
+            .path(source.name())
+            .annotation(annotation(AnnotationKind::Primary, &diagnostic.primary, source))
+            .annotations(diagnostic.secondary.iter().map(|label| annotation(AnnotationKind::Context, label, source)))
+    });
     title
-        .element(snippet)
+        .elements(snippet)
         .elements(diagnostic.notes.iter().map(|note| Level::NOTE.message(note.as_str())))
         .elements(diagnostic.help.iter().map(|help| Level::HELP.message(help.as_ref())))
 }
@@ -72,9 +74,9 @@ pub struct Located<'a> {
     pub severity: Severity,
     /// What is wrong.
     pub message: &'a str,
-    /// Line of the primary place, from 1.
+    /// Line of the primary place, from 1; 1 where there is none.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, from 1; 1 where there is no place.
     pub column: usize,
     /// What to do, or null.
     pub help: Option<&'a str>,
@@ -83,7 +85,8 @@ pub struct Located<'a> {
 impl<'a> Located<'a> {
     /// The diagnostic with its place counted in `source`.
     pub fn new(diagnostic: &'a Diagnostic, source: &Source) -> Self {
-        let position = source.position(diagnostic.primary.span.start);
+        let start = if diagnostic.primary.span == Span::NOWHERE { 0 } else { diagnostic.primary.span.start };
+        let position = source.position(start);
         Self {
             code: diagnostic.code.name(),
             severity: diagnostic.severity,

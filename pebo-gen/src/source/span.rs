@@ -5,7 +5,8 @@ use std::ops::Range;
 /// A byte range of a [`Source`](super::Source)'s text: from `start` up to, not including, `end`.
 ///
 /// An empty span is a point: where something is missing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize, serde::Deserialize))]
 pub struct Span {
     /// First byte.
     pub start: usize,
@@ -14,6 +15,10 @@ pub struct Span {
 }
 
 impl Span {
+    /// No place in the text: what a diagnostic is about was said elsewhere, as in the call, or concerns a file as a
+    /// whole. It is rendered without an excerpt.
+    pub const NOWHERE: Self = Self { start: usize::MAX, end: usize::MAX };
+
     /// The span from `start` to `end`; an inverted pair is read as the point `start`.
     pub fn new(start: usize, end: usize) -> Self {
         Self { start, end: end.max(start) }

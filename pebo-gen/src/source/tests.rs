@@ -43,6 +43,7 @@ fn codes_are_unique_and_found_by_name() {
     for code in Code::ALL {
         assert_eq!(Code::from_name(code.name()), Some(*code));
         assert!(!code.title().is_empty() && code.explanation().ends_with('.'), "{}", code.name());
+        assert!(code.example().ends_with('\n') && code.example().lines().count() <= 20, "{}", code.name());
         assert!(code.name().bytes().all(|byte| byte == b'-' || byte.is_ascii_lowercase()));
     }
     assert_eq!(Code::from_name("no-such-code"), None);

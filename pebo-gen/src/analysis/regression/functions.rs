@@ -88,6 +88,7 @@ pub(super) fn turned_away(
 ) -> Option<Claim<Regression>> {
     let arena = &plant.arena;
     let turn = arena.mul(arena.number(2), arena.pi());
+    let mut ambiguous = false;
     for &index in &recovered.turning {
         let turned = |expr: Expr, symbol: Symbol| {
             let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
@@ -100,6 +101,8 @@ pub(super) fn turned_away(
                 None => arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s)),
             };
             if kept {
+                // What a turn moves is an angle; one that was declared as such needs no warning.
+                ambiguous |= plant.period(state).is_none() && !arena.is_zero(shift);
                 continue;
             }
             // Whether the outputs themselves are blind to the turn, or only the formula for theta.
@@ -109,7 +112,7 @@ pub(super) fn turned_away(
             return Some(Claim { verdict, result: None });
         }
     }
-    found.extend((!recovered.turning.is_empty()).then(|| up_to_turns(plant)));
+    found.extend(ambiguous.then(|| up_to_turns(plant)));
     None
 }
 

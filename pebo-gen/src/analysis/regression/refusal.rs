@@ -1,7 +1,8 @@
 //! Why there is no regression, with the point that shows it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use crate::analysis::blame;
 use crate::analysis::design::{Claim, LeftInverse, Regression, Verdict, Witness};
 use crate::cas::Expr;
 use crate::cas::Symbol;
@@ -9,7 +10,7 @@ use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::rational::Rational;
 use crate::cas::zero::refute;
-use crate::plant::Plant;
+use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 /// Every rate that is given depends on a signal that nobody knows.
@@ -31,11 +32,12 @@ pub(super) fn hidden_by_signals(
             found.push(undecided(plant, *index, *span, &Obstacle::NoWitness));
             continue;
         };
+        let places = blame::summands(plant, *index, |term| arena.depends_on(term, &BTreeSet::from([signal])));
         let (output, signal) = (arena.name(plant.y[*index].symbol), arena.name(signal));
         found.push(
             Diagnostic::error(
                 Code::RegressionNonlinear,
-                *span,
+                places.first().map_or(*span, |place| place.span),
                 format!("the rate of {output} depends on the unmeasured signal {signal}"),
             )
             .label(format!("nothing can be learnt from {output} while {signal} is unknown"))
@@ -99,14 +101,23 @@ pub(super) fn nonlinear(
     })
 }
 
-pub(super) fn refuted(plant: &Plant, index: usize, span: Span, witness: &Witness, stands_against: &str) -> Diagnostic {
+pub(super) fn refuted(
+    plant: &Plant,
+    index: usize,
+    places: &[Formula],
+    witness: &Witness,
+    stands_against: &str,
+) -> Diagnostic {
     let arena = &plant.arena;
     let output = arena.name(plant.y[index].symbol);
-    Diagnostic::error(
+    let (first, others) = places.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
+    let diagnostic = Diagnostic::error(
         Code::RegressionNonlinear,
-        span,
+        first,
         format!("the rate of {output} is not linear in the unknowns"),
-    )
+    );
+    let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "nor is this"));
+    diagnostic
     .label("not an affine function of phi with coefficients in y and u")
     .note(format!("as a function of z it bends: {}", witness.sentence(arena)))
     .note(stands_against)

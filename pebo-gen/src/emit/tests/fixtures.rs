@@ -185,6 +185,7 @@ impl Sketch {
         let plant = Plant {
             class: None,
             proposal: Proposal::default(),
+            terms: std::collections::BTreeMap::new(),
             conditions: Vec::new(),
             name: self.name.to_owned(),
             title: Some(self.title.to_owned()),

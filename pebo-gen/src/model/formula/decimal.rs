@@ -12,8 +12,8 @@ const EXPONENT_LIMIT: i64 = 308;
 ///
 /// It stands for exactly what it says: `0.1` is one tenth. Holds: at most 400 digits, exponent
 /// between -308 and 308.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(serde::Deserialize), serde(try_from = "String"))]
 pub struct Decimal {
     text: String,
 }

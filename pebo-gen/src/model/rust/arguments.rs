@@ -29,6 +29,7 @@ pub(super) struct Arguments {
 
 /// Sides with relations between them.
 pub(super) struct Chain {
+    pub(super) span: Span,
     pub(super) first: Expr,
     pub(super) rest: Vec<(Relation, Expr)>,
 }
@@ -157,7 +158,7 @@ fn chain(tokens: TokenStream, places: &mut Places) -> Result<Chain, Diagnostic> 
     if rest.is_empty() {
         return Err(no_comparison(whole, places));
     }
-    Ok(Chain { first, rest: relations.into_iter().zip(rest).collect() })
+    Ok(Chain { span: whole, first, rest: relations.into_iter().zip(rest).collect() })
 }
 
 fn no_comparison(whole: Span, places: &Places) -> Diagnostic {

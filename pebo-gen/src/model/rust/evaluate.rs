@@ -82,7 +82,7 @@ impl<'a> Reader<'a> {
             Expr::Tuple(tuple) => Ok(Value::List(tuple.elems.iter().map(|item| self.element(item, locals)).collect())),
             Expr::Repeat(repeat) => {
                 let value = self.value(&repeat.expr, locals)?;
-                let length = items::literal(&repeat.len).and_then(|length| length.parse::<usize>().ok());
+                let length = self.items.whole(&repeat.len).and_then(|length| length.parse::<usize>().ok());
                 let Some(length) = length.filter(|length| (1..=REPEAT_LIMIT).contains(length)) else {
                     return Err(unsupported(self.places.of(&repeat.len), "the length of this array is not known here")
                         .help("write the components out one by one"));
@@ -91,7 +91,7 @@ impl<'a> Reader<'a> {
                 Ok(Value::List(vec![value; length]))
             }
             Expr::Block(block) if block.label.is_none() => self.block(&block.block, locals),
-            Expr::Cast(cast) if items::is_float(&cast.ty) => self.converted(&cast.expr, locals),
+            Expr::Cast(cast) if self.items.is_float(&cast.ty) => self.converted(&cast.expr, locals),
             other => Err(refusal::expression(other, self.places)),
         }
     }
@@ -117,13 +117,21 @@ impl<'a> Reader<'a> {
 
     /// A number that may be written as an integer: what is converted to a float.
     pub(super) fn converted(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Value, Diagnostic> {
-        if items::literal(expr).is_none() {
-            return self.value(expr, locals);
+        let local = matches!(expr, Expr::Path(path) if path.path.get_ident().is_some_and(|name| {
+            locals.iter().any(|(local, _)| name.unraw() == local)
+        }));
+        match self.items.whole(expr) {
+            Some(text) if !local => self.whole(&text, expr).map(Value::Number),
+            _ => self.value(expr, locals),
         }
-        let before = std::mem::replace(&mut self.integers, true);
-        let value = self.value(expr, locals);
-        self.integers = before;
-        value
+    }
+
+    /// A whole number that stands where Rust means one.
+    pub(super) fn whole(&mut self, text: &str, expr: &Expr) -> Result<Measured, Diagnostic> {
+        let span = self.places.of(expr);
+        let digits = Decimal::parse(text.trim_start_matches('-'), span)?;
+        let number = Measured::leaf(Formula { span, term: Term::Number(digits) });
+        if text.starts_with('-') { Measured::negative(number, span) } else { Ok(number) }
     }
 
     pub(super) fn binary(
@@ -213,13 +221,20 @@ impl<'a> Reader<'a> {
         if own && self.constants.contains(&name) {
             return Ok(Value::name(&name, place));
         }
-        if let Some(constant) = functions::mathematical(path) {
+        // In the attribute nothing needs to be imported; but a single letter is a quantity that was forgotten.
+        let known = |name: &String| self.integers && name != "E";
+        let imported = self.items.imports.constant(path).or_else(|| Some(name.clone()).filter(known));
+        if let Some(constant) = imported.as_deref().and_then(functions::mathematical) {
             if self.constants.contains(PI) {
                 return Err(unsupported(place, "`pi` is a constant of the module as well").help("rename that constant"));
             }
             return constant(place).map(Value::Number);
         }
         if own && let Some(item) = self.items.constants.iter().find(|item| item.ident == name) {
+            if matches!(items::bare(&item.expr), Expr::Array(_) | Expr::Tuple(_) | Expr::Repeat(_) | Expr::Reference(_))
+            {
+                return self.constant_list(item, path);
+            }
             return Err(unsupported(place, format!("the constant `{name}` is no floating-point number"))
                 .help(format!("declare it as `const {}: f64`", item.ident)));
         }
@@ -227,7 +242,24 @@ impl<'a> Reader<'a> {
             locals.iter().map(|(local, _)| local.as_str()).chain(self.constants.iter().map(String::as_str)).collect();
         known.sort_unstable();
         let written = Places::path(path);
-        Err(unknown_name(&written, place, known))
+        let unknown = unknown_name(&written, place, known).label("not a signal, a `let` or a constant of this module");
+        Err(match functions::mathematical(&name) {
+            Some(_) => unknown.help(format!("write `core::f64::consts::{name}`, or `use` it inside of the module")),
+            None => unknown,
+        })
+    }
+
+    /// A constant with components, which have no name of their own in the model: their values stand where they are used.
+    fn constant_list(&mut self, item: &syn::ItemConst, path: &Path) -> Result<Value, Diagnostic> {
+        items::unconditional(&item.attrs, self.places)?;
+        if self.calls >= CALL_LIMIT {
+            return Err(unsupported(self.places.of(path), "constants refer to one another in a circle")
+                .help("give one of them its value"));
+        }
+        self.calls += 1;
+        let value = self.value(&item.expr, &mut Locals::new());
+        self.calls -= 1;
+        value
     }
 
     fn field(&mut self, access: &syn::ExprField, locals: &mut Locals) -> Result<Value, Diagnostic> {
@@ -261,7 +293,7 @@ impl<'a> Reader<'a> {
             return Err(unsupported(self.places.of(access), format!("{} has no components", base.kind()))
                 .help("use its fields"));
         };
-        match items::literal(&access.index).and_then(|index| index.parse::<usize>().ok()) {
+        match self.items.whole(&access.index).and_then(|index| index.parse::<usize>().ok()) {
             Some(index) => self.component(items, index, access),
             None => Err(unsupported(self.places.of(&access.index), "this index is not known here")
                 .help("write a number, as in `z[0]`")),

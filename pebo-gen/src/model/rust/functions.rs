@@ -1,6 +1,6 @@
 //! Calls: methods and functions of floating-point numbers, and functions of the module.
 
-use syn::{Expr, ExprCall, ExprMethodCall, Path};
+use syn::{Expr, ExprCall, ExprMethodCall};
 
 use super::evaluate::Reader;
 use super::items;
@@ -29,8 +29,20 @@ const REFUSED: &[(&str, &str)] = &[
 ];
 
 /// Methods that this module spells out itself.
-const OWN: &[&str] =
-    &["powi", "powf", "recip", "mul_add", "hypot", "exp2", "log10", "log2", "sin_cos", "clone", "to_radians"];
+const OWN: &[&str] = &[
+    "powi",
+    "powf",
+    "recip",
+    "mul_add",
+    "hypot",
+    "exp2",
+    "log10",
+    "log2",
+    "sin_cos",
+    "clone",
+    "to_radians",
+    "to_degrees",
+];
 
 type Constant = fn(Span) -> Result<Measured, Diagnostic>;
 
@@ -43,22 +55,23 @@ const CONSTANTS: &[(&str, Constant)] = &[
     ("FRAC_PI_4", |at| Measured::binary(Operator::Divide, pi(at), decimal("4", at)?, at)),
     ("FRAC_PI_6", |at| Measured::binary(Operator::Divide, pi(at), decimal("6", at)?, at)),
     ("FRAC_PI_8", |at| Measured::binary(Operator::Divide, pi(at), decimal("8", at)?, at)),
+    ("FRAC_1_PI", |at| Measured::binary(Operator::Divide, decimal("1", at)?, pi(at), at)),
+    ("FRAC_2_PI", |at| Measured::binary(Operator::Divide, decimal("2", at)?, pi(at), at)),
     ("SQRT_2", |at| applied("sqrt", decimal("2", at)?, at)),
+    ("FRAC_1_SQRT_2", |at| applied("sqrt", decimal("0.5", at)?, at)),
+    ("LN_2", |at| applied("log", decimal("2", at)?, at)),
+    ("LN_10", |at| applied("log", decimal("10", at)?, at)),
     ("E", |at| applied("exp", decimal("1", at)?, at)),
 ];
 
-/// The constant that a path like `std::f64::consts::PI` names; `PI` alone is one too, since the model has no other.
-pub(super) fn mathematical(path: &Path) -> Option<Constant> {
-    let last = path.segments.last()?;
-    let from_library = path.segments.iter().rev().nth(1).is_some_and(|segment| segment.ident == "consts");
-    let imported = path.segments.len() == 1 && last.ident != "E";
-    let row = CONSTANTS.iter().find(|(name, _)| last.ident == name)?;
-    (from_library || imported).then_some(row.1)
+/// The constant of that name in `core::f64::consts`.
+pub(super) fn mathematical(name: &str) -> Option<Constant> {
+    CONSTANTS.iter().find(|(known, _)| *known == name).map(|row| row.1)
 }
 
 /// `name(..)` of the module, or `f64::name(a, ..)`.
 pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals) -> Result<Value, Diagnostic> {
-    let function = bare(&call.func);
+    let function = items::bare(&call.func);
     let Expr::Path(path) = function else {
         if matches!(function, Expr::Closure(_)) {
             return Err(refusal::expression(function, reader.places));
@@ -98,22 +111,20 @@ pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals
     applied_method(reader, &name, &last.ident, receiver, &arguments, &Expr::Call(call.clone()), locals)
 }
 
-/// An expression without the parentheses around it.
-fn bare(expr: &Expr) -> &Expr {
-    match expr {
-        Expr::Paren(inner) => bare(&inner.expr),
-        Expr::Group(inner) => bare(&inner.expr),
-        other => other,
-    }
-}
-
 /// `a.name(..)`.
 pub(super) fn method(reader: &mut Reader<'_>, call: &ExprMethodCall, locals: &mut Locals) -> Result<Value, Diagnostic> {
     let name = call.method.to_string();
     if matches!(name.as_str(), "clone" | "into") && call.args.is_empty() {
         return reader.value(&call.receiver, locals);
     }
-    let receiver = reader.number(&call.receiver, locals)?;
+    let receiver = match reader.value(&call.receiver, locals)? {
+        Value::Number(receiver) => receiver,
+        other => {
+            let message = format!("methods of {} are not known here", other.kind());
+            return Err(unsupported(reader.places.of(&call.method), message)
+                .help(format!("write a function of the module, and call it: `{name}(..)`")));
+        }
+    };
     let arguments: Vec<&Expr> = call.args.iter().collect();
     applied_method(reader, &name, &call.method, receiver, &arguments, &Expr::MethodCall(call.clone()), locals)
 }
@@ -135,7 +146,7 @@ fn applied_method(
     let number = match name {
         "powi" => {
             expected(1)?;
-            let exponent = exponent(reader, arguments[0], locals)?;
+            let exponent = exponent(reader, arguments[0])?;
             Measured::binary(Operator::Power, receiver, exponent, at)?
         }
         "powf" => {
@@ -172,6 +183,11 @@ fn applied_method(
             let degree = Measured::binary(Operator::Divide, pi(at), decimal("180", at)?, at)?;
             Measured::binary(Operator::Multiply, receiver, degree, at)?
         }
+        "to_degrees" => {
+            expected(0)?;
+            let radian = Measured::binary(Operator::Divide, decimal("180", at)?, pi(at), at)?;
+            Measured::binary(Operator::Multiply, receiver, radian, at)?
+        }
         "sin_cos" => {
             expected(0)?;
             let (sine, cosine) = (applied("sin", receiver.clone(), at)?, applied("cos", receiver, at)?);
@@ -199,12 +215,9 @@ fn applied_method(
 }
 
 /// The exponent of `powi`: an integer, which is one in Rust too.
-fn exponent(reader: &mut Reader<'_>, expr: &Expr, locals: &mut Locals) -> Result<Measured, Diagnostic> {
-    if items::literal(expr).is_some_and(|text| text.trim_start_matches('-').bytes().all(|byte| byte.is_ascii_digit())) {
-        let before = std::mem::replace(&mut reader.integers, true);
-        let number = reader.number(expr, locals);
-        reader.integers = before;
-        return number;
+fn exponent(reader: &mut Reader<'_>, expr: &Expr) -> Result<Measured, Diagnostic> {
+    if let Some(text) = reader.items.whole(expr) {
+        return reader.whole(&text, expr);
     }
     Err(unsupported(reader.places.of(expr), "this exponent is not known here")
         .help("write an integer, as in `a.powi(2)`; for other powers write `a.powf(0.5)`"))

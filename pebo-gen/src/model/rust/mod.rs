@@ -16,6 +16,7 @@ mod arguments;
 mod block;
 mod evaluate;
 mod functions;
+mod imports;
 mod items;
 mod places;
 mod plant;

@@ -55,7 +55,7 @@ pub(super) fn read(
     let items = Items::of(module);
     let mut signals = |letter: &str, required: Option<&str>, places: &mut Places| {
         if let Some(item) = items.structure(letter) {
-            return items::fields(item, places, diagnostics);
+            return items::fields(&items, item, places, diagnostics);
         }
         if let Some(what) = required {
             let what = format!("the struct `{letter}`, the {what},");
@@ -296,8 +296,7 @@ impl<'a> Pass<'a> {
         for (relation, side) in &chain.rest {
             rest.push((*relation, self.reader.number(side, locals)?.formula));
         }
-        let span = rest.last().map_or(first.span, |(_, last)| first.span.to(last.span));
-        Ok(Comparison { span, first, rest })
+        Ok(Comparison { span: chain.span, first, rest })
     }
 }
 

@@ -5,7 +5,7 @@ use pebo_runtime::nalgebra::SVector;
 use pebo_runtime::{Fault, Filter, Gradient, Hold};
 
 /// The converter that is observed.
-#[pebo_macros::pebo_model("../../../models/cuk.yaml", scalar = f32)]
+#[pebo_macros::pebo_model("models/cuk.yaml", scalar = f32)]
 pub struct Cuk;
 
 /// The observer with its gains.

@@ -1,0 +1,38 @@
+//! Standard output: everything is written, or there is a diagnostic.
+
+use std::io::{self, Write as _};
+
+use pebo_gen::source::{Code, Diagnostic, Source, Span};
+
+use super::files::reason;
+use super::{Ending, terminal};
+
+/// Writes all of a text. A reader that went away is no error of ours.
+pub(super) fn write(text: &[u8]) -> Result<(), Diagnostic> {
+    let mut output = io::stdout().lock();
+    match output.write_all(text).and_then(|()| output.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(unwritten(&error)),
+        _ => Ok(()),
+    }
+}
+
+/// Writes all of a text, and says how that ended.
+pub(super) fn print(text: &[u8]) -> Ending {
+    match write(text) {
+        Ok(()) => Ending::Accepted,
+        Err(diagnostic) => refuse(diagnostic),
+    }
+}
+
+/// Says that standard output could not be written.
+pub(super) fn refuse(diagnostic: Diagnostic) -> Ending {
+    terminal::report(&[diagnostic], &Source::unread("standard output"));
+    Ending::Malformed
+}
+
+/// What there is to say of a failed write.
+pub(super) fn unwritten(error: &io::Error) -> Diagnostic {
+    let message = format!("cannot write to standard output: {}", reason(error));
+    Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
+        .help("send the output to where there is room for it, or name a file if the command takes one")
+}
