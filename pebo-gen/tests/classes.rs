@@ -6,6 +6,7 @@ use std::time::Instant;
 use pebo_gen::analysis::{Class, Excitation, Outcome, RegressionKind, Verdict};
 use pebo_gen::cas::Expr;
 use pebo_gen::cas::zero::decide;
+use pebo_gen::report::summary;
 use pebo_gen::source::{Code, Diagnostic, Source};
 use pebo_gen::{Derived, derive};
 
@@ -80,6 +81,22 @@ fn ranks_are_those_at_the_values() {
     assert_eq!(special("1").derivation.cascade.verdict, Verdict::Proved);
     assert_eq!(special("1").derivation.outcome, Outcome::Rejected);
     assert_eq!(special("3").derivation.outcome, Outcome::Accepted);
+}
+
+/// A verdict names the values that it rests on, or the parameters that must not vanish.
+#[test]
+fn special_values_are_named() {
+    let report = |parameters: &str| {
+        let plant = derived(&format!("x: [x]\ny: [y]\nparameters: {parameters}\nlti: {{A11: a, A21: k}}"));
+        summary(&plant.plant, &plant.derivation)
+    };
+    let special = "the ranks are others for `k = 0`, `a = 2` than in general: the verdict is for these";
+    assert!(report("{k: 0, a: 2}").contains(special));
+    for general in ["{k: 3, a: 2}", "[k, a]"] {
+        assert!(!report(general).contains("ranks"), "{general}");
+    }
+    assert!(report("[k, a]").ends_with("  where k != 0\n"));
+    assert!(!report("{k: 3, a: 2}").contains("  where "));
 }
 
 /// Claim C3, with T1 and T2 derived; the regression is the paper's.
@@ -262,6 +279,17 @@ fn chains_of_point_masses_satisfy_assumption_3() {
         let wrong = text.replace(&format!("cos(q{masses})/r{masses}]"), &format!("cos(q{masses})]"));
         assert_ne!(wrong, text);
         assert_eq!(derived(&wrong).derivation.cascade.verdict, Verdict::Refuted);
+    }
+}
+
+/// Elimination would go on for hours in the equations of a chain in motion: it rests at zero momenta, whatever its
+/// positions are that the forces hold.
+#[test]
+fn a_chain_of_point_masses_rests_where_it_is_held() {
+    let chain = derived(&chain(4));
+    let report = summary(&chain.plant, &chain.derivation);
+    for line in ["operating point  proved   p_r1 = 0", "p_q4 = 0", "f_q4 = g*m4*r4*cos(q4)", "h = 0 there"] {
+        assert!(report.contains(line), "{line}:\n{report}");
     }
 }
 
