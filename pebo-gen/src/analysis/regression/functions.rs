@@ -38,7 +38,8 @@ pub(super) fn over_parameterised(
         return Some(refusal);
     }
     // With sides of a primitive first, these are the first half of the rows.
-    let (mut phi_0, mut phi_1) = (separated.known, separated.factors);
+    let short = |row: &Vec<Expr>| row.iter().map(|e| shortest(&plant.arena, domain, *e)).collect::<Vec<Expr>>();
+    let (mut phi_0, mut phi_1) = (short(&separated.known), separated.factors.iter().map(short).collect::<Vec<_>>());
     let held = phi_0.len() - rows.len();
     let primitive_0: Vec<Expr> = phi_0.drain(..held).collect();
     let primitive_1: Vec<Vec<Expr>> = phi_1.drain(..held).collect();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::analysis::tidy::shortest;
+use crate::analysis::tidy::{shortest, shortest_equal};
 use crate::analysis::{relations, separation};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
@@ -82,7 +82,7 @@ fn standing_still(
                     kind: RegressionKind::Static,
                     rows: Vec::new(),
                     phi_1: separated.factors.iter().map(negated).collect(),
-                    phi_0: separated.known,
+                    phi_0: as_written(plant, domain, in_z, &separated.known),
                     primitive_0: Vec::new(),
                     primitive_1: Vec::new(),
                     eta_symbols: plant.eta(separated.eta.len()),
@@ -110,4 +110,18 @@ fn standing_still(
             Claim { verdict: Verdict::Undecided, result: None }
         }
     }
+}
+
+/// What is known, as the relation itself at z = chi where that is shorter, but for the constants that the unknowns
+/// have absorbed.
+fn as_written(plant: &Plant, domain: &Domain, in_z: &[Expr], known: &[Expr]) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let at_chi: BTreeMap<Symbol, Expr> =
+        plant.z.iter().copied().zip(plant.chi.iter().map(|s| arena.of_symbol(*s))).collect();
+    let of = |(relation, known): (&Expr, &Expr)| {
+        let relation = arena.substitute(*relation, &at_chi);
+        let constant = shortest(arena, domain, arena.sub(*known, relation));
+        shortest_equal(arena, domain, *known, &[arena.add(relation, constant)])
+    };
+    in_z.iter().zip(known).map(of).collect()
 }

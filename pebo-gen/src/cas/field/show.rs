@@ -116,7 +116,8 @@ impl Field<'_> {
         }
         let inner =
             with.into_iter().map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient)).collect();
-        let group = self.arena.mul(self.term(&content, &Integer::ONE), self.grouped(inner));
+        let (number, inner) = without_content(inner);
+        let group = self.arena.mul(self.term(&content, &number), self.grouped(inner));
         if without.is_empty() { group } else { self.arena.add(self.grouped(without), group) }
     }
 
@@ -126,9 +127,11 @@ impl Field<'_> {
     }
 }
 
-/// The greatest common divisor of the coefficients, and the terms without it.
+/// The greatest common divisor of the coefficients, of their sign if they have one, and the terms without it.
 fn without_content(terms: Terms) -> (Integer, Terms) {
     let content = terms.iter().fold(Integer::ZERO, |content, (_, coefficient)| content.gcd(coefficient));
+    let negative = terms.iter().all(|(_, coefficient)| coefficient.signum() < 0);
+    let content = if negative { -&content } else { content };
     let divided = terms.iter().map(|(m, c)| Some((m.clone(), c.div_exact(&content)?))).collect::<Option<Terms>>();
     match divided {
         Some(divided) => (content, divided),
@@ -162,6 +165,7 @@ mod tests {
             (arena.product([square, sum, difference]), "(a + b)^3*(a - b)"),
             (arena.product([square, a, arena.number(6)]), "6*a*(a + b)^2"),
             (arena.div(arena.product([square, square]), arena.add(c, c)), "(a + b)^4/(2*c)"),
+            (arena.add(c, arena.product([a, sum, arena.number(-2)])), "c - 2*a*(a + b)"),
             // Factors of one multiplicity are not told apart.
             (arena.div(c, arena.sub(arena.number(1), square)), "-c/(a*(a + 2*b) + b^2 - 1)"),
         ];
