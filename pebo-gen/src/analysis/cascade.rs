@@ -233,7 +233,12 @@ impl Witness {
 
     /// What the witness shows, as a reader would say it: `-G*v4/C4 = 9 where C4 = 1, ..`.
     pub fn sentence(&self, arena: &Arena) -> String {
-        self.sentence_on(arena, &format!("`{}`", arena.print(self.expr)))
+        let printed = arena.print(self.expr);
+        if printed.chars().count() <= MOST_CHARACTERS {
+            return self.sentence_on(arena, &format!("`{printed}`"));
+        }
+        let start: String = printed.chars().take(MOST_CHARACTERS).collect();
+        self.sentence_on(arena, &format!("`{start} ..`"))
     }
 
     /// The same with other words for the expression.
@@ -254,6 +259,9 @@ impl Witness {
         format!("{what} is {value} {place}")
     }
 }
+
+/// A longer formula is cut in a sentence: its value is what counts there.
+const MOST_CHARACTERS: usize = 300;
 
 /// A few significant digits.
 fn short(value: f64) -> String {

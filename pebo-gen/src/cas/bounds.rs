@@ -37,6 +37,12 @@ impl Domain {
 /// Whether the expression is positive (true) or negative (false) on the whole box, seen by dividing it
 /// into no more than so many boxes.
 pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
+    // Most expressions that have no sign show it at a corner, where they are zero or have another one.
+    let mut corners = corners(&whole).into_iter().map(|corner| sign(arena, expr, &corner));
+    let first = corners.next()??;
+    if !corners.all(|other| other == Some(first)) {
+        return None;
+    }
     let mut open = vec![whole];
     let mut found: Option<bool> = None;
     for _ in 0..=most {
@@ -60,6 +66,21 @@ fn sign(arena: &Arena, expr: Expr, part: &Ranges) -> Option<bool> {
     }
     let value = arena.enclose_over(&[expr], &values, PRECISION)?.pop()?;
     (!value.contains_zero()).then(|| value.is_positive())
+}
+
+/// Points of the box: all its corners where these are few, else two opposite ones.
+fn corners(whole: &Ranges) -> Vec<Ranges> {
+    const MOST_SIDES: usize = 3;
+    let sides: Vec<Symbol> = whole.iter().filter(|(_, (low, high))| low != high).map(|(symbol, _)| *symbol).collect();
+    let end = |upper: bool, (low, high): &(Rational, Rational)| {
+        if upper { (high.clone(), high.clone()) } else { (low.clone(), low.clone()) }
+    };
+    let at = |upper: &dyn Fn(Symbol) -> bool| whole.iter().map(|(s, ends)| (*s, end(upper(*s), ends))).collect();
+    if sides.len() > MOST_SIDES {
+        return vec![at(&|_| false), at(&|_| true)];
+    }
+    let side = |symbol| sides.iter().position(|s| *s == symbol).unwrap_or(sides.len());
+    (0..1_u32 << sides.len()).map(|corner| at(&|symbol| corner >> side(symbol) & 1 == 1)).collect()
 }
 
 /// The box cut in two across its widest side; none of a point.

@@ -9,7 +9,7 @@ CASCADES = {
     "Cuk, case I": ("models/cuk.yaml", ["(E - (1 - d)*v2)/L1", "-(d*v2 + v4)/L3"]),
     "Cuk, case II": ("models/cuk_case2.yaml", ["(E - (1 - d)*v2)/L1", "(i3 + G*d*v2)/C4"]),
     "PMSM": ("tests/models/pmsm.yaml", ["v1 - R*i1", "v2 - R*i2"]),
-    "cart-pendulum": ("tests/models/cart_pendulum.yaml", ["(a*c*sin(q1) - b*u*cos(q1))/sqrt(c*s)", "u/sqrt(c)"]),
+    "cart-pendulum": ("tests/bench/models/cart_pendulum.yaml", ["(a*c*sin(q1) - b*u*cos(q1))/sqrt(c*s)", "u/sqrt(c)"]),
     "two-link arm": ("tests/bench/models/two_link_arm.yaml", ["t1 - g1*cos(q1) - g2*cos(q1 + q2)"]),
 }
 

@@ -66,6 +66,7 @@ use inverse::{Known, domain_of};
 use kernel::Kernel;
 use parts::Parts;
 use root::Whole;
+use sign::Sign;
 
 /// Steps of polynomial arithmetic that one field may spend, some seconds' worth.
 const STEPS: u64 = 50_000_000;
@@ -147,6 +148,10 @@ pub struct Field<'a> {
     boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
     /// Kernels whose signs are being asked for.
     asking: RefCell<BTreeSet<u32>>,
+    /// Signs of kernels by what they are, with so many signs known.
+    natures: RefCell<FxHashMap<(u32, usize), Option<Sign>>>,
+    /// Those of them that were found within another question, which may have kept more from being seen.
+    passing: RefCell<Vec<(u32, usize)>>,
     /// How deep the question of a sign is nested.
     depth: Cell<u32>,
     refined: RefCell<bool>,
@@ -180,6 +185,8 @@ impl<'a> Field<'a> {
             domain: domain_of(facts),
             boxed: RefCell::default(),
             asking: RefCell::default(),
+            natures: RefCell::default(),
+            passing: RefCell::default(),
             depth: Cell::default(),
             refined: RefCell::new(false),
             parts: RefCell::default(),
@@ -213,6 +220,8 @@ impl<'a> Field<'a> {
         self.angles.borrow_mut().clear();
         self.wholes.borrow_mut().clear();
         self.signs.borrow_mut().clear();
+        self.natures.borrow_mut().clear();
+        self.passing.borrow_mut().clear();
         self.unsigned.borrow_mut().clear();
         self.asked.set(false);
         *self.refined.borrow_mut() = false;

@@ -59,12 +59,27 @@ impl Field<'_> {
         // A fact may have the kernel itself in it: then its form is all that is known.
         let by_form =
             (root || matches!(self.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
+        let state = (variable, self.signs.borrow().len());
+        if let Some(sign) = self.natures.borrow().get(&state) {
+            return *sign;
+        }
         if !self.asking.borrow_mut().insert(variable) {
             return by_form;
         }
-        let sign = self.sign_by_arguments(expr, radicand);
+        let sign = self.sign_by_arguments(expr, radicand).or(by_form);
         self.asking.borrow_mut().remove(&variable);
-        sign.or(by_form)
+        // What was found within another question holds for that question alone: asked by itself, it may show more.
+        let mut passing = self.passing.borrow_mut();
+        let mut natures = self.natures.borrow_mut();
+        if self.asking.borrow().is_empty() && self.depth.get() == 0 {
+            passing.drain(..).for_each(|state| {
+                natures.remove(&state);
+            });
+        } else {
+            passing.push(state);
+        }
+        natures.insert(state, sign);
+        sign
     }
 
     fn sign_by_arguments(&self, expr: Expr, radicand: Option<Poly>) -> Option<Sign> {
