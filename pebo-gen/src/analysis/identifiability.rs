@@ -61,6 +61,9 @@ pub(super) fn prove(
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) };
     }
+    if excited_in_motion(plant, domain, cascade, &stack, unknowns) {
+        return answer(Excitation::Excitation, None, Verdict::Proved);
+    }
     let mut latest = stack.clone();
     let mut unseen = match unseen_by(arena, domain, &stack, unknowns) {
         Ok(unseen) => unseen,
@@ -94,6 +97,26 @@ pub(super) fn prove(
         refusal
     });
     answer(Excitation::Never, Some(direction), Verdict::Refuted)
+}
+
+/// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
+fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
+    let arena = &plant.arena;
+    let mut flow = Flow::new(plant, cascade);
+    let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
+    let mut rank = rank_seen(arena, domain, &stack, unknowns);
+    for _ in 1..unknowns {
+        latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
+        stack.extend(latest.iter().cloned());
+        let next = rank_seen(arena, domain, &stack, unknowns);
+        // No derivative adds to a rank that one derivative did not raise.
+        if next == rank || next == unknowns {
+            return next == unknowns;
+        }
+        rank = next;
+        flow.advance(plant);
+    }
+    false
 }
 
 /// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
@@ -160,26 +183,37 @@ impl Flow {
 
 /// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere.
 fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
-    if rows.len() < columns {
-        return false;
-    }
+    rows.len() >= columns && rank_seen(arena, domain, rows, columns) == columns
+}
+
+/// The largest rank that the matrix provably has at a point of the domain; almost everywhere it is no smaller.
+fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
     let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    domain.points(arena, &entries).take(MOST_POINTS).any(|point| full_rank_at(arena, &entries, columns, &point))
+    let mut most = 0;
+    for point in domain.points(arena, &entries).take(MOST_POINTS) {
+        most = most.max(rank_at(arena, &entries, columns, &point));
+        if most == columns {
+            break;
+        }
+    }
+    most
 }
 
-fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> bool {
+fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> usize {
     const PRECISION: Precision = Precision::new(256);
-    let Some(values) = arena.enclose_all(entries, point, PRECISION) else { return false };
+    let Some(values) = arena.enclose_all(entries, point, PRECISION) else { return 0 };
     let rows: Vec<Vec<Interval>> = values.chunks(columns).map(<[Interval]>::to_vec).collect();
-    eliminates(rows, columns, PRECISION).unwrap_or(false)
+    eliminated(rows, columns, PRECISION).unwrap_or(0)
 }
 
-/// Gaussian elimination on enclosures: whether a pivot that excludes zero exists in every column.
-fn eliminates(mut rows: Vec<Vec<Interval>>, columns: usize, p: Precision) -> Option<bool> {
+/// Gaussian elimination on enclosures: the number of columns with a pivot that excludes zero.
+fn eliminated(mut rows: Vec<Vec<Interval>>, columns: usize, p: Precision) -> Option<usize> {
+    let mut rank = 0;
     for column in 0..columns {
         let candidates = rows.iter().enumerate().filter(|(_, row)| !row[column].contains_zero());
         let best = candidates.max_by(|(_, a), (_, b)| size(&a[column]).total_cmp(&size(&b[column])));
-        let Some((index, _)) = best else { return Some(false) };
+        let Some((index, _)) = best else { continue };
+        rank += 1;
         let pivot = rows.swap_remove(index);
         for row in &mut rows {
             let factor = row[column].div(&pivot[column], p)?;
@@ -188,7 +222,7 @@ fn eliminates(mut rows: Vec<Vec<Interval>>, columns: usize, p: Precision) -> Opt
             }
         }
     }
-    Some(true)
+    Some(rank)
 }
 
 fn size(value: &Interval) -> f64 {
