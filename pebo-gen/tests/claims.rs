@@ -256,6 +256,49 @@ const TABLE: &[(&str, &str, Answer)] = &[
         "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nidentities: [(a - c)^2 + (b - d)^2 - 4]",
         Accepted("static over-parameterised excitation"),
     ),
+    // Many unknowns: ranks are seen at points, not by exact elimination.
+    (
+        "ninth power",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x - y*x^9}\nphi: [x]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    (
+        "identity of ninth degree",
+        "x: [l, m]\ny: [i, j]\nu: [v, w]\nf_x: {l: v - i, m: w - i}\nphi: [l, m]\nidentities: [(l - i)^9 + (m - j)^2 - 2]",
+        Accepted("static over-parameterised excitation"),
+    ),
+    // Plants from elsewhere.
+    (
+        "epidemic",
+        "parameters: [b, c]\nassume: [b > 0, S > 0, I > 0]\nx: [S]\ny: [I]\nf_x: {S: -b*S*I}\nf_y: {I: b*S*I - c*I}\n\
+         phi: [log(S)]",
+        Accepted("dynamic over-parameterised instant"),
+    ),
+    (
+        "induction motor in stator fluxes",
+        "parameters: [r, l, m, s, q, n]\nassume: [l > 0, m > 0, s > 0]\nx: [a, b]\ny: [i, j]\nu: [v, w, o]\n\
+         f_x: {a: -r/l*a - n*o*b + r*m/l*i, b: -r/l*b + n*o*a + r*m/l*j}\n\
+         f_y: {i: (v - q*i - m/l*(-r/l*a - n*o*b + r*m/l*i))/s, j: (w - q*j - m/l*(-r/l*b + n*o*a + r*m/l*j))/s}\n\
+         phi: [m/l*a + s*i, m/l*b + s*j]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "attitude by quaternions",
+        "parameters: [J, K, L]\nassume: [J > 0, K > 0, L > 0]\nx: [a, b, c]\ny: [p, q, r, s]\nu: [t, v, w]\n\
+         f_x: {a: ((K - L)*b*c + t)/J, b: ((L - J)*a*c + v)/K, c: ((J - K)*a*b + w)/L}\n\
+         f_y: {p: -(q*a + r*b + s*c)/2, q: (p*a - s*b + r*c)/2, r: (s*a + p*b - q*c)/2, s: (q*b - r*a + p*c)/2}\n\
+         identities: [p^2 + q^2 + r^2 + s^2 - 1]\nphi:\n  \
+         - (p^2 + q^2 - r^2 - s^2)*J*a + 2*(q*r - p*s)*K*b + 2*(q*s + p*r)*L*c\n  \
+         - 2*(q*r + p*s)*J*a + (p^2 - q^2 + r^2 - s^2)*K*b + 2*(r*s - p*q)*L*c\n  \
+         - 2*(q*s - p*r)*J*a + 2*(r*s + p*q)*K*b + (p^2 - q^2 - r^2 + s^2)*L*c",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "Lorenz",
+        "parameters: [s, r, b]\nassume: [b > 0]\nx: [y, z]\ny: [x]\nf_x: {y: r*x - y - x*z, z: x*y - b*z}\n\
+         f_y: {x: s*(y - x)}\nphi: [y, z]",
+        Accepted("gpebo dynamic linear excitation"),
+    ),
 ];
 
 #[test]
