@@ -45,7 +45,7 @@ impl Panels {
         if names.simulation.panels.is_empty() {
             pass.usual(errors);
         } else {
-            pass.written(problems);
+            pass.written(errors, problems);
         }
         pass.found
     }
@@ -59,13 +59,18 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    fn written(&mut self, problems: &mut Diagnostics) {
+    /// As the file has them; estimate less truth is the error, which of an angle is the shorter way round.
+    fn written(&mut self, errors: &[Expr], problems: &mut Diagnostics) {
         let arena = &self.names.plant.arena;
+        let differences = self.hats.iter().map(|(state, hat)| arena.sub(*hat, arena.variable(state)));
+        let errors: BTreeMap<Expr, Expr> = differences.zip(errors.iter().copied()).collect();
+        let meant = |curve: Expr| errors.get(&curve).copied().unwrap_or(curve);
         let scope = self.names.scope(&View { sight: Sight::Everything, own: None, hats: self.hats.clone() });
         for panel in &self.names.simulation.panels {
             let curves = panel.curves.iter();
-            let curves: Vec<(Label, Expr)> =
-                curves.filter_map(|f| Some((Label::formula(f), problems.keep(lower(arena, &scope, f))?))).collect();
+            let curves: Vec<(Label, Expr)> = curves
+                .filter_map(|f| Some((Label::formula(f), meant(problems.keep(lower(arena, &scope, f))?))))
+                .collect();
             let unit = panel.unit.as_ref().map(|unit| unit.value.clone());
             self.add((&panel.title.value, unit, panel.scale), curves);
         }

@@ -194,6 +194,12 @@ fn the_error_of_an_angle_is_the_shorter_way_round() {
         let turns = (hat - q - error) / period;
         assert!((turns - turns.round()).abs() < 1e-9, "{q} {hat} {error}");
     }
+    // So it is drawn, by itself or as a panel says it.
+    let panels = "  panels: [{title: Error, curves: [hat(q) - q, 2*(hat(q) - q)]}]\n";
+    let drawn = run(&format!("{ROTOR}{panels}"), &short(2.0));
+    let highest = |curve: &Vec<(f64, f64)>| curve.iter().fold(0.0_f64, |most, (_, error)| most.max(error.abs()));
+    assert!(highest(&drawn.curves[0][0]) <= period / 2.0 + 1e-12);
+    assert!(highest(&drawn.curves[0][1]) > 10.0, "no error, but what was written");
     // The angle itself has turned several periods by then.
     assert!(column("q").last().unwrap() > &6.9 && column("q_hat").last().unwrap() < &0.7);
 }
