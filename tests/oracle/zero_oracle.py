@@ -2,8 +2,8 @@
 
 Write the cases, then read them (the second number is how many to sample, all if left out):
 
-    PEBO_CASES=/tmp/cases.tsv cargo test --release -p pebo-gen --test campaign
-    python3 tests/oracle/zero_oracle.py /tmp/cases.tsv 5000
+    PEBO_CASES=$PWD/target/cases.tsv cargo test --release -p pebo-gen --test campaign
+    python3 tests/oracle/zero_oracle.py target/cases.tsv 5000
 
 Needs SymPy and mpmath. What decides is the value at random points of the domain, with 50 digits: a
 case called zero must shrink to nothing with 150 digits wherever it has a real value, one called nonzero must

@@ -5,7 +5,6 @@
 
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
-use crate::cas::field::Field;
 use crate::cas::{Arena, Expr, Node};
 use crate::plant::Plant;
 
@@ -33,24 +32,5 @@ fn factors(arena: &Arena, expr: Expr) -> Vec<Expr> {
     match arena.node(expr) {
         Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
         _ => vec![expr],
-    }
-}
-
-impl Domain {
-    /// Whether the facts show that the expression compares so with zero, wherever it has a value.
-    pub(crate) fn shows(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
-        let shown = || {
-            let field = Field::over(arena, &self.facts, &[expr])?;
-            let fraction = field.fraction(expr)?;
-            match relation {
-                Relation::Positive => field.is_positive(&fraction),
-                Relation::NonNegative => field.is_not_negative(&fraction),
-                Relation::NonZero => Ok(field.is_positive(&fraction)? || field.is_positive(&fraction.opposite())?),
-            }
-        };
-        // What cannot be decided is not shown.
-        self.facts.iter().any(|fact| fact == (expr, relation))
-            || shown().unwrap_or(false)
-            || self.sign_over_box(arena, expr).is_some_and(|positive| positive || relation == Relation::NonZero)
     }
 }

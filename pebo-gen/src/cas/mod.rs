@@ -20,6 +20,7 @@ pub mod oriented;
 pub mod poly;
 mod print;
 pub mod rational;
+mod shows;
 pub mod zero;
 
 pub use arena::Arena;

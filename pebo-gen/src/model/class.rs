@@ -38,15 +38,22 @@ pub struct Matrix<F> {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
-#[allow(missing_docs)]
 pub struct Lti<F> {
+    /// From x to its rate.
     pub a11: Option<Matrix<F>>,
+    /// From y to the rate of x.
     pub a12: Option<Matrix<F>>,
+    /// From x to the rate of y.
     pub a21: Option<Matrix<F>>,
+    /// From y to its rate.
     pub a22: Option<Matrix<F>>,
+    /// From the inputs to the rate of x.
     pub b1: Option<Matrix<F>>,
+    /// From the inputs to the rate of y.
     pub b2: Option<Matrix<F>>,
+    /// The factor of x in the transform `T1 x + T2 y`; derived where it is absent.
     pub t1: Option<Matrix<F>>,
+    /// The factor of y in the transform; derived with `t1`.
     pub t2: Option<Matrix<F>>,
 }
 
@@ -56,11 +63,14 @@ pub struct Lti<F> {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
-#[allow(missing_docs)]
 pub struct Mechanical<F> {
+    /// The inertia matrix in the positions.
     pub m: Option<Matrix<F>>,
+    /// The potential energy in the positions.
     pub v: Option<F>,
+    /// How the inputs act on the momenta.
     pub g: Option<Matrix<F>>,
+    /// The frame: the transform is `T(q)' p`.
     pub t: Option<Matrix<F>>,
 }
 
