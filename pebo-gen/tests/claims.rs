@@ -108,6 +108,17 @@ const TABLE: &[(&str, &str, Answer)] = &[
         Accepted("dynamic linear instant"),
     ),
     ("nothing to estimate from", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
+    // Definitions mean what they say wherever they stand: p' = u + x^2 is not free of x.
+    (
+        "a definition that uses a later one",
+        "x: [x]\ny: [y]\nu: [u]\ndefine: {a: b, b: x^2}\nf_x: {x: u + a}\nf_y: {y: x}\nphi: [x]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "a definition that uses a later one, rightly",
+        "x: [x]\ny: [y]\nu: [u]\ndefine: {a: 2*b, b: y^2}\nf_x: {x: u + a}\nf_y: {y: x}\nphi: [x]",
+        Accepted("dynamic linear instant"),
+    ),
     // Transforms and their inverses.
     (
         "coupled",

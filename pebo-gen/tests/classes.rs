@@ -354,7 +354,8 @@ fn the_flux_of_a_levitated_ball_multiplies_a_rate() {
     assert_eq!(printed(&ball, &regression.primitive_0), ["i*chi1"]);
     assert_eq!(printed(&ball, &regression.primitive_1.concat()), ["i", "0"]);
     let arena = &ball.plant.arena;
-    let [i, u, r, k, v, chi] = ["i", "U", "R", "k", "v", "chi1"].map(|name| arena.variable(name));
+    let [i, u, r, k, v] = ["i", "U", "R", "k", "v"].map(|name| arena.variable(name));
+    let chi = arena.of_symbol(ball.plant.chi[0]);
     // 2 i (U - R i) - v chi^2/k, and its slopes in theta and theta^2.
     let driven = arena.product([arena.number(2), i, arena.sub(u, arena.mul(r, i))]);
     let expected = [

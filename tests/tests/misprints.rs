@@ -23,8 +23,10 @@ fn expr(derived: &Derived, text: &str) -> Expr {
     let arena = &derived.plant.arena;
     let formula = parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused).expect(text);
     let mut scope = Scope::new();
+    let own: Vec<_> = derived.plant.chi.iter().chain(&derived.plant.theta).collect();
     for (name, _) in formula.names() {
-        scope.define(name, arena.variable(name));
+        let symbol = own.iter().find(|symbol| arena.name(***symbol) == name);
+        scope.define(name, arena.of_symbol(symbol.map_or_else(|| arena.symbol(name), |symbol| **symbol)));
     }
     lower(arena, &scope, &formula).expect(text)
 }

@@ -6,7 +6,7 @@ use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
 use super::design::{Claim, Derivation, Outcome, Verdict};
-use super::{cascade, conditions, identifiability, left_inverse, regression};
+use super::{cascade, conditions, identifiability, known, left_inverse, regression};
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
@@ -14,11 +14,14 @@ impl Derivation {
         let domain = plant.domain();
         let mut found: Vec<Diagnostic> = nothing_assumed(plant).into_iter().collect();
         let (class, cascade) = cascade::prove(plant, &domain, &mut found);
+        let cascade = known::cascade(plant, cascade, &mut found);
         let left_inverse = left_inverse::prove(plant, &domain, &mut found);
+        let left_inverse = known::left_inverse(plant, left_inverse, &mut found);
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
         let regression = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
-                regression::prove(plant, &domain, result, inverse, &mut found)
+                let claim = regression::prove(plant, &domain, result, inverse, &mut found);
+                known::regression(plant, class, claim, &mut found)
             }
             _ => Claim::skipped(),
         };
@@ -33,6 +36,7 @@ impl Derivation {
             Some(result) if identifiability.verdict == Verdict::Refuted && !plant.identities.is_empty() => {
                 let mut others = Vec::new();
                 let other = regression::from_identities(plant, &domain, inverse, &mut others);
+                let other = known::regression(plant, class, other, &mut others);
                 let seen = other
                     .result
                     .as_ref()

@@ -169,9 +169,9 @@ impl Flow {
             .free
             .iter()
             .map(|signal| {
-                let rate = arena.variable(&format!("{}'", arena.name(*signal)));
-                self.rates.insert(*signal, rate);
-                arena.symbol(&format!("{}'", arena.name(*signal)))
+                let rate = arena.generated(&format!("{}'", arena.name(*signal)));
+                self.rates.insert(*signal, arena.of_symbol(rate));
+                rate
             })
             .collect();
     }

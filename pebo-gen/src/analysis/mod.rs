@@ -20,6 +20,7 @@ mod gpebo;
 mod identifiability;
 mod implicit;
 mod killing;
+mod known;
 mod left_inverse;
 mod pencil;
 mod regression;

@@ -20,7 +20,10 @@ pub struct Arena {
     nodes: RefCell<Vec<Node>>,
     table: RefCell<HashTable<Expr>>,
     names: RefCell<Vec<String>>,
+    /// The authors' symbols by their names.
     symbols: RefCell<FxHashMap<String, Symbol>>,
+    /// The generator's own by theirs: another space of names.
+    generated: RefCell<FxHashMap<String, Symbol>>,
 }
 
 impl Arena {
@@ -48,24 +51,33 @@ impl Arena {
         expr
     }
 
-    /// The symbol of this name.
+    /// The symbol that an author calls by this name.
     pub fn symbol(&self, name: &str) -> Symbol {
-        if let Some(&symbol) = self.symbols.borrow().get(name) {
+        self.entered(&self.symbols, name)
+    }
+
+    /// The generator's own symbol of this name: never one that an author calls so, though both are shown alike.
+    pub fn generated(&self, name: &str) -> Symbol {
+        self.entered(&self.generated, name)
+    }
+
+    fn entered(&self, space: &RefCell<FxHashMap<String, Symbol>>, name: &str) -> Symbol {
+        if let Some(&symbol) = space.borrow().get(name) {
             return symbol;
         }
         let mut names = self.names.borrow_mut();
         let symbol = Symbol(u32::try_from(names.len()).expect("fewer than 2^32 symbols"));
         names.push(name.to_owned());
-        self.symbols.borrow_mut().insert(name.to_owned(), symbol);
+        space.borrow_mut().insert(name.to_owned(), symbol);
         symbol
     }
 
-    /// The name of a symbol.
+    /// The name that a symbol is shown by.
     pub fn name(&self, symbol: Symbol) -> String {
         self.names.borrow()[symbol.index()].clone()
     }
 
-    /// The symbol of this name as an expression.
+    /// The symbol that an author calls by this name, as an expression.
     pub fn variable(&self, name: &str) -> Expr {
         let symbol = self.symbol(name);
         self.intern(Node::Symbol(symbol))
@@ -153,4 +165,20 @@ impl Arena {
 
 fn hash_of(node: &Node) -> u64 {
     FxBuildHasher.hash_one(node)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_generated_symbol_is_no_author_s() {
+        let arena = Arena::new();
+        let (own, generated) = (arena.symbol("eta1"), arena.generated("eta1"));
+        assert_ne!(own, generated);
+        assert_eq!((arena.name(own), arena.name(generated)), ("eta1".to_owned(), "eta1".to_owned()));
+        assert_eq!((arena.symbol("eta1"), arena.generated("eta1")), (own, generated));
+        let difference = arena.sub(arena.of_symbol(own), arena.of_symbol(generated));
+        assert!(!arena.is_zero(difference));
+    }
 }

@@ -13,7 +13,7 @@ use super::rational::Rational;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Expr(pub(super) u32);
 
-/// A symbol: a variable or an unnamed constant, told apart by its name alone.
+/// A symbol: a variable or an unnamed constant. Its name is how it is shown, not what it is.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Symbol(pub(super) u32);
 

@@ -6,6 +6,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::definitions::circles;
 use super::names::admit;
 use super::written::{Entry, Model, Simulation, Spanned};
 use super::{Decimal, Formula};
@@ -19,6 +20,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() };
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
+    circles(&model.define).into_iter().for_each(|circle| pass.diagnostics.push(circle));
     let x = Group::new(&model.x, "a state of x");
     let y = Group::new(&model.y, "an output of y");
     let both = Group::new(model.x.iter().chain(&model.y), "a state of x or y");
@@ -122,6 +124,7 @@ impl Pass<'_> {
         let signals = signals.filter(|name| w.iter().all(|known| known.value != name.value));
         let define = simulation.define.iter().map(|entry| &entry.name);
         let own = self.declare(signals.chain(define), &[model]);
+        circles(&simulation.define).into_iter().for_each(|circle| self.diagnostics.push(circle));
         for signal in &simulation.signals {
             for pair in signal.value.windows(2) {
                 let [before, after] = pair else { continue };

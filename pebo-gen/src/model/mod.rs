@@ -2,7 +2,8 @@
 //!
 //! In: a [`Source`] or a module's tokens. Out: a [`Model`], or every independent mistake in it. After this layer the
 //! file has the right shape, its formulas are parsed and bounded, every declared name is declared
-//! once, and maps that belong to declared names have entries for these and no others. Names
+//! once, maps that belong to declared names have entries for these and no others, and a definition uses only those
+//! before it. Names
 //! *inside* formulas are not looked up here: that is what the plant layer does ([`unknown_name`]
 //! words its diagnostic).
 //!
@@ -11,6 +12,7 @@
 
 mod check;
 pub mod class;
+mod definitions;
 pub mod formula;
 mod names;
 mod observer;

@@ -47,11 +47,19 @@ fn coordinate(name: &str) -> Option<&'static str> {
     }
     match letters {
         "z" => Some("a coordinate"),
+        // Beyond nine components a mark parts the row from the column.
+        _ if is_entry(letters) => Some("the generalised cascade"),
         "chi" => Some("the dynamic extension"),
         "theta" => Some("an unknown parameter"),
         "xi" | "Psi" => Some("the generalised cascade"),
         _ => None,
     }
+}
+
+/// Whether the text, without the column's number, is an entry of the fundamental matrix: `Psi10_`.
+fn is_entry(text: &str) -> bool {
+    let row = text.strip_prefix("Psi").and_then(|rest| rest.strip_suffix('_'));
+    row.is_some_and(|row| !row.is_empty() && row.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
 /// The diagnostic of a name that is not among the `candidates`, which are known in its place.

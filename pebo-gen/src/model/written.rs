@@ -7,6 +7,7 @@
 use serde::Deserialize;
 
 use super::class::Class;
+use super::definitions::sorted;
 use super::formula::{Comparison, Decimal, Formula};
 use super::observer::Observer;
 use crate::source::Span;
@@ -52,7 +53,7 @@ pub struct Model {
     pub u: Vec<Spanned<String>>,
     /// Unmeasured signals that are not estimated: no result may depend on them.
     pub w: Vec<Spanned<String>>,
-    /// Named sub-expressions, each of which may use those before it.
+    /// Named sub-expressions, each of which uses only those before it.
     pub define: Vec<Entry<Formula>>,
     /// Inequalities that hold where the plant operates.
     pub assume: Vec<Comparison>,
@@ -88,7 +89,8 @@ pub struct Simulation {
     pub initial: Vec<Entry<Formula>>,
     /// Signals in time, in `t` and parameters.
     pub signals: Vec<Entry<Vec<Piece>>>,
-    /// Named sub-expressions for the control law, each of which may use those before it.
+    /// Named sub-expressions for the control law, each of which uses only those before it
+    /// and those of the model.
     pub define: Vec<Entry<Formula>>,
     /// The control law: inputs in outputs, estimates, signals, parameters and `t`.
     pub control: Vec<Entry<Formula>>,
@@ -147,7 +149,8 @@ pub enum Scale {
 }
 
 impl Model {
-    /// The model with the entries of `f_x`, `f_y` and `phi_left` in the order of their states.
+    /// The model with the entries of `f_x`, `f_y` and `phi_left` in the order of their states, and definitions
+    /// after those that they use.
     #[must_use]
     pub(super) fn ordered(mut self) -> Self {
         let order = |entries: &mut Vec<Entry<Formula>>, states: &[Spanned<String>]| {
@@ -156,13 +159,22 @@ impl Model {
         order(&mut self.f_x, &self.x);
         order(&mut self.f_y, &self.y);
         order(&mut self.phi_left, &self.x);
+        self.define = sorted(self.define);
+        if let Some(simulation) = &mut self.simulation {
+            simulation.define = sorted(std::mem::take(&mut simulation.define));
+        }
         self
     }
 
     /// The names of the model: parameters, x, y, u, w and definitions, in this order.
     pub fn names(&self) -> impl Iterator<Item = &Spanned<String>> {
+        self.declared().chain(self.define.iter().map(|entry| &entry.name))
+    }
+
+    /// The names that stand for themselves: parameters, x, y, u and w, in this order.
+    pub fn declared(&self) -> impl Iterator<Item = &Spanned<String>> {
         let parameters = self.parameters.iter().map(|entry| &entry.name);
         let signals = [&self.x, &self.y, &self.u, &self.w].into_iter().flatten();
-        parameters.chain(signals).chain(self.define.iter().map(|entry| &entry.name))
+        parameters.chain(signals)
     }
 }

@@ -14,6 +14,8 @@ mod contradiction;
 mod formula;
 pub mod matrix;
 #[allow(clippy::module_inception)]
+mod own;
+mod period;
 mod plant;
 mod resolve;
 mod scope;

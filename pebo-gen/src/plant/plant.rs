@@ -55,10 +55,12 @@ pub struct Plant {
     pub chi: Vec<Symbol>,
     /// The states xi1.. of the extension of a generalised cascade.
     pub xi: Vec<Symbol>,
-    /// The entries Psi11.. of its fundamental matrix, by rows.
+    /// The entries Psi11.. of its fundamental matrix, by rows; Psi1_1.. where there are more than nine.
     pub psi: Vec<Vec<Symbol>>,
     /// The unknown constants theta1..
     pub theta: Vec<Symbol>,
+    /// What stands before the number of an unknown of the regression, where these are functions of theta.
+    pub eta: String,
 }
 
 /// A constant of the plant.
@@ -143,7 +145,7 @@ impl Plant {
 
     /// The symbols eta1.. of so many unknowns.
     pub fn eta(&self, count: usize) -> Vec<Symbol> {
-        (1..=count).map(|i| self.arena.symbol(&format!("eta{i}"))).collect()
+        (1..=count).map(|i| self.arena.generated(&format!("{}{i}", self.eta))).collect()
     }
 
     /// Where the claims are made: the assumed values at which the formulas as written have values.

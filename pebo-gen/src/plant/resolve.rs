@@ -12,6 +12,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::class;
 use super::formula::{exact, lower};
+use super::own::{Own, letter_of_unknowns};
 use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, assumed};
 use super::scope::Scope;
 use super::terms;
@@ -30,25 +31,18 @@ impl Plant {
                 .unwrap_or_default()
         };
         let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
-        let components = class::components(model);
-        let indexed = |letter: &str| -> Vec<Symbol> {
-            (1..=components)
-                .map(|i| format!("{letter}{i}"))
-                .filter_map(|n| arena.as_symbol(arena.variable(&n)))
-                .collect()
-        };
-        let (z, chi, theta, xi) = (indexed("z"), indexed("chi"), indexed("theta"), indexed("xi"));
-        let psi = (1..=components).map(|row| indexed(&format!("Psi{row}"))).collect();
+        let own = Own::of(&arena, class::components(model));
 
         let mut scope = Scope::new();
-        for name in model.names() {
+        for name in model.declared() {
             scope.define(&name.value, arena.variable(&name.value));
         }
+        // Each uses only those before it: no definition is a symbol.
         for definition in &model.define {
-            // A definition that fails was reported; what uses it is looked at all the same.
-            if let Some(meaning) = problems.keep(lower(&arena, &scope, &definition.value)) {
-                scope.define(&definition.name.value, meaning);
-            }
+            let meaning = problems.keep(lower(&arena, &scope, &definition.value));
+            // One that fails was reported, and there will be no plant; what uses it is looked at all the same.
+            let meaning = meaning.unwrap_or_else(|| arena.variable(&definition.name.value));
+            scope.define(&definition.name.value, meaning);
         }
         let constants: BTreeSet<Symbol> = parameters.iter().map(|p| p.symbol).collect();
         let with = |groups: &[&[Symbol]]| -> BTreeSet<Symbol> {
@@ -62,14 +56,14 @@ impl Plant {
         let assumptions: Vec<Assumption> =
             problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
         super::contradiction::find(&arena, &assumptions, &parameters, &mut problems);
+        let domain = assumed(&arena, &assumptions, &parameters);
         let on_states = with(&[&x, &y]);
         let dynamics = match &model.class {
             None => explicit(&arena, &scope, model, (&x, &y), &mut problems, |formula| {
                 within(formula, &on_states, "phi(x, y)")
             }),
             Some(class) => {
-                let domain = assumed(&arena, &assumptions, &parameters);
-                let place = class::Place { arena: &arena, scope: &scope, model, domain: &domain };
+                let place = class::Place { arena: &arena, scope: &scope, model, domain: &domain, z: &own.z };
                 let names = class::Names { x: &x, y: &y, u: &u, w: &w, constants: &constants };
                 place.expand(class, &names, &mut problems).unwrap_or_default()
             }
@@ -78,13 +72,14 @@ impl Plant {
         let identities = problems.all(model.identities.iter().map(|f| within(f, &on_states, "an identity in x and y")));
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
+            super::period::positive(&arena, &domain, period)?;
             Ok((arena.symbol(&entry.name.value), period))
         }));
         let mut inverse_scope = scope.clone();
-        for symbol in &z {
+        for symbol in &own.z {
             inverse_scope.define(arena.name(*symbol), arena.of_symbol(*symbol));
         }
-        let on_transform = with(&[&z, &y]);
+        let on_transform = with(&[&own.z, &y]);
         let phi_left = problems.all(model.phi_left.iter().map(|entry| {
             let expr = lower(&arena, &inverse_scope, &entry.value)?;
             let formula = confined(&arena, expr, entry.value.span, &on_transform, "phi_left(z, y)")?;
@@ -112,11 +107,12 @@ impl Plant {
             terms,
             conditions,
             assumptions,
-            z,
-            chi,
-            theta,
-            xi,
-            psi,
+            z: own.z,
+            chi: own.chi,
+            theta: own.theta,
+            xi: own.xi,
+            psi: own.psi,
+            eta: letter_of_unknowns(model),
             arena,
         })
     }

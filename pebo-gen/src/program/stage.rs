@@ -172,8 +172,7 @@ impl Split<'_> {
             let known = self.constant(opposite);
             return arena.scale(known, &minus);
         }
-        // No name of a model contains a dollar sign.
-        let symbol = arena.symbol(&format!("${}", self.constants.len()));
+        let symbol = arena.generated(&format!("${}", self.constants.len()));
         self.constants.push((symbol, value));
         let constant = arena.of_symbol(symbol);
         self.symbols.insert(value, constant);

@@ -161,8 +161,8 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
 fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let arena = &plant.arena;
     let linear = regression.is_linear(plant);
-    let unknown =
-        |index: usize| -> String { if linear { arena.name(plant.theta[index]) } else { format!("eta{}", index + 1) } };
+    let unknowns = if linear { &plant.theta } else { &regression.eta_symbols };
+    let unknown = |index: usize| -> String { arena.name(unknowns[index]) };
     let mut lines = Vec::new();
     for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
         lines.push(match regression.kind {
@@ -180,7 +180,7 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     }
     if !linear {
         for (index, eta) in regression.eta.iter().enumerate() {
-            lines.push(format!("eta{} = {}", index + 1, arena.print(*eta)));
+            lines.push(format!("{} = {}", unknown(index), arena.print(*eta)));
         }
         if regression.eta.len() > plant.theta.len() {
             let (unknowns, components) = (regression.eta.len(), plant.theta.len());

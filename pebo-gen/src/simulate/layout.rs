@@ -78,22 +78,20 @@ pub(super) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: 
 
 /// Time. No declared name is `t` where there is a simulation.
 pub(super) fn time(arena: &Arena) -> Symbol {
-    arena.symbol("t")
+    arena.generated("t")
 }
-
-// No declared name contains a parenthesis or a point.
 
 /// The observer's estimate of a state.
 pub(super) fn estimate(arena: &Arena, state: &str) -> Symbol {
-    arena.symbol(&format!("hat({state})"))
+    arena.generated(&format!("hat({state})"))
 }
 
 /// A state of a baseline.
 pub(super) fn rival_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
-    arena.symbol(&format!("{baseline}.{state}"))
+    arena.generated(&format!("{baseline}.{state}"))
 }
 
 /// A baseline's estimate of a state.
 pub(super) fn rival_estimate(arena: &Arena, baseline: &str, state: &str) -> Symbol {
-    arena.symbol(&format!("{baseline}.hat({state})"))
+    arena.generated(&format!("{baseline}.hat({state})"))
 }

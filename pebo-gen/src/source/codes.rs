@@ -143,10 +143,14 @@ codes! {
          out, as lambda_m."
     ReservedName "reserved-name" "a name that the generator needs itself"
         "z1, z2, .. are the coordinates, chi1, .. the dynamic extension, theta1, .. the unknown parameters, xi1, .. and \
-         Psi11, .. those of the generalised cascade; t is time where a simulation is given. A declared quantity of \
+         Psi11, .. those of the generalised cascade (Psi1_1, .. of more than nine components); t is time where a simulation is given. A declared quantity of \
          that name would make formulas ambiguous. All other names are free, also E, I, S, e, pi and sin."
     DuplicateName "duplicate-name" "a name is declared twice"
         "Parameters, states, outputs, inputs, unmeasured signals and definitions share one space of names."
+    CircularDefinition "circular-definition" "definitions that need one another"
+        "The definitions under define may stand in any order, but one of them must come first: a definition that uses \
+         itself, perhaps through others, has no meaning. The message names those of the circle; define one of them by \
+         declared quantities."
     UnknownName "unknown-name" "a name that is not declared"
         "A formula uses a name that is neither declared in the model nor known in this place. Names are declared under \
          parameters, x, y, u, w or define; case matters."
@@ -209,6 +213,10 @@ codes! {
     NoRealValue "no-real-value" "a formula has no real value"
         "A constant is outside of the domain of the function it is put into: the logarithm of a number that is not \
          positive, the root of a negative number, the inverse sine of a number beyond 1."
+    PeriodNotPositive "period-not-positive" "a period that is not known to be positive"
+        "The period of an angle is a positive constant, as 2*pi or 2*pi/n_p. Of a period that is made of parameters, \
+         the signs of their values, or an assumption, must show that it is positive: what is known of the state up to \
+         the period is proved for all parameters with these signs."
     ContradictoryAssumptions "contradictory-assumptions" "assumptions that cannot hold together"
         "No values satisfy both of the assumptions shown, or the model's own parameters violate one: there is nothing \
          that a claim could be made of."

@@ -217,6 +217,7 @@ impl Sketch {
             xi: indexed("xi"),
             psi: (1..=count).map(|row| indexed(&format!("Psi{row}"))).collect(),
             theta: indexed("theta"),
+            eta: "eta".to_owned(),
             arena,
         };
         (plant, derivation)

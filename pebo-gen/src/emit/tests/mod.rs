@@ -1,6 +1,8 @@
 //! What is emitted, and what is refused.
 
 pub(crate) mod fixtures;
+#[cfg(feature = "yaml")]
+mod names;
 
 use fixtures::{CUK, CUK_CASE2, PENDULUM, PMSM, Sketch, vanishes};
 

@@ -75,6 +75,7 @@ fn each_gives_one_diagnostic() {
         ("w: [omega]", "w: [_]", InvalidName, "_"),
         ("w: [omega]", "w: [z12]", ReservedName, "z12"),
         ("w: [omega]", "w: [theta1]", ReservedName, "theta1"),
+        ("w: [omega]", "w: [Psi10_11]", ReservedName, "Psi10_11"),
         ("w: [omega]", "w: [t]", ReservedName, "t"),
         ("w: [omega]", "w: [E]", DuplicateName, "E"),
         ("define: {p:", "define: {d:", DuplicateName, "d"),

@@ -202,7 +202,7 @@ fn propose(
     let rest = a22.add(arena, &a21.mul(arena, &on_y)).normal(arena, facts)?;
     let symbols = |list: &[crate::cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (y, u) = (symbols(names.y), symbols(names.u));
-    let z: Vec<Expr> = (1..=t1.height()).map(|i| arena.variable(&format!("z{i}"))).collect();
+    let z = symbols(place.z);
     let states = names
         .x
         .iter()

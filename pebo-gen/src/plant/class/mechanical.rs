@@ -99,7 +99,7 @@ pub(super) fn expand(
 
     let symbols = |list: &[Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (p, u) = (symbols(names.x), symbols(names.u));
-    let z: Vec<Expr> = (1..=n).map(|i| arena.variable(&format!("z{i}"))).collect();
+    let z: Vec<Expr> = place.z.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
     let rates = collected(place, &velocity.mul(arena, &transposed), &p).map_err(open("M^-1 p", m.span))?;
     let velocities = collected(place, &velocity, &z).map_err(open("the velocity", m.span))?;
     let force = |index: usize| {

@@ -103,6 +103,8 @@ pub(super) struct Place<'a> {
     pub(super) scope: &'a Scope,
     pub(super) model: &'a Model,
     pub(super) domain: &'a Domain,
+    /// The coordinates of the transform.
+    pub(super) z: &'a [Symbol],
 }
 
 /// What stopped an expansion.

@@ -1,0 +1,58 @@
+//! Emitted functions of plants whose names were once taken for the generator's own.
+
+use crate::emit::Scalar;
+use crate::program::{Interpreter, lower};
+use crate::source::Source;
+use crate::{Derived, derive};
+
+fn derived(text: &str) -> Derived {
+    let derived = derive(&Source::new("m", text).expect("a text")).expect("a model");
+    assert!(derived.derivation.admit().is_ok(), "{:?}", derived.derivation.diagnostics);
+    derived
+}
+
+/// An efficiency is called `eta1` where the first unknown would be.
+#[test]
+fn the_estimate_is_no_parameter_of_its_name() {
+    let motor = derived(
+        "model: m\nparameters: {eta1: 3, l: 0.5}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - eta1*l*sin(q)}\n\
+         f_y: {q: p/(eta1*l^2)}\nphi: [p]\n",
+    );
+    let regression = motor.derivation.regression.result.as_ref().expect("a regression");
+    let arena = &motor.plant.arena;
+    assert!(!regression.eta_symbols.contains(&motor.plant.parameters[0].symbol));
+    let program = lower(arena, &regression.eta_symbols, &regression.theta).expect("of the unknowns alone");
+    let mut theta = [0.0];
+    Interpreter::new(&program).run(&[7.0], &mut theta);
+    // The identity: no rounding.
+    assert!((theta[0] - 7.0).abs() < f64::EPSILON, "{theta:?}");
+    let text = motor.emit(Scalar::F64).expect("emitted").text;
+    let (_, function) = text.split_once("fn theta(").expect("the function");
+    assert!(function.split_once("\n    }").expect("its end").0.contains("*eta"), "{function}");
+}
+
+/// Of eleven components, row 1 column 11 and row 11 column 1 are two entries of the fundamental matrix.
+#[test]
+fn each_entry_of_a_wide_fundamental_matrix_is_read_where_it_stands() {
+    const COMPONENTS: usize = 11;
+    let each = |entry: &dyn Fn(usize) -> String| (1..=COMPONENTS).map(entry).collect::<Vec<_>>().join(", ");
+    let wide = derived(&format!(
+        "model: m\nparameters: {{a: 1}}\nx: [{p}]\ny: [{q}]\nu: [v]\nf_x: {{{f_x}}}\nf_y: {{{f_y}}}\nphi: [{p}]\n",
+        p = each(&|i| format!("p{i}")),
+        q = each(&|i| format!("q{i}")),
+        f_x = each(&|i| format!("p{i}: -(a + q{i}^2)*p{i} + v")),
+        f_y = each(&|i| format!("q{i}: p{i}")),
+    ));
+    let (plant, arena) = (&wide.plant, &wide.plant.arena);
+    let regression = wide.derivation.regression.result.as_ref().expect("a regression");
+    let program = lower(arena, &plant.psi.concat(), &regression.phi_1.concat()).expect("of the matrix alone");
+    let psi: Vec<f64> =
+        (0..COMPONENTS * COMPONENTS).map(|place| f64::from(u32::try_from(place).expect("small"))).collect();
+    let mut phi_1 = vec![0.0; psi.len()];
+    Interpreter::new(&program).run(&psi, &mut phi_1);
+    // y = x = xi + Psi theta: the regressor is the matrix, entry by entry.
+    assert_eq!(phi_1, psi);
+    // Read back and compared entry by entry, or not emitted.
+    let text = wide.emit(Scalar::F64).expect("emitted").text;
+    assert!(text.contains("psi1_11") && text.contains("psi11_1") && !text.contains("psi111"));
+}
