@@ -1,6 +1,7 @@
 //! The README shows only what is so.
 
 use std::path::Path;
+use std::process::Command;
 
 use pebo_gen::analysis::Outcome;
 use pebo_gen::emit::Scalar;
@@ -28,6 +29,27 @@ fn derived(text: &str) -> Derived {
 fn blocks(language: &str) -> Vec<&'static str> {
     let fence = format!("```{language}\n");
     README.split(fence.as_str()).skip(1).filter_map(|rest| rest.split("```").next()).collect()
+}
+
+/// From the project's root, and without `--release`, which would build all of it again: CI runs the commands as they stand,
+/// in a clean checkout.
+#[test]
+fn the_commands_that_are_shown_run() {
+    let commands: Vec<Vec<&str>> = blocks("sh").iter().flat_map(|block| block.lines()).map(words).collect();
+    assert_eq!(commands, [vec!["cargo", "run", "--", "models/cuk.yaml"], vec!["cargo", "test"]]);
+    // The second is what runs this test.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let found = Command::new(env!("CARGO")).args(&commands[0][1..]).current_dir(root).output().expect("cargo");
+    let said = String::from_utf8_lossy(&found.stderr);
+    assert!(found.status.success(), "{said}");
+    assert!(said.contains(blocks("text")[0]), "{said}");
+    let emitted = derived(&model("cuk.yaml")).emit(Scalar::F64).expect("an accepted model").text;
+    assert_eq!(String::from_utf8_lossy(&found.stdout), emitted);
+}
+
+/// The words of a command but for `--release`.
+fn words(command: &'static str) -> Vec<&'static str> {
+    command.split_whitespace().filter(|word| *word != "--release").collect()
 }
 
 fn estimate_currents() -> Result<SVector<f64, 2>, Fault> {

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::fmt;
 
-use dashu_int::ops::{DivRem, Gcd, UnsignedAbs};
+use dashu_int::ops::{BitTest, DivRem, Gcd, UnsignedAbs};
 use dashu_int::{IBig, Sign, UBig};
 
 /// An integer of any size.
@@ -107,7 +107,7 @@ impl Integer {
     pub fn bits(&self) -> u64 {
         match &self.0 {
             Small(value) => u64::from(64 - value.unsigned_abs().leading_zeros()),
-            Big(value) => value.as_sign_words().1.len() as u64 * 64 - u64::from(top_zeros(value)),
+            Big(value) => value.bit_len() as u64,
         }
     }
 
@@ -269,10 +269,6 @@ impl Integer {
             Big(value) => (u64::try_from(value.as_ref().unsigned_abs()).unwrap_or(u64::MAX), 0),
         }
     }
-}
-
-fn top_zeros(value: &IBig) -> u32 {
-    value.as_sign_words().1.last().map_or(0, |word| word.leading_zeros())
 }
 
 /// Binary greatest common divisor of words (Stein, 1967).

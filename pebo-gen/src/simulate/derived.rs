@@ -1,7 +1,7 @@
 //! The runtime library's observer on a derived model that is interpreted.
 //!
 //! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of
-//! a few sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
+//! two sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
 //! target, but for the functions of the model.
 
 use std::cell::RefCell;
@@ -13,7 +13,7 @@ use pebo_runtime::{Bounded, Extension, Fault, Fundamental, Integrator, Model, Ob
 
 use crate::program::{Interpreter, Program};
 
-use super::estimator::{Chosen, padded};
+use super::estimator::{Chosen, MOST_MIXED, padded};
 use super::observer::Design;
 use super::window::Passage;
 
@@ -30,11 +30,10 @@ pub(super) trait Estimation: fmt::Debug {
     fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
 }
 
-/// The observer of a design.
+/// The observer of a design: of the size that DREM has, or of the largest.
 pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
     match design.size() {
-        0..=4 => of_size::<4>(design),
-        5..=8 => of_size::<8>(design),
+        0..=MOST_MIXED => of_size::<MOST_MIXED>(design),
         _ => of_size::<LARGEST>(design),
     }
 }

@@ -1,20 +1,22 @@
 //! Every estimator of the runtime library behind one face, so that the observer need not be compiled for each.
 //!
-//! A model is padded with zeros to one of a few sizes. Zero rows and columns of a regressor change no estimate of a
-//! gradient or of least squares, which run at the padded size. The determinant of DREM is zero with a column of zeros,
-//! so DREM runs at the very number of unknowns.
+//! A model is padded with zeros to one of two sizes. Zero rows and columns of a regressor change no estimate of a
+//! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: what its extension has to
+//! say of the padding is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled
+//! once or twice, not for every number of unknowns.
 
 use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Drem, Estimator, Fault, FiniteTime, Gradient, Kreisselmeier, LeastSquares, NormalisedGradient, Response,
+    Drem, Estimator, Fault, FiniteTime, Gradient, Kreisselmeier, LeastSquares, NormalisedGradient, RegressorExtension,
+    Response,
 };
 
 use super::derived::{LARGEST, pad};
 use super::settings::{self, Covariance, Extension};
 
-/// The most unknowns of DREM: one instance of each kind is compiled for each number up to it.
+/// The most unknowns of DREM, to which fewer are padded.
 pub(super) const MOST_MIXED: usize = 6;
 
 /// An estimator of a model that was padded to the size N.
@@ -34,16 +36,9 @@ impl<const N: usize> Chosen<N> {
             settings::Estimator::LeastSquares(Covariance { start, forgetting }) => {
                 Box::new(LeastSquares::diagonal(&all(start), *forgetting)?)
             }
-            settings::Estimator::Drem { gain, extension } => match gain.len() {
-                1 => mixed::<1, N>(gain, extension)?,
-                2 => mixed::<2, N>(gain, extension)?,
-                3 => mixed::<3, N>(gain, extension)?,
-                4 => mixed::<4, N>(gain, extension)?,
-                5 => mixed::<5, N>(gain, extension)?,
-                MOST_MIXED => mixed::<MOST_MIXED, N>(gain, extension)?,
-                // None and more were refused with the settings.
-                _ => return Err(Fault::Gain),
-            },
+            settings::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => mixed(gain, extension)?,
+            // Refused with the settings.
+            settings::Estimator::Drem { .. } => return Err(Fault::Gain),
         }))
     }
 }
@@ -112,51 +107,132 @@ impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> Face<N> for
     }
 }
 
-/// DREM of `NE` unknowns.
-fn mixed<const NE: usize, const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn Face<N>>, Fault> {
-    let all = |values: &[f64]| -> SVector<f64, NE> { padded(values, 1.0) };
-    let gains = all(gain);
-    Ok(match extension {
+/// DREM of as many unknowns as there are gains.
+fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn Face<N>>, Fault> {
+    // Padding has no error to lose, and with the largest gain it is never what a finite-time estimator waits for.
+    let gains = padded(gain, gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max));
+    let all = |values: &[f64]| -> SVector<f64, MOST_MIXED> { padded(values, 1.0) };
+    let (extension, finite_time): (Box<dyn Extended>, _) = match extension {
         Extension::Kreisselmeier { gain, forgetting, finite_time } => {
-            let drem = Drem::new(Kreisselmeier::new(&all(gain), *forgetting)?, &gains)?;
-            match finite_time {
-                None => Exact::boxed(drem),
-                Some(settings::FiniteTime { clip, period: None }) => Exact::boxed(FiniteTime::once(drem, *clip)?),
-                Some(settings::FiniteTime { clip, period: Some(period) }) => {
-                    Exact::boxed(FiniteTime::tracking(drem, *clip, *period)?)
-                }
-            }
+            (Box::new(Kreisselmeier::new(&all(gain), *forgetting)?), finite_time.as_ref())
         }
-        Extension::Gradient(gain) => Exact::boxed(Drem::new(response(Gradient::diagonal(&all(gain))?)?, &gains)?),
+        Extension::Gradient(gain) => (Box::new(response(Gradient::diagonal(&all(gain))?)?), None),
         Extension::LeastSquares(Covariance { start, forgetting }) => {
-            Exact::boxed(Drem::new(response(LeastSquares::diagonal(&all(start), *forgetting)?)?, &gains)?)
+            (Box::new(response(LeastSquares::diagonal(&all(start), *forgetting)?)?), None)
+        }
+    };
+    let drem = Drem::new(Completed { extension, unknowns: gain.len() }, &gains)?;
+    Ok(match finite_time {
+        None => Box::new(Wide(drem)),
+        Some(settings::FiniteTime { clip, period: None }) => Box::new(Wide(FiniteTime::once(drem, *clip)?)),
+        Some(settings::FiniteTime { clip, period: Some(period) }) => {
+            Box::new(Wide(FiniteTime::tracking(drem, *clip, *period)?))
         }
     })
 }
 
-fn response<E, const NE: usize>(estimator: E) -> Result<Response<f64, E, LARGEST, NE>, Fault>
+fn response<E>(estimator: E) -> Result<Response<f64, E, LARGEST, MOST_MIXED>, Fault>
 where
-    E: Estimator<f64, LARGEST, NE> + Copy,
+    E: Estimator<f64, LARGEST, MOST_MIXED> + Copy,
 {
     Response::new(estimator)
 }
 
-/// An estimator of exactly `NE` unknowns in a padded model. Its equations are padded to the largest size, so that it is
-/// compiled once for each number of unknowns.
-#[derive(Clone, Debug)]
-struct Exact<E, const NE: usize>(E);
+/// A regressor extension whose type is not known.
+trait Extended: fmt::Debug {
+    fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault>;
+    fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED>;
+    fn vector(&self) -> SVector<f64, MOST_MIXED>;
+    fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>);
+    fn reset(&mut self);
+    fn is_finite(&self) -> bool;
+    fn boxed(&self) -> Box<dyn Extended>;
+}
 
-impl<E: Estimator<f64, LARGEST, NE> + fmt::Debug + 'static, const NE: usize> Exact<E, NE> {
-    fn boxed<const N: usize>(estimator: E) -> Box<dyn Face<N>> {
-        Box::new(Self(estimator))
+/// The equations of DREM, padded to the largest size.
+type Rows = SMatrix<f64, LARGEST, MOST_MIXED>;
+
+impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> Extended for X {
+    fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault> {
+        RegressorExtension::advance(self, regressor, regressand, dt)
+    }
+
+    fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED> {
+        RegressorExtension::matrix(self)
+    }
+
+    fn vector(&self) -> SVector<f64, MOST_MIXED> {
+        RegressorExtension::vector(self)
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>) {
+        RegressorExtension::shift(self, shift);
+    }
+
+    fn reset(&mut self) {
+        RegressorExtension::reset(self);
+    }
+
+    fn is_finite(&self) -> bool {
+        RegressorExtension::is_finite(self)
+    }
+
+    fn boxed(&self) -> Box<dyn Extended> {
+        Box::new(self.clone())
     }
 }
 
-impl<E: Estimator<f64, LARGEST, NE>, const NE: usize, const N: usize> Estimator<f64, N, N> for Exact<E, NE> {
+/// An extension of a padded regression, with the identity where the padding is.
+#[derive(Debug)]
+struct Completed {
+    extension: Box<dyn Extended>,
+    unknowns: usize,
+}
+
+impl Clone for Completed {
+    fn clone(&self) -> Self {
+        Self { extension: self.extension.boxed(), unknowns: self.unknowns }
+    }
+}
+
+impl RegressorExtension<f64, LARGEST, MOST_MIXED> for Completed {
+    fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault> {
+        self.extension.advance(regressor, regressand, dt)
+    }
+
+    fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED> {
+        let mut matrix = self.extension.matrix();
+        (self.unknowns..MOST_MIXED).for_each(|padding| matrix[(padding, padding)] = 1.0);
+        matrix
+    }
+
+    fn vector(&self) -> SVector<f64, MOST_MIXED> {
+        self.extension.vector()
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>) {
+        self.extension.shift(shift);
+    }
+
+    fn reset(&mut self) {
+        self.extension.reset();
+    }
+
+    fn is_finite(&self) -> bool {
+        self.extension.is_finite()
+    }
+}
+
+/// DREM in a padded model, of which it takes the unknowns that there may be. Its equations are padded to the largest
+/// size.
+#[derive(Clone, Debug)]
+struct Wide<E>(E);
+
+impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N> for Wide<E> {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
-        let mut rows = SMatrix::<f64, LARGEST, NE>::zeros();
-        for column in 0..NE {
-            rows.column_mut(column).rows_mut(0, N).copy_from(&regressor.column(column));
+        let mut rows = Rows::zeros();
+        for (mut wide, column) in rows.column_iter_mut().zip(regressor.column_iter()) {
+            wide.rows_mut(0, N).copy_from(&column);
         }
         self.0.advance(&rows, &pad(regressand.as_slice()), dt)
     }
@@ -166,11 +242,11 @@ impl<E: Estimator<f64, LARGEST, NE>, const NE: usize, const N: usize> Estimator<
     }
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
-        self.0.shift(&padded(&shift.as_slice()[..NE], 0.0));
+        self.0.shift(&pad(&shift.as_slice()[..MOST_MIXED]));
     }
 
     fn reset(&mut self, estimate: &SVector<f64, N>) {
-        self.0.reset(&padded(&estimate.as_slice()[..NE], 0.0));
+        self.0.reset(&pad(&estimate.as_slice()[..MOST_MIXED]));
     }
 
     fn is_finite(&self) -> bool {

@@ -74,8 +74,9 @@ impl Interval {
 /// 1/4 for the root, so z <= 0.42 is off by less than 3; pi/2 adds one ulp.
 fn atan_at(x: &Dyadic, p: Precision) -> Option<Interval> {
     let top = x.top()?;
-    if 2 * top < -p.bits() {
-        // |atan x - x| <= |x|^3/3 < |x| 2^(2 top + 1)
+    if 2 * top < -p.bits() - 4 {
+        // |atan x - x| <= |x|^3/3 < |x| 2^(2 top + 1): less than an eighth of a unit at either end, so that an argument
+        // that is itself an interval, as in an inverse sine, leaves the image a few units wide.
         return Interval::near(x, 2 * top + 1, p);
     }
     let halvings = halvings(p.bits()).max(1);

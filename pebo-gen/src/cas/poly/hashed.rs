@@ -161,14 +161,10 @@ impl<const N: usize, S: Sum> Table<N, S> {
         Ok(())
     }
 
-    /// The slot where the search for a key begins.
     #[inline]
     fn first(&self, key: &[u64; N]) -> usize {
-        let mixed =
-            key.iter().fold(0_u64, |hash, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        // The high bits of a product are the ones that depend on all of its factor's.
-        #[expect(clippy::cast_possible_truncation, reason = "as many bits as there are slots")]
-        let slot = (mixed >> (self.slots.len().leading_zeros() + 1)) as usize;
+        #[expect(clippy::cast_possible_truncation, reason = "less than the number of slots")]
+        let slot = first_slot(key, self.slots.len() as u64) as usize;
         slot
     }
 
@@ -210,5 +206,51 @@ impl<const N: usize, S: Sum> Table<N, S> {
             }
         }
         (keys, coefficients)
+    }
+}
+
+/// The slot where the search for a key begins, among so many, which are a power of two and at least two. Hosts whose
+/// addresses have 32 bits get what those of 64 get.
+#[inline]
+fn first_slot(key: &[u64], slots: u64) -> u64 {
+    let mixed = key.iter().fold(0_u64, |hash, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    // The high bits of a product are the ones that depend on all of its factor's.
+    mixed >> (slots.leading_zeros() + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_spread_over_all_slots_and_no_more() {
+        for log in 1..=12 {
+            let slots = 1_u64 << log;
+            let mut found = vec![0_u32; 1 << log];
+            for key in 0..8 * slots {
+                let slot = first_slot(&[key, key << 32], slots);
+                found[usize::try_from(slot).expect("a slot")] += 1;
+            }
+            // Eight on average: none without a key would be luck, many times the average a bad mixture.
+            assert!(found.iter().all(|keys| *keys < 64), "{slots}: {found:?}");
+            assert!(found.iter().filter(|keys| **keys == 0).count() * 20 <= found.len(), "{slots}: {found:?}");
+        }
+        for log in 1..64 {
+            assert!(first_slot(&[u64::MAX, 1, 3], 1 << log) < 1 << log);
+        }
+    }
+
+    #[test]
+    fn a_table_finds_what_it_holds() {
+        let keys: Vec<[u64; 2]> = (0..3000).map(|n| [n * n, n]).collect();
+        let mut table = Table::<2, Integer>::new(0);
+        for key in &keys {
+            table.reserve(1).expect("room");
+            table.entry(*key);
+        }
+        assert_eq!(table.entries.len(), keys.len());
+        for (place, key) in keys.iter().enumerate() {
+            assert_eq!(table.entry(*key), place);
+        }
     }
 }

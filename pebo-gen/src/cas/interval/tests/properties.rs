@@ -23,6 +23,32 @@ fn ends() -> impl Strategy<Value = [i64; 2]> {
     prop_oneof![[part(), part()], (part(), 0_i64..4000).prop_map(near)]
 }
 
+/// Whether a function is within two units at a precision, and its enclosure with more bits within the coarse one.
+fn tight_and_finer(function: &Unary, argument: &Rational, precision: u32) -> Result<(), TestCaseError> {
+    let at = |n: u32| (function.enclose)(&point(argument, 64.max(n)), bits(n)).unwrap();
+    let (coarse, fine) = (at(precision), at(precision + 100));
+    let scale = coarse.lo().abs().max(coarse.hi().abs());
+    let unit = 2_f64.powi(2 - i32::try_from(precision).unwrap());
+    prop_assert!(coarse.width() <= unit * scale, "{} {argument} at {precision} bits", function.name);
+    prop_assert!(contains(&loosened(&coarse, precision), &fine), "{} {argument} at {precision} bits", function.name);
+    Ok(())
+}
+
+/// Small arguments, where a function hands over from its series to a few terms: at every precision about there.
+#[test]
+fn tight_next_to_zero() {
+    for function in FUNCTIONS.iter().filter(|function| function.domain.0 < 0) {
+        for precision in 16_u32..90 {
+            for places in (precision / 2).saturating_sub(4)..precision / 2 + 5 {
+                for numerator in [1025, 1535, 1536, 2047, -1535] {
+                    let argument = ratio(numerator, 1_i64 << (10 + places));
+                    tight_and_finer(function, &argument, precision).unwrap();
+                }
+            }
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn agrees_with_floating_point(part in part()) {
@@ -37,13 +63,7 @@ proptest! {
     #[test]
     fn tight_and_finer_with_more_bits(part in part(), precision in 16_u32..200) {
         for function in &FUNCTIONS {
-            let argument = function.argument(part);
-            let at = |n: u32| (function.enclose)(&point(&argument, 64.max(n)), bits(n)).unwrap();
-            let (coarse, fine) = (at(precision), at(precision + 100));
-            let scale = coarse.lo().abs().max(coarse.hi().abs());
-            let unit = 2_f64.powi(2 - i32::try_from(precision).unwrap());
-            prop_assert!(coarse.width() <= unit * scale, "{} {argument}", function.name);
-            prop_assert!(contains(&loosened(&coarse, precision), &fine), "{}", function.name);
+            tight_and_finer(function, &function.argument(part), precision)?;
         }
     }
 

@@ -1,0 +1,107 @@
+//! A copy of the workspace that may be changed, and its test binaries.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+use crate::sites::Fault;
+use crate::{plan, rewrite};
+
+/// The project as it is, and a copy of it below `target`.
+pub struct Copy {
+    original: PathBuf,
+    folder: PathBuf,
+}
+
+/// The test binaries of a package by the name of their target.
+pub type Binaries = BTreeMap<String, PathBuf>;
+
+impl Copy {
+    /// A copy of what git knows of the project in whose root we are.
+    pub fn new() -> Result<Self, String> {
+        let original = std::env::current_dir().map_err(|error| error.to_string())?;
+        let folder = original.join("target/mutants");
+        let listed =
+            output(Command::new("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))?;
+        for name in listed.split('\0').filter(|name| !name.is_empty()) {
+            let to = folder.join(name);
+            let Ok(text) = std::fs::read(original.join(name)) else { continue };
+            // What has not changed keeps its age, or all would be built anew.
+            if std::fs::read(&to).is_ok_and(|there| there == text) {
+                continue;
+            }
+            let parent = to.parent().unwrap_or(&folder);
+            std::fs::create_dir_all(parent).map_err(|error| error.to_string())?;
+            std::fs::write(&to, text).map_err(|error| format!("{}: {error}", to.display()))?;
+        }
+        Ok(Self { original, folder })
+    }
+
+    /// The project as it is.
+    pub fn root(&self) -> &Path {
+        &self.original
+    }
+
+    /// Builds the tests of a package with the faults; those that do not compile are taken out.
+    pub fn build(&self, package: &str, faults: &mut Vec<Fault>) -> Result<Binaries, String> {
+        loop {
+            rewrite::write(&self.original, &self.folder, package, faults)?;
+            let (messages, succeeded) = self.cargo(package, &["check", "--lib"])?;
+            if succeeded {
+                break;
+            }
+            let before = faults.len();
+            let mut shown = String::new();
+            for message in &messages {
+                let Some(error) = message.get("message").filter(|error| error["level"] == "error") else { continue };
+                shown.push_str(error["rendered"].as_str().unwrap_or_default());
+                let spans = error["spans"].as_array().into_iter().flatten();
+                for span in spans.filter(|span| span["is_primary"] == true) {
+                    let (file, line) = (span["file_name"].as_str().unwrap_or_default(), &span["line_start"]);
+                    // A message may begin within a fault of several lines.
+                    let line = line.as_u64().unwrap_or(0) as usize;
+                    let here = |fault: &Fault| Path::new(file) == fault.file && fault.line <= line;
+                    let nearest = faults.iter().filter(|fault| here(fault)).map(|fault| fault.line).max();
+                    faults.retain(|fault| !(here(fault) && Some(fault.line) == nearest));
+                }
+            }
+            if faults.len() == before {
+                return Err(format!("the copy does not compile, and no fault is to blame:\n{shown}"));
+            }
+        }
+        let (messages, succeeded) = self.cargo(package, &["test", "--no-run"])?;
+        if !succeeded {
+            return Err("the tests of the copy do not compile".to_owned());
+        }
+        let mut binaries = Binaries::new();
+        for message in &messages {
+            let Some(path) = message["executable"].as_str().filter(|_| message["profile"]["test"] == true) else {
+                continue;
+            };
+            let target = &message["target"];
+            let library = target["kind"].as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind == "lib"));
+            let name = if library { "lib" } else { target["name"].as_str().unwrap_or_default() };
+            binaries.insert(name.to_owned(), PathBuf::from(path));
+        }
+        Ok(binaries)
+    }
+
+    fn cargo(&self, package: &str, words: &[&str]) -> Result<(Vec<Value>, bool), String> {
+        let mut command = Command::new("cargo");
+        command.args(words).args(["-p", package, "--message-format=json"]).args(plan::features(package));
+        command.current_dir(&self.folder).env_remove("CARGO_TARGET_DIR").stderr(Stdio::null());
+        let found = command.output().map_err(|error| error.to_string())?;
+        let lines = String::from_utf8_lossy(&found.stdout);
+        Ok((lines.lines().filter_map(|line| serde_json::from_str(line).ok()).collect(), found.status.success()))
+    }
+}
+
+fn output(command: &mut Command) -> Result<String, String> {
+    let found = command.output().map_err(|error| error.to_string())?;
+    if !found.status.success() {
+        return Err(String::from_utf8_lossy(&found.stderr).into_owned());
+    }
+    String::from_utf8(found.stdout).map_err(|error| error.to_string())
+}
