@@ -1,11 +1,12 @@
 //! A copy of the workspace that may be changed, and its test binaries.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
+use crate::plan::Module;
 use crate::sites::Fault;
 use crate::{plan, rewrite};
 
@@ -45,9 +46,10 @@ impl Copy {
     }
 
     /// Builds the tests of a package with the faults; those that do not compile are taken out.
-    pub fn build(&self, package: &str, faults: &mut Vec<Fault>) -> Result<Binaries, String> {
+    pub fn build(&self, package: &str, modules: &[&Module], faults: &mut Vec<Fault>) -> Result<Binaries, String> {
+        let files: Vec<PathBuf> = faults.iter().map(|fault| fault.file.clone()).collect();
         loop {
-            rewrite::write(&self.original, &self.folder, package, faults)?;
+            rewrite::write(&self.original, &self.folder, package, &files, faults)?;
             let (messages, succeeded) = self.cargo(package, &["check", "--lib"])?;
             if succeeded {
                 break;
@@ -71,7 +73,10 @@ impl Copy {
                 return Err(format!("the copy does not compile, and no fault is to blame:\n{shown}"));
             }
         }
-        let (messages, succeeded) = self.cargo(package, &["test", "--no-run"])?;
+        let tests: BTreeSet<&str> = modules.iter().flat_map(|module| module.tests).map(|(name, _)| *name).collect();
+        let targets = tests.iter().flat_map(|name| if *name == "lib" { vec!["--lib"] } else { vec!["--test", *name] });
+        let words: Vec<&str> = ["test", "--no-run"].into_iter().chain(targets).collect();
+        let (messages, succeeded) = self.cargo(package, &words)?;
         if !succeeded {
             return Err("the tests of the copy do not compile".to_owned());
         }

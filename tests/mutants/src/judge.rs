@@ -72,7 +72,11 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
 /// Whether the tests pass with a fault, in time; the first that fails ends them.
 fn passes(binary: &Path, filter: &str, fault: usize, reached: Option<&Path>, patience: Duration) -> bool {
     let mut command = Command::new(binary);
-    command.arg(filter).env("PEBO_MUTANT", fault.to_string()).stdout(Stdio::piped()).stderr(Stdio::null());
+    command
+        .args([filter, "--test-threads=1"])
+        .env("PEBO_MUTANT", fault.to_string())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null());
     // As cargo runs it: in the folder of its package, with the project's seed.
     command.env("PROPTEST_RNG_SEED", "2015").env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
     if let Some(package) = package_of(binary) {

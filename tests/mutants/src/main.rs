@@ -65,7 +65,7 @@ fn run() -> Result<(), String> {
             continue;
         }
         let mut drawn = sites::draw(copy.root(), &modules, arguments.sample, arguments.seed)?;
-        let binaries = copy.build(package, &mut drawn)?;
+        let binaries = copy.build(package, &modules, &mut drawn)?;
         for module in modules {
             let faults: Vec<_> = drawn.iter().filter(|fault| fault.module == module.name).collect();
             judge::report(module, &faults, &binaries, arguments.jobs)?;

@@ -18,7 +18,7 @@ pub const MODULES: [Module; 4] = [
         name: "field",
         package: "pebo-gen",
         sources: &["pebo-gen/src/cas/field"],
-        tests: &[("lib", "cas::"), ("zero", ""), ("claims", ""), ("laws", "")],
+        tests: &[("lib", "cas::"), ("signs", ""), ("zero", ""), ("claims", "")],
     },
     Module {
         name: "analysis",

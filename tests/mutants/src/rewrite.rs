@@ -1,7 +1,7 @@
 //! The sources with the faults in them, and the switch.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::sites::{Fault, ORIGINAL};
 
@@ -30,9 +30,9 @@ mod mutants {
 }
 "#;
 
-/// Writes the files that have faults, from the texts of `from` to the copy, and the switch into the package's root.
-pub fn write(from: &Path, to: &Path, package: &str, faults: &[Fault]) -> Result<(), String> {
-    let mut files: BTreeMap<&Path, Vec<&Fault>> = BTreeMap::new();
+/// Writes the files with their faults, from the texts of `from` to the copy, and the switch into the package's root.
+pub fn write(from: &Path, to: &Path, package: &str, files: &[PathBuf], faults: &[Fault]) -> Result<(), String> {
+    let mut files: BTreeMap<&Path, Vec<&Fault>> = files.iter().map(|file| (file.as_path(), Vec::new())).collect();
     for fault in faults {
         files.entry(&fault.file).or_default().push(fault);
     }

@@ -89,8 +89,8 @@ struct Sites<'a> {
     found: &'a mut Vec<Fault>,
 }
 
-impl Sites<'_> {
-    fn of(&self, span: Span) -> &str {
+impl<'a> Sites<'a> {
+    fn of(&self, span: Span) -> &'a str {
         &self.text[span.byte_range()]
     }
 
@@ -188,9 +188,9 @@ impl<'ast> Visit<'ast> for Sites<'_> {
 
     fn visit_expr_unary(&mut self, node: &'ast syn::ExprUnary) {
         if matches!(node.op, syn::UnOp::Not(_) | syn::UnOp::Neg(_)) && !matches!(*node.expr, syn::Expr::Lit(_)) {
-            let text = self.of(node.expr.span()).to_owned();
-            let what = format!("`{}` for `{}`", short(&text), short(self.of(node.span())));
-            self.add(node.span(), &text, what);
+            let text = self.of(node.expr.span());
+            let what = format!("`{}` for `{}`", short(text), short(self.of(node.span())));
+            self.add(node.span(), text, what);
         }
         visit::visit_expr_unary(self, node);
     }
