@@ -1,6 +1,6 @@
 //! Small plants for every verdict on every claim.
 
-use pebo_gen::analysis::{Class, Excitation, Outcome, RegressionKind, Verdict};
+use pebo_gen::analysis::{Class, Excitation, Fundamental, Outcome, RegressionKind, Verdict};
 use pebo_gen::cas::facts::Relation;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Derived, derive};
@@ -213,7 +213,27 @@ const TABLE: &[(&str, &str, Answer)] = &[
     // The cascade.
     (
         "rate depends on x",
+        "x: [x]\ny: [y]\nu: [u]\nclass: pebo\nf_x: {x: u - x}\nf_y: {y: x}\nphi: [x]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "rate affine in x",
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x}\nf_y: {y: x}\nphi: [x]",
+        Accepted("gpebo dynamic linear instant"),
+    ),
+    (
+        "rate free of x, the generalised cascade asked for",
+        "x: [x]\ny: [y]\nu: [u]\nclass: gpebo\nf_x: {x: u}\nf_y: {y: x}\nphi: [x]",
+        Accepted("gpebo dynamic linear instant"),
+    ),
+    (
+        "rate bent in x, the generalised cascade asked for",
+        "x: [x]\ny: [y]\nu: [u]\nclass: gpebo\nf_x: {x: u - x^2}\nf_y: {y: x}\nphi: [x]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "rate affine in one component, bent in another",
+        "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u - a, b: a*b}\nf_y: {y: a + b}\nphi: [a, b]",
         Rejected(Code::CascadeRefuted),
     ),
     (
@@ -239,7 +259,35 @@ const TABLE: &[(&str, &str, Answer)] = &[
     (
         "growing frame",
         "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: w*a}\nf_y: {y: a}\nphi: [a, b]",
+        Accepted("gpebo dynamic linear excitation"),
+    ),
+    (
+        "growing frame, the plain cascade asked for",
+        "x: [a, b]\ny: [y]\nu: [w, u]\nclass: pebo\nf_x: {a: w*b + u, b: w*a}\nf_y: {y: a}\nphi: [a, b]",
         Rejected(Code::CascadeRefuted),
+    ),
+    // Static regressions under a generalised cascade.
+    (
+        "a sum of decays",
+        "parameters: [k, m]\nassume: [k > 0, m > 0, k != m]\nx: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - k*a, b: u - m*b}\n\
+         phi: [a, b]\nidentities: [s - a - b]",
+        Accepted("gpebo static linear excitation"),
+    ),
+    (
+        "a sum of equal decays",
+        "parameters: [k]\nassume: [k > 0]\nx: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - k*a, b: u - k*b}\n\
+         phi: [a, b]\nidentities: [s - a - b]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "a bearing",
+        "x: [p, v]\ny: [s, c, o]\nf_x: {p: v, v: 0}\nphi: [p, v]\nidentities: [(p - o)*s - c]",
+        Accepted("gpebo static linear excitation"),
+    ),
+    (
+        "a square under a generalised cascade",
+        "x: [a]\ny: [s]\nu: [u]\nf_x: {a: u - a}\nphi: [a]\nidentities: [s - a^2]",
+        Undecided(Code::RegressionUndecided),
     ),
     // Identifiability.
     (
@@ -424,4 +472,84 @@ fn a_root_below_a_fraction_bar_is_a_condition() {
     let conditions: Vec<String> =
         plant.derivation.conditions.iter().map(|(e, r)| format!("{} {r:?}", plant.plant.arena.print(*e))).collect();
     assert_eq!(conditions, ["r NonZero"]);
+}
+
+/// Only the component that fits neither cascade is refused, and the other class is named where it would do.
+#[test]
+fn a_refusal_is_about_what_fits_neither_cascade() {
+    let both = derived("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u - a, b: a*b}\nf_y: {y: a + b}\nphi: [a, b]");
+    let said: Vec<&str> = both.derivation.diagnostics.iter().map(|d| &*d.message).collect();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("component 2"), "{said:?}");
+    let plain = derived("x: [a]\ny: [y]\nu: [u]\nclass: pebo\nf_x: {a: u - a}\nf_y: {y: a}\nphi: [a]");
+    assert!(plain.derivation.diagnostics[0].notes.iter().any(|note| note.contains("without `class: pebo`")));
+}
+
+/// A lambda of three components, what becomes of Psi, and of what.
+const MATRICES: &[(&str, &str, Fundamental)] = &[
+    // Energy, also where it is only semidefinite.
+    ("0, 0, 0; 0, 0, 0; 0, 0, 0", "stands still", Fundamental::Bounded { fades: false }),
+    ("-v^2, 0, 0; 0, 0, 0; 0, 0, -exp(v)", "semidefinite", Fundamental::Bounded { fades: false }),
+    ("0, v, -p; -v, 0, u; p, -u, 0", "turns", Fundamental::Bounded { fades: false }),
+    ("-k, v, 0; -v, -m, 0; 0, 0, 0", "dies out in part", Fundamental::Bounded { fades: true }),
+    ("-k, v, 0; -k*v, -m, 0; 0, 0, -v^4", "turns with weights", Fundamental::Bounded { fades: true }),
+    // Hurwitz.
+    ("0, k, 0; -k, -m, k; 0, 0, 0", "a damped spring with a load", Fundamental::Bounded { fades: true }),
+    ("0, 1, 0; 0, 0, 1; -1, -2, -1", "all roots to the left", Fundamental::Bounded { fades: true }),
+    ("0, 1, 0; 0, 0, 1; -3, -2, -1", "a pair to the right", Fundamental::Grows),
+    ("m, -2*k, 0; m, -m, 0; 0, 0, 0", "signs say nothing", Fundamental::NotShown),
+    ("1, -2, 0; 1, -1, 0; 0, 0, 0", "an oscillation", Fundamental::Bounded { fades: false }),
+    ("0, 1, 0; k, 0, 0; 0, 0, -m", "a saddle", Fundamental::Grows),
+    // Blocks that feed others.
+    ("-k, -m, 0; 0, 0, 0; 0, 0, 0", "fed by a constant", Fundamental::Bounded { fades: true }),
+    ("0, 0, 0; 0, -k, 0; 1, m, 0", "integrates a constant", Fundamental::Grows),
+    ("0, k, 0; 0, -m, 0; 0, 0, 0", "integrates what dies out", Fundamental::Bounded { fades: true }),
+    ("0, k, 0; 0, 0, 0; 0, 0, -m", "a double integrator", Fundamental::Grows),
+    ("-k, v, 0; 0, 0, 0; 0, 0, 0", "fed through a signal", Fundamental::NotShown),
+    ("-v^2, 1, 0; 0, -k, 0; 0, 0, -k", "semidefinite, fed by what dies out", Fundamental::Bounded { fades: true }),
+    ("-v^2, 1, 0; 0, 0, 0; 0, 0, 0", "semidefinite, fed by a constant", Fundamental::NotShown),
+    // The trace.
+    ("k, v, u; u, 0, v; p, v, 0", "a positive trace", Fundamental::Grows),
+    ("v, 0, 0; 0, 0, 0; 0, 0, 0", "a signal of any sign", Fundamental::NotShown),
+    ("v^2, 0, 0; 0, 0, 0; 0, 0, 0", "a signal that may vanish", Fundamental::NotShown),
+];
+
+#[test]
+fn boundedness_of_the_fundamental_matrix_is_shown_or_not_and_never_a_reason_to_refuse() {
+    for (matrix, what, fate) in MATRICES {
+        let rates: Vec<String> = matrix
+            .split(';')
+            .zip(["a", "b", "c"])
+            .map(|(row, name)| {
+                let terms: Vec<String> =
+                    row.split(',').zip(["a", "b", "c"]).map(|(e, z)| format!("({e})*{z}")).collect();
+                format!("{name}: {}", terms.join(" + "))
+            })
+            .collect();
+        let plant = derived(&format!(
+            "x: [a, b, c]\ny: [p, q, r]\nu: [u, v]\nparameters: [k, m]\nassume: [k > 0, m > 0]\nclass: gpebo\n\
+             f_x: {{{}}}\nf_y: {{p: a, q: b, r: c}}\nphi: [a, b, c]",
+            rates.join(", ")
+        ));
+        assert_eq!(plant.derivation.outcome, Outcome::Accepted, "{what}: {matrix}");
+        assert_eq!(
+            plant.derivation.cascade.result.as_ref().and_then(|c| c.fundamental),
+            Some(*fate),
+            "{what}: {matrix}"
+        );
+    }
+}
+
+/// Where a plain cascade is near, it is offered, and only there.
+#[test]
+fn a_mend_to_a_plain_cascade_is_offered_beside_a_generalised_one() {
+    let mend = |rates: &str| {
+        let plant = derived(&format!(
+            "x: [a, b]\ny: [p, q]\nu: [u]\nparameters: [k]\nf_x: {{a: u - 2*a, b: k*u}}\n{rates}\nphi: [a, b]"
+        ));
+        let mend = plant.derivation.cascade.result.as_ref().and_then(|c| c.mend.clone());
+        mend.map(|mend| mend.iter().map(|e| plant.plant.arena.print(*e)).collect::<Vec<_>>())
+    };
+    assert_eq!(mend("f_y: {p: a + u, q: b}").expect("a mend"), ["a + 2*p", "b"]);
+    assert_eq!(mend("f_y: {p: u*a, q: b}"), None);
 }

@@ -37,7 +37,7 @@ fn words(derived: &Derived, code: Code) -> String {
 fn an_observable_linear_plant_may_have_no_transform() {
     for parameters in ["[a1, a2, a, b]", "{a1: -1, a2: -2, a: 1, b: 1}", "{a1: -1, a2: 3, a: 1, b: -2}"] {
         let plant = derived(&format!(
-            "x: [x1, x2]\ny: [y]\nparameters: {parameters}\nlti: {{A11: [[a1, 0], [0, a2]], A21: [[a, b]]}}"
+            "x: [x1, x2]\ny: [y]\nclass: pebo\nparameters: {parameters}\nlti: {{A11: [[a1, 0], [0, a2]], A21: [[a, b]]}}"
         ));
         assert_eq!(plant.derivation.outcome, Outcome::Rejected);
         assert_eq!(plant.derivation.cascade.verdict, Verdict::Refuted);
@@ -45,12 +45,18 @@ fn an_observable_linear_plant_may_have_no_transform() {
         assert!(words.contains("no PEBO exists") && words.contains("the plant is observable"), "{words}");
     }
     // A rotation has a generalised cascade, but no transform of this kind.
-    let turning = derived("x: [a, b]\ny: [y]\nlti: {A11: [[0, 1], [-1, 0]], A21: [[1, 0]]}");
-    assert_eq!((turning.derivation.outcome, turning.derivation.class), (Outcome::Rejected, Class::Pebo));
-    // Neither observable nor with a transform.
-    let blind = derived("x: [a, b]\ny: [y]\nlti: {A11: [[-1, 0], [0, -2]], A21: [[1, 0]]}");
-    let words = words(&blind, Code::CascadeRefuted);
-    assert!(words.contains("not observable") && words.contains("s = -2, along x = (0, 1)"), "{words}");
+    let turning =
+        |class: &str| derived(&format!("x: [a, b]\ny: [y]\n{class}lti: {{A11: [[0, 1], [-1, 0]], A21: [[1, 0]]}}"));
+    let (plain, either) = (turning("class: pebo\n").derivation, turning("").derivation);
+    assert_eq!((plain.outcome, plain.class), (Outcome::Rejected, Class::Pebo));
+    assert_eq!((either.outcome, either.class), (Outcome::Accepted, Class::Gpebo));
+    // Neither observable nor with a transform: of the generalised observer, theta is what cannot be had.
+    let blind =
+        |class: &str| derived(&format!("x: [a, b]\ny: [y]\n{class}lti: {{A11: [[-1, 0], [0, -2]], A21: [[1, 0]]}}"));
+    for (class, code) in [("class: pebo\n", Code::CascadeRefuted), ("", Code::NeverIdentifiable)] {
+        let words = words(&blind(class), code);
+        assert!(words.contains("not observable") && words.contains("s = -2, along x = (0, 1)"), "{words}");
+    }
 }
 
 /// Claim C2: a transform, but no observability.
@@ -66,7 +72,7 @@ fn a_transform_does_not_make_a_linear_plant_observable() {
 /// Values at which ranks are special are special: parameters are what they are in the file.
 #[test]
 fn ranks_are_those_at_the_values() {
-    let lines = |k: &str| format!("x: [x]\ny: [y]\nparameters: {{k: {k}, a: 2}}\nlti: {{A11: a, A21: k}}");
+    let lines = |k: &str| format!("x: [x]\ny: [y]\nclass: pebo\nparameters: {{k: {k}, a: 2}}\nlti: {{A11: a, A21: k}}");
     let seen = derived(&lines("1"));
     assert_eq!(seen.derivation.outcome, Outcome::Accepted);
     let unseen = derived(&lines("0"));
@@ -124,7 +130,8 @@ fn a_redundant_transform_loses_theta_but_not_x() {
     // T1 of too small a rank is no transform; a T that does not solve the equation is no cascade.
     let flat = derived("x: [p, q]\ny: [y]\nlti: {A11: [[0, 0], [0, 0]], A21: [[1, 1]], T1: [[1, 1], [2, 2]]}");
     assert_eq!(flat.derivation.left_inverse.verdict, Verdict::Refuted);
-    let other = derived("x: [p]\ny: [y]\nparameters: [a]\nassume: [a > 0]\nlti: {A11: a, A21: 1, T1: 1, T2: 1}");
+    let other =
+        derived("x: [p]\ny: [y]\nclass: pebo\nparameters: [a]\nassume: [a > 0]\nlti: {A11: a, A21: 1, T1: 1, T2: 1}");
     assert_eq!(other.derivation.cascade.verdict, Verdict::Refuted);
 }
 

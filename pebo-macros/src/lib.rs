@@ -52,7 +52,7 @@ use syn::{Error, Item, LitStr};
 /// ```
 ///
 /// The attribute takes `title = ".."` (else the module's documentation is the title), `reference = ".."`,
-/// `assume(L > 0, 0 < d < 1)` and `angles(q = 2.0 * PI)`.
+/// `class = "pebo"` or `class = "gpebo"` (else either will do), `assume(L > 0, 0 < d < 1)` and `angles(q = 2.0 * PI)`.
 ///
 /// With the path of a model file, relative to the crate's own folder, it stands on a unit struct, which becomes the
 /// model's type beside a module of the same name in snake case, or on an empty module, which it fills. The crate is

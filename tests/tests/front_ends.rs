@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use pebo_gen::analysis::Outcome;
 use pebo_gen::emit::Scalar;
 use pebo_gen::model::Model;
 use pebo_gen::model::rust::Places;
-use pebo_gen::source::Source;
+use pebo_gen::source::{Code, Source};
 use pebo_gen::{Builder, Derived, derive};
 use pebo_runtime::nalgebra::SVector;
 use pebo_runtime::{Extension as _, Integrator, Model as _};
@@ -49,6 +50,20 @@ fn from_rust(text: &str) -> Derived {
 fn from_file(path: &str) -> Derived {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a model file");
     derive(&Source::new(path, text).expect("a text")).expect("a model")
+}
+
+/// The attribute asks for a cascade as a model file does.
+#[test]
+fn the_class_that_is_asked_for_is_read() {
+    let (_, text, _) = PLANTS.iter().find(|plant| plant.0 == "rotating_frame").expect("a plant");
+    let asked = |class: &str| {
+        let module: syn::ItemMod = syn::parse_str(text).expect("a module");
+        let arguments = format!("class = \"{class}\", assume(k > 0)").parse().expect("tokens");
+        Model::read_rust(arguments, &module, &mut Places::new())
+    };
+    assert_eq!(Derived::of(asked("gpebo").expect("a model")).expect("a plant").derivation.outcome, Outcome::Accepted);
+    assert_eq!(Derived::of(asked("pebo").expect("a model")).expect("a plant").derivation.outcome, Outcome::Rejected);
+    assert_eq!(asked("pbo").expect_err("no such class")[0].code, Code::WrongChoice);
 }
 
 #[test]

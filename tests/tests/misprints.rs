@@ -82,7 +82,7 @@ fn cuk_case_2_phi_0() {
 
 #[test]
 fn cuk_case_2_needs_its_transform() {
-    let text = CASE_2.lines().map(|line| if line.starts_with("phi:") { "phi: [i1, v4]" } else { line });
+    let text = CASE_2.lines().map(|line| if line.starts_with("phi:") { "phi: [i1, v4]\nclass: pebo" } else { line });
     let cuk = derived(&text.collect::<Vec<_>>().join("\n"));
     assert_eq!(cuk.derivation.outcome, Outcome::Rejected);
     let cascade = cuk.derivation.cascade.result.as_ref().expect("a residual");

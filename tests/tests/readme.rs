@@ -148,7 +148,8 @@ fn verdicts_are_printed_as_shown() {
     let cuk = derived(&model("cuk.yaml"));
     assert_eq!(shown[0], report::summary(&cuk.plant, &cuk.derivation));
     let case_2 = model("cuk_case2.yaml");
-    let replaced = |line: &str| if line.starts_with("phi:") { "phi: [i1, v4]" } else { line }.to_owned() + "\n";
+    let replaced =
+        |line: &str| if line.starts_with("phi:") { "phi: [i1, v4]\nclass: pebo" } else { line }.to_owned() + "\n";
     let wrong: String = case_2.lines().map(replaced).collect();
     let refused = derived(&wrong);
     let source = Source::new("wrong.yaml", wrong).expect("a text");

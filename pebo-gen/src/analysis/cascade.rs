@@ -1,8 +1,9 @@
 //! Claim 1, the cascade: the transform moves by known signals.
 //!
-//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, what keeps
-//! the derivative from being free of x, a point that shows it, and a mended transform if adding
-//! multiples of the outputs makes one (Ortega et al. 2015, eq. 3).
+//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and
+//! h(y, u) with `Lambda phi + h` on the right ([`super::gpebo`]), or what keeps the derivative from being free of
+//! x, a point that shows it, and a mended transform if adding multiples of the outputs makes one (Ortega et al.
+//! 2015, eq. 3).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +12,7 @@ use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::zero::{Answer, decide, point_of};
 use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::{self, Plant};
+use crate::plant::{self, Formula, Plant};
 use crate::source::{Code, Diagnostic, listed};
 
 use super::design::{Cascade, Claim, Class, Verdict, Witness};
@@ -29,50 +30,77 @@ enum Component {
     Open(Obstacle),
 }
 
-/// Proves or refutes the cascade.
+/// Proves or refutes the cascade: the plain one, and where that fails or is not asked for, the generalised one.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
-    if let Some(refusal) = pencil::refuse(plant, domain, found) {
-        return (Class::Pebo, refusal);
-    }
     let lie = plant.derivative_of_transform();
     let components: Vec<Component> =
         lie.iter().enumerate().map(|(index, rate)| component_of(plant, domain, index, *rate)).collect();
-    if components.iter().all(|c| matches!(c, Component::Free(_))) {
+    if plant.asked != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
         let h = components.iter().filter_map(Component::free).collect();
-        let result = Cascade { h, lambda: None, residual: Vec::new(), witness: None };
-        return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(result) });
+        return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(Cascade { h, ..Cascade::default() }) });
     }
-    if components.iter().any(|c| matches!(c, Component::Open(_))) {
-        for (index, component) in components.iter().enumerate() {
-            if let Component::Open(obstacle) = component {
-                found.push(undecided(plant, index, obstacle));
-            }
-        }
-        return (Class::Pebo, Claim { verdict: Verdict::Undecided, result: None });
-    }
-    let mends: Vec<Option<Expr>> =
-        lie.iter().zip(&plant.phi).map(|(rate, phi)| mend(plant, domain, *rate, phi.expr)).collect();
-    let mendable = components.iter().zip(&mends).all(|(c, m)| matches!(c, Component::Free(_)) || m.is_some());
-    if !mendable && let Some(result) = gpebo::generalised(plant, domain, &lie) {
+    let row = |(rate, component): (&Expr, &Component)| match component {
+        Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
+        Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
+        Component::Bound { .. } | Component::Open(_) => gpebo::affine(plant, domain, *rate),
+    };
+    let rows: Vec<Result<Option<gpebo::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
+    let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
+    let mends = mends(plant, domain, &lie, &components);
+    if generalised && plant.asked != Some(Class::Pebo) {
+        let result = gpebo::cascade(plant, domain, rows.into_iter().filter_map(|row| row.ok()?).collect());
+        let plain = components.iter().any(|c| c.free().is_none()).then(|| mends.into_iter().collect()).flatten();
+        let result = Cascade { mend: plain, ..result };
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
     }
-    let mut residual = Vec::new();
+    if plant.asked == Some(Class::Pebo) {
+        let mut refusals = Vec::new();
+        let claim = pencil::refuse(plant, domain, &mut refusals);
+        let claim = claim.unwrap_or_else(|| refuse(plant, domain, (&components, &mends), |_| Ok(None), &mut refusals));
+        let note = "it is Lambda(y, u) phi + h(y, u): without `class: pebo` a generalised observer takes phi as it is";
+        found.extend(refusals.into_iter().map(|refusal| if generalised { refusal.note(note) } else { refusal }));
+        return (Class::Pebo, claim);
+    }
+    let mut refusals = Vec::new();
+    let claim = refuse(plant, domain, (&components, &mends), |index| rows[index].clone(), &mut refusals);
+    let note = "nor is it Lambda(y, u) phi + h(y, u), which a generalised observer would take";
+    let noted = |refusal: Diagnostic| if refusal.code == Code::CascadeRefuted { refusal.note(note) } else { refusal };
+    found.extend(refusals.into_iter().map(noted));
+    (Class::Pebo, claim)
+}
+
+/// What stands against the cascade, component by component, but for those that are affine in the transform by `row`
+/// and stand against a plain one alone.
+fn refuse(
+    plant: &Plant,
+    domain: &Domain,
+    (components, mends): (&[Component], &[Option<Expr>]),
+    row: impl Fn(usize) -> Result<Option<gpebo::Row>, Obstacle>,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Cascade> {
+    let mut residuals = vec![plant.arena.zero(); components.len()];
     let mut first = None;
-    for (index, (component, mend)) in components.iter().zip(&mends).enumerate() {
-        residual.push(match component {
-            Component::Bound { residual, witness, through } => {
-                let refusal = refuted(plant, index, *residual, witness, through, *mend);
+    for (index, component) in components.iter().enumerate() {
+        match (component, row(index)) {
+            (Component::Free(_), _) | (_, Ok(Some(_))) => {}
+            (Component::Open(obstacle), _) => found.push(undecided(plant, index, obstacle)),
+            (Component::Bound { .. }, Err(obstacle)) => found.push(undecided(plant, index, &obstacle)),
+            (Component::Bound { residual, witness, through }, Ok(None)) => {
+                let refusal = refuted(plant, index, *residual, witness, through, mends[index]);
                 let refusal = blame::cascade(plant, domain, index, refusal);
                 found.push(structure(plant, domain, index, refusal));
+                residuals[index] = *residual;
                 first.get_or_insert_with(|| witness.clone());
-                *residual
             }
-            _ => plant.arena.zero(),
-        });
+        }
     }
-    let h = Vec::new();
-    let result = Cascade { h, lambda: None, residual, witness: first };
-    (Class::Pebo, Claim { verdict: Verdict::Refuted, result: Some(result) })
+    match first {
+        Some(_) => {
+            let result = Cascade { residual: residuals, witness: first, ..Cascade::default() };
+            Claim { verdict: Verdict::Refuted, result: Some(result) }
+        }
+        None => Claim { verdict: Verdict::Undecided, result: None },
+    }
 }
 
 impl Component {
@@ -144,6 +172,16 @@ fn bound(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
     Component::Open(Obstacle::NoPoint)
 }
 
+/// The components that are free of x, and the others mended, where that can be.
+fn mends(plant: &Plant, domain: &Domain, lie: &[Expr], components: &[Component]) -> Vec<Option<Expr>> {
+    let component = |((rate, component), phi): ((&Expr, &Component), &Formula)| match component {
+        Component::Free(_) => Some(phi.expr),
+        Component::Bound { .. } => mend(plant, domain, *rate, phi.expr),
+        Component::Open(_) => None,
+    };
+    lie.iter().zip(components).zip(&plant.phi).map(component).collect()
+}
+
 /// The component with constant multiples of outputs added so that its derivative is free of x.
 fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
     let arena = &plant.arena;
@@ -164,7 +202,9 @@ fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
         mended = arena.sub(mended, arena.mul(coefficient, arena.of_symbol(*output)));
     }
     // A component that no longer holds a state would be of no use.
-    (mended != phi && arena.depends_on(mended, &plant.hidden())).then_some(mended)
+    let useful = mended != phi && arena.depends_on(mended, &plant.hidden());
+    let proved = || matches!(component(plant, domain, arena.directional(mended, &plant.rates())), Component::Free(_));
+    (useful && proved()).then_some(mended)
 }
 
 /// Characters of a formula that a reader takes in at a glance.

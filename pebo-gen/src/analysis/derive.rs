@@ -35,7 +35,7 @@ impl Derivation {
             // What the outputs' rates do not show, an identity may.
             Some(result) if identifiability.verdict == Verdict::Refuted && !plant.identities.is_empty() => {
                 let mut others = Vec::new();
-                let other = regression::from_identities(plant, &domain, inverse, &mut others);
+                let other = regression::from_identities(plant, &domain, result, inverse, &mut others);
                 let other = known::regression(plant, class, other, &mut others);
                 let seen = other
                     .result

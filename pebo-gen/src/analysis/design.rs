@@ -3,6 +3,7 @@
 use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
+pub use crate::model::CascadeClass as Class;
 use crate::plant::Plant;
 use crate::source::Diagnostic;
 
@@ -39,17 +40,8 @@ pub struct Claim<T> {
     pub result: Option<T>,
 }
 
-/// How the transform moves.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Class {
-    /// z' = h: the extension is an integrator, z = chi + theta.
-    Pebo,
-    /// z' = Lambda z + h: xi' = Lambda xi + h, Psi' = Lambda Psi, z = xi + Psi theta.
-    Gpebo,
-}
-
 /// Claim 1: the transform moves by known signals.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Cascade {
     /// The known part of z', free of x, a component each.
     pub h: Vec<Expr>,
@@ -59,6 +51,24 @@ pub struct Cascade {
     pub residual: Vec<Expr>,
     /// A point at which a residual is bounded away from zero.
     pub witness: Option<Witness>,
+    /// What becomes of the fundamental matrix of a generalised cascade: no part of the claim.
+    pub fundamental: Option<Fundamental>,
+    /// Beside a generalised cascade, a transform with a plain one: phi with multiples of the outputs added.
+    pub mend: Option<Vec<Expr>>,
+}
+
+/// What becomes of `Psi' = Lambda(y, u) Psi`, `Psi(0) = I`, along every trajectory.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Fundamental {
+    /// It stays bounded.
+    Bounded {
+        /// Whether its determinant dies out at a constant rate: directions of theta are then forgotten.
+        fades: bool,
+    },
+    /// It grows without bound.
+    Grows,
+    /// Neither was shown.
+    NotShown,
 }
 
 /// A rational point at which an expression provably is not zero.

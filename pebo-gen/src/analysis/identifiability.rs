@@ -65,7 +65,7 @@ pub(super) fn prove(
         return answer(Excitation::Excitation, None, Verdict::Proved);
     }
     let mut latest = stack.clone();
-    let mut unseen = match unseen_by(arena, domain, &stack, unknowns) {
+    let mut unseen = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
         Ok(unseen) => unseen,
         Err(obstacle) => return open(plant, &obstacle, found),
     };
@@ -76,7 +76,7 @@ pub(super) fn prove(
             return answer(Excitation::Excitation, None, Verdict::Proved);
         }
         flow.advance(plant);
-        let next = match unseen_by(arena, domain, &stack, unknowns) {
+        let next = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
             Ok(next) => next,
             Err(obstacle) => return open(plant, &obstacle, found),
         };

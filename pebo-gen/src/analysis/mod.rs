@@ -8,6 +8,7 @@
 //! point with a rigorous enclosure or by an exact null vector; everything else is undecided and says why.
 
 mod blame;
+mod bounded;
 mod cascade;
 mod conditions;
 mod derive;
@@ -34,8 +35,8 @@ mod tidy;
 mod tests;
 
 pub use design::{
-    Cascade, Claim, Class, Derivation, Excitation, Gram, Identifiability, LeftInverse, Origin, Outcome, Positive,
-    Regression, RegressionKind, Verdict, Witness,
+    Cascade, Claim, Class, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse, Origin, Outcome,
+    Positive, Regression, RegressionKind, Verdict, Witness,
 };
 pub use drift::{Drift, rebase_residuals};
 pub use equilibrium::{Equilibrium, OperatingPoint};

@@ -102,7 +102,7 @@ fn witnessed(
             let witness = Witness::of(moved, &point);
             found.push(refused(plant, domain, linear, &vector, &witness)?);
             let residual = plant.phi.iter().enumerate().map(|(row, _)| remainder(plant, linear, row)).collect();
-            let result = Cascade { h: Vec::new(), lambda: None, residual, witness: Some(witness) };
+            let result = Cascade { residual, witness: Some(witness), ..Cascade::default() };
             return Ok(Claim { verdict: Verdict::Refuted, result: Some(result) });
         }
     }

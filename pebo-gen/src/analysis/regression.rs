@@ -40,7 +40,7 @@ pub(super) fn prove(
     let mut rows: Vec<(usize, Expr, Span)> =
         plant.y.iter().enumerate().filter_map(|(i, o)| o.rate.map(|rate| (i, rate.expr, rate.span))).collect();
     if rows.is_empty() {
-        return from_identities(plant, domain, left_inverse, found);
+        return from_identities(plant, domain, cascade, left_inverse, found);
     }
     let unmeasured: BTreeSet<Symbol> = plant.w.iter().copied().collect();
     let mut affine = Vec::new();
@@ -58,10 +58,10 @@ pub(super) fn prove(
     rows.retain(|row| !veiled.contains(row));
     if rows.is_empty() {
         if plant.identities.is_empty() {
-            return from_relations(plant, domain, left_inverse, found)
+            return from_relations(plant, domain, cascade, left_inverse, found)
                 .unwrap_or_else(|| hidden_by_signals(plant, domain, &veiled, found));
         }
-        return from_identities(plant, domain, left_inverse, found);
+        return from_identities(plant, domain, cascade, left_inverse, found);
     }
     if obstacles.is_empty() {
         let regression = linear(plant, domain, cascade, left_inverse, rows.iter().map(|r| r.0).collect(), &affine);
@@ -96,7 +96,7 @@ pub(super) fn prove(
         }
     }
     if !plant.identities.is_empty() {
-        let claim = from_identities(plant, domain, left_inverse, &mut Vec::new());
+        let claim = from_identities(plant, domain, cascade, left_inverse, &mut Vec::new());
         if claim.verdict == Verdict::Proved {
             return claim;
         }

@@ -5,7 +5,7 @@
 
 use super::definition::{Argument, Definitions, VELOCITY};
 use super::module::Module;
-use crate::analysis::{Class, Derivation, Drift, Excitation, Origin, RegressionKind};
+use crate::analysis::{Class, Derivation, Drift, Excitation, Fundamental, Origin, RegressionKind};
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
@@ -32,6 +32,7 @@ pub(super) fn module(module: &Module<'_>) -> Vec<String> {
     ]);
     lines.extend(equations(plant));
     lines.extend(observer(plant, definitions));
+    lines.extend(fundamental(derivation));
     lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
     lines.extend(costs(definitions, staged));
@@ -125,6 +126,21 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     }
     lines.extend(text(blocks));
     lines
+}
+
+/// What becomes of the fundamental matrix, and what there is against it.
+fn fundamental(derivation: &Derivation) -> Vec<String> {
+    let fate = match derivation.cascade.result.as_ref().and_then(|cascade| cascade.fundamental) {
+        None => return Vec::new(),
+        Some(Fundamental::Bounded { fades: false }) => return vec![String::new(), "`Psi` stays bounded.".to_owned()],
+        Some(Fundamental::Bounded { fades: true }) => {
+            "`Psi` stays bounded, but dies out in part: what the model misses later stays uncorrected there."
+        }
+        Some(Fundamental::Grows) => "`Psi` grows without bound, and with it every error of `theta`.",
+        Some(Fundamental::NotShown) => "It was not shown that `Psi` stays bounded: errors of `theta` may grow with it.",
+    };
+    let restart = "`Observer::restart` at the estimate of `z`, with `theta` zero, makes it the identity again.";
+    vec![String::new(), fate.to_owned(), restart.to_owned()]
 }
 
 /// What the extension does under a constant bias, and what there is against it.

@@ -29,7 +29,7 @@ pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Function, Operator, Relation, Term};
 pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
-pub use written::{Baseline, Entry, Model, Panel, Piece, Scale, Simulation, Spanned};
+pub use written::{Baseline, CascadeClass, Entry, Model, Panel, Piece, Scale, Simulation, Spanned};
 
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};

@@ -3,7 +3,7 @@
 mod hostile;
 mod mistakes;
 
-use super::{Estimator, Hold, Model, Scale};
+use super::{CascadeClass, Estimator, Hold, Model, Scale};
 use crate::source::{Diagnostic, Source};
 
 /// The design's example.
@@ -24,6 +24,7 @@ phi: [i1, i3]
 const REST: &str = "\
 reference: a paper
 w: [omega]
+class: gpebo
 define: {p: v2*i1}
 phi_left: {i3: z2}
 identities: [i1 - i1]
@@ -75,6 +76,7 @@ fn every_key_is_read() {
     assert_eq!(model.observer.gain[0].value.text(), "1e7");
     assert_eq!(model.observer.hold.map(|hold| hold.value), Some(Hold::FirstOrder));
     assert_eq!(model.observer.extension.len(), 2);
+    assert_eq!(model.asked.map(|asked| asked.value), Some(CascadeClass::Gpebo));
     let simulation = model.simulation.expect("it is there");
     let starts: Vec<f64> = simulation.signals[0].value.iter().map(|piece| piece.from.value.to_f64()).collect();
     assert_eq!(starts, [0.0, 0.2]);

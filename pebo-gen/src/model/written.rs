@@ -55,6 +55,8 @@ pub struct Model {
     pub w: Vec<Spanned<String>>,
     /// Named sub-expressions, each of which uses only those before it.
     pub define: Vec<Entry<Formula>>,
+    /// The cascade that is asked for; without it either will do.
+    pub asked: Option<Spanned<CascadeClass>>,
     /// Inequalities that hold where the plant operates.
     pub assume: Vec<Comparison>,
     /// The class that the plant is written by, which gives what is empty below.
@@ -146,6 +148,35 @@ pub enum Scale {
     Linear,
     /// Equal quotients are equally far apart; of the curves, magnitudes are drawn.
     Log,
+}
+
+/// How the transform moves.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
+pub enum CascadeClass {
+    /// z' = h: the extension is an integrator, z = chi + theta.
+    Pebo,
+    /// z' = Lambda z + h: xi' = Lambda xi + h, Psi' = Lambda Psi, z = xi + Psi theta.
+    Gpebo,
+}
+
+impl CascadeClass {
+    /// The names in a model.
+    pub const NAMES: &[&str] = &["pebo", "gpebo"];
+
+    /// The class of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Pebo, Self::Gpebo].into_iter().find(|class| class.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pebo => Self::NAMES[0],
+            Self::Gpebo => Self::NAMES[1],
+        }
+    }
 }
 
 impl Model {

@@ -6,6 +6,7 @@ use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
+use crate::model::CascadeClass;
 use crate::source::Span;
 
 use super::class::{Class, Proposal};
@@ -25,6 +26,8 @@ pub struct Plant {
     pub class: Option<Class>,
     /// What the class proposes; proved like anything else.
     pub proposal: Proposal,
+    /// The cascade that the author asks for; without it either will do.
+    pub asked: Option<CascadeClass>,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
     /// Unmeasured states with their rates.

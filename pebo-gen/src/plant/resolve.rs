@@ -94,6 +94,7 @@ impl Plant {
             title: model.title.as_ref().map(|t| t.value.clone()),
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
+            asked: model.asked.as_ref().map(|asked| asked.value),
             proposal,
             parameters,
             x: states,

@@ -50,6 +50,10 @@ struct CascadeReport {
     lambda: Option<Vec<Vec<String>>>,
     residual: Vec<String>,
     witness: Option<WitnessReport>,
+    /// Whether the fundamental matrix of a generalised cascade stays bounded; no part of the verdict.
+    bounded: Option<&'static str>,
+    /// Beside a generalised cascade, a transform with a plain one.
+    mend: Option<Vec<String>>,
 }
 
 #[derive(Serialize)]
@@ -204,6 +208,8 @@ fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {
         lambda: result.and_then(|r| r.lambda.as_ref()).map(|l| matrix(arena, l)),
         residual: result.map(|r| printed(arena, &r.residual)).unwrap_or_default(),
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
+        bounded: result.and_then(|r| r.fundamental).map(super::boundedness),
+        mend: result.and_then(|r| r.mend.as_ref()).map(|mend| printed(arena, mend)),
     }
 }
 

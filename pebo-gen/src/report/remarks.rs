@@ -1,6 +1,8 @@
-//! What to know in use, in a line each: where the plant rests, what drifts, how long theta holds.
+//! What to know in use, in a line each: whether Psi stays bounded, where the plant rests, what drifts, how long theta holds.
 
-use crate::analysis::{Class, Derivation, Drift, Equilibrium, OperatingPoint, Outcome, Verdict, rebase_residuals};
+use crate::analysis::{
+    Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict, rebase_residuals,
+};
 use crate::cas::Symbol;
 use crate::cas::zero::decide;
 use crate::plant::{Class as PlantClass, Plant};
@@ -9,13 +11,14 @@ use crate::source::listed;
 /// A remark: its name, its verdict where one was reached, and its lines.
 pub(super) struct Remark {
     pub(super) name: &'static str,
-    pub(super) verdict: Option<Verdict>,
+    pub(super) verdict: Option<&'static str>,
     pub(super) lines: Vec<String>,
 }
 
 /// The remarks on a plant with a proved cascade.
 pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
-    let mut remarks: Vec<Remark> = Equilibrium::of(plant, derivation)
+    let mut remarks: Vec<Remark> = fundamental(plant, derivation);
+    let rest = Equilibrium::of(plant, derivation)
         .map(|equilibrium| match equilibrium {
             Equilibrium::At(point) => (Verdict::Proved, rest(plant, derivation.class, &point)),
             Equilibrium::Nowhere(symbol) => {
@@ -23,9 +26,8 @@ pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
             }
             Equilibrium::Undecided(reason) => (Verdict::Undecided, vec![format!(": {reason}")]),
         })
-        .map(|(verdict, lines)| Remark { name: "operating point", verdict: Some(verdict), lines })
-        .into_iter()
-        .collect();
+        .map(|(verdict, lines)| Remark { name: "operating point", verdict: Some(super::name(verdict)), lines });
+    remarks.extend(rest);
     remarks.extend(special(plant).map(|line| Remark { name: "values", verdict: None, lines: vec![line] }));
     if derivation.outcome == Outcome::Accepted {
         let drift = Drift::of(plant, derivation).filter(|drift| !drift.integrators.is_empty());
@@ -40,6 +42,41 @@ pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     }
     remarks
 }
+
+/// What becomes of a generalised cascade's fundamental matrix, what that means, and what would do without it.
+fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
+    let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved);
+    let Some((cascade, fundamental)) = cascade.and_then(|cascade| Some((cascade, cascade.fundamental?))) else {
+        return Vec::new();
+    };
+    let lines: &[&str] = match fundamental {
+        Fundamental::Bounded { fades: false } => &["no error of theta is amplified"],
+        Fundamental::Bounded { fades: true } => {
+            &["but theta is forgotten where Psi dies out: what the model misses later stays uncorrected there", RESTART]
+        }
+        Fundamental::Grows => &["Psi grows, and with it every error of theta, until a number overflows", RESTART],
+        Fundamental::NotShown => {
+            &[": if Psi grows, so does every error of theta; if it dies out, theta is forgotten", RESTART]
+        }
+    };
+    let lines = lines.iter().map(|line| (*line).to_owned()).collect();
+    let mut remarks = vec![Remark { name: "Psi bounded", verdict: Some(super::boundedness(fundamental)), lines }];
+    remarks.extend(cascade.mend.iter().map(|mend| {
+        let phi: Vec<String> = mend.iter().map(|component| plant.arena.print(*component)).collect();
+        Remark {
+            name: "plain instead",
+            verdict: None,
+            lines: vec![
+                format!("phi: [{}] has a plain cascade, z' = h(y, u), without Psi", phi.join(", ")),
+                "its extension is an open integrator: a constant bias of a sensor or input makes it drift".to_owned(),
+            ],
+        }
+    }));
+    remarks
+}
+
+/// What makes the fundamental matrix the identity again.
+const RESTART: &str = "`restart` at the estimate of z, with theta = 0, makes Psi the identity again";
 
 /// On which values the verdict rests, where it is another than in general.
 fn special(plant: &Plant) -> Option<String> {

@@ -45,7 +45,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         lines
     });
     for remark in super::remarks::of(plant, derivation) {
-        block(&mut text, remark.name, remark.verdict.map_or("", super::name), &remark.lines);
+        block(&mut text, remark.name, remark.verdict.unwrap_or_default(), &remark.lines);
     }
     let conditions = super::conditions(&plant.arena, &derivation.conditions);
     if !conditions.is_empty() && derivation.outcome == Outcome::Accepted {

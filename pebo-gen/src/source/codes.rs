@@ -228,8 +228,9 @@ codes! {
     // Claims.
 
     CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
-        "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone (or, for the \
-         generalised cascade, linear in phi besides). The residual shown remains for any choice, and the witness is a \
+        "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone, or for the \
+         generalised cascade an affine function of phi with such coefficients; `class: pebo` in a model asks for the \
+         first. The residual shown remains for any choice, and the witness is a \
          point where it is certainly not constant in x. Change phi, or let `pebo-gen solve` propose one."
         => "Section 2.2, Assumption 1 (ii)"
     CascadeUndecided "cascade-undecided" "the cascade claim is neither proved nor refuted"

@@ -1,5 +1,6 @@
 #[pebo_macros::pebo_model(
     title = "Two components of a vector in a rotating frame from the integral of one",
+    class = "gpebo",
     assume(k > 0)
 )]
 pub(crate) mod rotating_frame {

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
+use crate::analysis::gpebo;
 use crate::analysis::tidy::{shortest, shortest_equal};
-use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
-use crate::cas::field::{Field, Obstacle};
-use crate::cas::zero::{Answer, decide};
+use crate::cas::field::Obstacle;
+use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
@@ -30,27 +30,15 @@ pub(super) fn decompose(plant: &Plant, domain: &Domain, index: usize, rate: Expr
             return Ok(Some(Row { known: *known, factors: factors.clone() }));
         }
     }
-    let mut roots = phi.clone();
-    roots.push(rate);
-    let field = Field::over(arena, &domain.facts, &roots)?;
-    let mut basis = vec![arena.one()];
-    basis.extend(&phi);
-    let Some(coefficients) = combine(&field, rate, &basis, &plant.hidden())? else { return Ok(None) };
-    let coefficients: Vec<Expr> = coefficients.iter().map(|c| field.show(c)).collect();
-    let rebuilt = arena.sum(coefficients.iter().zip(&basis).map(|(c, b)| arena.mul(*c, *b)));
-    match decide(arena, arena.sub(rate, rebuilt), domain) {
-        Answer::Zero => {}
-        Answer::Open(obstacle) => return Err(obstacle),
-        Answer::NonZero(_) => return Err(Obstacle::NoWitness),
-    }
-    let mut parts = coefficients.into_iter();
-    let known = parts.next().unwrap_or_else(|| arena.zero());
+    let Some(row) = gpebo::affine(plant, domain, rate)? else { return Ok(None) };
+    let (known, factors) = (row[0], &row[1..]);
     // Where the transform is the state itself, the author's own coefficients may be shorter.
-    let factors = parts
+    let factors = factors
+        .iter()
         .zip(&phi)
         .map(|(factor, component)| match arena.as_symbol(*component) {
-            Some(state) => shortest_equal(arena, domain, factor, &[arena.derivative(rate, state)]),
-            None => factor,
+            Some(state) => shortest_equal(arena, domain, *factor, &[arena.derivative(rate, state)]),
+            None => *factor,
         })
         .collect();
     Ok(Some(Row { known, factors }))

@@ -1,14 +1,15 @@
 //! Static regressions: from identities, or from what the components of the transform have to do with each other.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::analysis::tidy::{shortest, shortest_equal};
-use crate::analysis::{relations, separation};
+use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
+use crate::analysis::tidy::{proved_shortest, shortest, shortest_equal};
+use crate::analysis::{gpebo, relations, separation};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
+use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Span};
 
 use super::functions::turned_away;
@@ -18,13 +19,14 @@ use super::refusal::undecided;
 pub(in crate::analysis) fn from_identities(
     plant: &Plant,
     domain: &Domain,
+    cascade: &Cascade,
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
     let span = plant.y.first().map_or(Span::point(0), |output| output.span);
     if plant.identities.is_empty() {
-        if let Some(claim) = from_relations(plant, domain, left_inverse, found) {
+        if let Some(claim) = from_relations(plant, domain, cascade, left_inverse, found) {
             return claim;
         }
         found.push(
@@ -33,6 +35,10 @@ pub(in crate::analysis) fn from_identities(
                 .help("give `f_y` for an output, or an expression in x and y that is zero under `identities`"),
         );
         return Claim { verdict: Verdict::Refuted, result: None };
+    }
+    if cascade.lambda.is_some() {
+        let rows = plant.identities.iter().map(|identity| gpebo::affine(plant, domain, identity.expr)).collect();
+        return under_lambda(plant, domain, (rows, plant.identities[0].span), found);
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
     let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
@@ -45,19 +51,88 @@ pub(in crate::analysis) fn from_identities(
 pub(super) fn from_relations(
     plant: &Plant,
     domain: &Domain,
+    cascade: &Cascade,
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
     let relations = relations::among(plant, domain).ok().filter(|relations| !relations.is_empty())?;
     let mut own = Vec::new();
     let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
-    let claim = standing_still(plant, domain, left_inverse?, (&relations, span), &mut own);
+    let claim = match cascade.lambda {
+        Some(_) => {
+            let rows = relations.iter().map(|relation| Ok(in_z(plant, *relation))).collect();
+            under_lambda(plant, domain, (rows, span), &mut own)
+        }
+        None => standing_still(plant, domain, left_inverse?, (&relations, span), &mut own),
+    };
     // A claim that is undecided here is left to what the author can mend: the rates.
     if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
         return None;
     }
     found.extend(own);
     Some(claim)
+}
+
+/// What vanishes as an affine function of z, the known part first; none where it is no such function.
+fn in_z(plant: &Plant, relation: Expr) -> Option<gpebo::Row> {
+    let arena = &plant.arena;
+    let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
+    let slopes: Vec<Expr> = plant.z.iter().map(|z| arena.derivative(relation, *z)).collect();
+    let origin: BTreeMap<Symbol, Expr> = plant.z.iter().map(|z| (*z, arena.zero())).collect();
+    let affine = slopes.iter().all(|slope| !arena.depends_on(*slope, &z));
+    affine.then(|| [vec![arena.substitute(relation, &origin)], slopes].concat())
+}
+
+/// A static regression under a generalised cascade, `z = xi + Psi theta`, from what vanishes as an affine function of z.
+///
+/// Functions of theta are not sought here: with Psi between them, they would be functions of known signals too.
+fn under_lambda(
+    plant: &Plant,
+    domain: &Domain,
+    (rows, span): (Vec<Result<Option<gpebo::Row>, Obstacle>>, Span),
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    let xi: Vec<Expr> = plant.xi.iter().map(|s| arena.of_symbol(*s)).collect();
+    let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
+    let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
+    for row in rows.iter().filter_map(|row| row.as_ref().ok()?.as_ref()) {
+        // known + factors (xi + Psi theta) = 0
+        phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
+        let column = |column: usize| {
+            let psi: Vec<Expr> = plant.psi.iter().map(|row| arena.of_symbol(row[column])).collect();
+            proved_shortest(arena, domain, arena.neg(dot(arena, &row[1..], &psi)))
+        };
+        phi_1.push((0..theta.len()).map(column).collect());
+    }
+    if phi_0.is_empty() {
+        let obstacle = rows.into_iter().find_map(Result::err);
+        found.push(match obstacle {
+            Some(obstacle) => undecided(plant, plant.y.len(), span, &obstacle),
+            None => Diagnostic::error(
+                Code::RegressionUndecided,
+                span,
+                "under a generalised cascade no regression was found in this identity",
+            )
+            .label("not an affine function of phi with coefficients in y and u")
+            .note("functions of theta are not sought for a generalised cascade, z = xi + Psi theta")
+            .help("choose a phi in which it is affine, or one whose derivative is free of x"),
+        });
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
+    let eta_symbols = plant.eta(theta.len());
+    let result = Regression {
+        kind: RegressionKind::Static,
+        rows: Vec::new(),
+        phi_0,
+        phi_1,
+        primitive_0: Vec::new(),
+        primitive_1: Vec::new(),
+        theta: eta_symbols.iter().map(|s| arena.of_symbol(*s)).collect(),
+        eta: theta,
+        eta_symbols,
+    };
+    Claim { verdict: Verdict::Proved, result: Some(result) }
 }
 
 /// A static regression from expressions in z that vanish.

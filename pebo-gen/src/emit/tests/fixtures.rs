@@ -150,12 +150,7 @@ impl Sketch {
             conditions: Vec::new(),
             outcome: Outcome::Accepted,
             class: if self.lambda.is_some() { Class::Gpebo } else { Class::Pebo },
-            cascade: proved(Cascade {
-                h: formulas(self.h),
-                lambda: self.lambda.map(rows),
-                residual: Vec::new(),
-                witness: None,
-            }),
+            cascade: proved(Cascade { h: formulas(self.h), lambda: self.lambda.map(rows), ..Cascade::default() }),
             left_inverse: proved(LeftInverse {
                 x: self.phi_left.iter().map(|(x, text)| (arena.symbol(x), formula(&arena, text))).collect(),
                 modulo: Vec::new(),
@@ -184,6 +179,7 @@ impl Sketch {
         };
         let plant = Plant {
             class: None,
+            asked: None,
             proposal: Proposal::default(),
             terms: std::collections::BTreeMap::new(),
             conditions: Vec::new(),

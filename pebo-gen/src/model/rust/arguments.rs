@@ -12,17 +12,18 @@ use syn::{Expr, Lit, Meta, MetaNameValue, Token};
 
 use super::{Places, unsupported};
 use crate::model::formula::Relation;
-use crate::model::written::Spanned;
-use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
+use crate::model::written::{CascadeClass, Spanned};
+use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
 /// What an attribute may say.
-const KEYS: [&str; 4] = ["title", "reference", "assume", "angles"];
+const KEYS: [&str; 5] = ["title", "reference", "class", "assume", "angles"];
 
 /// What an attribute says.
 #[derive(Default)]
 pub(super) struct Arguments {
     pub(super) title: Option<Spanned<String>>,
     pub(super) reference: Option<Spanned<String>>,
+    pub(super) class: Option<Spanned<CascadeClass>>,
     pub(super) assume: Vec<Chain>,
     pub(super) angles: Vec<MetaNameValue>,
 }
@@ -62,6 +63,7 @@ impl Arguments {
         match (name.as_str(), meta) {
             ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, places)?),
             ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, places)?),
+            ("class", Meta::NameValue(pair)) => self.class = Some(class(text(pair, places)?)?),
             ("assume", Meta::List(list)) => {
                 for part in split(list.tokens.clone(), is_comma) {
                     let chain = chain(part, places);
@@ -76,7 +78,7 @@ impl Arguments {
                 })?;
                 self.angles.extend(pairs);
             }
-            ("title" | "reference", _) => {
+            ("title" | "reference" | "class", _) => {
                 return Err(unsupported(places.of(meta), format!("`{name}` is a text"))
                     .help(format!("write `{name} = \"..\"`")));
             }
@@ -108,6 +110,15 @@ fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Di
         }
         other => Err(unsupported(places.of(other), "this is no text").help("write it in quotes")),
     }
+}
+
+fn class(name: Spanned<String>) -> Result<Spanned<CascadeClass>, Diagnostic> {
+    let Some(value) = CascadeClass::from_name(&name.value) else {
+        let message = format!("{} is none of the choices", quoted(&name.value));
+        return Err(Diagnostic::error(Code::WrongChoice, name.span, message)
+            .help(format!("write one of {}", listed(CascadeClass::NAMES.iter().copied()))));
+    };
+    Ok(Spanned { value, span: name.span })
 }
 
 /// `a < b < c`, which as Rust would not be one expression.

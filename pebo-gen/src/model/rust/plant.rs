@@ -90,6 +90,7 @@ pub(super) fn read(
         name,
         title,
         reference: arguments.reference,
+        asked: arguments.class,
         parameters,
         x,
         y,

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::model::class::{Electromechanical, Lti, Mechanical};
 use crate::model::formula::Decimal;
 use crate::model::observer::Observer;
-use crate::model::written::{Entry, Scale, Spanned};
+use crate::model::written::{CascadeClass, Entry, Scale, Spanned};
 
 /// A text with its place: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;
@@ -25,6 +25,7 @@ pub(super) struct Document {
     pub(super) y: Vec<Text>,
     pub(super) u: Vec<Text>,
     pub(super) w: Vec<Text>,
+    pub(super) class: Option<Spanned<CascadeClass>>,
     pub(super) define: Vec<Entry<Text>>,
     pub(super) assume: Vec<Text>,
     pub(super) f_x: Vec<Entry<Text>>,

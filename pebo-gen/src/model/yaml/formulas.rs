@@ -31,6 +31,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         y: document.y,
         u: document.u,
         w: document.w,
+        asked: document.class,
         define,
         assume,
         class,

@@ -1,5 +1,6 @@
 //! The keys of a model file, and the shape of the value behind each.
 
+use crate::model::CascadeClass;
 use crate::model::observer::Estimator;
 
 /// The shape that a value must have.
@@ -84,6 +85,7 @@ pub(super) const MODEL: &[Key] = &[
     required("y", TEXTS, "y: [v2, v4]"),
     optional("u", TEXTS, "u: [d]"),
     optional("w", TEXTS, "w: [omega]"),
+    optional("class", Shape::Choice(CascadeClass::NAMES), "class: pebo"),
     optional("define", RATES, "define: {p: v2*i1}"),
     optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]"),
     key(Role::RequiredOrByClass, "f_x", RATES, "f_x: {i1: (E - (1 - d)*v2)/L1}"),
