@@ -40,6 +40,7 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
         baselines.push(Baseline { reached, took: start.elapsed() });
     }
     let missed = Mutex::new(Vec::new());
+    let noticed: Vec<AtomicUsize> = module.tests.iter().map(|_| AtomicUsize::new(0)).collect();
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..jobs {
@@ -47,11 +48,13 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
                 while let Some(fault) = faults.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let through = |baseline: &&Baseline| baseline.reached.contains(&fault.number);
                     let ran = baselines.iter().any(|baseline| through(&baseline));
-                    let noticed = module.tests.iter().zip(&baselines).any(|((name, filter), baseline)| {
+                    let first = module.tests.iter().zip(&baselines).position(|((name, filter), baseline)| {
                         let patience = baseline.took * PATIENCE.0 + PATIENCE.1;
                         through(&baseline) && !passes(&binaries[*name], filter, fault.number, None, patience)
                     });
-                    if !noticed && let Ok(mut missed) = missed.lock() {
+                    if let Some(first) = first {
+                        noticed[first].fetch_add(1, Ordering::Relaxed);
+                    } else if let Ok(mut missed) = missed.lock() {
                         missed.push((fault, ran));
                     }
                 }
@@ -62,6 +65,9 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
     missed.sort_by_key(|(fault, _)| (&fault.file, fault.line));
     let (all, survived) = (faults.len(), missed.len());
     println!("{}: {all} faults, {} noticed, {survived} missed", module.name, all - survived);
+    for ((name, filter), count) in module.tests.iter().zip(noticed) {
+        println!("  first noticed by {name} {filter}: {}", count.into_inner());
+    }
     for (fault, ran) in missed {
         let mark = if ran { "" } else { " (no test gets there)" };
         println!("  {}:{}: {}{mark}", fault.file.display(), fault.line, fault.what);

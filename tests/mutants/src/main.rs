@@ -8,8 +8,8 @@
 //! with every fault in them at once, each behind a number that `PEBO_MUTANT` selects, so they are compiled once and not
 //! once for each fault. A sample of N faults a module (40) is drawn by a seed (1); faults that overlap one that is drawn, and
 //! those that do not compile, are left out. Each is then given to the tests of the module, the quick ones first, until
-//! one fails. It prints, for each module, how many faults were tried, noticed, and missed, and which were missed: those
-//! that no test ran through at all are marked.
+//! one fails. It prints, for each module, how many faults were tried, noticed, and by which tests first, and which were
+//! missed: those that no test ran through at all are marked.
 //!
 //! Two classes of fault are missed and no test is wanting: one that changes how an answer is found and not the answer
 //! (a bound on effort, an order of attempts), and one that turns an answer into *undecided*, where no test claims that
