@@ -1,6 +1,7 @@
 //! Small plants for every verdict on every claim.
 
-use pebo_gen::analysis::{Class, Excitation, Fundamental, Outcome, RegressionKind, Verdict};
+use pebo_gen::analysis::{Class, Equilibrium, Excitation, Fundamental, Outcome, RegressionKind, Verdict};
+use pebo_gen::cas::asks::Want;
 use pebo_gen::cas::facts::Relation;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Derived, derive};
@@ -434,7 +435,7 @@ fn conditions_are_listed_unless_the_assumptions_discharge_them() {
         plant.derivation.conditions.iter().map(shown).collect::<Vec<_>>()
     };
     // m has a value, so its sign is known; the cancelled r of r/r is remembered.
-    assert_eq!(remaining("k > 0"), ["r NonZero", "r NonNegative"]);
+    assert_eq!(remaining("k > 0"), ["r Positive"]);
     assert_eq!(remaining("k != 0, r >= 0"), ["r NonZero"]);
     assert_eq!(remaining("k < 0, r > 0"), Vec::<String>::new());
 }
@@ -552,4 +553,112 @@ fn a_mend_to_a_plain_cascade_is_offered_beside_a_generalised_one() {
     };
     assert_eq!(mend("f_y: {p: a + u, q: b}").expect("a mend"), ["a + 2*p", "b"]);
     assert_eq!(mend("f_y: {p: u*a, q: b}"), None);
+}
+
+/// Where the claims hold: what is listed, for plants whose formulas have no value, or no derivative, somewhere.
+const LISTED: &[(&str, &str, Outcome, &[&str])] = &[
+    (
+        "a root is not differentiated at zero",
+        "x: [p]\ny: [q]\nassume: [p >= 0]\nf_x: {p: -sqrt(p)}\nf_y: {q: sqrt(p)}\nphi: [sqrt(p)]",
+        Outcome::Accepted,
+        &["p > 0"],
+    ),
+    (
+        "nor is one behind a definition",
+        "define: {level: sqrt(p), twice: 2*level}\nx: [p]\ny: [q]\nassume: [p >= 0]\nf_x: {p: -sqrt(p)}\n\
+         f_y: {q: sqrt(p)}\nphi: [twice]",
+        Outcome::Accepted,
+        &["p > 0"],
+    ),
+    (
+        "a power above one is",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [q >= 0]\nf_x: {p: v - 3/2*sqrt(q)*p}\nf_y: {q: p}\nphi: [p + q^(3/2)]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "what a derived left inverse divides by",
+        "x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]",
+        Outcome::Accepted,
+        &["q != 0"],
+    ),
+    (
+        "and what a given one divides by, each factor once",
+        "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v}\nf_y: {q: p*r, r: 0}\nphi: [p]\n\
+         phi_left: {p: z1*(q*r - q + 1)/(q*r - q) - z1/(q*r - q)}",
+        Outcome::Accepted,
+        &["q != 0", "r - 1 != 0"],
+    ),
+    (
+        "an excluded denominator is not listed",
+        "x: [p]\ny: [q, r]\nu: [v, w]\nassume: [q < 0]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "nor one that is never zero",
+        "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v/(1 + r^2) + v/cosh(q)}\nf_y: {q: p/(2 + sin(q)), r: p}\nphi: [p]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "a tangent is asked for its cosine",
+        "x: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nf_y: {q: p}\nphi: [p]\nphi_left: {p: z1 + tan(q) - sin(q)/cos(q)}",
+        Outcome::Accepted,
+        &["cos(q) != 0"],
+    ),
+    (
+        "the extension may be anywhere, whatever the range of phi",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [0.1 < p, p < 3]\nf_x: {p: v/sin(p)}\nf_y: {q: cos(p)}\nphi: [cos(p)]",
+        Outcome::Accepted,
+        &[],
+    ),
+];
+
+#[test]
+fn conditions_are_those_of_every_formula() {
+    for (what, lines, outcome, expected) in LISTED {
+        let found = derived(lines);
+        assert_eq!(found.derivation.outcome, *outcome, "{what}: {:?}", found.derivation.diagnostics);
+        let arena = &found.plant.arena;
+        let listed: Vec<String> =
+            found.derivation.conditions.iter().map(|(e, r)| format!("{} {}", arena.print(*e), r.sign())).collect();
+        assert_eq!(listed, *expected, "{what}");
+        if let (Outcome::Accepted, Some(regression)) = (outcome, &found.derivation.regression.result) {
+            let rows = regression.phi_1.iter().flatten().chain(&regression.phi_0).copied();
+            let rows: Vec<_> = rows.collect();
+            for (part, _) in arena.asks(&rows, Want::Value) {
+                let used = arena.symbols_of(&[part]);
+                assert!(!used.iter().any(|s| found.plant.is_of_extension(*s)), "{what}: {}", arena.print(part));
+            }
+        }
+    }
+}
+
+/// A plant does not rest where a formula of its observer has no value.
+#[test]
+fn an_operating_point_meets_the_conditions() {
+    let found = derived("x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]");
+    if let Some(Equilibrium::At(point)) = Equilibrium::of(&found.plant, &found.derivation) {
+        let arena = &found.plant.arena;
+        let zero = point.values.iter().find(|(s, value)| arena.name(*s) == "q" && arena.is_zero(*value));
+        assert!(zero.is_none());
+    }
+}
+
+/// A parameter that is given as zero is zero: it multiplies to nothing, and nothing is divided by it.
+#[test]
+fn a_parameter_given_as_zero_is_zero() {
+    let plant = |value: &str| {
+        format!("parameters: {{a: {value}}}\nx: [p]\ny: [q]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: a*p}}\nphi: [a*p]")
+    };
+    assert_eq!(derived(&plant("0")).derivation.left_inverse.verdict, Verdict::Refuted);
+    assert_eq!(derived(&plant("2")).derivation.outcome, Outcome::Accepted);
+    let free = derived(&plant("null"));
+    let arena = &free.plant.arena;
+    let listed: Vec<String> = free.derivation.conditions.iter().map(|(e, _)| arena.print(*e)).collect();
+    assert_eq!((free.derivation.outcome, listed), (Outcome::Accepted, vec!["a".to_owned()]));
+    let divided = "model: m\nparameters: {a: 0}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v/a}\nf_y: {q: p}\nphi: [p]\n";
+    let refused = derive(&Source::new("m", divided).expect("a text")).err().expect("a refusal");
+    assert_eq!(refused[0].code, Code::DivisionByZero);
 }

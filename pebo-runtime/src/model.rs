@@ -74,7 +74,8 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// over-parameterised one.
     fn theta(&self, eta: &SVector<Self::Scalar, NE>) -> SVector<Self::Scalar, NZ>;
 
-    /// The left inverse: `x` such that `z = phi(x, y)`.
+    /// The left inverse: `x` such that `z = phi(x, y)`. Of an estimate of `z` beyond the range of `phi` it may have no
+    /// value: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and changes nothing.
     fn phi_left(&self, z: &SVector<Self::Scalar, NZ>, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NX>;
 }
 

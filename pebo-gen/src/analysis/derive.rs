@@ -1,22 +1,26 @@
 //! The order of the claims: what each builds on.
 
 use crate::cas::Expr;
+use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
+use crate::cas::zero::MOST_POINTS;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
-use super::design::{Claim, Derivation, Outcome, Verdict};
-use super::{cascade, conditions, identifiability, known, left_inverse, regression};
+use super::conditions::{Ask, Conditions};
+use super::design::{Cascade, Claim, Derivation, Outcome, Regression, Verdict};
+use super::left_inverse::at_phi;
+use super::{cascade, identifiability, known, left_inverse, regression};
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
     pub fn derive(plant: &Plant) -> Self {
         let domain = plant.domain();
-        let mut found: Vec<Diagnostic> = nothing_assumed(plant).into_iter().collect();
+        let mut found: Vec<Diagnostic> = Vec::new();
         let (class, cascade) = cascade::prove(plant, &domain, &mut found);
-        let cascade = known::cascade(plant, cascade, &mut found);
+        let mut cascade = known::cascade(plant, cascade, &mut found);
         let left_inverse = left_inverse::prove(plant, &domain, &mut found);
-        let left_inverse = known::left_inverse(plant, left_inverse, &mut found);
+        let mut left_inverse = known::left_inverse(plant, left_inverse, &mut found);
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
         let regression = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
@@ -31,7 +35,7 @@ impl Derivation {
             }
             _ => Claim::skipped(),
         };
-        let (regression, identifiability) = match &cascade.result {
+        let (mut regression, mut identifiability) = match &cascade.result {
             // What the outputs' rates do not show, an identity may.
             Some(result) if identifiability.verdict == Verdict::Refuted && !plant.identities.is_empty() => {
                 let mut others = Vec::new();
@@ -53,12 +57,24 @@ impl Derivation {
             }
             _ => (regression, identifiability),
         };
-        let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
-        let mut conditions = conditions::remaining(plant, &plant.assumed());
+        let mut conditions = Conditions::of(plant);
         for constant in identifiability.result.iter().flat_map(|result| &result.constants) {
-            let known = conditions.iter().any(|(expr, _)| expr == constant);
-            conditions.extend((!known).then_some((*constant, Relation::NonZero)));
+            conditions.list(&plant.arena, (*constant, Relation::NonZero));
         }
+        let unmet = [
+            (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.ask_cascade(plant, result))),
+            (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.ask_left_inverse(plant, r))),
+            (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.ask_regression(plant, r))),
+        ];
+        found.extend(unmet.into_iter().filter_map(|(code, what, ask)| Some(without_value(plant, code, what, ask?))));
+        if !is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref()) {
+            found.push(nowhere(plant));
+            cascade.doubt();
+            left_inverse.doubt();
+            regression.doubt();
+            identifiability.doubt();
+        }
+        let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
         Self {
             outcome: outcome(&verdicts),
             class,
@@ -66,7 +82,7 @@ impl Derivation {
             left_inverse,
             regression,
             identifiability,
-            conditions,
+            conditions: conditions.listed(),
             diagnostics: found,
         }
     }
@@ -81,6 +97,21 @@ impl<T> Claim<T> {
     fn skipped() -> Self {
         Self { verdict: Verdict::Skipped, result: None }
     }
+
+    /// What a proved claim's formulas ask that can be neither shown nor listed: then it is not proved.
+    fn settle(&mut self, ask: impl FnOnce(&T) -> Option<Ask>) -> Option<Ask> {
+        let result = self.result.as_ref().filter(|_| self.verdict == Verdict::Proved)?;
+        let unmet = ask(result)?;
+        self.doubt();
+        Some(unmet)
+    }
+
+    /// Makes what is proved undecided.
+    fn doubt(&mut self) {
+        if self.verdict == Verdict::Proved {
+            self.verdict = Verdict::Undecided;
+        }
+    }
 }
 
 fn outcome(verdicts: &[Verdict]) -> Outcome {
@@ -93,14 +124,43 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     }
 }
 
-/// A claim about no values at all is true: that no point satisfies the assumptions is worth knowing.
-fn nothing_assumed(plant: &Plant) -> Option<Diagnostic> {
-    let (first, last) = (plant.assumptions.first()?, plant.assumptions.last()?);
-    let assumed: Vec<Expr> = plant.assumptions.iter().map(|assumption| assumption.expr).collect();
-    plant.assumed().points(&plant.arena, &assumed).next().is_none().then(|| {
-        let message = "no values were found that satisfy all assumptions together";
-        Diagnostic::warning(Code::ContradictoryAssumptions, first.span.to(last.span), message)
-            .note("if there are none, the claims say nothing")
-            .help("see that the assumptions do not exclude one another")
-    })
+/// Formulas that have no value where the claim is made.
+fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -> Diagnostic {
+    let arena = &plant.arena;
+    let ask = format!("{} {}", arena.print(part), relation.sign());
+    let diagnostic =
+        Diagnostic::error(code, at_phi(plant), format!("{what} was not shown to have a value throughout the domain"))
+            .label(format!("this needs `{ask}`"));
+    if arena.symbols_of(&[part]).iter().any(|symbol| plant.is_of_extension(*symbol)) {
+        return diagnostic
+            .note(
+                "the states of the extension and theta may have any values: they are not confined to the range of phi",
+            )
+            .help("choose a phi in which the rates of the outputs are polynomials, exponentials, sines and cosines");
+    }
+    diagnostic.help(format!("if it holds, write `{ask}` under `assume`"))
+}
+
+/// Whether a point of the domain was found at which all formulas have values together.
+fn is_somewhere(plant: &Plant, domain: &Domain, cascade: Option<&Cascade>, regression: Option<&Regression>) -> bool {
+    let arena = &plant.arena;
+    let mut formulas: Vec<Expr> = plant.transform();
+    formulas.extend(plant.rates().into_values());
+    formulas.extend(plant.assumptions.iter().map(|assumption| assumption.expr));
+    formulas.extend(cascade.iter().flat_map(|c| c.h.iter().chain(c.lambda.iter().flatten().flatten())));
+    formulas.extend(regression.iter().flat_map(|r| r.phi_0.iter().chain(r.phi_1.iter().flatten())));
+    let exist = |point: &_| formulas.iter().all(|formula| arena.exists_at(*formula, point));
+    domain.points(arena, &formulas).take(MOST_POINTS).any(|point| exist(&point))
+}
+
+/// A claim about no values at all is true, and worth nothing.
+fn nowhere(plant: &Plant) -> Diagnostic {
+    let span = match (plant.assumptions.first(), plant.assumptions.last()) {
+        (Some(first), Some(last)) => first.span.to(last.span),
+        _ => at_phi(plant),
+    };
+    let message = "no values were found at which all assumptions hold and all formulas have values";
+    Diagnostic::error(Code::ContradictoryAssumptions, span, message)
+        .note("if there are none, the claims say nothing; so none of them is called proved")
+        .help("see that the assumptions do not exclude one another, or bound each symbol by numbers")
 }

@@ -1,5 +1,7 @@
 //! What was derived of a plant: each claim with its verdict.
 
+use crate::cas::asks::Want;
+use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
@@ -190,6 +192,34 @@ pub enum Excitation {
     Excitation,
     /// It never has.
     Never,
+}
+
+impl Derivation {
+    /// What the way from estimates back to x asks of them to have a value, beside what is assumed of y: an estimate
+    /// of z (or, where the regression has functions of theta, of these) may lie where the true one cannot.
+    pub fn asked_of_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
+        let arena = &plant.arena;
+        let (mut formulas, mut estimates) = (Vec::new(), plant.z.clone());
+        formulas.extend(self.left_inverse.result.iter().flat_map(|inverse| &inverse.x).map(|(_, formula)| *formula));
+        if let Some(regression) = &self.regression.result {
+            formulas.extend(&regression.theta);
+            estimates.extend(&regression.eta_symbols);
+        }
+        let domain = self.domain(plant);
+        let mut asked = arena.asks(&formulas, Want::Value);
+        asked.retain(|(part, relation)| {
+            let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
+            free && !domain.shows(arena, *part, *relation)
+        });
+        asked
+    }
+
+    /// Where the proofs hold: the plant's domain, without what the conditions exclude.
+    pub fn domain(&self, plant: &Plant) -> Domain {
+        let mut domain = plant.domain();
+        self.conditions.iter().for_each(|(expr, relation)| domain.facts.assume(*expr, *relation));
+        domain
+    }
 }
 
 /// What was derived of a plant.

@@ -47,13 +47,13 @@ impl Equilibrium {
     /// Looks for the operating points of a plant; none without a proved cascade.
     pub fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
-        Some(found(plant, cascade).unwrap_or_else(|obstacle| Self::Undecided(obstacle.to_string())))
+        let domain = derivation.domain(plant);
+        Some(found(plant, &domain, cascade).unwrap_or_else(|obstacle| Self::Undecided(obstacle.to_string())))
     }
 }
 
-fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
+fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let arena = &plant.arena;
-    let domain = plant.domain();
     if let Some(output) = plant.y.iter().find(|output| output.rate.is_none()) {
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
@@ -64,14 +64,14 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
     let inputs = plant.u.iter().chain(&plant.w).copied().collect();
     let mut doubtful = None;
-    let mut rests = |values: &BTreeMap<Symbol, Expr>| match checked(plant, &domain, values) {
+    let mut rests = |values: &BTreeMap<Symbol, Expr>| match checked(plant, domain, values) {
         Ok(there) => Some((values.clone(), there)),
         Err(reason) => {
             doubtful.get_or_insert(reason);
             None
         }
     };
-    let search = Elimination { arena, domain: &domain, states, inputs };
+    let search = Elimination { arena, domain, states, inputs };
     let identities = plant.identities.iter().map(|identity| identity.expr);
     let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
     // Where it is too hard to find where the unmeasured states rest, they may rest at zero, as momenta do.
@@ -94,7 +94,7 @@ fn found(plant: &Plant, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
     let shown = |value: Expr| oriented(arena, &there, shortest(arena, &there, value));
     let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
-    Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, &domain, rates.values()) }))
+    Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
 }
 
 /// The domain of the symbols that stay free, with the proof that every rate and identity vanishes there; else the

@@ -6,11 +6,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
 use crate::cas::zero::{Answer, decide};
-use crate::cas::{Arena, Expr, Function, Node, Symbol};
+use crate::cas::{Arena, Expr, Function, Symbol};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 
@@ -91,10 +92,20 @@ impl Verdict {
     }
 }
 
-/// Whether the formula provably has a value wherever the plant has; where not, says so.
+/// What a formula for a state asks at z = phi(x, y) that the domain does not show: the ask, and the ask there.
 ///
-/// What stands under roots and logarithms is read off the formula as it stands, since substituting
-/// would simplify its domain away, and must have its sign by the facts.
+/// What stands under roots and logarithms and below fraction bars is read off the formula as it stands, since
+/// substituting would simplify its domain away.
+fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relation), (Expr, Relation))> {
+    let arena = &plant.arena;
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    let asked = arena.asks(&[formula], Want::Value).into_iter();
+    let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
+    there.filter(|(_, ask)| !arena.holds_of_number(*ask) && !domain.shows(arena, ask.0, ask.1)).collect()
+}
+
+/// Whether the formula provably has a value wherever the plant has, but for what must only not vanish and is listed
+/// among the conditions; where not, says so.
 fn defined(
     plant: &Plant,
     domain: &Domain,
@@ -104,15 +115,9 @@ fn defined(
     found: &mut Vec<Diagnostic>,
 ) -> bool {
     let arena = &plant.arena;
-    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    let unproved =
-        arena.postorder(&[formula]).into_iter().flat_map(|part| asked(arena, part)).find(|(part, relation)| {
-            let at_phi = arena.substitute(*part, &transform);
-            arena.as_number(at_phi).is_none() && !domain.shows(arena, at_phi, *relation)
-        });
-    let Some((part, relation)) = unproved else { return true };
-    let sign = if relation == Relation::Positive { "> 0" } else { ">= 0" };
-    let at_phi = arena.print(arena.substitute(part, &transform));
+    let unproved = unshown(plant, domain, formula).into_iter().find(|(_, ask)| ask.1 != Relation::NonZero);
+    let Some(((part, relation), (at_phi, _))) = unproved else { return true };
+    let (sign, at_phi) = (relation.sign(), arena.print(at_phi));
     found.push(
         Diagnostic::error(
             Code::LeftInverseUndecided,
@@ -124,22 +129,6 @@ fn defined(
         .help(format!("if it holds, write `{at_phi} {sign}` under `assume`")),
     );
     false
-}
-
-/// What an operation asks of its operand: a root and a logarithm a sign, an inverse sine a bound.
-fn asked(arena: &Arena, part: Expr) -> Vec<(Expr, Relation)> {
-    match arena.node(part) {
-        Node::Product(product) => {
-            let roots = product.factors.iter().filter(|(_, exponent)| !exponent.is_integer());
-            roots.map(|(base, _)| (*base, Relation::NonNegative)).collect()
-        }
-        Node::Call(Function::Log, inside) => vec![(inside[0], Relation::Positive)],
-        Node::Call(Function::Asin | Function::Acos, inside) => {
-            let room = arena.sub(arena.one(), arena.mul(inside[0], inside[0]));
-            vec![(room, Relation::NonNegative)]
-        }
-        _ => Vec::new(),
-    }
 }
 
 /// Whether the candidate state has the same transform as the true one, identically.
@@ -189,8 +178,12 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
         .filter_map(|state| {
             let proposed =
                 plant.proposal.phi_left.iter().filter(|(s, _)| *s == state.symbol).map(|(_, formula)| *formula);
-            let candidates: Vec<Expr> =
+            let mut candidates: Vec<Expr> =
                 proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
+            // Of several the one that has a value wherever the plant has.
+            if candidates.len() > 1 {
+                candidates.sort_by_cached_key(|formula| unshown(plant, domain, *formula).len());
+            }
             let right = |formula: &&Expr| check(plant, domain, state.symbol, **formula).1.is_zero();
             // A candidate that is wrong may still show that the transform is not one-to-one.
             let formula = candidates.iter().find(right).or(candidates.first())?;
@@ -296,7 +289,8 @@ fn degenerate(plant: &Plant, direction: &[Expr]) -> Diagnostic {
         .help("add components to phi, or give `phi_left` for the states that it determines: a partial observer")
 }
 
-fn at_phi(plant: &Plant) -> Span {
+/// Where the transform stands.
+pub(super) fn at_phi(plant: &Plant) -> Span {
     match (plant.phi.first(), plant.phi.last()) {
         (Some(first), Some(last)) => first.span.to(last.span),
         _ => Span::point(0),

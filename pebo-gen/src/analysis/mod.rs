@@ -6,6 +6,15 @@
 //!
 //! Holds after: what is called proved was shown by exact algebra, what is called refuted by a rational
 //! point with a rigorous enclosure or by an exact null vector; everything else is undecided and says why.
+//!
+//! The domain D of a model: where its assumptions and identities hold, for all values of the parameters that keep
+//! the signs of those given (one given as 0 is 0, one not given is any), and `f_x`, `f_y` and phi have values, phi also
+//! derivatives. Proved: true at every point of D but for those that the listed conditions exclude. Refuted: shown by
+//! points of D. The states of the extension and theta are any reals: only the left inverse, and the way back from
+//! functions of theta, may ask something of an estimate, and say what. Where no point of D is found, nothing is proved.
+//!
+//! What formulas ask is read off the one table of operations ([`crate::cas::asks`], [`crate::cas::function`]), and
+//! listed in one place, after all claims (`conditions`).
 
 mod blame;
 mod bounded;

@@ -120,25 +120,10 @@ fn turned_out(arena: &Arena, domain: &Domain, equation: Equation, unknowns: &[Sy
             }
             Node::Call(function, arguments) => {
                 let [inside] = arguments.as_ref() else { return None };
-                Equation { formula: *inside, value: arena.call(inverse(function)?, &[value]) }
+                Equation { formula: *inside, value: arena.call(function.row().inverse?, &[value]) }
             }
             Node::Number(_) | Node::Pi => return None,
         };
-    }
-}
-
-/// The inverse function, on a principal branch.
-fn inverse(function: Function) -> Option<Function> {
-    match function {
-        Function::Exp => Some(Function::Log),
-        Function::Log => Some(Function::Exp),
-        Function::Sin => Some(Function::Asin),
-        Function::Asin => Some(Function::Sin),
-        Function::Cos => Some(Function::Acos),
-        Function::Acos => Some(Function::Cos),
-        Function::Tan => Some(Function::Atan),
-        Function::Atan => Some(Function::Tan),
-        _ => None,
     }
 }
 
@@ -201,7 +186,8 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
             },
             Node::Call(function, arguments) => {
                 let inside = arguments[0];
-                let alone = || inverse(function).map(|f| Equation { formula: inside, value: arena.call(f, &[value]) });
+                let alone =
+                    || function.row().inverse.map(|f| Equation { formula: inside, value: arena.call(f, &[value]) });
                 match function {
                     Function::Cos => match beside(arena, known, Function::Sin, inside) {
                         Some(sin) => Some(Equation { formula: inside, value: angle_of(arena, domain, sin, value) }),

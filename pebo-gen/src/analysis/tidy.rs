@@ -1,5 +1,9 @@
 //! The shortest of several equal forms of a result, for people and for emitted code.
+//!
+//! A form counts only if it has a value wherever the result has: `sqrt(q) - 1` over `q - 1` does not stand for
+//! `1/(1 + sqrt(q))`.
 
+use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::field::Field;
 use crate::cas::oriented::oriented;
@@ -14,7 +18,24 @@ pub(super) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     });
     let forms = normal.into_iter().flatten();
     let turned = |form: Expr| [form, oriented(arena, domain, form)];
-    [expr].into_iter().chain(forms).flat_map(turned).fold(expr, |best, form| shorter(arena, best, form))
+    let forms = [expr].into_iter().chain(forms).flat_map(turned);
+    forms.fold(expr, |best, form| {
+        let shorter = operations(arena, form) < operations(arena, best);
+        if shorter && asks_no_more(arena, domain, expr, form) { form } else { best }
+    })
+}
+
+/// Whether a form asks for nothing, to have a value, but what the expression asks too or what the domain shows.
+pub(super) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
+    let own = arena.asks(&[expr], Want::Value);
+    let mut more = arena.asks(&[form], Want::Value);
+    more.retain(|ask| !own.contains(ask));
+    if more.is_empty() {
+        return true;
+    }
+    let mut there = domain.clone();
+    own.into_iter().for_each(|(part, relation)| there.facts.assume(part, relation));
+    more.into_iter().all(|(part, relation)| there.shows(arena, part, relation))
 }
 
 /// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
@@ -33,6 +54,7 @@ pub(super) fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candida
     let mut best = expr;
     for &candidate in candidates {
         if operations(arena, candidate) < operations(arena, best)
+            && asks_no_more(arena, domain, expr, candidate)
             && decide(arena, arena.sub(candidate, expr), domain).is_zero()
         {
             best = candidate;

@@ -13,6 +13,17 @@ pub enum Relation {
     NonZero,
 }
 
+impl Relation {
+    /// As a formula writes it.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Positive => "> 0",
+            Self::NonNegative => ">= 0",
+            Self::NonZero => "!= 0",
+        }
+    }
+}
+
 /// The assumed inequalities.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {

@@ -3,6 +3,7 @@
 //! Knows neither plants nor spans. An [`Arena`] owns expressions; [`Expr`] is a copyable handle.
 
 mod arena;
+pub mod asks;
 pub mod bounds;
 mod build;
 pub mod combination;

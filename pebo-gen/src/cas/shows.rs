@@ -7,7 +7,7 @@ use super::arena::Arena;
 use super::domain::Domain;
 use super::expr::Expr;
 use super::facts::Relation;
-use super::field::Field;
+use super::field::{Field, Obstacle};
 
 impl Domain {
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
@@ -21,8 +21,45 @@ impl Domain {
                 Relation::NonZero => Ok(field.is_positive(&fraction)? || field.is_positive(&fraction.opposite())?),
             }
         };
+        let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
         self.facts.iter().any(|fact| fact == (expr, relation))
             || shown().unwrap_or(false)
+            || divides()
             || self.sign_over_box(arena, expr).is_some_and(|positive| positive || relation == Relation::NonZero)
+    }
+    /// Whether the expression vanishes only where something does that is assumed not to: its factors are among those
+    /// of the facts, as `d - 1` is of `L*(1 - d) != 0`.
+    fn divides(&self, arena: &Arena, expr: Expr) -> Result<bool, Obstacle> {
+        let symbols = arena.symbols_of(&[expr]);
+        let facts = self.facts.iter().filter(|(fact, relation)| {
+            *relation != Relation::NonNegative && !arena.symbols_of(&[*fact]).is_disjoint(&symbols)
+        });
+        let facts: Vec<Expr> = facts.map(|(fact, _)| fact).collect();
+        if facts.is_empty() {
+            return Ok(false);
+        }
+        let field = Field::over(arena, &self.facts, &[facts.as_slice(), &[expr]].concat())?;
+        let mut rest = field.fraction(expr)?.numerator().clone();
+        for fact in facts {
+            let fact = field.fraction(fact)?;
+            // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
+            let below = field.of_polynomial(fact.denominator())?;
+            if below.to_constant().is_none() && !field.is_positive(&below)? && !field.is_positive(&below.opposite())? {
+                continue;
+            }
+            loop {
+                let common = rest.gcd(fact.numerator(), field.limit())?;
+                if common.is_constant() {
+                    break;
+                }
+                let Some(quotient) = rest.div_exact(&common, field.limit())? else { break };
+                rest = quotient;
+            }
+        }
+        if rest.is_zero() {
+            return Ok(false);
+        }
+        let rest = field.of_polynomial(&rest)?;
+        Ok(rest.to_constant().is_some() || field.is_positive(&rest)? || field.is_positive(&rest.opposite())?)
     }
 }

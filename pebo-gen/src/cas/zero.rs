@@ -13,7 +13,7 @@ use super::interval::{Interval, Precision};
 
 /// Points of the domain that a search looks at: an analytic expression that vanishes at so many, or has
 /// no value there, is not one that more of them would help with.
-const MOST_POINTS: usize = 64;
+pub const MOST_POINTS: usize = 64;
 
 /// Points at which the least precision is tried before the normal form.
 const GLIMPSES: usize = 3;

@@ -176,6 +176,14 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         inverse.push_str(", for a part of the states");
     }
     lines.push(format!("{inverse}."));
+    let asked = derivation.asked_of_estimates(plant);
+    if !asked.is_empty() {
+        let asked: Vec<String> = asked.iter().map(|(e, relation)| compared(arena, *e, *relation)).collect();
+        lines.push(format!(
+            "  It asks of estimates that {}: a step without a finite estimate is refused with `Fault::Estimate`.",
+            asked.join(", ")
+        ));
+    }
     let kind = match definitions.regression.kind {
         RegressionKind::Dynamic => "dynamic",
         RegressionKind::Static => "static",
@@ -201,19 +209,12 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         }
         lines.push(format!("{line}."));
     }
-    let compared = |expr: Expr, relation: Relation| {
-        let relation = match relation {
-            Relation::Positive => "> 0",
-            Relation::NonNegative => ">= 0",
-            Relation::NonZero => "!= 0",
-        };
-        format!("`{} {relation}`", arena.print(expr))
-    };
-    let assumed: Vec<String> = plant.assumptions.iter().map(|a| compared(a.expr, a.relation)).collect();
+    let assumed: Vec<String> = plant.assumptions.iter().map(|a| compared(arena, a.expr, a.relation)).collect();
     if !assumed.is_empty() {
         lines.extend([String::new(), format!("Assumed: {}.", assumed.join(", "))]);
     }
-    let conditions: Vec<String> = derivation.conditions.iter().map(|(e, relation)| compared(*e, *relation)).collect();
+    let conditions: Vec<String> =
+        derivation.conditions.iter().map(|(e, relation)| compared(arena, *e, *relation)).collect();
     if !conditions.is_empty() {
         lines.extend([String::new(), format!("For the formulas to have values: {}.", conditions.join(", "))]);
     }
@@ -224,6 +225,11 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         ]);
     }
     lines
+}
+
+/// A comparison with zero, as code.
+fn compared(arena: &Arena, expr: Expr, relation: Relation) -> String {
+    format!("`{} {}`", arena.print(expr), relation.sign())
 }
 
 fn costs(definitions: &Definitions, staged: &Staged) -> Vec<String> {

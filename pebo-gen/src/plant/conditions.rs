@@ -1,11 +1,12 @@
-//! Where a formula has a value at all: what its author wrote under roots and logarithms and below
-//! fraction bars.
+//! Where a formula has a value at all, and where it is differentiable: what its author wrote under roots and
+//! logarithms and below fraction bars.
 //!
-//! In: formulas as written. Out: what each division, root, logarithm and inverse function asks of its
-//! operand. They are read off the text because construction simplifies (`x/x` is 1) and would forget.
+//! In: formulas as written. Out: what the algebra's tables say that each operation asks of its operands. They are
+//! read off the text because construction simplifies (`x/x` is 1) and would forget.
 
+use crate::cas::asks::Want;
 use crate::cas::facts::Relation;
-use crate::cas::{Arena, Expr};
+use crate::cas::{Arena, Expr, Function};
 use crate::model::formula::{Formula, Operator, Term};
 use crate::source::Diagnostic;
 
@@ -16,41 +17,41 @@ pub(super) fn collect(
     arena: &Arena,
     scope: &Scope,
     formula: &Formula,
+    want: Want,
     found: &mut Vec<Assumption>,
 ) -> Result<(), Diagnostic> {
-    let mut ask = |part: &Formula, expr: Expr, relation: Relation| {
-        if arena.as_number(expr).is_none() {
-            found.push(Assumption { expr, relation, span: part.span });
-        }
+    let mut ask = |part: &Formula, asks: Vec<(Expr, Relation)>| {
+        let open = asks.into_iter().filter(|ask| !arena.holds_of_number(*ask));
+        found.extend(open.map(|(expr, relation)| Assumption { expr, relation, span: part.span }));
     };
     match &formula.term {
-        Term::Binary(Operator::Divide, _, below) => ask(below, lower(arena, scope, below)?, Relation::NonZero),
+        Term::Binary(Operator::Divide, _, below) => {
+            ask(below, vec![arena.asked_by_division(lower(arena, scope, below)?)]);
+        }
         Term::Binary(Operator::Power, base, exponent) => {
-            let (base_value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);
-            match arena.as_number(exponent) {
-                Some(power) if !power.is_integer() && power.is_negative() => ask(base, base_value, Relation::Positive),
-                Some(power) if !power.is_integer() => ask(base, base_value, Relation::NonNegative),
-                Some(power) if power.is_negative() => ask(base, base_value, Relation::NonZero),
-                Some(_) => {}
-                None => ask(base, base_value, Relation::Positive),
-            }
+            let (value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);
+            let asked = match arena.as_number(exponent) {
+                Some(power) => arena.asked_by_power(value, &power, want),
+                None => Some(arena.asked_by_symbolic_power(value)),
+            };
+            ask(base, asked.into_iter().collect());
         }
         Term::Call(function, arguments) => {
-            let inside = &arguments[0];
-            let value = lower(arena, scope, inside)?;
-            match function.name {
-                "sqrt" => ask(inside, value, Relation::NonNegative),
-                "log" => ask(inside, value, Relation::Positive),
-                "asin" | "acos" => {
-                    let room = arena.sub(arena.one(), arena.mul(value, value));
-                    ask(inside, room, Relation::NonNegative);
-                }
-                "tan" => ask(inside, arena.call(crate::cas::Function::Cos, &[value]), Relation::NonZero),
-                _ => {}
+            let values = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
+            if let Some(function) = Function::named(function.name) {
+                ask(&arguments[0], arena.asked_by_call(function, &values, want));
             }
         }
         _ => {}
     }
     // The parser bounds the depth, so recursion is safe here.
-    formula.parts().into_iter().try_for_each(|part| collect(arena, scope, part, found))
+    formula.parts().into_iter().try_for_each(|part| collect(arena, scope, part, want, found))
+}
+
+/// Whether the formula uses the name.
+pub(super) fn uses(formula: &Formula, name: &str) -> bool {
+    match &formula.term {
+        Term::Name(used) => used == name,
+        _ => formula.parts().into_iter().any(|part| uses(part, name)),
+    }
 }

@@ -1,16 +1,19 @@
 //! Assumptions that cannot hold together.
 //!
-//! In: assumptions, and the values of parameters. Out: a diagnostic for an assumption that those values violate, and
-//! for two of which one bounds a quantity from below where the other bounds it from above. What contradicts itself in
-//! less plain ways leaves the claims without a point of their domain, and is reported with them.
+//! In: assumptions, and the values of parameters. Out: a diagnostic for an assumption that those values violate, for
+//! two of which one bounds a quantity from below where the other bounds it from above, and for one whose opposite the
+//! algebra shows of the others. What contradicts itself in ways that it does not see leaves the claims without a point
+//! of their domain, and undecided.
 
 use std::collections::BTreeMap;
 
+use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
+use crate::cas::field::Field;
 use crate::cas::interval::Precision;
 use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Node};
+use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::source::{Code, Diagnostic, Diagnostics};
 
 use super::plant::{Assumption, Parameter};
@@ -42,7 +45,7 @@ pub(super) fn find(arena: &Arena, assumptions: &[Assumption], parameters: &[Para
     for assumption in assumptions {
         let expr = arena.substitute(assumption.expr, &values);
         if arena.symbols_of(&[expr]).is_empty() {
-            if fails(arena, expr, assumption.relation) {
+            if arena.fails_of_number((expr, assumption.relation)) {
                 problems.push(violated(arena, assumption, parameters));
             }
         } else if assumption.relation != Relation::NonZero {
@@ -54,13 +57,57 @@ pub(super) fn find(arena: &Arena, assumptions: &[Assumption], parameters: &[Para
             quantities.entry(quantity).or_default().tighten(bound, slope.is_negative());
         }
     }
+    let mut shown = false;
     for (quantity, bounds) in &quantities {
         let (Some(low), Some(high)) = (bounds.low, bounds.high) else { continue };
         let relation = if low.strict || high.strict { Relation::Positive } else { Relation::NonNegative };
-        if fails(arena, arena.sub(high.value, low.value), relation) {
+        if arena.fails_of_number((arena.sub(high.value, low.value), relation)) {
             problems.push(contradictory(arena, *quantity, &low, &high));
+            shown = true;
         }
     }
+    if !shown && let Some(assumption) = excluded(arena, assumptions, &values) {
+        problems.push(impossible(arena, assumption, assumptions.len() == 1));
+    }
+}
+
+/// An assumption of which the others show the opposite, as of `p^2 + q^2 < -1`.
+fn excluded<'a>(
+    arena: &Arena,
+    assumptions: &'a [Assumption],
+    values: &BTreeMap<Symbol, Expr>,
+) -> Option<&'a Assumption> {
+    let valued: Vec<Expr> = assumptions.iter().map(|a| arena.substitute(a.expr, values)).collect();
+    (0..assumptions.len())
+        .find(|&index| {
+            let mut others = Domain::default();
+            for (other, assumption) in assumptions.iter().enumerate().filter(|(other, _)| *other != index) {
+                others.facts.assume(valued[other], assumption.relation);
+            }
+            let opposite = match assumptions[index].relation {
+                Relation::Positive => Relation::NonNegative,
+                Relation::NonNegative => Relation::Positive,
+                Relation::NonZero => return vanishes(arena, &others, valued[index]),
+            };
+            !arena.symbols_of(&[valued[index]]).is_empty() && others.shows(arena, arena.neg(valued[index]), opposite)
+        })
+        .map(|index| &assumptions[index])
+}
+
+/// Whether the expression is zero throughout the domain by its normal form.
+fn vanishes(arena: &Arena, domain: &Domain, expr: Expr) -> bool {
+    let field = Field::over(arena, &domain.facts, &[expr]);
+    field.and_then(|field| field.fraction(expr)).is_ok_and(|fraction| fraction.is_zero())
+}
+
+fn impossible(arena: &Arena, assumption: &Assumption, alone: bool) -> Diagnostic {
+    let shown = format!("`{} {}`", arena.print(assumption.expr), assumption.relation.sign());
+    let (message, label) = if alone {
+        ("no values satisfy this assumption", format!("there are none with {shown}"))
+    } else {
+        ("no values satisfy the assumptions together", format!("the others exclude {shown}"))
+    };
+    Diagnostic::error(Code::ContradictoryAssumptions, assumption.span, message).label(label).help("correct one of them")
 }
 
 impl Bounds {
@@ -74,15 +121,6 @@ impl Bounds {
             *held = Some(bound);
         }
     }
-}
-
-/// Whether a constant provably does not compare so with zero.
-fn fails(arena: &Arena, constant: Expr, relation: Relation) -> bool {
-    if arena.is_zero(constant) {
-        return relation != Relation::NonNegative;
-    }
-    relation != Relation::NonZero
-        && arena.separated_from_zero(constant, &Point::new()).is_some_and(|value| value.is_negative())
 }
 
 /// The expression as `slope * quantity + constant`, the same quantity for all that differ in slope and constant.

@@ -3,6 +3,7 @@
 //! In: a formula of the model and the names it may use. Out: the expression, or one diagnostic at the
 //! part that has no meaning: an unknown name, a division by zero, an exponent out of range.
 
+use crate::cas::asks::Want;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function};
 use crate::model::formula::{Decimal, EXPONENT_LIMIT, Formula, Operator, PI, Term};
@@ -34,7 +35,7 @@ pub fn lower(arena: &Arena, scope: &Scope, formula: &Formula) -> Result<Expr, Di
                     format!("the function `{}` has no meaning yet", function.name),
                 ));
             };
-            in_domain(arena, named, lowered[0], arguments[0].span)?;
+            in_domain(arena, named, &lowered, arguments[0].span)?;
             Ok(arena.call(named, &lowered))
         }
     }
@@ -61,7 +62,14 @@ fn binary(
         Operator::Divide if arena.is_zero(b) => Err(division_by_zero(right)),
         Operator::Divide => Ok(arena.div(a, b)),
         Operator::Power => {
-            let Some(exponent) = arena.as_number(b) else { return Ok(arena.raise(a, b)) };
+            let Some(exponent) = arena.as_number(b) else {
+                if arena.fails_of_number(arena.asked_by_symbolic_power(a)) {
+                    return Err(Diagnostic::error(Code::NoRealValue, left, "this power needs a base above zero")
+                        .label("its exponent is not a number, so it is read as `exp(exponent*log(base))`")
+                        .help("correct the base, or write the exponent as a number"));
+                }
+                return Ok(arena.raise(a, b));
+            };
             if exponent.is_negative() && arena.is_zero(a) {
                 return Err(division_by_zero(left));
             }
@@ -69,7 +77,7 @@ fn binary(
                 return Err(Diagnostic::error(Code::ExponentTooLarge, right, "this exponent is out of range")
                     .help(format!("keep exponents between -{EXPONENT_LIMIT} and {EXPONENT_LIMIT}")));
             }
-            if !exponent.is_integer() && arena.as_number(a).is_some_and(|base| base.is_negative()) {
+            if arena.asked_by_power(a, &exponent, Want::Value).is_some_and(|ask| arena.fails_of_number(ask)) {
                 return Err(Diagnostic::error(Code::NoRealValue, left, "a root of a negative number is not real")
                     .help("change the sign of what is under the root"));
             }
@@ -84,21 +92,16 @@ fn division_by_zero(span: Span) -> Diagnostic {
         .help("correct the denominator")
 }
 
-/// Whether a constant argument is where the function has a real value.
-fn in_domain(arena: &Arena, function: Function, argument: Expr, span: Span) -> Result<(), Diagnostic> {
-    let Some(value) = arena.as_number(argument) else { return Ok(()) };
-    let outside = match function {
-        Function::Log => value.signum() <= 0,
-        Function::Sqrt => value.is_negative(),
-        Function::Asin | Function::Acos => value.abs() > Rational::ONE,
-        _ => false,
-    };
-    if outside {
+/// Whether constant arguments are where the function has a real value.
+fn in_domain(arena: &Arena, function: Function, arguments: &[Expr], span: Span) -> Result<(), Diagnostic> {
+    let asked = arena.asked_by_call(function, arguments, Want::Value);
+    if asked.into_iter().any(|ask| arena.fails_of_number(ask)) {
         let name = function.row().name;
+        let values: Vec<String> = arguments.iter().map(|argument| arena.print(*argument)).collect();
         return Err(Diagnostic::error(
             Code::NoRealValue,
             span,
-            format!("{name} has no real value at {}", arena.print(argument)),
+            format!("{name} has no real value at {}", values.join(", ")),
         )
         .help("correct the argument"));
     }

@@ -128,6 +128,12 @@ impl Plant {
         self.x.iter().map(|s| s.symbol).chain(self.w.iter().copied()).collect()
     }
 
+    /// Whether the symbol may have any value: of the dynamic extension, or an unknown constant.
+    pub fn is_of_extension(&self, symbol: Symbol) -> bool {
+        let extension = self.chi.iter().chain(&self.xi).chain(&self.theta).chain(self.psi.iter().flatten());
+        extension.into_iter().any(|own| *own == symbol)
+    }
+
     /// The time derivatives of the states and outputs that have one.
     pub fn rates(&self) -> BTreeMap<Symbol, Expr> {
         let states = self.x.iter().map(|s| (s.symbol, s.rate.expr));

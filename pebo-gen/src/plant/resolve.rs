@@ -5,7 +5,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::cas::asks::Want;
 use crate::cas::facts::Relation as Compared;
+use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::model::{self, Comparison, Entry, Model, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
@@ -37,6 +39,10 @@ impl Plant {
         for name in model.declared() {
             scope.define(&name.value, arena.variable(&name.value));
         }
+        // One that is given as zero is zero, wherever it stands.
+        for parameter in parameters.iter().filter(|p| p.value.as_ref().is_some_and(Rational::is_zero)) {
+            scope.define(arena.name(parameter.symbol), arena.zero());
+        }
         // Each uses only those before it: no definition is a symbol.
         for definition in &model.define {
             let meaning = problems.keep(lower(&arena, &scope, &definition.value));
@@ -56,6 +62,8 @@ impl Plant {
         let assumptions: Vec<Assumption> =
             problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
         super::contradiction::find(&arena, &assumptions, &parameters, &mut problems);
+        let assumptions: Vec<Assumption> =
+            assumptions.into_iter().filter(|a| !arena.holds_of_number((a.expr, a.relation))).collect();
         let domain = assumed(&arena, &assumptions, &parameters);
         let on_states = with(&[&x, &y]);
         let dynamics = match &model.class {
@@ -119,15 +127,31 @@ impl Plant {
     }
 }
 
-/// What the formulas ask of their parts to have values, beside what a class asks already.
+/// What the formulas ask of their parts to have values, and the transform to have derivatives, beside what a class
+/// asks already: of its formulas some are differentiated.
 fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
     let mut conditions = of_class;
-    let written = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value);
-    let written = written.chain(&model.phi).chain(&model.identities).chain(model.define.iter().map(|d| &d.value));
-    let written = written.chain(model.class.iter().flat_map(model::Class::formulas));
-    for formula in written {
+    let mut collect = |formula: &model::Formula, want: Want| {
         // What fails here was reported where the formula itself was lowered.
-        let _ = super::conditions::collect(arena, scope, formula, &mut conditions);
+        let _ = super::conditions::collect(arena, scope, formula, want, &mut conditions);
+    };
+    let of_class: Vec<_> = model.class.iter().flat_map(model::Class::formulas).collect();
+    let smooth: Vec<&model::Formula> = model.phi.iter().chain(of_class).collect();
+    let plain = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value).chain(&model.identities);
+    plain.for_each(|formula| collect(formula, Want::Value));
+    smooth.iter().for_each(|formula| collect(formula, Want::Slope));
+    // A definition that a differentiated formula uses, directly or through others, is differentiated too.
+    let mut users = smooth;
+    let mut differentiated = BTreeSet::new();
+    while let Some(user) = users.pop() {
+        for (index, definition) in model.define.iter().enumerate() {
+            if super::conditions::uses(user, &definition.name.value) && differentiated.insert(index) {
+                users.push(&definition.value);
+            }
+        }
+    }
+    for (index, definition) in model.define.iter().enumerate() {
+        collect(&definition.value, if differentiated.contains(&index) { Want::Slope } else { Want::Value });
     }
     conditions
 }

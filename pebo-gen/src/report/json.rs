@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::{conditions, expansion, name};
 use crate::analysis::{
-    Cascade, Claim, Class, Derivation, Drift, Equilibrium, Excitation, Identifiability, LeftInverse, Origin, Outcome,
-    Regression, RegressionKind, Verdict, Witness,
+    Cascade, Claim, Class, Derivation, Drift, Equilibrium, Excitation, Identifiability, Origin, Outcome, Regression,
+    RegressionKind, Verdict, Witness,
 };
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
@@ -62,6 +62,8 @@ struct LeftInverseReport {
     x: IndexMap<String, String>,
     modulo: IndexMap<String, String>,
     origin: Option<&'static str>,
+    /// What estimates must meet for it to have a value; a step of the observer is refused where it has none.
+    asks: Vec<String>,
     /// Whether some states are not recovered.
     partial: bool,
     witness: Option<WitnessReport>,
@@ -143,7 +145,7 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
             velocity: expansion.velocity.into_iter().collect(),
         }),
         cascade: Some(cascade(arena, &derivation.cascade)),
-        left_inverse: Some(left_inverse(plant, &derivation.left_inverse)),
+        left_inverse: Some(left_inverse(plant, derivation)),
         regression: Some(regression(plant, &derivation.regression)),
         identifiability: Some(identifiability(arena, &derivation.identifiability)),
         drift: Drift::of(plant, derivation)
@@ -213,8 +215,8 @@ fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {
     }
 }
 
-fn left_inverse(plant: &Plant, claim: &Claim<LeftInverse>) -> LeftInverseReport {
-    let arena = &plant.arena;
+fn left_inverse(plant: &Plant, derivation: &Derivation) -> LeftInverseReport {
+    let (arena, claim) = (&plant.arena, &derivation.left_inverse);
     let result = claim.result.as_ref();
     LeftInverseReport {
         verdict: name(claim.verdict),
@@ -226,6 +228,7 @@ fn left_inverse(plant: &Plant, claim: &Claim<LeftInverse>) -> LeftInverseReport 
             Origin::Given => "given",
             Origin::Derived => "derived",
         }),
+        asks: conditions(arena, &derivation.asked_of_estimates(plant)),
         partial: result.is_some_and(|r| r.x.len() < plant.x.len()),
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
     }

@@ -41,15 +41,5 @@ fn boundedness(fundamental: Fundamental) -> &'static str {
 
 /// Comparisons with zero, as a reader would write them.
 fn conditions(arena: &Arena, conditions: &[(Expr, Relation)]) -> Vec<String> {
-    conditions
-        .iter()
-        .map(|(expr, relation)| {
-            let sign = match relation {
-                Relation::Positive => ">",
-                Relation::NonNegative => ">=",
-                Relation::NonZero => "!=",
-            };
-            format!("{} {sign} 0", arena.print(*expr))
-        })
-        .collect()
+    conditions.iter().map(|(expr, relation)| format!("{} {}", arena.print(*expr), relation.sign())).collect()
 }

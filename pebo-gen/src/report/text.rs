@@ -155,6 +155,11 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     if !missing.is_empty() && derivation.left_inverse.verdict == Verdict::Proved {
         lines.push(format!("a partial observer: {} not recovered", listed(missing.iter().map(String::as_str))));
     }
+    let asked = super::conditions(arena, &derivation.asked_of_estimates(plant));
+    if !asked.is_empty() {
+        let asked = listed(asked.iter().map(String::as_str));
+        lines.push(format!("asks of estimates that {asked}: a step without a finite estimate is refused"));
+    }
     lines
 }
 

@@ -218,8 +218,9 @@ codes! {
          the signs of their values, or an assumption, must show that it is positive: what is known of the state up to \
          the period is proved for all parameters with these signs."
     ContradictoryAssumptions "contradictory-assumptions" "assumptions that cannot hold together"
-        "No values satisfy both of the assumptions shown, or the model's own parameters violate one: there is nothing \
-         that a claim could be made of."
+        "No values satisfy the assumptions shown, or the model's own parameters violate one: there is nothing that a \
+         claim could be made of. Where this is not certain, but no values were found at which all assumptions hold and \
+         all formulas have values, the claims are undecided."
     MissingRate "missing-rate" "a rate is needed that the model does not give"
         "The transform phi uses an output whose derivative stands nowhere. Its own derivative along the plant, which \
          must be h(y, u), then cannot be formed. Give the output's rate under f_y."

@@ -41,6 +41,7 @@ mod parts;
 mod quadratic;
 mod range;
 mod root;
+mod shift;
 mod show;
 mod sign;
 mod span;

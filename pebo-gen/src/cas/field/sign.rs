@@ -2,8 +2,8 @@
 //!
 //! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the
 //! kernels have values, or none. The rules are sound and simple: numbers, kernels ([`super::nature`]),
-//! sums of like signs, facts ([`super::known`]), factors, discriminants ([`super::quadratic`]), and last
-//! enclosures over the box that the facts state.
+//! sums of like signs, facts ([`super::known`]), factors, discriminants ([`super::quadratic`]), distances from
+//! bounds ([`super::shift`]), and last enclosures over the box that the facts state.
 
 use crate::cas::enclosure::Point;
 use crate::cas::expr::Expr;
@@ -73,7 +73,10 @@ impl Field<'_> {
         if let Some(sign) = self.sign_by_factors(&rest)? {
             return Ok(Some(sign));
         }
-        self.sign_by_discriminant(&rest)
+        if let Some(sign) = self.sign_by_discriminant(&rest)? {
+            return Ok(Some(sign));
+        }
+        self.sign_by_shift(&rest)
     }
 
     /// The sign of a primitive polynomial by those of its factors.
@@ -119,6 +122,9 @@ impl Field<'_> {
         if sign.is_none() {
             sign = self.sign_by_discriminant(&rest)?;
         }
+        if sign.is_none() {
+            sign = self.sign_by_shift(&rest)?;
+        }
         Ok(sign.and_then(|sign| total.times(sign)))
     }
 
@@ -141,26 +147,7 @@ impl Field<'_> {
         if let Some(sign) = self.constant_sign(poly) {
             return Some(sign);
         }
-        let mut signs = poly.terms().map(|(monomial, coefficient)| {
-            let first = if coefficient.is_negative() { Sign::Negative } else { Sign::Positive };
-            monomial.powers().iter().try_fold(first, |sign, &(variable, exponent)| {
-                match (self.kernel_sign(variable), exponent % 2) {
-                    (Some(Sign::Positive), _) | (Some(Sign::Negative), 0) => Some(sign),
-                    (Some(kernel), 1) => sign.times(kernel),
-                    (_, 0) => sign.times(Sign::NonNegative),
-                    _ => None,
-                }
-            })
-        });
-        let first = signs.next()??;
-        signs.try_fold(first, |total, sign| match (total, sign?) {
-            (Sign::Negative, Sign::Negative) => Some(Sign::Negative),
-            (Sign::NonNegative, Sign::NonNegative) => Some(Sign::NonNegative),
-            (Sign::Positive, Sign::Positive | Sign::NonNegative) | (Sign::NonNegative, Sign::Positive) => {
-                Some(Sign::Positive)
-            }
-            _ => None,
-        })
+        sign_of_terms(poly, |variable| self.kernel_sign(variable))
     }
 
     /// The sign of a part: by algebra, or by enclosing it over the box that the facts state.
@@ -191,4 +178,28 @@ impl Field<'_> {
     pub fn is_not_negative(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
         Ok(self.sign_of(fraction)?.is_some_and(Sign::is_positive_or_zero))
     }
+}
+
+/// The sign that all terms of a polynomial have, by the signs of its variables.
+pub(super) fn sign_of_terms(poly: &Poly, sign_of: impl Fn(u32) -> Option<Sign>) -> Option<Sign> {
+    let mut signs = poly.terms().map(|(monomial, coefficient)| {
+        let first = if coefficient.is_negative() { Sign::Negative } else { Sign::Positive };
+        monomial.powers().iter().try_fold(first, |sign, &(variable, exponent)| {
+            match (sign_of(variable), exponent % 2) {
+                (Some(Sign::Positive), _) | (Some(Sign::Negative), 0) => Some(sign),
+                (Some(kernel), 1) => sign.times(kernel),
+                (_, 0) => sign.times(Sign::NonNegative),
+                _ => None,
+            }
+        })
+    });
+    let Some(first) = signs.next() else { return Some(Sign::Zero) };
+    signs.try_fold(first?, |total, sign| match (total, sign?) {
+        (Sign::Negative, Sign::Negative) => Some(Sign::Negative),
+        (Sign::NonNegative, Sign::NonNegative) => Some(Sign::NonNegative),
+        (Sign::Positive, Sign::Positive | Sign::NonNegative) | (Sign::NonNegative, Sign::Positive) => {
+            Some(Sign::Positive)
+        }
+        _ => None,
+    })
 }

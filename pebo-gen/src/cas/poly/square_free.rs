@@ -55,6 +55,34 @@ impl Poly {
         Ok(factors)
     }
 
+    /// All its factors without constants, once each, as far as contents and multiplicities tell them apart.
+    pub fn distinct_factors(&self, work: &Work) -> Result<Vec<Self>, TooLarge> {
+        let mut found: Vec<Self> = Vec::new();
+        let mut open = self.factors_in(self.variables(), work)?;
+        while let Some(factor) = open.pop() {
+            let mut split = None;
+            for variable in factor.variables() {
+                let lower = factor.content_in(&[*variable], work)?;
+                if !lower.is_constant() {
+                    split = Some([factor.over(&lower, work)?, lower]);
+                    break;
+                }
+            }
+            match split {
+                Some(parts) => open.extend(parts),
+                None if factor.is_constant() => {}
+                None => {
+                    let (_, factor) = factor.primitive();
+                    if !found.contains(&factor) {
+                        found.push(factor);
+                    }
+                }
+            }
+        }
+        found.reverse();
+        Ok(found)
+    }
+
     /// For a polynomial that is primitive in the variable.
     fn yun(&self, variable: u32, factors: &mut BTreeMap<u32, Self>, work: &Work) -> Result<(), TooLarge> {
         let derivative = self.derivative(variable);
