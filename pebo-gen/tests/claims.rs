@@ -353,6 +353,109 @@ const TABLE: &[(&str, &str, Answer)] = &[
          - 2*(q*s - p*r)*J*a + 2*(r*s + p*q)*K*b + (p^2 - q^2 - r^2 + s^2)*L*c",
         Accepted("dynamic linear instant"),
     ),
+    // Refuted is what points of the domain show, with the same y, u and parameters.
+    (
+        "rate that varies with x where the domain is not",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [0 < p < 1]\nf_x: {p: v + abs(p - 2) + p}\nf_y: {q: p}\nphi: [p]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "rate that varies with x far from 0",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [p > 3]\nf_x: {p: v - p^2}\nf_y: {q: p}\nphi: [p]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "bend outside the domain",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [p > 3]\nf_x: {p: v}\nf_y: {q: abs(p - 2) + p}\nphi: [p]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "bend inside the domain",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [p > 3]\nf_x: {p: v}\nf_y: {q: abs(p - 5) + p}\nphi: [p]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "even transform, its other state outside the domain",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x + 1 > 0, x != 0]",
+        Rejected(Code::LeftInverseRefuted),
+    ),
+    // What relates the components of phi to the outputs identifies, too.
+    (
+        "three phases",
+        "x: [q]\ny: [a, b, c, w]\nu: [u, v]\nangles: {q: 2*pi}\nf_x: {q: w}\n\
+         f_y: {a: u + w*sin(q), b: v + w*sin(q - 2*pi/3), c: -u - v + w*sin(q + 2*pi/3)}\n\
+         phi: [cos(q) + a, cos(q - 2*pi/3) + b, cos(q + 2*pi/3) + c]",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "redundant component",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x}\nphi: [x, 2*x]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "component that is a square of another",
+        "x: [p]\ny: [q]\nu: [v]\nf_x: {p: 0}\nf_y: {q: p}\nphi: [p, p^2]",
+        Accepted("implicit over-parameterised instant"),
+    ),
+    // Functions of the unknowns that are not told apart while the unknowns are.
+    (
+        "product with a state that rests",
+        "x: [p, s]\ny: [q]\nu: [v]\nassume: [s > 0]\nf_x: {p: v, s: 0}\nf_y: {q: p*s}\nphi: [p, s]",
+        Undecided(Code::IdentifiabilityUndecided),
+    ),
+    (
+        "product of states that rest",
+        "x: [p, s]\ny: [q]\nu: [v]\nassume: [s > 0]\nf_x: {p: 0, s: 0}\nf_y: {q: v*p*s}\nphi: [p, s]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "factor that is a constant combination of others",
+        "x: [a, b, c]\ny: [y]\nu: [u, v]\nf_x: {a: u, b: v, c: u - v}\nf_y: {y: u*a^2 + v*b^2 + (u + v)*c^3}\n\
+         phi: [a, b, c]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    // Signals that nobody measures.
+    (
+        "unmeasured signal that cancels between outputs",
+        "x: [p]\ny: [q, r]\nu: [v]\nw: [d]\nf_x: {p: v}\nf_y: {q: p + d, r: d}\nphi: [p]",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "unmeasured signal that cancels by a parameter",
+        "x: [p]\ny: [q, r]\nu: [v]\nw: [d]\nparameters: [k]\nassume: [k > 0]\nf_x: {p: v}\n\
+         f_y: {q: v*p + k*d*r, r: d*r}\nphi: [p]",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "two unmeasured signals between three outputs",
+        "x: [p]\ny: [a, b, c]\nu: [v]\nw: [d, e]\nf_x: {p: v}\nf_y: {a: p + d + e, b: d - e, c: d}\nphi: [p]",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "unmeasured signal that cancels from a square",
+        "x: [p]\ny: [q, r]\nu: [v]\nw: [d]\nf_x: {p: v}\nf_y: {q: p^2 + sin(d), r: sin(d)}\nphi: [p]",
+        Accepted("implicit over-parameterised excitation"),
+    ),
+    (
+        "unmeasured signals in as many outputs",
+        "x: [p]\ny: [q, r]\nu: [v]\nw: [d, e]\nf_x: {p: v}\nf_y: {q: p + d, r: p + e}\nphi: [p]",
+        Rejected(Code::RegressionNonlinear),
+    ),
+    (
+        "unmeasured signal that cancels with the state",
+        "x: [p]\ny: [q, r]\nu: [v]\nw: [d]\nf_x: {p: v}\nf_y: {q: p + d, r: p + d}\nphi: [p]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "unmeasured signal that cancels by a moving factor",
+        "x: [p]\ny: [q, r]\nu: [v]\nw: [d]\nf_x: {p: v}\nf_y: {q: p + v*d, r: d}\nphi: [p]",
+        Undecided(Code::RegressionUndecided),
+    ),
+    (
+        "unmeasured signal that cancels beside an output that sees nothing",
+        "x: [p]\ny: [q, r, s]\nu: [v]\nw: [d]\nf_x: {p: v}\nf_y: {q: p + d, r: d, s: v}\nphi: [p]",
+        Accepted("implicit linear instant"),
+    ),
     (
         "Lorenz",
         "parameters: [s, r, b]\nassume: [b > 0]\nx: [y, z]\ny: [x]\nf_x: {y: r*x - y - x*z, z: x*y - b*z}\n\
@@ -413,6 +516,24 @@ fn a_witness_is_a_point_where_the_residual_is_not_zero() {
     // A product of small rationals, up to the rounding of two multiplications.
     assert!((again - witness.bounds.0).abs() < 1e-12 && (again - witness.bounds.1).abs() < 1e-12);
     assert!((value("g") - 3.0).abs() < f64::EPSILON);
+}
+
+/// Two points of the domain, which differ in x alone.
+#[test]
+fn a_refutation_compares_points_of_the_domain() {
+    let plant = derived("x: [p]\ny: [y]\nu: [u]\nassume: [p > 3, u > 1]\nf_x: {p: u - p^2}\nf_y: {y: u}\nphi: [p]");
+    let cascade = plant.derivation.cascade.result.as_ref().expect("a residual");
+    let compared = cascade.witness.as_ref().and_then(|witness| witness.compared.as_ref()).expect("two points");
+    let [here, there] = compared.points.as_slice() else { panic!("{compared:?}") };
+    let (here, there, u) = (here[0].1.to_f64(), there[0].1.to_f64(), compared.known[0].1.to_f64());
+    assert!(here > 3.0 && there > 3.0 && u > 1.0);
+    // The values are of small rationals, up to rounding.
+    for (p, (low, high)) in [here, there].into_iter().zip(compared.values.iter().copied()) {
+        let rate = u - p * p;
+        assert!((rate - low).abs() < 1e-12 * rate.abs() && (rate - high).abs() < 1e-12 * rate.abs());
+    }
+    let said = plant.derivation.diagnostics[0].notes.join("\n");
+    assert!(said.contains("z1' is about") && said.contains("with the same u = "), "{said}");
 }
 
 #[test]

@@ -8,14 +8,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::combination::combine;
+use crate::cas::contrast::contrast;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::interval::Precision;
 use crate::cas::zero::{Answer, decide, point_of};
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Expr, Symbol};
 use crate::plant::{self, Formula, Plant};
 use crate::source::{Code, Diagnostic, listed};
 
-use super::design::{Cascade, Claim, Class, Verdict, Witness};
+use super::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
 use super::killing::{self, Column};
 use super::tidy::{proved_shortest, shortest};
 use super::{blame, gpebo, pencil};
@@ -42,7 +44,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let row = |(rate, component): (&Expr, &Component)| match component {
         Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
         Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
-        Component::Bound { .. } | Component::Open(_) => gpebo::affine(plant, domain, *rate),
+        Component::Bound { .. } | Component::Open(_) => gpebo::row(plant, domain, *rate),
     };
     let rows: Vec<Result<Option<gpebo::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
     let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
@@ -136,7 +138,8 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         Ok(field.show(&fraction))
     }) {
         Ok(tidied) => tidied,
-        Err(obstacle) => return Component::Open(obstacle),
+        // What no normal form reaches may differ at points all the same.
+        Err(obstacle) => return bound(plant, domain, rate, rate).unwrap_or(Component::Open(obstacle)),
     };
     if !arena.depends_on(tidied, &hidden) {
         // The normal form is free of x; that it equals the rate is what the zero test confirms.
@@ -146,30 +149,30 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };
     }
-    bound(plant, domain, tidied)
+    bound(plant, domain, rate, tidied).unwrap_or(Component::Open(Obstacle::NoWitness))
 }
 
-/// The part of an expression that varies with x: its difference to the value at a fixed x.
-fn bound(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
+/// What varies with x, with two points of the domain that show it: the same y, u and parameters, another value.
+///
+/// The rate is shown as `shown`, and the part of it that varies as its difference to what it is at the second point.
+fn bound(plant: &Plant, domain: &Domain, rate: Expr, shown: Expr) -> Option<Component> {
     let arena = &plant.arena;
     let hidden = plant.hidden();
-    let through: Vec<Symbol> = arena.symbols_of(&[rate]).intersection(&hidden).copied().collect();
-    for reference in [0, 1, 2] {
-        let fixed: BTreeMap<Symbol, Expr> = through.iter().map(|s| (*s, arena.number(reference))).collect();
-        let difference = arena.sub(rate, arena.substitute(rate, &fixed));
-        if point_of(arena, difference, domain).is_none() {
-            continue;
-        }
-        let residual = shortest(arena, domain, difference);
-        return match decide(arena, residual, domain) {
-            Answer::NonZero(witness) => {
-                Component::Bound { residual, witness: Witness::of(residual, &witness), through }
-            }
-            Answer::Zero => Component::Open(Obstacle::NoWitness),
-            Answer::Open(obstacle) => Component::Open(obstacle),
-        };
-    }
-    Component::Open(Obstacle::NoPoint)
+    let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
+    let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
+    let through: Vec<Symbol> = arena.symbols_of(&[shown]).intersection(&hidden).copied().collect();
+    let fixed: BTreeMap<Symbol, Expr> =
+        through.iter().filter_map(|s| Some((*s, arena.number(reference.get(s)?.clone())))).collect();
+    let residual = shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed)));
+    let difference = here.sub(there, Precision::new(256))?;
+    let compared = Comparison::of(shown, &points, &hidden);
+    let witness = Witness {
+        expr: residual,
+        point: points.points[0].iter().map(|(symbol, value)| (*symbol, value.clone())).collect(),
+        bounds: (difference.lo(), difference.hi()),
+        compared: Some(compared),
+    };
+    Some(Component::Bound { residual, witness, through })
 }
 
 /// The components that are free of x, and the others mended, where that can be.
@@ -234,7 +237,12 @@ fn refuted(
     )
     .label(format!("its derivative keeps the term `{shown}`"))
     .note(format!("d(phi)/dt must be a function of y and u alone, but {term} survives in z{component}'"))
-    .note(witness.sentence_on(arena, &term));
+    .note(
+        witness
+            .compared
+            .as_ref()
+            .map_or_else(|| witness.sentence(arena), |compared| compared.sentence(arena, &format!("z{component}'"))),
+    );
     match mend {
         Some(mend) => diagnostic.help(format!("use `{}` for this component", arena.print(mend))),
         None => diagnostic.help("choose a phi whose derivative along the plant is free of the unmeasured states"),
@@ -262,49 +270,4 @@ fn undecided(plant: &Plant, index: usize, obstacle: &Obstacle) -> Diagnostic {
     )
     .note(format!("obstacle: {obstacle}"))
     .help("write the formulas with fewer functions, or state signs under `assume`")
-}
-
-impl Witness {
-    /// The witness of the zero test, for a report.
-    pub(super) fn of(expr: Expr, witness: &crate::cas::zero::Witness) -> Self {
-        let point = witness.point.iter().map(|(s, v)| (*s, v.clone())).collect();
-        Self { expr, point, bounds: (witness.value.lo(), witness.value.hi()) }
-    }
-
-    /// What the witness shows, as a reader would say it: `-G*v4/C4 = 9 where C4 = 1, ..`.
-    pub fn sentence(&self, arena: &Arena) -> String {
-        let printed = arena.print(self.expr);
-        if printed.chars().count() <= MOST_CHARACTERS {
-            return self.sentence_on(arena, &format!("`{printed}`"));
-        }
-        let start: String = printed.chars().take(MOST_CHARACTERS).collect();
-        self.sentence_on(arena, &format!("`{start} ..`"))
-    }
-
-    /// The same with other words for the expression.
-    pub(super) fn sentence_on(&self, arena: &Arena, what: &str) -> String {
-        let entries: Vec<String> = self
-            .point
-            .iter()
-            .map(|(s, v)| format!("{} = {}", arena.name(*s), arena.print(arena.number(v.clone()))))
-            .collect();
-        let (low, high) = self.bounds;
-        // Bounds that agree to nine digits read better as one number.
-        let value = if (high - low).abs() <= 1e-9 * low.abs().max(high.abs()) {
-            format!("about {}", short(low))
-        } else {
-            format!("between {} and {}", short(low), short(high))
-        };
-        let place = if entries.is_empty() { "everywhere".to_owned() } else { format!("where {}", entries.join(", ")) };
-        format!("{what} is {value} {place}")
-    }
-}
-
-/// A longer formula is cut in a sentence: its value is what counts there.
-const MOST_CHARACTERS: usize = 300;
-
-/// A few significant digits.
-fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if (1e-3..1e6).contains(&magnitude) { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.4e}") }
 }

@@ -8,7 +8,7 @@ use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
 use super::conditions::{Ask, Conditions};
-use super::design::{Cascade, Claim, Derivation, Outcome, Regression, Verdict};
+use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
 use super::left_inverse::at_phi;
 use super::{cascade, identifiability, known, left_inverse, regression};
 
@@ -35,7 +35,7 @@ impl Derivation {
             }
             _ => Claim::skipped(),
         };
-        let (mut regression, mut identifiability) = match &cascade.result {
+        let (regression, identifiability) = match &cascade.result {
             // What the outputs' rates do not show, an identity may.
             Some(result) if identifiability.verdict == Verdict::Refuted && !plant.identities.is_empty() => {
                 let mut others = Vec::new();
@@ -54,6 +54,16 @@ impl Derivation {
                     }
                     None => (regression, identifiability),
                 }
+            }
+            _ => (regression, identifiability),
+        };
+        let (mut regression, mut identifiability) = match (&cascade.result, &regression.result) {
+            (Some(cascade), Some(result))
+                if matches!(identifiability.verdict, Verdict::Refuted | Verdict::Undecided) =>
+            {
+                let given = (result, identifiability.verdict);
+                let more = strengthened(plant, &domain, (cascade, inverse), given, &mut found);
+                more.unwrap_or((regression, identifiability))
             }
             _ => (regression, identifiability),
         };
@@ -91,6 +101,50 @@ impl Derivation {
     pub fn admit(&self) -> Result<&Self, &[Diagnostic]> {
         if self.outcome == Outcome::Accepted { Ok(self) } else { Err(&self.diagnostics) }
     }
+}
+
+/// What a stronger regression settles.
+const OPEN: [Code; 2] = [Code::NeverIdentifiable, Code::IdentifiabilityUndecided];
+
+/// What becomes of unknowns that a regression does not identify with all that the plant's equations say besides; none
+/// if that is nothing.
+fn strengthened(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, inverse): (&Cascade, Option<&LeftInverse>),
+    (regression, verdict): (&Regression, Verdict),
+    found: &mut Vec<Diagnostic>,
+) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
+    let mut said = Vec::new();
+    let together = regression::together(plant, domain, cascade, inverse, regression, &mut said);
+    let mut last = None;
+    let class = if cascade.lambda.is_some() { Class::Gpebo } else { Class::Pebo };
+    for claim in together.regressions {
+        let claim = known::regression(plant, class, claim, &mut said);
+        let Some(more) = claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved) else { continue };
+        let mut others = Vec::new();
+        let seen = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
+        let proved = seen.verdict == Verdict::Proved;
+        last = Some((claim, seen, others));
+        if proved {
+            break;
+        }
+    }
+    if let Some((claim, seen, others)) = last {
+        let said_more = verdict == Verdict::Refuted && (seen.verdict == Verdict::Undecided || together.complete);
+        if seen.verdict == Verdict::Proved || said_more {
+            found.retain(|d| !OPEN.contains(&d.code));
+            found.extend(said.into_iter().chain(others));
+            return Some((claim, seen));
+        }
+    }
+    if together.complete || verdict == Verdict::Undecided {
+        return None;
+    }
+    found.retain(|d| !OPEN.contains(&d.code));
+    found.push(identifiability::not_all_used(plant));
+    let claim = Claim { verdict: Verdict::Proved, result: Some(regression.clone()) };
+    Some((claim, Claim { verdict: Verdict::Undecided, result: None }))
 }
 
 impl<T> Claim<T> {

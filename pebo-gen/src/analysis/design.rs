@@ -82,6 +82,21 @@ pub struct Witness {
     pub point: Vec<(Symbol, Rational)>,
     /// Bounds of its value there, outward rounded; both of one sign.
     pub bounds: (f64, f64),
+    /// The points of the domain that were compared, where it took more than one.
+    pub compared: Option<Comparison>,
+}
+
+/// Points of the domain with the same y, u and parameters, and the values that an expression has there.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The expression.
+    pub expr: Expr,
+    /// The unmeasured states and signals at each point.
+    pub points: Vec<Vec<(Symbol, Rational)>>,
+    /// What all points share.
+    pub known: Vec<(Symbol, Rational)>,
+    /// Bounds of the expression's value at each point, outward rounded.
+    pub values: Vec<(f64, f64)>,
 }
 
 /// Claim 2: the states are recovered from z and y.

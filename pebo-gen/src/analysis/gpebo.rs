@@ -13,8 +13,8 @@ use crate::cas::zero::{Answer, decide};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 
-use super::bounded;
 use super::design::Cascade;
+use super::{bounded, relations};
 
 /// A component's rate: h, then its row of Lambda.
 pub(super) type Row = Vec<Expr>;
@@ -24,6 +24,16 @@ pub(super) fn known(plant: &Plant, rate: Expr) -> Row {
     let mut row = vec![plant.arena.zero(); plant.phi.len() + 1];
     row[0] = rate;
     row
+}
+
+/// The row of a rate; none where points of the domain show that it is no affine function of the transform.
+pub(super) fn row(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<Row>, Obstacle> {
+    let open = match affine(plant, domain, rate) {
+        Ok(Some(row)) => return Ok(Some(row)),
+        Ok(None) => Obstacle::NoWitness,
+        Err(obstacle) => obstacle,
+    };
+    relations::not_affine(plant, domain, rate).map_or(Err(open), |_| Ok(None))
 }
 
 /// An expression as an affine combination of the transform with coefficients free of x, proved: the known part, then

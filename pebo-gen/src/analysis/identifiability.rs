@@ -13,6 +13,7 @@ use crate::cas::enclosure::Point;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::linear::Echelon;
+use crate::cas::pivots::pivots;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{Class, Plant};
@@ -51,7 +52,7 @@ pub(super) fn prove(
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
         // Of an implicit regression the rates are part of what multiplies the unknowns: nothing to read off.
-        let shown = regression.primitive_1.is_empty();
+        let shown = regression.primitive_1.iter().flatten().all(|factor| arena.is_zero(*factor));
         let result = Identifiability {
             kind: Excitation::Instant,
             singular_where: if shown { singular_where(plant, domain, &phi_1) } else { Vec::new() },
@@ -90,6 +91,13 @@ pub(super) fn prove(
     let Some(direction) = unseen.directions.into_iter().next() else {
         return open(plant, &Obstacle::NoWitness, found);
     };
+    // What does not identify functions of theta may identify theta.
+    if !regression.is_linear(plant)
+        && let Some(doubt) = of_theta(plant, domain, &stack, regression, &direction)
+    {
+        found.push(doubt);
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
     let refusal = never(plant, domain, &direction, regression, left_inverse);
     found.push(if unseen.special_values {
         refusal.note("this holds for the values of the parameters that are given, not for values in general")
@@ -97,6 +105,47 @@ pub(super) fn prove(
         refusal
     });
     answer(Excitation::Never, Some(direction), Verdict::Refuted)
+}
+
+/// Why theta itself may be identified although its functions are not; none where a direction of theta is provably
+/// unseen by the rows, which are all that the derivatives show.
+fn of_theta(
+    plant: &Plant,
+    domain: &Domain,
+    stack: &[Vec<Expr>],
+    regression: &Regression,
+    direction: &[Expr],
+) -> Option<Diagnostic> {
+    let arena = &plant.arena;
+    let slope = |row: &Vec<Expr>, theta: Symbol| {
+        arena
+            .sum(row.iter().zip(&regression.eta).map(|(factor, eta)| arena.mul(*factor, arena.derivative(*eta, theta))))
+    };
+    let rows: Vec<Vec<Expr>> =
+        stack.iter().map(|row| plant.theta.iter().map(|theta| slope(row, *theta)).collect()).collect();
+    let apart = full_rank(arena, domain, &rows, plant.theta.len());
+    if !apart && null_vectors(arena, domain, &rows, plant.theta.len()).is_ok_and(|vectors| !vectors.is_empty()) {
+        return None;
+    }
+    let eta: Vec<String> = regression.eta.iter().map(|e| arena.print(*e)).collect();
+    let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
+    let doubt = Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "no linear regression was found that identifies the unknowns",
+    )
+    .label(format!("({}) can move along ({}) unseen by the outputs", eta.join(", "), entries.join(", ")));
+    let doubt = if apart {
+        doubt.note(
+            "theta itself can be told apart near almost every value, but not by a linear estimator of these functions",
+        )
+    } else {
+        doubt.note("whether theta itself can be told apart could not be decided")
+    };
+    Some(doubt.help(
+        "take the products of states that stand in the rates as components of phi: where their rates are linear in phi \
+         again, the cascade is a generalised one and the regression linear",
+    ))
 }
 
 /// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
@@ -187,7 +236,7 @@ fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize)
 }
 
 /// The largest rank that the matrix provably has at a point of the domain; almost everywhere it is no smaller.
-fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
+pub(super) fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
     let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
     let mut most = 0;
     for point in domain.points(arena, &entries).take(MOST_POINTS) {
@@ -203,30 +252,7 @@ fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> us
     const PRECISION: Precision = Precision::new(256);
     let Some(values) = arena.enclose_all(entries, point, PRECISION) else { return 0 };
     let rows: Vec<Vec<Interval>> = values.chunks(columns).map(<[Interval]>::to_vec).collect();
-    eliminated(rows, columns, PRECISION).unwrap_or(0)
-}
-
-/// Gaussian elimination on enclosures: the number of columns with a pivot that excludes zero.
-fn eliminated(mut rows: Vec<Vec<Interval>>, columns: usize, p: Precision) -> Option<usize> {
-    let mut rank = 0;
-    for column in 0..columns {
-        let candidates = rows.iter().enumerate().filter(|(_, row)| !row[column].contains_zero());
-        let best = candidates.max_by(|(_, a), (_, b)| size(&a[column]).total_cmp(&size(&b[column])));
-        let Some((index, _)) = best else { continue };
-        rank += 1;
-        let pivot = rows.swap_remove(index);
-        for row in &mut rows {
-            let factor = row[column].div(&pivot[column], p)?;
-            for other in column..columns {
-                row[other] = row[other].sub(&factor.mul(&pivot[other], p)?, p)?;
-            }
-        }
-    }
-    Some(rank)
-}
-
-fn size(value: &Interval) -> f64 {
-    value.lo().abs().min(value.hi().abs())
+    pivots(rows, columns, PRECISION).map_or(0, |chosen| chosen.len())
 }
 
 /// The regressor with the fundamental matrix at its initial value: being invertible at all times, it takes
@@ -298,6 +324,17 @@ fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Clai
         .help("give the parameters values, or state signs under `assume`"),
     );
     Claim { verdict: Verdict::Undecided, result: None }
+}
+
+/// The regression leaves unknowns unseen, but there are equations that it could not use.
+pub(super) fn not_all_used(plant: &Plant) -> Diagnostic {
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "it could not be decided whether the unknowns can be told apart",
+    )
+    .note("this regression does not tell them apart, but outputs or identities of the plant are not used in it")
+    .help("measure another output, or write what relates phi to the outputs under `identities`")
 }
 
 fn never(

@@ -10,7 +10,7 @@ use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
-use crate::cas::zero::{Answer, decide};
+use crate::cas::zero::{self, Answer, decide, refute};
 use crate::cas::{Arena, Expr, Function, Symbol};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
@@ -53,8 +53,10 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
                 result.witness.get_or_insert(witness);
                 verdict = Verdict::Refuted;
             }
-            // A derived candidate that fails but has the same transform is a second state with the same z.
-            Answer::NonZero(point) if same_transform(plant, domain, state, formula) => {
+            Answer::NonZero(_) => {
+                // A derived candidate that fails but has the same transform is a second state with the same z; any
+                // other was a wrong branch, which says nothing about the claim.
+                let Some(point) = same_transform(plant, domain, state, formula, tested) else { continue };
                 let witness = Witness::of(tested, &point);
                 found.push(not_injective(plant, state, formula, &witness));
                 result.witness.get_or_insert(witness);
@@ -66,8 +68,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
                 result.x.push((state, formula));
                 verdict = verdict.max_doubt();
             }
-            // Any other candidate was a wrong branch, which says nothing about the claim.
-            Answer::NonZero(_) | Answer::Open(_) => {}
+            Answer::Open(_) => {}
         }
     }
     let recovered: Vec<Symbol> = result.x.iter().map(|(s, _)| *s).collect();
@@ -131,28 +132,31 @@ fn defined(
     false
 }
 
-/// Whether the candidate state has the same transform as the true one, identically.
-fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) -> bool {
+/// A point of the domain at which another state of the domain has the same transform: the candidate, with y, u,
+/// parameters and the other states as they are.
+fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, tested: Expr) -> Option<zero::Witness> {
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let other = BTreeMap::from([(state, arena.substitute(formula, &transform))]);
-    // The other state must be one of the domain too; what only must not vanish rules out no open set.
-    let concerns = |(fact, relation): (Expr, Relation)| {
-        relation != Relation::NonZero && arena.symbols_of(&[fact]).contains(&state)
-    };
-    let facts = !domain.facts.iter().any(concerns);
-    facts
-        && plant
-            .transform()
-            .iter()
-            .all(|phi| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), domain).is_zero())
+    // Where both states are in the domain.
+    let mut both = domain.clone();
+    for (fact, relation) in domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&state)) {
+        both.facts.assume(arena.substitute(fact, &other), relation);
+    }
+    let same = |phi: &Expr| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), &both).is_zero();
+    if !plant.transform().iter().all(same) {
+        return None;
+    }
+    refute(arena, tested, &both)
 }
 
 /// A direction of x that the transform does not see anywhere, if there is one.
 fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
+    // What an identity holds fixed is no direction of the domain.
+    let seen = plant.phi.iter().chain(&plant.identities);
     let slopes: Vec<Vec<Expr>> =
-        plant.phi.iter().map(|phi| plant.x.iter().map(|s| arena.derivative(phi.expr, s.symbol)).collect()).collect();
+        seen.map(|seen| plant.x.iter().map(|s| arena.derivative(seen.expr, s.symbol)).collect()).collect();
     null_vectors(arena, domain, &slopes, plant.x.len()).ok()?.into_iter().next()
 }
 

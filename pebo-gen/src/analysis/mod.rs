@@ -4,8 +4,10 @@
 //! Plant -> cascade -> left inverse -> regression -> identifiability -> Derivation
 //! ```
 //!
-//! Holds after: what is called proved was shown by exact algebra, what is called refuted by a rational
-//! point with a rigorous enclosure or by an exact null vector; everything else is undecided and says why.
+//! Holds after: what is called proved was shown by exact algebra, what is called refuted by rational points of the
+//! domain, with the same y, u and parameters and rigorous enclosures, or by an exact null vector; everything else is
+//! undecided and says why. No input and no trajectory identifies the unknowns (`never`) is said where no rate, no
+//! combination of rates, no relation of the transform with the outputs and no identity shows a direction of theta.
 //!
 //! The domain D of a model: where its assumptions and identities hold, for all values of the parameters that keep
 //! the signs of those given (one given as 0 is 0, one not given is any), and `f_x`, `f_y` and phi have values, phi also
@@ -39,13 +41,14 @@ mod separation;
 mod singular;
 mod solve;
 mod tidy;
+mod witness;
 
 #[cfg(test)]
 mod tests;
 
 pub use design::{
-    Cascade, Claim, Class, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse, Origin, Outcome,
-    Positive, Regression, RegressionKind, Verdict, Witness,
+    Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse, Origin,
+    Outcome, Positive, Regression, RegressionKind, Verdict, Witness,
 };
 pub use drift::{Drift, rebase_residuals};
 pub use equilibrium::{Equilibrium, OperatingPoint};

@@ -9,6 +9,8 @@ mod affine;
 mod functions;
 mod refusal;
 mod standing;
+mod together;
+mod unveiled;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,6 +27,8 @@ use functions::{over_parameterised, under_derivative};
 use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};
 pub(super) use standing::from_identities;
 use standing::from_relations;
+pub(super) use together::together;
+use unveiled::combinations;
 
 const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
     polynomials, exponentials, sines and cosines of z go";
@@ -54,12 +58,19 @@ pub(super) fn prove(
             Err(obstacle) => obstacles.push((*index, *rate, *span, Some(obstacle))),
         }
     }
-    // Nothing can be learnt from a rate that an unmeasured signal moves; the others have to do.
+    // A rate that an unmeasured signal moves tells nothing, unless combinations are free of it; the others have to do.
     rows.retain(|row| !veiled.contains(row));
     if rows.is_empty() {
+        let outputs: Vec<usize> = veiled.iter().map(|row| row.0).collect();
+        let combined = combinations(plant, domain, &outputs);
+        if !combined.is_empty()
+            && let Some(claim) = together::of_combinations(plant, domain, cascade, left_inverse, &combined, found)
+        {
+            return claim;
+        }
         if plant.identities.is_empty() {
             return from_relations(plant, domain, cascade, left_inverse, found)
-                .unwrap_or_else(|| hidden_by_signals(plant, domain, &veiled, found));
+                .unwrap_or_else(|| hidden_by_signals(plant, domain, &veiled, combined.len(), found));
         }
         return from_identities(plant, domain, cascade, left_inverse, found);
     }
@@ -78,7 +89,7 @@ pub(super) fn prove(
             Ok(Some(separated)) => {
                 let eta: Vec<String> = separated.eta.iter().map(|e| plant.arena.print(*e)).collect();
                 let outputs = rows.iter().map(|r| r.0).collect();
-                if let Some(claim) = over_parameterised(plant, domain, left_inverse, outputs, separated, found) {
+                if let Some(claim) = over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found) {
                     return claim;
                 }
                 stands_against =
@@ -110,10 +121,10 @@ pub(super) fn prove(
         }
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
-        if let Some(witness) = bend {
+        if let Some(shown) = bend {
             let bends = |term| nonlinear(plant, domain, term, left_inverse).is_some();
             let places = blame::summands(plant, index, bends);
-            found.push(refuted(plant, index, &places, &witness, &stands_against));
+            found.push(refuted(plant, index, &places, &shown, &stands_against));
         } else {
             verdict = Verdict::Undecided;
             found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));

@@ -4,13 +4,18 @@
 //! vanish at z = phi(x, y); each proved. The motor's `|z - L i|^2 = lambda_m^2` is one (Ortega et al. 2015,
 //! eq. 28): its position is gone from it.
 
-use crate::cas::Expr;
+use std::collections::BTreeMap;
+
 use crate::cas::combination::combine;
+use crate::cas::contrast::{Contrast, contrast};
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::zero::decide;
+use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
+
+use super::identifiability::rank_seen;
 
 /// With more components the products are too many to be compared.
 const MOST_COMPONENTS: usize = 6;
@@ -52,6 +57,57 @@ pub(super) fn among(plant: &Plant, domain: &Domain) -> Result<Vec<Expr>, Obstacl
         before.push(monomial);
     }
     Ok(found)
+}
+
+/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values of
+/// an expression.
+pub(super) fn not_affine(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Contrast> {
+    let mut basis = vec![plant.arena.one()];
+    basis.extend(independent(plant, domain));
+    contrast(&plant.arena, expr, &basis, &plant.hidden(), domain)
+}
+
+/// The components of the transform that are no combination of 1 and those before them with coefficients free of x.
+fn independent(plant: &Plant, domain: &Domain) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let mut basis = vec![arena.one()];
+    for component in plant.transform() {
+        let combined = || {
+            let field = Field::over(arena, &domain.facts, &[basis.as_slice(), &[component]].concat())?;
+            combine(&field, component, &basis, &plant.hidden())
+        };
+        // One that is undecided stays: what it hides is then not refuted.
+        if !matches!(combined(), Ok(Some(_))) {
+            basis.push(component);
+        }
+    }
+    basis.split_off(1)
+}
+
+/// Whether the components of the transform may have to do with each other: that none can is seen at a point where they
+/// move independently with x.
+pub(super) fn possible(plant: &Plant, domain: &Domain) -> bool {
+    independent_directions(plant, domain) < plant.phi.len()
+}
+
+/// Whether the relations are all that there are: at a point of the domain they leave z no more directions than x has.
+pub(super) fn are_all(plant: &Plant, domain: &Domain, relations: &[Expr]) -> bool {
+    let arena = &plant.arena;
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    let slopes = relations.iter().map(|relation| {
+        let slope = |z: &Symbol| arena.substitute(arena.derivative(*relation, *z), &transform);
+        plant.z.iter().map(slope).collect::<Vec<Expr>>()
+    });
+    let rows: Vec<Vec<Expr>> = slopes.collect();
+    rank_seen(arena, domain, &rows, plant.z.len()) + independent_directions(plant, domain) >= plant.z.len()
+}
+
+/// The rank of the transform's derivative in x, as far as points show it.
+fn independent_directions(plant: &Plant, domain: &Domain) -> usize {
+    let arena = &plant.arena;
+    let slopes = |phi: Expr| plant.x.iter().map(|x| arena.derivative(phi, x.symbol)).collect::<Vec<Expr>>();
+    let rows: Vec<Vec<Expr>> = plant.transform().into_iter().map(slopes).collect();
+    rank_seen(arena, domain, &rows, plant.x.len())
 }
 
 /// The products of two components, as their positions.

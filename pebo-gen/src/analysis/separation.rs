@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::poly::Monomial;
@@ -152,37 +153,35 @@ pub(super) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separa
     Separated { known: vec![known], factors: vec![row], eta }
 }
 
-/// Joins functions of theta whose factors differ by a constant of the plant: these cannot be told apart,
-/// but their sum can, as `theta1 + theta2^2` in a rate `a + b^2`.
-pub(super) fn join_proportional(plant: &Plant, domain: &Domain, separated: &Separated) -> Result<Separated, Obstacle> {
+/// Joins functions of theta whose factors are constant combinations of other factors: these cannot be told apart, but
+/// their sums can, as `theta1 + theta2^2` in a rate `a + b^2`.
+pub(super) fn join_dependent(plant: &Plant, domain: &Domain, separated: &Separated) -> Result<Separated, Obstacle> {
     let arena = &plant.arena;
+    // A symbol for each row, so that one expression holds a column.
+    let marks: Vec<Symbol> = (0..separated.factors.len()).map(|row| arena.generated(&format!("row {row}"))).collect();
+    let column = |j: usize| {
+        arena.sum(marks.iter().zip(&separated.factors).map(|(mark, row)| arena.mul(arena.of_symbol(*mark), row[j])))
+    };
+    let columns: Vec<Expr> = (0..separated.eta.len()).map(column).collect();
+    let field = Field::over(arena, &domain.facts, &columns)?;
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-    let entries: Vec<Expr> = separated.factors.iter().flatten().copied().collect();
-    let field = Field::over(arena, &domain.facts, &entries)?;
-    let column =
-        |j: usize| separated.factors.iter().map(|row| field.fraction(row[j])).collect::<Result<Vec<Fraction>, _>>();
-    let mut kept: Vec<(usize, Vec<Fraction>, Expr)> = Vec::new();
+    let signals: BTreeSet<Symbol> = arena.symbols_of(&columns).difference(&constants).copied().collect();
+    let mut kept: Vec<(usize, Expr)> = Vec::new();
     for (j, &eta) in separated.eta.iter().enumerate() {
-        let own = column(j)?;
-        let mut joined = false;
-        for (_, other, sum) in &mut kept {
-            if let Some(ratio) = ratio(&field, &own, other)? {
-                let ratio = field.show(&ratio);
-                if arena.symbols_of(&[ratio]).is_subset(&constants) {
-                    *sum = arena.add(*sum, arena.mul(ratio, eta));
-                    joined = true;
-                    break;
+        let basis: Vec<Expr> = kept.iter().map(|(k, _)| columns[*k]).collect();
+        match combine(&field, columns[j], &basis, &signals)? {
+            Some(coefficients) => {
+                for ((_, sum), coefficient) in kept.iter_mut().zip(&coefficients) {
+                    *sum = arena.add(*sum, arena.mul(field.show(coefficient), eta));
                 }
             }
-        }
-        if !joined {
-            kept.push((j, own, eta));
+            None => kept.push((j, eta)),
         }
     }
     let result = Separated {
         known: separated.known.clone(),
-        factors: separated.factors.iter().map(|row| kept.iter().map(|(j, ..)| row[*j]).collect()).collect(),
-        eta: kept.into_iter().map(|(.., sum)| sum).collect(),
+        factors: separated.factors.iter().map(|row| kept.iter().map(|(j, _)| row[*j]).collect()).collect(),
+        eta: kept.into_iter().map(|(_, sum)| sum).collect(),
     };
     let rows = separated.factors.iter().zip(&separated.known);
     let exprs: Vec<Expr> = rows
@@ -192,18 +191,6 @@ pub(super) fn join_proportional(plant: &Plant, domain: &Domain, separated: &Sepa
         .collect();
     prove(plant, domain, &exprs, &result)?;
     Ok(result)
-}
-
-/// c with `column = c * other`, if there is one.
-fn ratio(field: &Field<'_>, column: &[Fraction], other: &[Fraction]) -> Result<Option<Fraction>, Obstacle> {
-    let Some(pivot) = other.iter().position(|entry| !entry.is_zero()) else { return Ok(None) };
-    let ratio = field.div(&column[pivot], &other[pivot])?;
-    for (entry, base) in column.iter().zip(other) {
-        if !field.sub(entry, &field.mul(&ratio, base)?)?.is_zero() {
-            return Ok(None);
-        }
-    }
-    Ok(Some(ratio))
 }
 
 /// theta as functions of eta, each proved.

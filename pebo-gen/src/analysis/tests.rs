@@ -53,9 +53,10 @@ fn a_rate_that_an_unmeasured_signal_moves_is_not_used() {
     let (_, other) = derive(&format!("{lines}\nf_y: {{y: a + s, s: w}}"));
     assert_eq!(other.outcome, Outcome::Accepted);
     assert_eq!(other.regression.result.unwrap().rows, [0]);
-    let (_, none) = derive(&format!("{lines}\nf_y: {{y: a + w, s: w}}"));
+    let (_, none) =
+        derive("x: [a]\ny: [y, s]\nu: [u]\nw: [w, v]\nf_x: {a: u + w}\nphi: [a - s]\nf_y: {y: a + v, s: w}");
     assert_eq!((none.outcome, none.regression.verdict), (Outcome::Rejected, Verdict::Refuted));
-    assert!(none.diagnostics[0].message.contains("unmeasured signal w"), "{}", none.diagnostics[0].message);
+    assert!(none.diagnostics[0].message.contains("unmeasured signal v"), "{}", none.diagnostics[0].message);
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::expr::{Expr, Symbol};
 use super::field::{Field, Fraction, Obstacle};
-use super::linear::solve;
+use super::linear::{Echelon, solve};
 use super::poly::{Monomial, Poly};
 
 /// Solves for the coefficients of `target` over `basis`; none if the comparison has no solution.
@@ -37,6 +37,34 @@ pub fn combine(
         }
     }
     solve(field, rows.into_values().collect(), basis.len())
+}
+
+/// The combinations, with coefficients free of x, in which the symbols to cancel no longer occur; a basis of them.
+///
+/// The symbols to cancel are among x. If the kernels are independent there are no others.
+pub fn cancelling(
+    field: &Field<'_>,
+    exprs: &[Expr],
+    x: &BTreeSet<Symbol>,
+    cancel: &BTreeSet<Symbol>,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+    let hidden: Vec<u32> = field.kernels_of(x).into_iter().collect();
+    let gone = field.kernels_of(cancel);
+    let fractions = exprs.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
+    if fractions.iter().any(|fraction| fraction.denominator().variables().iter().any(|v| gone.contains(v))) {
+        return Err(Obstacle::Kernel("a denominator that is to cancel".to_owned()));
+    }
+    let mut rows: BTreeMap<Monomial, Vec<Fraction>> = BTreeMap::new();
+    for (column, numerator) in over_common_denominator(field, &fractions)?.iter().enumerate() {
+        for (monomial, coefficient) in numerator.collect(&hidden) {
+            if monomial.powers().iter().any(|(kernel, _)| gone.contains(kernel)) {
+                let row = rows.entry(monomial).or_insert_with(|| vec![Fraction::zero(); exprs.len()]);
+                row[column] = field.of_polynomial(&coefficient)?;
+            }
+        }
+    }
+    let (echelon, _) = Echelon::of(field, rows.into_values().collect(), exprs.len())?;
+    Ok(echelon.null_space())
 }
 
 /// The numerators of fractions over their least common denominator.

@@ -54,6 +54,21 @@ impl Domain {
         })
     }
 
+    /// Whether every fact that concerns the point's symbols provably holds there.
+    pub fn contains(&self, arena: &Arena, point: &Point) -> bool {
+        let concerned = |expr: Expr| arena.symbols_of(&[expr]).iter().any(|symbol| point.contains_key(symbol));
+        let given = |(symbol, value): (&Symbol, &Rational)| self.fixed.get(symbol).is_none_or(|fixed| fixed == value);
+        point.iter().all(given) && self.facts.iter().all(|fact| !concerned(fact.0) || holds(arena, fact, point))
+    }
+
+    /// What of the domain agrees with a point in all but the symbols that are free.
+    #[must_use]
+    pub fn beside(&self, point: &Point, free: &BTreeSet<Symbol>) -> Self {
+        let mut fixed = self.fixed.clone();
+        fixed.extend(point.iter().filter(|(s, _)| !free.contains(s)).map(|(s, value)| (*s, value.clone())));
+        Self { facts: self.facts.clone(), fixed }
+    }
+
     /// What the facts say directly of the least and greatest values of symbols, rounded outward.
     pub(super) fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> BTreeMap<Symbol, (Rational, Rational)> {
         let facts: Vec<_> = self.facts.iter().collect();

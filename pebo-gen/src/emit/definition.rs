@@ -127,7 +127,10 @@ impl<'a> Definitions<'a> {
         }
         if regression.kind == RegressionKind::Implicit {
             functions.push(vector("primitive_0", &[Extension, Y], "NR", regression.primitive_0.clone()));
-            functions.push(matrix("primitive_1", &[Extension, Y], "NR", "NE", &regression.primitive_1));
+            // The trait has it that nothing unknown stands under the derivative.
+            if regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor)) {
+                functions.push(matrix("primitive_1", &[Extension, Y], "NR", "NE", &regression.primitive_1));
+            }
         }
         functions.push(vector("theta", &[Eta], "NZ", regression.theta.clone()));
         let states = left_inverse.x.iter().map(|state| state.1).collect();

@@ -94,9 +94,10 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     };
     laws.push(match definitions.regression.kind {
         RegressionKind::Static => format!("phi_0 = phi_1 {unknown}"),
-        RegressionKind::Implicit => {
+        RegressionKind::Implicit if definitions.functions.iter().any(|function| function.name == "primitive_1") => {
             format!("d/dt (primitive_0 + primitive_1 {unknown}) = phi_0 + phi_1 {unknown}")
         }
+        RegressionKind::Implicit => format!("d/dt primitive_0 = phi_0 + phi_1 {unknown}"),
         RegressionKind::Dynamic => {
             let rows = definitions.regression.rows.iter();
             let outputs = rows.filter_map(|&row| Some(plant.y.get(row)?.symbol));

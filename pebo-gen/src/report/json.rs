@@ -8,7 +8,8 @@ use crate::analysis::{
     Cascade, Claim, Class, Derivation, Drift, Equilibrium, Excitation, Identifiability, Origin, Outcome, Regression,
     RegressionKind, Verdict, Witness,
 };
-use crate::cas::{Arena, Expr};
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Located, Source};
 
@@ -120,6 +121,16 @@ struct WitnessReport {
     expression: String,
     point: IndexMap<String, String>,
     bounds: [f64; 2],
+    /// The points of the domain that were compared, where it took more than one.
+    compared: Option<ComparisonReport>,
+}
+
+/// Points with the same y, u and parameters, and bounds of what the expression is at each.
+#[derive(Serialize)]
+struct ComparisonReport {
+    expression: String,
+    points: Vec<IndexMap<String, String>>,
+    values: Vec<[f64; 2]>,
 }
 
 /// The object of a model that was read.
@@ -195,10 +206,17 @@ fn matrix(arena: &Arena, rows: &[Vec<Expr>]) -> Vec<Vec<String>> {
 }
 
 fn witness(arena: &Arena, witness: &Witness) -> WitnessReport {
+    let coordinates =
+        |point: &[(Symbol, Rational)]| point.iter().map(|(s, v)| (arena.name(*s), v.to_string())).collect();
     WitnessReport {
         expression: arena.print(witness.expr),
-        point: witness.point.iter().map(|(s, v)| (arena.name(*s), v.to_string())).collect(),
+        point: coordinates(&witness.point),
         bounds: [witness.bounds.0, witness.bounds.1],
+        compared: witness.compared.as_ref().map(|compared| ComparisonReport {
+            expression: arena.print(compared.expr),
+            points: compared.points.iter().map(|point| coordinates(point)).collect(),
+            values: compared.values.iter().map(|(low, high)| [*low, *high]).collect(),
+        }),
     }
 }
 

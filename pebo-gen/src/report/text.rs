@@ -177,6 +177,10 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
             RegressionKind::Dynamic | RegressionKind::Implicit => {
                 let output = match regression.primitive_0.get(index) {
                     None => format!("{}'", arena.name(plant.y[regression.rows[index]].symbol)),
+                    // Between z, y and u: nothing stands under a derivative.
+                    Some(known) if regression.primitive_1[index].iter().chain([known]).all(|e| arena.is_zero(*e)) => {
+                        "0".to_owned()
+                    }
                     Some(known) => format!("d/dt({})", affine(arena, *known, &regression.primitive_1[index], &unknown)),
                 };
                 format!("{output} = {}", affine(arena, *known, factors, &unknown))

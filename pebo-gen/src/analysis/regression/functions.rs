@@ -14,17 +14,17 @@ use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 
 /// A regression in functions of theta, if theta can be recovered from them: a dynamic one with a row for each
-/// output, an implicit one with the rows of the primitives before these.
+/// output, an implicit one with so many rows of primitives before these.
 pub(super) fn over_parameterised(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,
-    rows: Vec<usize>,
+    (rows, held): (Vec<usize>, usize),
     separated: Separated,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
     // The fewer functions, if they are enough.
-    let joined = separation::join_proportional(plant, domain, &separated).ok().and_then(|joined| {
+    let joined = separation::join_dependent(plant, domain, &separated).ok().and_then(|joined| {
         let recovered = separation::recover(plant, domain, &joined.eta)?;
         Some((joined, recovered))
     });
@@ -40,7 +40,6 @@ pub(super) fn over_parameterised(
     // With sides of a primitive first, these are the first half of the rows.
     let short = |row: &Vec<Expr>| row.iter().map(|e| shortest(&plant.arena, domain, *e)).collect::<Vec<Expr>>();
     let (mut phi_0, mut phi_1) = (short(&separated.known), separated.factors.iter().map(short).collect::<Vec<_>>());
-    let held = phi_0.len() - rows.len();
     let primitive_0: Vec<Expr> = phi_0.drain(..held).collect();
     let primitive_1: Vec<Vec<Expr>> = phi_1.drain(..held).collect();
     let result = Regression {
@@ -74,7 +73,7 @@ pub(super) fn under_derivative(
         rights.push(sides.rate);
     }
     let separated = separation::separate(plant, domain, &[primitives, rights].concat()).ok()??;
-    over_parameterised(plant, domain, left_inverse, outputs.to_vec(), separated, found)
+    over_parameterised(plant, domain, left_inverse, (outputs.to_vec(), outputs.len()), separated, found)
 }
 
 /// The refusal, where theta is determined only up to whole turns and a state is lost by that: one that does

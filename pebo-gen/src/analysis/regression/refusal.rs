@@ -2,25 +2,33 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::blame;
-use crate::analysis::design::{Claim, LeftInverse, Regression, Verdict, Witness};
+use crate::analysis::design::{Claim, Comparison, LeftInverse, Regression, Verdict, Witness};
+use crate::analysis::{blame, relations};
 use crate::cas::Expr;
 use crate::cas::Symbol;
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
-use crate::cas::rational::Rational;
 use crate::cas::zero::refute;
 use crate::plant::{Formula, Plant};
-use crate::source::{Code, Diagnostic, Span};
+use crate::source::{Code, Diagnostic, Span, listed};
 
-/// Every rate that is given depends on a signal that nobody knows.
+use super::unveiled::moved_freely;
+
+/// Every rate that is given depends on a signal that nobody knows, and so do all combinations but so many, of which no
+/// regression was found.
 pub(super) fn hidden_by_signals(
     plant: &Plant,
     domain: &Domain,
     veiled: &[(usize, Expr, Span)],
+    combined: usize,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
+    let outputs: Vec<usize> = veiled.iter().map(|row| row.0).collect();
+    if combined > 0 || !moved_freely(plant, domain, &outputs, 0) {
+        found.push(maybe_hidden(plant, &outputs, veiled.first().map_or(Span::point(0), |row| row.2)));
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
     let mut verdict = Verdict::Refuted;
     for (index, rate, span) in veiled {
         let seen = plant.w.iter().find_map(|w| {
@@ -51,6 +59,21 @@ pub(super) fn hidden_by_signals(
     Claim { verdict, result: None }
 }
 
+/// Outputs that unmeasured signals move, but perhaps not all of what they tell.
+fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
+    let names: Vec<String> = outputs.iter().map(|index| plant.arena.name(plant.y[*index].symbol)).collect();
+    Diagnostic::error(
+        Code::RegressionUndecided,
+        span,
+        "it could not be decided whether the outputs tell of the unknowns while unmeasured signals move them",
+    )
+    .note(format!(
+        "combinations of {} with constant coefficients, free of these signals, make no regression that was found",
+        listed(names.iter().map(String::as_str))
+    ))
+    .help("give `f_y` for an output whose rate is free of the unmeasured signals, or an identity under `identities`")
+}
+
 /// A generalised cascade whose outputs may be linear in functions of theta.
 pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic {
     let output = plant.arena.name(plant.y[index].symbol);
@@ -64,17 +87,34 @@ pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic 
     .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
 }
 
-/// A point at which the rate, as a function of z, has a second derivative, or a bend.
+/// Why a rate is no affine function of the transform, as points of the domain show it.
+///
+/// A second derivative, where the transform has as many components as there are states: it is then one-to-one on a
+/// neighbourhood of each point of the domain, so that z moves freely there. Else points with the same y, u and
+/// parameters at which no affine function takes the rate's values.
 pub(super) fn nonlinear(
     plant: &Plant,
     domain: &Domain,
     rate: Expr,
     left_inverse: Option<&LeftInverse>,
-) -> Option<Witness> {
+) -> Option<String> {
     let arena = &plant.arena;
-    let inverse: BTreeMap<Symbol, Expr> = left_inverse?.x.iter().copied().collect();
+    if let Some(witness) = left_inverse.and_then(|inverse| curvature(plant, domain, rate, inverse)) {
+        return Some(format!("as a function of z it bends: {}", witness.sentence(arena)));
+    }
+    let points = relations::not_affine(plant, domain, rate)?;
+    let compared = Comparison::of(rate, &points, &plant.hidden());
+    Some(format!("no affine function of phi takes its values: {}", compared.sentence(arena, "it")))
+}
+
+/// A point of the domain at which the rate, as a function of z, has a second derivative.
+fn curvature(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: &LeftInverse) -> Option<Witness> {
+    let arena = &plant.arena;
+    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
     let in_z = arena.substitute(rate, &inverse);
-    if arena.depends_on(in_z, &plant.hidden()) {
+    // On a manifold of the states z does not move freely.
+    let bound = plant.identities.iter().any(|identity| arena.depends_on(identity.expr, &plant.hidden()));
+    if bound || plant.phi.len() != inverse.len() || arena.depends_on(in_z, &plant.hidden()) {
         return None;
     }
     // Back at z = phi(x, y), so that the domain of x is the one that is searched.
@@ -88,24 +128,14 @@ pub(super) fn nonlinear(
             }
         }
     }
-    // Pieces of lines have no second derivative, but the middle of a chord shows the bend.
-    plant.z.iter().find_map(|z| {
-        let moved = |by: i64| {
-            let place = arena.add(arena.of_symbol(*z), arena.number(by));
-            arena.substitute(in_z, &BTreeMap::from([(*z, place)]))
-        };
-        let ends = arena.add(moved(4), moved(-4));
-        let bend = arena.sub(ends, arena.scale(in_z, &Rational::from(2)));
-        let bend = arena.substitute(bend, &transform);
-        refute(arena, bend, domain).map(|point| Witness::of(bend, &point))
-    })
+    None
 }
 
 pub(super) fn refuted(
     plant: &Plant,
     index: usize,
     places: &[Formula],
-    witness: &Witness,
+    shown: &str,
     stands_against: &str,
 ) -> Diagnostic {
     let arena = &plant.arena;
@@ -119,7 +149,7 @@ pub(super) fn refuted(
     let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "nor is this"));
     diagnostic
     .label("not an affine function of phi with coefficients in y and u")
-    .note(format!("as a function of z it bends: {}", witness.sentence(arena)))
+    .note(shown)
     .note(stands_against)
     .help("choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
            an identity under `identities`")

@@ -1,0 +1,93 @@
+//! Points that refute a claim, as a reader would say them.
+
+use std::collections::BTreeSet;
+
+use crate::cas::contrast::Contrast;
+use crate::cas::enclosure::Point;
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Symbol};
+
+use super::design::{Comparison, Witness};
+
+/// A longer formula is cut in a sentence: its value is what counts there.
+const MOST_CHARACTERS: usize = 300;
+
+impl Witness {
+    /// The witness of the zero test, for a report.
+    pub(super) fn of(expr: Expr, witness: &crate::cas::zero::Witness) -> Self {
+        let bounds = (witness.value.lo(), witness.value.hi());
+        Self { expr, point: coordinates(&witness.point), bounds, compared: None }
+    }
+
+    /// What the witness shows, as a reader would say it: `-G*v4/C4` is about 9 where C4 = 1, ..
+    pub fn sentence(&self, arena: &Arena) -> String {
+        let printed = arena.print(self.expr);
+        let start: String = printed.chars().take(MOST_CHARACTERS).collect();
+        let cut = if start.len() < printed.len() { " .." } else { "" };
+        let what = format!("`{start}{cut}`");
+        let place = match self.point.as_slice() {
+            [] => "everywhere".to_owned(),
+            point => format!("where {}", values(arena, point)),
+        };
+        format!("{what} is {} {place}", about(self.bounds))
+    }
+}
+
+impl Comparison {
+    /// Points that agree in all but x, with the values of an expression there.
+    pub(super) fn of(expr: Expr, contrast: &Contrast, x: &BTreeSet<Symbol>) -> Self {
+        let (mut points, mut known) = (Vec::new(), Vec::new());
+        for point in &contrast.points {
+            let (own, shared) = coordinates(point).into_iter().partition(|(symbol, _)| x.contains(symbol));
+            points.push(own);
+            known = shared;
+        }
+        let values = contrast.values.iter().map(|value| (value.lo(), value.hi())).collect();
+        Self { expr, points, known, values }
+    }
+
+    /// z1' is about 2 at p = 1, 0 at p = 0, with the same u = 1; what is compared is called as given.
+    pub(super) fn sentence(&self, arena: &Arena, what: &str) -> String {
+        let places: Vec<String> =
+            self.places(arena).zip(&self.values).map(|(at, v)| format!("{} {at}", about(*v))).collect();
+        format!("{what} is {}{}", places.join(", "), self.with_the_same(arena))
+    }
+
+    fn places<'a>(&'a self, arena: &'a Arena) -> impl Iterator<Item = String> + 'a {
+        self.points.iter().map(|point| format!("at {}", values(arena, point)))
+    }
+
+    /// What the points share of what the expression reads.
+    fn with_the_same(&self, arena: &Arena) -> String {
+        let read = arena.symbols_of(&[self.expr]);
+        let shared: Vec<_> = self.known.iter().filter(|(symbol, _)| read.contains(symbol)).cloned().collect();
+        if shared.is_empty() { String::new() } else { format!(", with the same {}", values(arena, &shared)) }
+    }
+}
+
+fn coordinates(point: &Point) -> Vec<(Symbol, Rational)> {
+    point.iter().map(|(symbol, value)| (*symbol, value.clone())).collect()
+}
+
+/// `a = 1, b = 2/3`
+fn values(arena: &Arena, point: &[(Symbol, Rational)]) -> String {
+    let entry = |(s, v): &(Symbol, Rational)| format!("{} = {}", arena.name(*s), arena.print(arena.number(v.clone())));
+    point.iter().map(entry).collect::<Vec<_>>().join(", ")
+}
+
+/// What bounds say of a value: bounds that agree to nine digits read better as one number.
+fn about((low, high): (f64, f64)) -> String {
+    if low == 0.0 && high == 0.0 {
+        "0".to_owned()
+    } else if (high - low).abs() <= 1e-9 * low.abs().max(high.abs()) {
+        format!("about {}", short(low))
+    } else {
+        format!("between {} and {}", short(low), short(high))
+    }
+}
+
+/// A few significant digits.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if (1e-3..1e6).contains(&magnitude) { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.4e}") }
+}
