@@ -3,6 +3,7 @@
 use pebo_gen::analysis::{Class, Equilibrium, Excitation, Fundamental, Outcome, RegressionKind, Verdict};
 use pebo_gen::cas::asks::Want;
 use pebo_gen::cas::facts::Relation;
+use pebo_gen::report::summary;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Derived, derive};
 
@@ -760,7 +761,7 @@ fn conditions_are_those_of_every_formula() {
 #[test]
 fn an_operating_point_meets_the_conditions() {
     let found = derived("x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]");
-    if let Some(Equilibrium::At(point)) = Equilibrium::of(&found.plant, &found.derivation) {
+    if let Some(Equilibrium::At(point)) = found.derivation.operating_point(&found.plant) {
         let arena = &found.plant.arena;
         let zero = point.values.iter().find(|(s, value)| arena.name(*s) == "q" && arena.is_zero(*value));
         assert!(zero.is_none());
@@ -782,4 +783,21 @@ fn a_parameter_given_as_zero_is_zero() {
     let divided = "model: m\nparameters: {a: 0}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v/a}\nf_y: {q: p}\nphi: [p]\n";
     let refused = derive(&Source::new("m", divided).expect("a text")).err().expect("a refusal");
     assert_eq!(refused[0].code, Code::DivisionByZero);
+}
+
+#[test]
+fn the_headline_speaks_of_the_claims_alone() {
+    let said = |lines: &str| {
+        let derived = derived(lines);
+        summary(&derived.plant, &derived.derivation)
+    };
+    let undecided =
+        said("x: [x]\ny: [y]\nu: [u]\nf_x: {x: y + sin(y) - u*y}\nf_y: {y: x + exp(y)}\nphi: [x]\nassume: [y > 0]");
+    assert!(undecided.starts_with("m: accepted: all four claims are proved\n"), "{undecided}");
+    // An open remark is no open claim: it stands under no verdict.
+    assert!(undecided.contains("\n  operating point           "), "{undecided}");
+    let conditional = said("x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x/u}\nphi: [x]");
+    let headline = "m: accepted: all four claims are proved where the conditions below hold\n";
+    assert!(conditional.starts_with(headline), "{conditional}");
+    assert!(conditional.contains("\n  conditions                u != 0\n"), "{conditional}");
 }

@@ -10,6 +10,7 @@ use crate::source::{Code, Diagnostic};
 use super::conditions::{Ask, Conditions};
 use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
 use super::left_inverse::at_phi;
+use super::remarks::Remarks;
 use super::{cascade, identifiability, known, left_inverse, regression};
 
 impl Derivation {
@@ -94,6 +95,7 @@ impl Derivation {
             identifiability,
             conditions: conditions.listed(),
             diagnostics: found,
+            remarks: Remarks::default(),
         }
     }
 

@@ -9,6 +9,8 @@ pub use crate::model::CascadeClass as Class;
 use crate::plant::Plant;
 use crate::source::Diagnostic;
 
+use super::remarks::Remarks;
+
 /// The verdict on one claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Verdict {
@@ -170,12 +172,50 @@ pub struct Identifiability {
     pub kind: Excitation,
     /// Where the regressor loses rank, each as a readable condition.
     pub singular_where: Vec<String>,
+    /// Whether the regressor was shown to have full rank everywhere else.
+    pub everywhere_else: bool,
     /// Combinations of parameters without a known sign that must not vanish for the rank to be what it is.
     pub constants: Vec<Expr>,
     /// A direction of eta that no trajectory shows, where there is one.
     pub direction: Option<Vec<Expr>>,
+    /// What has to move, where one moment does not show the unknowns.
+    pub motion: Option<Motion>,
     /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
     pub gram: Option<Gram>,
+}
+
+/// What has to move for unknowns to be seen that one moment does not show.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Whether no input has to: with all of them constant the rank over time is full on almost every motion. None where
+    /// that was not decided.
+    pub by_itself: Option<bool>,
+    /// Whether nothing has to: with outputs that are constant too it is full.
+    pub at_rest: bool,
+    /// Motions on which it is not full. There may be others.
+    pub blind: Vec<Blind>,
+}
+
+/// Motions on which the regression does not show all unknowns: proved.
+#[derive(Clone, Debug)]
+pub struct Blind {
+    /// Which motions.
+    pub place: Place,
+    /// What is seen of the unknowns: of z1.. where they are theta, else of eta1..
+    pub seen: Vec<Expr>,
+    /// Directions that are not seen.
+    pub hidden: Vec<Vec<Expr>>,
+}
+
+/// What holds at all times.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// All inputs and outputs are constant.
+    Rest,
+    /// These inputs are constant.
+    Constant(Vec<Symbol>),
+    /// The input has this value.
+    Value(Symbol, Expr),
 }
 
 /// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.
@@ -257,4 +297,6 @@ pub struct Derivation {
     pub conditions: Vec<(Expr, Relation)>,
     /// What to tell the author.
     pub diagnostics: Vec<Diagnostic>,
+    /// What no claim rests on.
+    pub(crate) remarks: Remarks,
 }

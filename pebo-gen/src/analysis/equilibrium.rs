@@ -45,7 +45,7 @@ pub struct OperatingPoint {
 
 impl Equilibrium {
     /// Looks for the operating points of a plant; none without a proved cascade.
-    pub fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
+    pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
         let domain = derivation.domain(plant);
         Some(found(plant, &domain, cascade).unwrap_or_else(|obstacle| Self::Undecided(obstacle.to_string())))
@@ -102,7 +102,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
 fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
     let arena = &plant.arena;
     let there = restricted(arena, domain, values)
-        .ok_or_else(|| "no operating point was found within the assumptions".to_owned())?;
+        .ok_or_else(|| "no operating point was found within the assumptions and conditions".to_owned())?;
     match plant.rates().iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
         None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
@@ -136,7 +136,7 @@ fn rank<'a>(arena: &Arena, domain: &Domain, mut rates: impl Iterator<Item = &'a 
 }
 
 /// The domain of the symbols that stay free; none unless some point of it is found.
-fn restricted(arena: &Arena, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Option<Domain> {
+pub(super) fn restricted(arena: &Arena, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Option<Domain> {
     let mut there = Domain { fixed: domain.fixed.clone(), ..Domain::default() };
     let mut constant = Vec::new();
     for (fact, relation) in domain.facts.iter() {
@@ -282,10 +282,19 @@ mod tests {
     #[test]
     fn a_point_outside_the_assumptions_is_none() {
         let reason = undecided(&format!("{BOOST}\nassume: [0 < d < 1, v < 0]"));
-        assert_eq!(reason, "no operating point was found within the assumptions");
+        assert_eq!(reason, "no operating point was found within the assumptions and conditions");
         // A bound that the point meets, and one that only a part of the inputs meets.
         at(&format!("{BOOST}\nassume: [0 < d < 1, v > 0]"));
         at(&format!("{BOOST}\nassume: [0 < d < 1, v > 15]"));
+    }
+
+    #[test]
+    fn a_point_at_which_the_observer_has_no_value_is_none() {
+        // q' = q w rests at q = 0 too, where p = z1/q has no value.
+        let product = "x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]";
+        assert_eq!(at(product), "p = 0, v = 0, w = 0");
+        let alone = "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v + p}\nf_y: {q: -q, r: p}\nphi: [p*q]";
+        assert_eq!(undecided(alone), "no operating point was found within the assumptions and conditions");
     }
 
     #[test]

@@ -16,25 +16,41 @@ use crate::cas::rational::Rational;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
-use crate::plant::matrix::determinant;
 
 use super::design::{Gram, Positive};
-use super::singular::gram;
+use super::singular::{Places, Volume, gram};
 use super::tidy::{shorter, shortest};
 
 /// Parts that a box is divided into before the proof is given up.
 const MOST_PARTS: usize = 4096;
 
-/// The Gram matrix of a regressor with as many rows as columns or more; none where it could not be worked out.
-pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> Option<Gram> {
-    let columns = phi_1.first().map_or(0, Vec::len);
-    if phi_1.len() < columns {
-        return None;
-    }
-    worked_out(plant, domain, phi_1, columns).ok()
+/// Where a regressor with full column rank at almost every point loses it, and its Gram matrix where that could be worked
+/// out.
+pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (Places, Option<Gram>) {
+    let found = || -> Result<(Places, Gram), Obstacle> {
+        let volume = Volume::of(&plant.arena, domain, phi_1)?;
+        let mut places = volume.places(plant, domain)?;
+        let gram = worked_out(plant, domain, phi_1, &volume, &places)?;
+        let symbols = plant.arena.symbols_of(&[gram.determinant]);
+        let general = !plant.parameters.iter().any(|parameter| symbols.contains(&parameter.symbol));
+        // What no factor shows, dividing the box may; with parameters it does so for their values alone.
+        if gram.positive.is_some() && general {
+            places.signals.clear();
+            places.all = true;
+        }
+        Ok((places, gram))
+    };
+    found().map_or_else(|_| (Places::default(), None), |(places, gram)| (places, Some(gram)))
 }
 
-fn worked_out(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>], columns: usize) -> Result<Gram, Obstacle> {
+fn worked_out(
+    plant: &Plant,
+    domain: &Domain,
+    phi_1: &[Vec<Expr>],
+    volume: &Volume<'_>,
+    places: &Places,
+) -> Result<Gram, Obstacle> {
+    let columns = phi_1.first().map_or(0, Vec::len);
     let arena = &plant.arena;
     let entries: Vec<Expr> = phi_1.iter().flatten().copied().collect();
     let field = Field::over(arena, &domain.facts, &entries)?;
@@ -50,17 +66,15 @@ fn worked_out(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>], columns: usiz
     };
     let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
     let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
-    // Of a square regressor the root of the determinant is known.
-    let square = rows.len() == columns;
-    let root = determinant(&field, if square { rows } else { product })?;
-    let shown = shortest(arena, domain, field.show(&root));
-    let by_facts = field.is_positive(&root)? || (square && field.is_positive(&root.opposite())?);
-    let positive = if by_facts {
+    let square = volume.square;
+    let root = volume.shown();
+    // Never negative, it is positive where it does not vanish.
+    let positive = if places.are_none() {
         Some(Positive::Assumed)
     } else {
-        on_box(plant, domain, shown, square).then_some(Positive::Divided)
+        on_box(plant, domain, root, square).then_some(Positive::Divided)
     };
-    let determinant = if square { arena.mul(shown, shown) } else { shown };
+    let determinant = if square { arena.mul(root, root) } else { root };
     Ok(Gram { matrix, determinant: oriented(arena, domain, determinant), positive })
 }
 

@@ -6,7 +6,7 @@
 //! derivative (shown by exact linear algebra). Inputs, and signals without an equation, are free
 //! functions of time: their derivatives are new symbols (Ortega et al. 2015, remark R3).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
@@ -20,8 +20,8 @@ use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
-use super::singular::{constant_factors, singular_where};
-use super::{excitation, pencil};
+use super::singular::Places;
+use super::{excitation, motion, pencil};
 
 /// Points that are tried before a rank counts as deficient.
 const MOST_POINTS: usize = 6;
@@ -38,14 +38,16 @@ pub(super) fn prove(
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
     let mut flow = Flow::new(plant, cascade);
-    let mut stack = effective(arena, &flow, regression);
+    let mut stack = effective(arena, &flow, &regression.phi_1, &regression.primitive_1);
     let answer = |kind, direction, verdict| Claim {
         verdict,
         result: Some(Identifiability {
             kind,
             singular_where: Vec::new(),
+            everywhere_else: false,
             constants: Vec::new(),
             direction,
+            motion: None,
             gram: None,
         }),
     };
@@ -53,17 +55,29 @@ pub(super) fn prove(
         let phi_1 = without_psi(plant, &stack);
         // Of an implicit regression the rates are part of what multiplies the unknowns: nothing to read off.
         let shown = regression.primitive_1.iter().flatten().all(|factor| arena.is_zero(*factor));
+        let (places, gram) = if shown { excitation::of(plant, domain, &phi_1) } else { (Places::default(), None) };
         let result = Identifiability {
             kind: Excitation::Instant,
-            singular_where: if shown { singular_where(plant, domain, &phi_1) } else { Vec::new() },
-            constants: if shown { constant_factors(plant, domain, &phi_1) } else { Vec::new() },
+            singular_where: places.signals,
+            everywhere_else: places.all,
+            constants: places.constants,
             direction: None,
-            gram: if shown { excitation::of(plant, domain, &phi_1) } else { None },
+            motion: None,
+            gram,
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) };
     }
+    let excited = || {
+        let (motion, constants) = motion::of(plant, domain, cascade, regression);
+        let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
+        if let Some(result) = &mut claim.result {
+            result.motion = Some(motion);
+            result.constants = constants;
+        }
+        claim
+    };
     if excited_in_motion(plant, domain, cascade, &stack, unknowns) {
-        return answer(Excitation::Excitation, None, Verdict::Proved);
+        return excited();
     }
     let mut latest = stack.clone();
     let mut unseen = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
@@ -74,7 +88,7 @@ pub(super) fn prove(
         latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
         stack.extend(latest.iter().cloned());
         if full_rank(arena, domain, &stack, unknowns) {
-            return answer(Excitation::Excitation, None, Verdict::Proved);
+            return excited();
         }
         flow.advance(plant);
         let next = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
@@ -169,9 +183,9 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
 }
 
 /// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
-fn effective(arena: &Arena, flow: &Flow, regression: &Regression) -> Vec<Vec<Expr>> {
-    let mut rows = regression.phi_1.clone();
-    for (row, primitive) in rows.iter_mut().zip(&regression.primitive_1) {
+pub(super) fn effective(arena: &Arena, flow: &Flow, phi_1: &[Vec<Expr>], primitive_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let mut rows = phi_1.to_vec();
+    for (row, primitive) in rows.iter_mut().zip(primitive_1) {
         for (entry, factor) in row.iter_mut().zip(primitive) {
             *entry = arena.sub(*entry, flow.rate(arena, *factor));
         }
@@ -180,13 +194,23 @@ fn effective(arena: &Arena, flow: &Flow, regression: &Regression) -> Vec<Vec<Exp
 }
 
 /// The plant's motion with its observer's extension: rates of all that moves.
-struct Flow {
+pub(super) struct Flow {
     rates: BTreeMap<Symbol, Expr>,
     free: Vec<Symbol>,
 }
 
 impl Flow {
     fn new(plant: &Plant, cascade: &Cascade) -> Self {
+        Self::along(plant, cascade, &BTreeSet::new(), &BTreeMap::new())
+    }
+
+    /// The motions on which some signals are constant and inputs are functions of others.
+    pub(super) fn along(
+        plant: &Plant,
+        cascade: &Cascade,
+        held: &BTreeSet<Symbol>,
+        equal: &BTreeMap<Symbol, Expr>,
+    ) -> Self {
         let arena = &plant.arena;
         let mut rates = plant.rates();
         match &cascade.lambda {
@@ -205,14 +229,17 @@ impl Flow {
             }
         }
         let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
-        let free = plant.u.iter().copied().chain(plant.w.iter().copied()).chain(unruled).collect();
+        let free = plant.u.iter().copied().chain(plant.w.iter().copied()).chain(unruled);
+        let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
+        rates.values_mut().for_each(|rate| *rate = arena.substitute(*rate, equal));
+        rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
         let mut flow = Self { rates, free };
         flow.advance(plant);
         flow
     }
 
     /// Gives the latest derivatives of the free signals rates of their own.
-    fn advance(&mut self, plant: &Plant) {
+    pub(super) fn advance(&mut self, plant: &Plant) {
         let arena = &plant.arena;
         self.free = self
             .free
@@ -225,7 +252,7 @@ impl Flow {
             .collect();
     }
 
-    fn rate(&self, arena: &Arena, expr: Expr) -> Expr {
+    pub(super) fn rate(&self, arena: &Arena, expr: Expr) -> Expr {
         arena.directional(expr, &self.rates)
     }
 }
@@ -257,7 +284,7 @@ fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> us
 
 /// The regressor with the fundamental matrix at its initial value: being invertible at all times, it takes
 /// nothing from the rank.
-fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+pub(super) fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
     let arena = &plant.arena;
     let identity: BTreeMap<Symbol, Expr> = plant
         .psi

@@ -34,9 +34,11 @@ mod implicit;
 mod killing;
 mod known;
 mod left_inverse;
+mod motion;
 mod pencil;
 mod regression;
 mod relations;
+mod remarks;
 mod separation;
 mod singular;
 mod solve;
@@ -47,8 +49,10 @@ mod witness;
 mod tests;
 
 pub use design::{
-    Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse, Origin,
-    Outcome, Positive, Regression, RegressionKind, Verdict, Witness,
+    Blind, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse,
+    Motion, Origin, Outcome, Place, Positive, Regression, RegressionKind, Verdict, Witness,
 };
-pub use drift::{Drift, rebase_residuals};
+pub use drift::Drift;
 pub use equilibrium::{Equilibrium, OperatingPoint};
+#[cfg(test)]
+pub(crate) use remarks::Remarks;

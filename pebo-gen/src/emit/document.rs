@@ -5,7 +5,7 @@
 
 use super::definition::{Argument, Definitions, VELOCITY};
 use super::module::Module;
-use crate::analysis::{Class, Derivation, Drift, Excitation, Fundamental, Origin, RegressionKind};
+use crate::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind};
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
@@ -146,9 +146,7 @@ fn fundamental(derivation: &Derivation) -> Vec<String> {
 
 /// What the extension does under a constant bias, and what there is against it.
 fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
-    let Some(drift) = Drift::of(plant, derivation).filter(|drift| !drift.integrators.is_empty()) else {
-        return Vec::new();
-    };
+    let Some(drift) = derivation.drift(plant) else { return Vec::new() };
     let remedy = match (derivation.class, rebase) {
         (Class::Pebo, true) => "`Observer::step_without_drift` keeps the extension bounded",
         (Class::Gpebo, true) => "`Observer::rebase` moves what has grown into `theta`",
@@ -198,8 +196,14 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     lines.push(format!("- Regression: {kind}, {parameterisation}."));
     if let Some(identifiability) = &derivation.identifiability.result {
         let mut line = match identifiability.kind {
-            Excitation::Instant => "- Identifiability: every input excites".to_owned(),
-            Excitation::Excitation => "- Identifiability: with excitation".to_owned(),
+            Excitation::Instant if identifiability.everywhere_else => {
+                "- Identifiability: every input excites".to_owned()
+            }
+            Excitation::Instant => "- Identifiability: almost every input excites".to_owned(),
+            Excitation::Excitation => {
+                let lines = identifiability.motion.iter().flat_map(|motion| motion.lines(plant));
+                format!("- Identifiability: over time, {}", lines.collect::<Vec<String>>().join("; "))
+            }
             Excitation::Never => "- Identifiability: none".to_owned(),
         };
         if !identifiability.singular_where.is_empty() {

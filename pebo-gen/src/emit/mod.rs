@@ -31,7 +31,7 @@ pub use literal::Scalar;
 
 use proc_macro2::TokenStream;
 
-use crate::analysis::{Derivation, rebase_residuals};
+use crate::analysis::Derivation;
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 use crate::program::{Task, stage};
@@ -75,8 +75,7 @@ pub fn emit(
         .collect();
     let staged = stage(arena, &parameters, &tasks)
         .map_err(|undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) })?;
-    let rebase = rebase_residuals(plant, derivation.class, definitions.regression)
-        .is_some_and(|residuals| residuals.into_iter().all(|residual| is_zero(arena, residual)));
+    let rebase = derivation.can_rebase(plant);
     let module = Module { plant, derivation, definitions: &definitions, staged: &staged, scalar, rebase };
     let tokens = module.tokens()?;
     read_back::confirm(plant, &definitions, scalar, &tokens, is_zero)?;

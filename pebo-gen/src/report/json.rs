@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::{conditions, expansion, name};
 use crate::analysis::{
-    Cascade, Claim, Class, Derivation, Drift, Equilibrium, Excitation, Identifiability, Origin, Outcome, Regression,
-    RegressionKind, Verdict, Witness,
+    Blind, Cascade, Claim, Class, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Origin, Outcome,
+    Regression, RegressionKind, Verdict, Witness,
 };
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
@@ -89,8 +89,23 @@ struct IdentifiabilityReport {
     verdict: &'static str,
     kind: Option<&'static str>,
     singular_where: Vec<String>,
+    /// Whether the regressor was shown to have full rank everywhere else.
+    everywhere_else: bool,
     direction: Option<Vec<String>>,
+    /// Whether no input has to move; none where that was not decided, or the unknowns are not identified.
+    by_itself: Option<bool>,
+    /// Motions on which the regression does not show all unknowns.
+    blind: Vec<BlindReport>,
     gram: Option<GramReport>,
+}
+
+/// A motion, what is seen on it of the unknowns, and directions that are not.
+#[derive(Serialize)]
+struct BlindReport {
+    #[serde(rename = "while")]
+    place: String,
+    seen: Vec<String>,
+    hidden: Vec<Vec<String>>,
 }
 
 /// `Phi_1' Phi_1` and its determinant; `positive` where that is proved on the whole assumed domain.
@@ -158,11 +173,12 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
         cascade: Some(cascade(arena, &derivation.cascade)),
         left_inverse: Some(left_inverse(plant, derivation)),
         regression: Some(regression(plant, &derivation.regression)),
-        identifiability: Some(identifiability(arena, &derivation.identifiability)),
-        drift: Drift::of(plant, derivation)
+        identifiability: Some(identifiability(plant, &derivation.identifiability)),
+        drift: derivation
+            .drift(plant)
             .map(|drift| drift.integrators.iter().map(|s| arena.name(*s)).collect())
             .unwrap_or_default(),
-        operating_point: Equilibrium::of(plant, derivation).map(|equilibrium| operating_point(arena, equilibrium)),
+        operating_point: derivation.operating_point(plant).map(|found| operating_point(arena, found)),
         conditions: conditions(arena, &derivation.conditions),
         diagnostics: located(&derivation.diagnostics, source),
     };
@@ -228,7 +244,7 @@ fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {
         lambda: result.and_then(|r| r.lambda.as_ref()).map(|l| matrix(arena, l)),
         residual: result.map(|r| printed(arena, &r.residual)).unwrap_or_default(),
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
-        bounded: result.and_then(|r| r.fundamental).map(super::boundedness),
+        bounded: result.and_then(|r| r.fundamental).map(boundedness),
         mend: result.and_then(|r| r.mend.as_ref()).map(|mend| printed(arena, mend)),
     }
 }
@@ -272,7 +288,16 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
     }
 }
 
-fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> IdentifiabilityReport {
+fn blind(plant: &Plant, blind: &Blind) -> BlindReport {
+    BlindReport {
+        place: blind.place(plant),
+        seen: printed(&plant.arena, &blind.seen),
+        hidden: matrix(&plant.arena, &blind.hidden),
+    }
+}
+
+fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> IdentifiabilityReport {
+    let arena = &plant.arena;
     let result = claim.result.as_ref();
     IdentifiabilityReport {
         verdict: name(claim.verdict),
@@ -282,7 +307,17 @@ fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> Identifiabi
             Excitation::Never => "never",
         }),
         singular_where: result.map(|r| r.singular_where.clone()).unwrap_or_default(),
+        everywhere_else: result.is_some_and(|r| r.everywhere_else),
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
+        by_itself: result.and_then(|r| match r.kind {
+            Excitation::Instant => Some(true),
+            Excitation::Excitation => r.motion.as_ref().and_then(|motion| motion.by_itself),
+            Excitation::Never => None,
+        }),
+        blind: result
+            .and_then(|r| r.motion.as_ref())
+            .map(|motion| motion.blind.iter().map(|blind| self::blind(plant, blind)).collect())
+            .unwrap_or_default(),
         gram: result.and_then(|r| r.gram.as_ref()).map(|gram| GramReport {
             matrix: matrix(arena, &gram.matrix),
             determinant: arena.print(gram.determinant),
@@ -291,7 +326,7 @@ fn identifiability(arena: &Arena, claim: &Claim<Identifiability>) -> Identifiabi
     }
 }
 
-fn operating_point(arena: &Arena, equilibrium: Equilibrium) -> OperatingPointReport {
+fn operating_point(arena: &Arena, equilibrium: &Equilibrium) -> OperatingPointReport {
     let without = |verdict, reason| OperatingPointReport {
         verdict: name(verdict),
         values: IndexMap::new(),
@@ -307,7 +342,16 @@ fn operating_point(arena: &Arena, equilibrium: Equilibrium) -> OperatingPointRep
             rank: point.rank.filter(|_| point.still).map(|rank| [rank, 0]),
             reason: None,
         },
-        Equilibrium::Nowhere(symbol) => without(Verdict::Refuted, format!("`{}` never rests", arena.name(symbol))),
-        Equilibrium::Undecided(reason) => without(Verdict::Undecided, reason),
+        Equilibrium::Nowhere(symbol) => without(Verdict::Refuted, format!("`{}` never rests", arena.name(*symbol))),
+        Equilibrium::Undecided(reason) => without(Verdict::Undecided, reason.clone()),
+    }
+}
+
+/// Whether the fundamental matrix stays bounded, in words.
+fn boundedness(fundamental: Fundamental) -> &'static str {
+    match fundamental {
+        Fundamental::Bounded { .. } => name(Verdict::Proved),
+        Fundamental::Grows => name(Verdict::Refuted),
+        Fundamental::NotShown => "not shown",
     }
 }

@@ -9,7 +9,7 @@ mod json;
 mod remarks;
 mod text;
 
-use crate::analysis::{Fundamental, Verdict};
+use crate::analysis::Verdict;
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr};
 
@@ -27,15 +27,6 @@ fn name(verdict: Verdict) -> &'static str {
         Verdict::Refuted => "refuted",
         Verdict::Undecided => "undecided",
         Verdict::Skipped => "skipped",
-    }
-}
-
-/// Whether the fundamental matrix stays bounded, in words.
-fn boundedness(fundamental: Fundamental) -> &'static str {
-    match fundamental {
-        Fundamental::Bounded { .. } => name(Verdict::Proved),
-        Fundamental::Grows => name(Verdict::Refuted),
-        Fundamental::NotShown => "not shown",
     }
 }
 

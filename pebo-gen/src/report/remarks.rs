@@ -1,44 +1,34 @@
 //! What to know in use, in a line each: whether Psi stays bounded, where the plant rests, what drifts, how long theta holds.
 
-use crate::analysis::{
-    Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict, rebase_residuals,
-};
+use crate::analysis::{Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict};
 use crate::cas::Symbol;
-use crate::cas::zero::decide;
 use crate::plant::{Class as PlantClass, Plant};
 use crate::source::listed;
 
-/// A remark: its name, its verdict where one was reached, and its lines.
+/// A remark: its name and its lines.
 pub(super) struct Remark {
     pub(super) name: &'static str,
-    pub(super) verdict: Option<&'static str>,
     pub(super) lines: Vec<String>,
 }
 
 /// The remarks on a plant with a proved cascade.
 pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
-    let mut remarks: Vec<Remark> = fundamental(plant, derivation);
-    let rest = Equilibrium::of(plant, derivation)
-        .map(|equilibrium| match equilibrium {
-            Equilibrium::At(point) => (Verdict::Proved, rest(plant, derivation.class, &point)),
-            Equilibrium::Nowhere(symbol) => {
-                (Verdict::Refuted, vec![format!("none: `{}` never rests", plant.arena.name(symbol))])
-            }
-            Equilibrium::Undecided(reason) => (Verdict::Undecided, vec![format!(": {reason}")]),
-        })
-        .map(|(verdict, lines)| Remark { name: "operating point", verdict: Some(super::name(verdict)), lines });
-    remarks.extend(rest);
-    remarks.extend(special(plant).map(|line| Remark { name: "values", verdict: None, lines: vec![line] }));
+    let remark = |name, lines| Remark { name, lines };
+    let rests = derivation.operating_point(plant).map(|equilibrium| match equilibrium {
+        Equilibrium::At(point) => rest(plant, derivation.class, point),
+        Equilibrium::Nowhere(symbol) => vec![format!("none: `{}` never rests", plant.arena.name(*symbol))],
+        Equilibrium::Undecided(reason) => vec![format!("none was found: {reason}")],
+    });
+    let mut remarks = fundamental(plant, derivation);
+    remarks.extend(rests.map(|lines| remark("operating point", lines)));
+    remarks.extend(special(plant).map(|line| remark("values", vec![line])));
     if derivation.outcome == Outcome::Accepted {
-        let drift = Drift::of(plant, derivation).filter(|drift| !drift.integrators.is_empty());
-        remarks.extend(drift.map(|drift| Remark {
-            name: "drift",
-            verdict: None,
-            lines: vec![grows(plant, &drift), format!("against it {}", remedy(plant, derivation))],
+        let drift = derivation.drift(plant);
+        remarks.extend(drift.map(|drift| {
+            remark("drift", vec![grows(plant, drift), format!("against it {}", remedy(plant, derivation))])
         }));
-        let jump =
-            "another constant after a jump of the state: then start anew, or let the estimator forget".to_owned();
-        remarks.push(Remark { name: "theta", verdict: None, lines: vec![jump] });
+        let jump = "another constant after a jump of the state: then start anew, or let the estimator forget";
+        remarks.push(remark("theta", vec![jump.to_owned()]));
     }
     remarks
 }
@@ -50,22 +40,23 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         return Vec::new();
     };
     let lines: &[&str] = match fundamental {
-        Fundamental::Bounded { fades: false } => &["no error of theta is amplified"],
-        Fundamental::Bounded { fades: true } => {
-            &["but theta is forgotten where Psi dies out: what the model misses later stays uncorrected there", RESTART]
-        }
-        Fundamental::Grows => &["Psi grows, and with it every error of theta, until a number overflows", RESTART],
-        Fundamental::NotShown => {
-            &[": if Psi grows, so does every error of theta; if it dies out, theta is forgotten", RESTART]
-        }
+        Fundamental::Bounded { fades: false } => &["bounded: no error of theta is amplified"],
+        Fundamental::Bounded { fades: true } => &[
+            "bounded, but theta is forgotten where Psi dies out: what the model misses later stays uncorrected there",
+            RESTART,
+        ],
+        Fundamental::Grows => &["grows, and with it every error of theta, until a number overflows", RESTART],
+        Fundamental::NotShown => &[
+            "not shown to be bounded: if it grows, so does every error of theta; if it dies out, theta is forgotten",
+            RESTART,
+        ],
     };
     let lines = lines.iter().map(|line| (*line).to_owned()).collect();
-    let mut remarks = vec![Remark { name: "Psi bounded", verdict: Some(super::boundedness(fundamental)), lines }];
+    let mut remarks = vec![Remark { name: "Psi", lines }];
     remarks.extend(cascade.mend.iter().map(|mend| {
         let phi: Vec<String> = mend.iter().map(|component| plant.arena.print(*component)).collect();
         Remark {
             name: "plain instead",
-            verdict: None,
             lines: vec![
                 format!("phi: [{}] has a plain cascade, z' = h(y, u), without Psi", phi.join(", ")),
                 "its extension is an open integrator: a constant bias of a sensor or input makes it drift".to_owned(),
@@ -125,12 +116,7 @@ fn grows(plant: &Plant, drift: &Drift) -> String {
 
 /// What the runtime has against drift.
 fn remedy(plant: &Plant, derivation: &Derivation) -> &'static str {
-    let domain = plant.domain();
-    let regression = derivation.regression.result.as_ref();
-    let rebase = regression
-        .and_then(|regression| rebase_residuals(plant, derivation.class, regression))
-        .is_some_and(|residuals| residuals.iter().all(|residual| decide(&plant.arena, *residual, &domain).is_zero()));
-    match (derivation.class, rebase) {
+    match (derivation.class, derivation.can_rebase(plant)) {
         (Class::Pebo, true) => "use `step_without_drift`, and an estimator that forgets",
         (Class::Gpebo, true) => "use `rebase`, and an estimator that forgets",
         (_, false) => "start anew before the extension loses its digits",

@@ -12,8 +12,13 @@ const INDENT: &str = "                            ";
 
 /// A few lines: the verdict on the model, then each claim with what was derived.
 pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
+    let conditions = match derivation.outcome {
+        Outcome::Accepted => super::conditions(&plant.arena, &derivation.conditions),
+        Outcome::Rejected | Outcome::Undecided => Vec::new(),
+    };
     let outcome = match derivation.outcome {
-        Outcome::Accepted => "accepted: every claim is proved",
+        Outcome::Accepted if conditions.is_empty() => "accepted: all four claims are proved",
+        Outcome::Accepted => "accepted: all four claims are proved where the conditions below hold",
         Outcome::Rejected => "rejected: a claim is refuted",
         Outcome::Undecided => "undecided: a claim could not be decided",
     };
@@ -27,29 +32,26 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
         let mut lines = vec![match r.kind {
             Excitation::Instant => format!("instant: {regressor} has full column rank"),
-            Excitation::Excitation => {
-                format!("with excitation: {regressor} has full column rank over time: keep the inputs moving")
-            }
+            Excitation::Excitation => format!("over time: {regressor} and its derivatives have full column rank"),
             Excitation::Never => "never: a direction of the unknowns stays unseen".to_owned(),
         }];
         if !r.singular_where.is_empty() {
             let places = listed(r.singular_where.iter().map(String::as_str));
-            let excluded = r.gram.as_ref().is_some_and(|gram| gram.positive.is_some());
-            lines.push(if excluded {
-                format!("but where {places}, which the assumptions exclude")
-            } else {
-                format!("except where {places}: do not stay there")
-            });
+            lines.push(format!("except where {places}: do not stay there"));
         }
+        if r.kind == Excitation::Instant && !r.everywhere_else {
+            lines.push("at almost every point: not all places were found where it may not".to_owned());
+        }
+        lines.extend(r.motion.iter().flat_map(|motion| motion.lines(plant)));
         lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
         lines
     });
-    for remark in super::remarks::of(plant, derivation) {
-        block(&mut text, remark.name, remark.verdict.unwrap_or_default(), &remark.lines);
+    if !conditions.is_empty() {
+        block(&mut text, "conditions", "", &conditions);
     }
-    let conditions = super::conditions(&plant.arena, &derivation.conditions);
-    if !conditions.is_empty() && derivation.outcome == Outcome::Accepted {
-        text.extend(["  where ", &conditions.join(", "), "\n"]);
+    // No verdict stands beside what is no claim.
+    for remark in super::remarks::of(plant, derivation) {
+        block(&mut text, remark.name, "", &remark.lines);
     }
     text
 }

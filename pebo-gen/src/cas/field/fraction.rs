@@ -217,6 +217,22 @@ impl Field<'_> {
         }
     }
 
+    /// Whether two polynomials may vanish together on more than what others leave of a surface: not, if their
+    /// multiples that are free of roots have no factor in common.
+    pub fn may_vanish_together(&self, a: &Poly, b: &Poly) -> Result<bool, Obstacle> {
+        let (a, b) = (self.cleared(a)?, self.cleared(b)?);
+        let kernels = self.kernels.borrow();
+        let algebraic = |poly: &Poly| poly.variables().iter().any(|v| kernels[*v as usize].relation.is_some());
+        // Of roots that were not cleared, a relation may hide what is common.
+        let hidden = !a.is_constant() && !b.is_constant() && (algebraic(&a) || algebraic(&b));
+        Ok(hidden || !a.gcd(&b, self.work())?.is_constant())
+    }
+
+    /// The denominator of the inverse: it vanishes wherever the polynomial does.
+    fn cleared(&self, poly: &Poly) -> Result<Poly, Obstacle> {
+        Ok(self.fraction_of(&Poly::one(), poly)?.den)
+    }
+
     /// What clears the last quadratic kernel from a denominator.
     fn conjugate(&self, den: &Poly) -> Result<Option<Poly>, Obstacle> {
         let kernels = self.kernels.borrow();

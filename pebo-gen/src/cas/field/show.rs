@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::cas::expr::Expr;
 use crate::cas::integer::Integer;
-use crate::cas::poly::{Monomial, Poly};
+use crate::cas::poly::{Monomial, Poly, TooLarge};
 use crate::cas::rational::Rational;
 
 use super::Field;
@@ -28,6 +28,26 @@ impl Field<'_> {
         let mut factors = powers(&num, 1);
         factors.extend(powers(&den, -1));
         self.arena.multiply(&coefficient, factors)
+    }
+
+    /// The fraction as a product of the factors that are found: `(1 - a)*(1 - b)` rather than its terms.
+    pub fn show_factored(&self, fraction: &Fraction) -> Expr {
+        let product = || -> Result<Expr, TooLarge> {
+            let mut coefficient = Rational::ONE;
+            let mut powers = Vec::new();
+            for (poly, exponent) in [(&fraction.num, 1), (&fraction.den, -1)] {
+                let parts = poly.factored(self.limit())?;
+                let content = Rational::from(parts.content);
+                coefficient = if exponent > 0 { content } else { coefficient.checked_div(&content).ok_or(TooLarge)? };
+                for (factor, times) in &parts.factors {
+                    let times = Rational::from(exponent * i64::from(*times));
+                    let shown = self.factors(factor, 1);
+                    powers.extend(shown.into_iter().map(|(base, power)| (base, &power * &times)));
+                }
+            }
+            Ok(self.arena.multiply(&coefficient, powers))
+        };
+        product().unwrap_or_else(|_| self.show(fraction))
     }
 
     /// A polynomial as an expression.

@@ -23,6 +23,7 @@ mod boxed;
 mod divide;
 mod division;
 mod evaluate;
+mod factors;
 mod field;
 mod gcd;
 mod hashed;

@@ -296,6 +296,53 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Factors multiply to the polynomial, and are found however they share their variables.
+    #[test]
+    fn factors_for_a_reader(a in poly(3, 2), b in poly(3, 2), c in poly(3, 1)) {
+        let product = mul(&a, &mul(&b, &mul(&b, &c)));
+        let parts = product.factored(&work()).expect("small");
+        let mut again = Poly::constant(parts.content.clone());
+        for (index, (factor, exponent)) in parts.factors.iter().enumerate() {
+            prop_assert!(!factor.is_constant());
+            prop_assert_eq!(factor, &factor.primitive().1);
+            again = mul(&again, &factor.pow(*exponent, &work()).expect("small"));
+            for (other, _) in &parts.factors[..index] {
+                prop_assert!(gcd(factor, other).is_one());
+            }
+        }
+        prop_assert_eq!(again, product);
+    }
+}
+
+#[test]
+fn factors_that_are_linear_in_a_variable_are_found() {
+    let [a, b, c, d] = [0, 1, 2, 3].map(Poly::variable);
+    let one = Poly::one();
+    let product = |factors: &[Poly]| factors.iter().fold(Poly::one(), |product, factor| mul(&product, factor));
+    let vandermonde: Vec<Poly> =
+        [(&a, &b), (&a, &c), (&a, &d), (&b, &c), (&b, &d), (&c, &d)].map(|(v, w)| &*v - w).to_vec();
+    for factors in [
+        vec![&one - &a, &one - &b],
+        vec![&a - &b, &a + &b],
+        vec![&mul(&a, &b) - &c, &mul(&a, &c) + &b, &a - &one],
+        vandermonde,
+        // Irreducible, of degree two in each variable.
+        vec![&(&mul(&a, &a) + &mul(&b, &b)) + &one, &a - &one],
+        vec![&a.scale(&Integer::from(3)) - &b, &a.scale(&Integer::from(7)) + &c, &(&a + &b) + &c],
+    ] {
+        let found = product(&factors).factored(&work()).expect("small");
+        let mut shown: Vec<String> = found.factors.iter().map(|(factor, _)| factor.to_string()).collect();
+        let mut expected: Vec<String> = factors.iter().map(|factor| factor.primitive().1.to_string()).collect();
+        shown.sort();
+        expected.sort();
+        assert_eq!(shown, expected);
+        assert!(found.factors.iter().all(|(_, exponent)| *exponent == 1));
+    }
+}
+
 /// The sum of the products of all variables but one: its leading coefficient in any variable is of
 /// the same kind, one variable less.
 fn all_but_one(count: u32) -> Poly {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::analysis::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
-    RegressionKind, Verdict,
+    RegressionKind, Remarks, Verdict,
 };
 use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
@@ -170,12 +170,15 @@ impl Sketch {
             }),
             identifiability: proved(Identifiability {
                 kind: Excitation::Instant,
+                motion: None,
                 gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
+                everywhere_else: true,
                 constants: Vec::new(),
                 direction: None,
             }),
             diagnostics: Vec::new(),
+            remarks: Remarks::default(),
         };
         let plant = Plant {
             class: None,

@@ -1,0 +1,346 @@
+//! What has to move for unknowns to be seen that one moment does not show, and on which motions they stay hidden.
+//!
+//! In: a regression whose rows are of full rank over time on almost every motion. Out: whether they are with all
+//! inputs constant, and at rest; and motions, simple enough to be met with, on which they are not: inputs that are
+//! constant, that are equal, or at a value at which an entry vanishes.
+//!
+//! On each of them the same question is asked as of all motions: the rank of the rows with their derivatives. Full, it was
+//! seen at a point; less, exact algebra gives the directions that no derivative shows. What could not be decided is not
+//! said, nor is it said that there are no others.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::cas::domain::Domain;
+use crate::cas::field::{Field, Obstacle};
+use crate::cas::poly::Poly;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::Plant;
+
+use super::design::{Blind, Cascade, Motion, Place, Regression};
+use super::equilibrium::restricted;
+use super::identifiability::{Flow, effective, null_vectors, rank_seen, without_psi};
+use super::singular::Volume;
+
+/// Parts of the rows with their derivatives, and inputs, up to which motions are tried one by one.
+const MOST_PARTS: usize = 600;
+const MOST_INPUTS: usize = 6;
+
+/// Values of inputs that are tried.
+const MOST_VALUES: usize = 8;
+
+/// Parts of the rows up to which their determinant is worked out.
+const MOST_OF_DETERMINANT: usize = 150;
+
+/// A question about motions of a plant.
+struct Question<'a> {
+    plant: &'a Plant,
+    domain: &'a Domain,
+    cascade: &'a Cascade,
+    regression: &'a Regression,
+    unknowns: usize,
+}
+
+/// What is asked of a motion at all times.
+#[derive(Default)]
+struct Restriction {
+    /// Signals that do not move.
+    held: BTreeSet<Symbol>,
+    /// Inputs as functions of others.
+    equal: BTreeMap<Symbol, Expr>,
+}
+
+/// What the rows with their derivatives show on a motion.
+struct Shown {
+    /// Rows that show as much as all derivatives do.
+    stack: Vec<Vec<Expr>>,
+    /// Directions that they do not show.
+    hidden: Vec<Vec<Expr>>,
+}
+
+/// What has to move, and combinations of the parameters that must not vanish for the rank to be full.
+pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: &Regression) -> (Motion, Vec<Expr>) {
+    let arena = &plant.arena;
+    let question = Question { plant, domain, cascade, regression, unknowns: regression.eta.len() };
+    let inputs: BTreeSet<Symbol> = plant.u.iter().copied().collect();
+    let held = question.shown(&Restriction { held: inputs.clone(), ..Restriction::default() });
+    let by_itself = held.as_ref().ok().map(|shown| shown.hidden.is_empty()).or(inputs.is_empty().then_some(true));
+    // Where all signals rest, so does z, and with it what a plain extension integrates.
+    let outputs = plant.y.iter().map(|output| output.symbol);
+    let extension = plant.chi.iter().copied().filter(|_| cascade.lambda.is_none());
+    let still = inputs.iter().copied().chain(outputs).chain(extension).collect();
+    let rest = question.shown(&Restriction { held: still, ..Restriction::default() });
+    let at_rest = by_itself == Some(true) && rest.as_ref().is_ok_and(|shown| shown.hidden.is_empty());
+    let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
+    let mut blind = Vec::new();
+    let mut note = |place: Place, shown: &Result<Shown, Obstacle>| {
+        let hidden = shown.as_ref().map_or(&[][..], |shown| shown.hidden.as_slice());
+        if !hidden.is_empty() {
+            blind.push(Blind { place, seen: seen(arena, symbols, hidden), hidden: hidden.to_vec() });
+        }
+    };
+    match by_itself {
+        Some(true) => note(Place::Rest, &rest),
+        Some(false) | None => note(Place::Constant(plant.u.clone()), &held),
+    }
+    let constants = match [&rest, &held].into_iter().flatten().find(|shown| shown.hidden.is_empty()) {
+        Some(shown) if arena.postorder(&shown.stack.concat()).len() <= MOST_OF_DETERMINANT => {
+            question.constants(&shown.stack)
+        }
+        _ => Vec::new(),
+    };
+    let parts = held.as_ref().map_or(usize::MAX, |shown| arena.postorder(&shown.stack.concat()).len());
+    if parts <= MOST_PARTS && plant.u.len() <= MOST_INPUTS {
+        let stack = held.as_ref().map_or(&[][..], |shown| shown.stack.as_slice());
+        for (place, restriction) in question.candidates(by_itself == Some(true), stack) {
+            note(place, &question.shown(&restriction));
+        }
+    }
+    (Motion { by_itself, at_rest, blind }, constants)
+}
+
+impl Question<'_> {
+    /// What the rows with their derivatives show on the motions that a restriction leaves.
+    fn shown(&self, restriction: &Restriction) -> Result<Shown, Obstacle> {
+        let &Self { plant, domain, cascade, regression, unknowns } = self;
+        let arena = &plant.arena;
+        let domain = if restriction.equal.is_empty() {
+            domain.clone()
+        } else {
+            restricted(arena, domain, &restriction.equal).ok_or(Obstacle::NoPoint)?
+        };
+        let mut flow = Flow::along(plant, cascade, &restriction.held, &restriction.equal);
+        let there = |rows: &[Vec<Expr>]| -> Vec<Vec<Expr>> {
+            rows.iter().map(|row| arena.substitute_all(row, &restriction.equal)).collect()
+        };
+        let (phi_1, primitive_1) = (there(&regression.phi_1), there(&regression.primitive_1));
+        let mut latest = effective(arena, &flow, &phi_1, &primitive_1);
+        let mut stack = without_psi(plant, &latest);
+        let mut rank = rank_seen(arena, &domain, &stack, unknowns);
+        let mut hidden = None;
+        for _ in 1..unknowns {
+            if rank == unknowns {
+                break;
+            }
+            let before = stack.clone();
+            latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
+            stack.extend(without_psi(plant, &latest));
+            let next = rank_seen(arena, &domain, &stack, unknowns);
+            if next == rank {
+                if arena.postorder(&stack.concat()).len() > MOST_PARTS {
+                    return Err(Obstacle::TooLarge);
+                }
+                // No derivative adds to a rank that one derivative did not raise: by exact algebra, both times.
+                let vectors = null_vectors(arena, &domain, &stack, unknowns)?;
+                if vectors.len() == null_vectors(arena, &domain, &before, unknowns)?.len() {
+                    hidden = Some(vectors);
+                    break;
+                }
+            }
+            rank = next;
+            flow.advance(plant);
+        }
+        let hidden = match hidden {
+            Some(hidden) => hidden,
+            None if rank == unknowns => Vec::new(),
+            // As many derivatives as there are unknowns show all that any do.
+            None if arena.postorder(&stack.concat()).len() > MOST_PARTS => return Err(Obstacle::TooLarge),
+            None => null_vectors(arena, &domain, &stack, unknowns)?,
+        };
+        if hidden.is_empty() && rank < unknowns {
+            return Err(Obstacle::NoWitness);
+        }
+        Ok(Shown { stack, hidden })
+    }
+
+    /// Motions that are worth a look.
+    fn candidates(&self, by_itself: bool, stack: &[Vec<Expr>]) -> Vec<(Place, Restriction)> {
+        let inputs = &self.plant.u;
+        let arena = &self.plant.arena;
+        let mut found = Vec::new();
+        if !by_itself && inputs.len() > 1 {
+            for (index, &one) in inputs.iter().enumerate() {
+                let held = BTreeSet::from([one]);
+                found.push((Place::Constant(vec![one]), Restriction { held, ..Restriction::default() }));
+                for &other in &inputs[index + 1..] {
+                    let equal = BTreeMap::from([(other, arena.of_symbol(one))]);
+                    found.push((
+                        Place::Value(one, arena.of_symbol(other)),
+                        Restriction { equal, ..Restriction::default() },
+                    ));
+                }
+            }
+        }
+        for (input, value) in self.values(stack).unwrap_or_default().into_iter().take(MOST_VALUES) {
+            let equal = BTreeMap::from([(input, value)]);
+            found.push((Place::Value(input, value), Restriction { equal, ..Restriction::default() }));
+        }
+        found
+    }
+
+    /// Values of inputs at which an entry vanishes.
+    fn values(&self, stack: &[Vec<Expr>]) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
+        let arena = &self.plant.arena;
+        let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
+        let entries: Vec<Expr> = stack.concat();
+        let field = Field::over(arena, &self.domain.facts, &entries)?;
+        let mut found = Vec::new();
+        for entry in entries {
+            for (factor, _) in field.fraction(entry)?.numerator().factored(field.limit())?.factors {
+                for &variable in factor.variables().iter().filter(|v| factor.degree(**v) == 1) {
+                    let Some(input) = arena.as_symbol(field.kernel(variable)) else { continue };
+                    let coefficients = factor.coefficients_in(variable);
+                    let (slope, rest) = match coefficients.as_slice() {
+                        [(_, slope), (_, rest)] => (slope.clone(), rest.clone()),
+                        [(_, slope)] => (slope.clone(), Poly::zero()),
+                        _ => continue,
+                    };
+                    let value = field.show(&field.quotient(&-&rest, &slope)?);
+                    let plain = arena.symbols_of(&[value]).is_subset(&constants);
+                    if plain && self.plant.u.contains(&input) && !found.contains(&(input, value)) {
+                        found.push((input, value));
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Combinations of the parameters at which rows that have full rank on some motions lose it on all.
+    fn constants(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
+        let arena = &self.plant.arena;
+        let volume = Volume::of(arena, self.domain, stack);
+        let places = volume.and_then(|volume| volume.places(self.plant, self.domain)).unwrap_or_default();
+        // Not where other motions show them all the same.
+        let lost = |formula: &Expr| {
+            let solved = arena.symbols_of(&[*formula]).into_iter().find_map(|parameter| {
+                let slope = arena.derivative(*formula, parameter);
+                let rest = arena.substitute(*formula, &BTreeMap::from([(parameter, arena.zero())]));
+                let linear = !arena.depends_on(slope, &BTreeSet::from([parameter]));
+                (linear && !arena.is_zero(slope)).then(|| (parameter, arena.neg(arena.div(rest, slope))))
+            });
+            let there = solved.map(|solved| Restriction { equal: BTreeMap::from([solved]), ..Restriction::default() });
+            there.is_none_or(|there| self.shown(&there).map_or(true, |shown| !shown.hidden.is_empty()))
+        };
+        places.constants.into_iter().filter(lost).collect()
+    }
+}
+
+/// What is seen of the unknowns where these directions are not: combinations that do not change along them. Each direction
+/// has a component that is one, and zero in the others.
+fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+    let own = |index: usize| {
+        (0..symbols.len()).find(|&column| {
+            let entry = |(other, vector): (usize, &Vec<Expr>)| {
+                vector[column] == if other == index { arena.one() } else { arena.zero() }
+            };
+            hidden.iter().enumerate().all(entry)
+        })
+    };
+    let free: Vec<Option<usize>> = (0..hidden.len()).map(own).collect();
+    let combination = |column: usize| {
+        let moved = hidden.iter().zip(&free).filter_map(|(vector, free)| {
+            Some(arena.neg(arena.mul(vector[column], arena.of_symbol(symbols[(*free)?]))))
+        });
+        arena.sum(moved.chain([arena.of_symbol(symbols[column])]))
+    };
+    (0..symbols.len()).filter(|column| !free.contains(&Some(*column))).map(combination).collect()
+}
+
+impl Motion {
+    /// What has to move, in a line, and where the regression is blind, in a line each.
+    pub fn lines(&self, plant: &Plant) -> Vec<String> {
+        let first = match (self.by_itself, self.at_rest) {
+            (Some(true), true) => "by itself, even at rest",
+            (Some(true), false) => "by itself, while the plant moves: no input has to",
+            (Some(false), _) => "with excitation: keep the inputs moving",
+            (None, _) => "on almost every motion: whether inputs have to move was not decided",
+        };
+        let blind = self.blind.iter().map(|blind| blind.line(plant));
+        std::iter::once(first.to_owned()).chain(blind).collect()
+    }
+}
+
+impl Blind {
+    /// The motion.
+    pub fn place(&self, plant: &Plant) -> String {
+        self.worded(plant).replace('`', "")
+    }
+
+    /// The motion, with formulas as code.
+    fn worded(&self, plant: &Plant) -> String {
+        let arena = &plant.arena;
+        match &self.place {
+            Place::Rest => "the plant rests".to_owned(),
+            Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.u.len() => {
+                "all inputs are constant".to_owned()
+            }
+            Place::Constant(inputs) => {
+                let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", arena.name(*input))).collect();
+                format!("{} is constant", names.join(", "))
+            }
+            Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+        }
+    }
+
+    fn line(&self, plant: &Plant) -> String {
+        let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("no more than {}", seen.join(", ")) };
+        format!("while {}, {seen} is seen", self.worded(plant))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::{Derivation, Outcome};
+    use crate::model::Model;
+    use crate::plant::Plant;
+    use crate::source::Source;
+
+    /// What is said of a plant's motions, and the conditions on its parameters.
+    fn of(lines: &str) -> Vec<String> {
+        let text = format!("model: m\n{lines}\n");
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let derivation = Derivation::derive(&plant);
+        assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}");
+        let result = derivation.identifiability.result.as_ref().expect("proved");
+        let mut lines = result.motion.as_ref().expect("over time").lines(&plant);
+        lines.extend(result.constants.iter().map(|e| format!("{} != 0", plant.arena.print(*e))));
+        lines
+    }
+
+    #[test]
+    fn inputs_that_are_equal_or_constant_may_hide_unknowns() {
+        let phases = "parameters: [r]\nx: [a, b]\ny: [v]\nu: [d, e]\nf_x: {a: -r*a - d*v, b: -r*b - e*v}\n\
+                      f_y: {v: d*a + e*b}\nphi: [a, b]\nassume: [r > 0";
+        let anywhere = format!("{phases}]");
+        let expected = [
+            "with excitation: keep the inputs moving",
+            "while all inputs are constant, no more than `z1 + e*z2/d` is seen",
+            "while `d = e`, no more than `z1 + z2` is seen",
+            "while `d = 0`, no more than `z2` is seen",
+            "while `e = 0`, no more than `z1` is seen",
+        ];
+        assert_eq!(of(&anywhere), expected);
+        // Assumptions exclude the rest.
+        assert_eq!(of(&format!("{phases}, d > 0, e > d]")), expected[..2]);
+    }
+
+    #[test]
+    fn different_time_constants_tell_unknowns_apart() {
+        let cells = "parameters: [r, s]\nassume: [r > 0, s > 0]\nx: [a, b]\ny: [v]\nu: [i]\n\
+                     f_x: {a: i - r*a, b: i - s*b}\nf_y: {v: a + b}\nphi: [a, b]";
+        assert_eq!(of(cells), ["by itself, even at rest", "r - s != 0"]);
+    }
+
+    #[test]
+    fn a_plant_that_moves_may_need_no_input() {
+        let square = "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]";
+        let lines = of(square);
+        assert_eq!(lines[0], "by itself, while the plant moves: no input has to");
+        assert!(lines[1].starts_with("while the plant rests, no more than `"), "{lines:?}");
+        assert!(lines[2].starts_with("while `u = 0`, no more than `"), "{lines:?}");
+        assert_eq!(lines.len(), 3);
+        let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
+        assert_eq!(of(frame), ["by itself, even at rest", "while `w = 0`, no more than `z1` is seen"]);
+    }
+}

@@ -1,0 +1,46 @@
+//! What is worth knowing in use and no claim rests on: where the plant rests, what drifts, whether the extension can be
+//! started anew in motion.
+//!
+//! Worked out once, when it is first asked for: what does not print it, as the macro, does not pay for it.
+
+use std::cell::OnceCell;
+
+use crate::cas::zero::decide;
+use crate::plant::Plant;
+
+use super::design::Derivation;
+use super::drift::{Drift, rebase_residuals};
+use super::equilibrium::Equilibrium;
+
+/// What has been asked for so far.
+#[derive(Debug, Default)]
+pub(crate) struct Remarks {
+    operating_point: OnceCell<Option<Equilibrium>>,
+    drift: OnceCell<Option<Drift>>,
+    rebase: OnceCell<bool>,
+}
+
+impl Derivation {
+    /// Where the plant, which must be the one that this was derived of, rests; none without a proved cascade.
+    pub fn operating_point(&self, plant: &Plant) -> Option<&Equilibrium> {
+        self.remarks.operating_point.get_or_init(|| Equilibrium::of(plant, self)).as_ref()
+    }
+
+    /// The components of the extension that a constant bias makes run away; none without a proved cascade, or where
+    /// there is no such component.
+    pub fn drift(&self, plant: &Plant) -> Option<&Drift> {
+        let found = || Drift::of(plant, self).filter(|drift| !drift.integrators.is_empty());
+        self.remarks.drift.get_or_init(found).as_ref()
+    }
+
+    /// Whether a constant may be moved from theta to the extension in motion (`Rebase` of the runtime): proved.
+    pub fn can_rebase(&self, plant: &Plant) -> bool {
+        *self.remarks.rebase.get_or_init(|| {
+            let domain = plant.domain();
+            let regression = self.regression.result.as_ref();
+            regression
+                .and_then(|regression| rebase_residuals(plant, self.class, regression))
+                .is_some_and(|residuals| residuals.iter().all(|e| decide(&plant.arena, *e, &domain).is_zero()))
+        })
+    }
+}
