@@ -121,6 +121,22 @@ const TABLE: &[(&str, &str, Answer)] = &[
         "x: [x]\ny: [y]\nu: [u]\ndefine: {a: 2*b, b: y^2}\nf_x: {x: u + a}\nf_y: {y: x}\nphi: [x]",
         Accepted("dynamic linear instant"),
     ),
+    // An output that is given by its value: a static regression, and its rate where no input moves it.
+    (
+        "a value",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\ng_y: {y: 2*x + 1}\nphi: [x]",
+        Accepted("static over-parameterised instant"),
+    ),
+    (
+        "a value that an input moves",
+        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\ng_y: {y: 2*x - 3*u}\nphi: [x]",
+        Accepted("static over-parameterised instant"),
+    ),
+    (
+        "the rate of a value in the transform",
+        "x: [x]\ny: [y, v]\nu: [u]\nf_x: {x: u + 2*v*x}\nf_y: {v: x}\ng_y: {y: v^2}\nphi: [x - y]",
+        Accepted("dynamic linear instant"),
+    ),
     // Transforms and their inverses.
     (
         "coupled",

@@ -24,8 +24,9 @@ impl Functions<'_> {
         let bodies = [self.h(), self.phi_0(), self.phi_1(), self.phi_left()];
         let added = names.into_iter().zip(bodies).filter(|(name, _)| self.function(name).is_none());
         let added: Vec<(&str, TokenStream)> = added.filter_map(|(name, body)| Some((name, body?))).collect();
-        let own =
-            ["f_x", "f_y", "phi", "phi_left", "identities"].into_iter().filter(|name| self.function(name).is_some());
+        let own = ["f_x", "f_y", "g_y", "phi", "phi_left", "identities"]
+            .into_iter()
+            .filter(|name| self.function(name).is_some());
         let used = own.chain(added.iter().map(|(name, _)| *name)).map(|name| format_ident!("{name}"));
         let added = added.iter().map(|(_, body)| body);
         quote! {

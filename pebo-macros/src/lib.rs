@@ -18,7 +18,7 @@ use syn::{Error, Item, LitStr};
 ///
 /// On a module of plain Rust, the module is the model. `X`, `Y`, `U` and `W` are structs whose fields are the
 /// unmeasured states, the measured outputs, the inputs, and unmeasured signals that are not estimated; `f_x` and `f_y`
-/// are their rates, `phi` is the candidate transform, and constants are the parameters. `phi_left` and `identities`
+/// are their rates, `phi` is the candidate transform, and constants are the parameters. `g_y`, `phi_left` and `identities`
 /// may be given likewise. All of them stay as they are, and can be called; the module gets besides them
 ///
 /// - the module `observer`, which `pebo-gen` would emit for the model, and its items: the model's type, named like

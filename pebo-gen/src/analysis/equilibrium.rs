@@ -54,7 +54,7 @@ impl Equilibrium {
 
 fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibrium, Obstacle> {
     let arena = &plant.arena;
-    if let Some(output) = plant.y.iter().find(|output| output.rate.is_none()) {
+    if let Some(output) = plant.y.iter().find(|output| output.rate.is_none() && output.value.is_none()) {
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
     let rates = plant.rates();

@@ -100,6 +100,9 @@ mod tests {
     use crate::model::Model;
     use crate::source::Source;
 
+    /// Puts an expression into one of the formulas.
+    type Set = fn(&mut Regression, Expr);
+
     const PLANT: &str = "model: m\nparameters: {k: 2}\nx: [x]\ny: [y]\nu: [u]\nw: [w]\nf_x: {x: u}\n\
         f_y: {y: k*x}\nphi: [x]\nangles: {x: 2*pi}\n";
 
@@ -151,7 +154,7 @@ mod tests {
         };
         check("phi_left", &[z, y, k], &|e| inverse(&|l| l.x[0].1 = e));
         check("a", &[k], &|e| inverse(&|l| l.modulo[0].1 = e));
-        let entries: [(&str, fn(&mut Regression, Expr), &[Expr], &[Expr]); 4] = [
+        let entries: [(&str, Set, &[Expr], &[Expr]); 4] = [
             ("phi_0", |r, e| r.phi_0[0] = e, &[chi, y, u, k], &[xi, psi, y, u, k]),
             ("phi_1", |r, e| r.phi_1[0][0] = e, &[chi, y, u, k], &[xi, psi, y, u, k]),
             ("primitive_0", |r, e| r.primitive_0 = vec![e], &[chi, y, k], &[xi, psi, y, k]),

@@ -58,7 +58,11 @@ fn equations(plant: &Plant) -> Vec<String> {
     let rates = states
         .chain(outputs)
         .filter_map(|(symbol, rate)| Some(format!("{}' = {}", arena.name(symbol), arena.print(rate?))));
-    lines.extend(text(rates.collect()));
+    let values = plant
+        .y
+        .iter()
+        .filter_map(|output| Some(format!("{} = {}", arena.name(output.symbol), arena.print(output.value?.expr))));
+    lines.extend(text(rates.chain(values).collect()));
     lines
 }
 

@@ -20,7 +20,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() };
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
-    circles(&model.define).into_iter().for_each(|circle| pass.diagnostics.push(circle));
+    pass.circles(&model.define);
     let x = Group::new(&model.x, "a state of x");
     let y = Group::new(&model.y, "an output of y");
     let both = Group::new(model.x.iter().chain(&model.y), "a state of x or y");
@@ -28,6 +28,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.complete(&model.f_x, &model.x, "f_x");
         pass.belong(&model.f_x, &x, "f_x");
         pass.belong(&model.f_y, &y, "f_y");
+        pass.belong(&model.g_y, &y, "g_y");
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
         if let Some(simulation) = &model.simulation {
@@ -93,6 +94,13 @@ impl Pass<'_> {
         scope
     }
 
+    /// No definition needs itself.
+    fn circles(&mut self, definitions: &[Entry<Formula>]) {
+        for circle in circles(definitions) {
+            self.diagnostics.push(circle);
+        }
+    }
+
     /// Every name has an entry.
     fn complete(&mut self, entries: &[Entry<Formula>], names: &[Spanned<String>], section: &str) {
         // Without any entry the section itself has been reported.
@@ -124,7 +132,7 @@ impl Pass<'_> {
         let signals = signals.filter(|name| w.iter().all(|known| known.value != name.value));
         let define = simulation.define.iter().map(|entry| &entry.name);
         let own = self.declare(signals.chain(define), &[model]);
-        circles(&simulation.define).into_iter().for_each(|circle| self.diagnostics.push(circle));
+        self.circles(&simulation.define);
         for signal in &simulation.signals {
             for pair in signal.value.windows(2) {
                 let [before, after] = pair else { continue };

@@ -9,6 +9,9 @@ use super::formula::Formula;
 use super::written::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, listed, quoted};
 
+/// More places of a circle than these make its diagnostic unreadable.
+const MOST_PLACES: usize = 8;
+
 /// An order in which each definition stands after those it uses, and the circles that have none.
 ///
 /// Definitions that do not depend on one another keep their order.
@@ -79,10 +82,11 @@ pub(super) fn sorted(definitions: Vec<Entry<Formula>>) -> Vec<Entry<Formula>> {
 /// A diagnostic for each circle of definitions.
 pub(super) fn circles(definitions: &[Entry<Formula>]) -> Vec<Diagnostic> {
     let order = Order::of(definitions);
-    order.circles.iter().map(|circle| refusal(circle.iter().map(|place| &definitions[*place].name).collect())).collect()
+    let names = |circle: &Vec<usize>| circle.iter().map(|place| &definitions[*place].name).collect::<Vec<_>>();
+    order.circles.iter().map(|circle| refusal(&names(circle))).collect()
 }
 
-fn refusal(circle: Vec<&Spanned<String>>) -> Diagnostic {
+fn refusal(circle: &[&Spanned<String>]) -> Diagnostic {
     let name = |at: usize| quoted(&circle[at % circle.len()].value);
     let message = match circle.len() {
         1 => format!("{} is defined by itself", name(0)),
@@ -90,8 +94,6 @@ fn refusal(circle: Vec<&Spanned<String>>) -> Diagnostic {
     };
     let uses = |at: usize| format!("uses {}", name(at + 1));
     let diagnostic = Diagnostic::error(Code::CircularDefinition, circle[0].span, message).label(uses(0));
-    /// More places than these make the message unreadable.
-    const MOST_PLACES: usize = 8;
     let others = circle.iter().enumerate().skip(1).take(MOST_PLACES);
     let diagnostic = others.fold(diagnostic, |diagnostic, (at, name)| diagnostic.also(name.span, uses(at)));
     diagnostic.help("define one of them by declared quantities, or declare it as a parameter or state")

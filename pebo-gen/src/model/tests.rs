@@ -27,6 +27,7 @@ w: [omega]
 class: gpebo
 define: {p: v2*i1}
 phi_left: {i3: z2}
+g_y: {v4: i1 + d}
 identities: [i1 - i1]
 angles: {i1: 2*pi}
 observer: {estimator: gradient, gain: 1e7, bounds: {lower: -1, upper: [2, 3]}, filter: 500, hold: first-order, extension: [0, 1]}
@@ -117,7 +118,7 @@ fn every_name_and_formula_has_its_place() {
     for name in model.names() {
         assert_eq!(source.slice(name.span), name.value);
     }
-    let rates = model.f_x.iter().chain(&model.f_y).chain(&model.define);
+    let rates = model.f_x.iter().chain(&model.f_y).chain(&model.g_y).chain(&model.define);
     for (name, span) in rates.flat_map(|entry| entry.value.names()) {
         assert_eq!(source.slice(span), name);
     }

@@ -65,6 +65,8 @@ pub struct Model {
     pub f_x: Vec<Entry<Formula>>,
     /// Rates of y, in the order of `y`; those that nothing needs may be absent.
     pub f_y: Vec<Entry<Formula>>,
+    /// Values of outputs that are functions of the other signals, in the order of `y`.
+    pub g_y: Vec<Entry<Formula>>,
     /// The transform, component by component.
     pub phi: Vec<Formula>,
     /// The left inverse, in the order of `x`: of all, of some (a partial observer) or of none (to
@@ -180,7 +182,7 @@ impl CascadeClass {
 }
 
 impl Model {
-    /// The model with the entries of `f_x`, `f_y` and `phi_left` in the order of their states, and definitions
+    /// The model with the entries of `f_x`, `f_y`, `g_y` and `phi_left` in the order of their states, and definitions
     /// after those that they use.
     #[must_use]
     pub(super) fn ordered(mut self) -> Self {
@@ -189,6 +191,7 @@ impl Model {
         };
         order(&mut self.f_x, &self.x);
         order(&mut self.f_y, &self.y);
+        order(&mut self.g_y, &self.y);
         order(&mut self.phi_left, &self.x);
         self.define = sorted(self.define);
         if let Some(simulation) = &mut self.simulation {

@@ -13,13 +13,14 @@ mod conditions;
 mod contradiction;
 mod formula;
 pub mod matrix;
-#[allow(clippy::module_inception)]
 mod own;
 mod period;
+#[allow(clippy::module_inception)]
 mod plant;
 mod resolve;
 mod scope;
 mod terms;
+mod values;
 
 pub use class::{Class, Proposal};
 pub use formula::lower;

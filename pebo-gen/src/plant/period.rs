@@ -42,8 +42,8 @@ mod tests {
 
     fn resolved(parameters: &str, assume: &str, period: &str) -> Result<Plant, Vec<Diagnostic>> {
         let text = format!(
-            "model: m\nparameters: {{{parameters}}}\nassume: [{assume}]\nx: [q]\ny: [a]\nf_x: {{q: a}}\n\
-             f_y: {{a: sin(q)}}\nphi: [q]\nangles: {{q: {period}}}\n"
+            "model: m\nparameters: {{{parameters}}}\nassume: [{assume}]\nx: [q]\ny: [s]\nf_x: {{q: s}}\n\
+             f_y: {{s: sin(q)}}\nphi: [q]\nangles: {{q: {period}}}\n"
         );
         Plant::resolve(&Model::parse(&Source::new("m", text.as_str()).unwrap()).unwrap())
     }

@@ -42,7 +42,7 @@ pub struct Plant {
     pub phi: Vec<Formula>,
     /// The left inverse as the author gave it: states with formulas in z and y.
     pub phi_left: Option<Vec<(Symbol, Formula)>>,
-    /// Expressions in x and y that are zero by physics.
+    /// Expressions that are zero by physics; of an output that is given by its value, the difference of the two.
     pub identities: Vec<Formula>,
     /// States that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,
@@ -58,7 +58,7 @@ pub struct Plant {
     pub chi: Vec<Symbol>,
     /// The states xi1.. of the extension of a generalised cascade.
     pub xi: Vec<Symbol>,
-    /// The entries Psi11.. of its fundamental matrix, by rows; Psi1_1.. where there are more than nine.
+    /// The entries Psi11.. of its fundamental matrix, by rows; `Psi1_1`.. where there are more than nine.
     pub psi: Vec<Vec<Symbol>>,
     /// The unknown constants theta1..
     pub theta: Vec<Symbol>,
@@ -91,8 +91,11 @@ pub struct State {
 pub struct Output {
     /// Its symbol.
     pub symbol: Symbol,
-    /// Its time derivative `f_y`, unless nothing needs it.
+    /// Its time derivative: `f_y`, or that of its value along the plant; absent where nothing needs it, or where an
+    /// input moves its value.
     pub rate: Option<Formula>,
+    /// Its value `g_y` in the other signals, where it is given by that.
+    pub value: Option<Formula>,
     /// Where it is declared.
     pub span: Span,
 }

@@ -17,7 +17,7 @@ use super::formula::{exact, lower};
 use super::own::{Own, letter_of_unknowns};
 use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, assumed};
 use super::scope::Scope;
-use super::terms;
+use super::{terms, values};
 
 impl Plant {
     /// Resolves the names and numbers of a model.
@@ -76,8 +76,12 @@ impl Plant {
                 place.expand(class, &names, &mut problems).unwrap_or_default()
             }
         };
-        let class::Expansion { x: states, y: outputs, phi, proposal, class, conditions } = dynamics;
-        let identities = problems.all(model.identities.iter().map(|f| within(f, &on_states, "an identity in x and y")));
+        let class::Expansion { x: states, y: mut outputs, phi, proposal, class, conditions } = dynamics;
+        let mut identities =
+            problems.all(model.identities.iter().map(|f| within(f, &on_states, "an identity in x and y")));
+        values::confine(&arena, &outputs, &with(&[&x, &y, &u]), &mut problems);
+        identities.extend(values::identities(&arena, &outputs));
+        values::move_along(&arena, &states, &mut outputs, &constants);
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
             super::period::positive(&arena, &domain, period)?;
@@ -136,7 +140,9 @@ fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>)
         let _ = super::conditions::collect(arena, scope, formula, want, &mut conditions);
     };
     let of_class: Vec<_> = model.class.iter().flat_map(model::Class::formulas).collect();
-    let smooth: Vec<&model::Formula> = model.phi.iter().chain(of_class).collect();
+    // The rate of an output that is given by its value is that of the value.
+    let values = model.g_y.iter().map(|entry| &entry.value);
+    let smooth: Vec<&model::Formula> = model.phi.iter().chain(values).chain(of_class).collect();
     let plain = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value).chain(&model.identities);
     plain.for_each(|formula| collect(formula, Want::Value));
     smooth.iter().for_each(|formula| collect(formula, Want::Slope));
@@ -173,7 +179,9 @@ fn explicit(
     let outputs = model.y.iter().zip(y).map(|(name, symbol)| {
         let rate = model.f_y.iter().find(|entry| entry.name.value == name.value);
         let rate = rate.map(|entry| resolved(arena, scope, &entry.value)).transpose()?;
-        Ok(Output { symbol: *symbol, rate, span: name.span })
+        let value = model.g_y.iter().find(|entry| entry.name.value == name.value);
+        let value = value.map(|entry| resolved(arena, scope, &entry.value)).transpose()?;
+        Ok(Output { symbol: *symbol, rate, value, span: name.span })
     });
     let outputs = problems.all(outputs);
     let phi = problems.all(model.phi.iter().map(component));
@@ -244,15 +252,18 @@ fn rates_of_transform(arena: &Arena, phi: &[Formula], outputs: &[Output], proble
         let used = arena.symbols_of(&[component.expr]);
         for output in outputs.iter().filter(|o| o.rate.is_none() && used.contains(&o.symbol)) {
             let name = arena.name(output.symbol);
-            problems.push(
-                Diagnostic::error(
-                    Code::MissingRate,
-                    component.span,
-                    format!("phi uses {name}, whose rate is not given"),
-                )
-                .also(output.span, "declared here")
-                .help(format!("give the rate of {name} under `f_y`")),
-            );
+            let missing = Diagnostic::error(
+                Code::MissingRate,
+                component.span,
+                format!("phi uses {name}, whose rate is not given"),
+            )
+            .also(output.span, "declared here");
+            problems.push(match &output.value {
+                None => missing.help(format!("give the rate of {name} under `f_y`")),
+                Some(value) => missing
+                    .also(value.span, "an input moves this value, and its own rate is not known")
+                    .help(format!("leave {name} out of phi")),
+            });
         }
     }
 }

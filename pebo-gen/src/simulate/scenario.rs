@@ -204,11 +204,13 @@ fn rates(
         found.extend(output.rate.map(|rate| rate.expr));
         if output.rate.is_none() {
             let name = plant.arena.name(output.symbol);
-            problems.push(
-                Diagnostic::error(Code::SimulationIncomplete, output.span, format!("`{name}` has no rate"))
-                    .also(span, "which this needs")
-                    .help(format!("give the rate of `{name}` under `f_y`")),
-            );
+            let missing = Diagnostic::error(Code::SimulationIncomplete, output.span, format!("`{name}` has no rate"))
+                .also(span, "which this needs")
+                .help(format!("give the rate of `{name}` under `f_y`"));
+            problems.push(match &output.value {
+                None => missing,
+                Some(value) => missing.also(value.span, "an input moves this value, and its own rate is not known"),
+            });
         }
     }
     let mut found = plant.arena.substitute_all(&found, numbers);

@@ -129,7 +129,7 @@ codes! {
     MissingItem "missing-item" "a struct or a function of the model is absent"
         "A module under #[pebo_model] has at least the structs X and Y, whose fields are the unmeasured states and the \
          measured outputs, and the functions f_x and phi. Besides, it may have the structs U (inputs) and W (unmeasured \
-         signals that are not estimated), the functions f_y, phi_left and identities, and constants, which are the \
+         signals that are not estimated), the functions f_y, g_y, phi_left and identities, and constants, which are the \
          parameters."
     UnsupportedRust "unsupported-rust" "Rust that has no meaning in a model"
         "The functions of a model are read as formulas: + - * /, the functions of floating-point numbers, let, fields, \
@@ -155,9 +155,9 @@ codes! {
         "A formula uses a name that is neither declared in the model nor known in this place. Names are declared under \
          parameters, x, y, u, w or define; case matters."
     MissingEntry "missing-entry" "a map lacks an entry for a declared name"
-        "Every unmeasured state needs its rate under f_x."
+        "Every unmeasured state needs its rate, its time derivative, under f_x."
     UnknownEntry "unknown-entry" "a map has an entry for a name that does not belong there"
-        "The entries of f_x and phi_left are for states x, those of f_y for outputs y, those of control for inputs u."
+        "The entries of f_x and phi_left are for states x, those of f_y and g_y for outputs y, those of control for inputs u."
 
     // Numbers.
 
@@ -205,7 +205,8 @@ codes! {
     // Meaning.
 
     MisplacedName "misplaced-name" "a formula depends on what its place does not allow"
-        "The transform is a function of x and y, the left inverse one of z and y, a period one of parameters. A formula \
+        "The transform is a function of x and y, the left inverse one of z and y, a period one of parameters, the value of \
+         an output under g_y one of x, u and the other outputs. A formula \
          that depends on anything else, perhaps through a definition, cannot stand there."
         => "Section 2.2, Assumption 1"
     DivisionByZero "division-by-zero" "a formula divides by zero"
@@ -223,7 +224,9 @@ codes! {
          all formulas have values, the claims are undecided."
     MissingRate "missing-rate" "a rate is needed that the model does not give"
         "The transform phi uses an output whose derivative stands nowhere. Its own derivative along the plant, which \
-         must be h(y, u), then cannot be formed. Give the output's rate under f_y."
+         must be h(y, u), then cannot be formed. Give the output's rate under f_y. The entries of f_x and f_y are time \
+         derivatives; an equation for the value of an output, as V = E - R*i, stands under g_y, and its rate follows \
+         from it where it holds no input."
         => "Section 2.2, Assumption 1 (ii)"
 
     // Claims.
@@ -252,7 +255,8 @@ codes! {
         => "Section 2.2, Assumption 1 (i)"
     RegressionNonlinear "regression-nonlinear" "the outputs do not give a linear regression"
         "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them that \
-         can be listed. Another phi, or an identity for a static regression, may help."
+         can be listed. Another phi, or an identity for a static regression, may help. The entries of f_x and f_y are \
+         time derivatives: an equation for the value of an output, as V = E - R*i, stands under g_y."
         => "Section 2.2, Proposition 1, and Section 2.3"
     UnknownUpToTurns "unknown-up-to-turns" "theta is determined only up to whole turns"
         "The rates of the outputs depend on theta through its sine and cosine, from which atan2 gives it up to whole \

@@ -198,7 +198,12 @@ impl Sketch {
             y: self
                 .y
                 .iter()
-                .map(|(y, rate)| Output { symbol: arena.symbol(y), rate: (!rate.is_empty()).then(|| at(rate)), span })
+                .map(|(y, rate)| Output {
+                    symbol: arena.symbol(y),
+                    rate: (!rate.is_empty()).then(|| at(rate)),
+                    value: None,
+                    span,
+                })
                 .collect(),
             u: self.u.iter().map(|u| arena.symbol(u)).collect(),
             w: Vec::new(),

@@ -78,6 +78,7 @@ pub(super) fn read(
     let f_x =
         pass.required("f_x", "pub fn f_x(x: &X, y: &Y, u: &U) -> X { X { .. } }").map(|item| pass.entries(item, 0));
     let f_y = pass.reader.items.function("f_y").map(|item| pass.entries(item, 0)).unwrap_or_default();
+    let g_y = pass.reader.items.function("g_y").map(|item| pass.entries(item, 0)).unwrap_or_default();
     let phi = pass.required("phi", "pub fn phi(x: &X, y: &Y) -> [f64; 1] { [x.a] }").map(|item| pass.list(item));
     let components = phi.as_ref().map_or(0, Vec::len);
     let phi_left =
@@ -101,6 +102,7 @@ pub(super) fn read(
         class: None,
         f_x: f_x?,
         f_y,
+        g_y,
         phi: phi?,
         phi_left,
         identities,

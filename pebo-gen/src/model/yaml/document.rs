@@ -30,6 +30,7 @@ pub(super) struct Document {
     pub(super) assume: Vec<Text>,
     pub(super) f_x: Vec<Entry<Text>>,
     pub(super) f_y: Vec<Entry<Text>>,
+    pub(super) g_y: Vec<Entry<Text>>,
     pub(super) phi: Vec<Text>,
     pub(super) phi_left: Vec<Entry<Text>>,
     pub(super) identities: Vec<Text>,

@@ -16,6 +16,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
     let assume = document.assume.iter().filter_map(|text| pass.comparison(text)).collect();
     let f_x = pass.entries(document.f_x);
     let f_y = pass.entries(document.f_y);
+    let g_y = pass.entries(document.g_y);
     let phi = pass.list(&document.phi);
     let phi_left = pass.entries(document.phi_left);
     let identities = pass.list(&document.identities);
@@ -37,6 +38,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         class,
         f_x,
         f_y,
+        g_y,
         phi,
         phi_left,
         identities,

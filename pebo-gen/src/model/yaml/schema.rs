@@ -90,6 +90,7 @@ pub(super) const MODEL: &[Key] = &[
     optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]"),
     key(Role::RequiredOrByClass, "f_x", RATES, "f_x: {i1: (E - (1 - d)*v2)/L1}"),
     key(Role::OptionalOrByClass, "f_y", RATES, "f_y: {v2: i1/C2}"),
+    key(Role::OptionalOrByClass, "g_y", RATES, "g_y: {V: E - R*i1}"),
     key(Role::RequiredOrByClass, "phi", FORMULAS, "phi: [i1, i3]"),
     optional("phi_left", RATES, "phi_left: {i1: z1}"),
     optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]"),

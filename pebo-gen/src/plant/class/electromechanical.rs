@@ -109,7 +109,7 @@ pub(super) fn expand(
             Some(inertia) if *symbol == speed => inertia.span,
             _ => l.span,
         };
-        Output { symbol: *symbol, rate: rate.map(|expr| Formula { expr, span }), span: name.span }
+        Output { symbol: *symbol, rate: rate.map(|expr| Formula { expr, span }), value: None, span: name.span }
     });
     let phi = (0..n).map(|k| Formula {
         expr: arena.add(dot(arena, &inductance.rows()[k], &i), magnets[k]),

@@ -119,6 +119,7 @@ pub(super) fn expand(
     let outputs = names.y.iter().zip(&place.model.y).enumerate().map(|(i, (symbol, name))| Output {
         symbol: *symbol,
         rate: Some(Formula { expr: rate(i, [&a21, &a22, &b2]), span: span(second, i) }),
+        value: None,
         span: name.span,
     });
     let phi = (0..nz).map(|i| Formula {

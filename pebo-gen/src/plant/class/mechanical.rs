@@ -118,6 +118,7 @@ pub(super) fn expand(
     let outputs = names.y.iter().zip(&place.model.y).enumerate().map(|(i, (symbol, name))| Output {
         symbol: *symbol,
         rate: Some(Formula { expr: rates[i], span: m.span }),
+        value: None,
         span: name.span,
     });
     let phi = (0..n).map(|i| Formula { expr: dot(arena, &frame.column(i), &p), span: column(t, i) });
