@@ -746,6 +746,19 @@ const LISTED: &[(&str, &str, Outcome, &[&str])] = &[
         &["cos(q) != 0"],
     ),
     (
+        "a normal form does not divide by what the author does not",
+        "x: [p]\ny: [q, s]\nu: [v]\nassume: [q > 0]\nf_x: {p: v}\nf_y: {q: 0, s: p*q}\nphi: [p*(1 + sqrt(q))]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "nor does it in h",
+        "x: [p]\ny: [q, w]\nu: [v]\nf_x: {p: v - w*sqrt(1 + w^2)/(1 + sqrt(1 + w^2)) - p}\nf_y: {q: p, w: v}\n\
+         phi: [p + q]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
         "the extension may be anywhere, whatever the range of phi",
         "x: [p]\ny: [q]\nu: [v]\nassume: [0.1 < p, p < 3]\nf_x: {p: v/sin(p)}\nf_y: {q: cos(p)}\nphi: [cos(p)]",
         Outcome::Accepted,

@@ -19,7 +19,7 @@ use crate::source::{Code, Diagnostic, listed};
 
 use super::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
 use super::killing::{self, Column};
-use super::tidy::{proved_shortest, shortest};
+use super::tidy::{asking_less, proved_shortest, shortest};
 use super::{blame, gpebo, pencil};
 
 /// One component of the derivative of the transform.
@@ -144,7 +144,12 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
     if !arena.depends_on(tidied, &hidden) {
         // The normal form is free of x; that it equals the rate is what the zero test confirms.
         return match decide(arena, arena.sub(rate, tidied), domain) {
-            Answer::Zero => Component::Free(tidied),
+            // It does not depend on x, so its value at any x will do: there the author's own form may have more values.
+            Answer::Zero => {
+                let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
+                let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
+                Component::Free(asking_less(arena, domain, tidied, &[plain]))
+            }
             Answer::Open(obstacle) => Component::Open(obstacle),
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };

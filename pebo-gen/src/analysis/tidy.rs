@@ -38,6 +38,21 @@ pub(super) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
     more.into_iter().all(|(part, relation)| there.shows(arena, part, relation))
 }
 
+/// The first of the candidates that asks for less than the expression of what the domain does not show and is proved
+/// equal to it: of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
+pub(super) fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+    let unshown = |form: Expr| {
+        let asked = arena.asks(&[form], Want::Value).into_iter();
+        asked.filter(|(part, relation)| !domain.shows(arena, *part, *relation)).count()
+    };
+    let most = unshown(expr);
+    if most == 0 {
+        return expr;
+    }
+    let equal = |form: Expr| decide(arena, arena.sub(form, expr), domain).is_zero();
+    candidates.iter().copied().find(|form| unshown(*form) < most && equal(*form)).unwrap_or(expr)
+}
+
 /// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
 pub(super) fn proved_shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     let candidate = shortest(arena, domain, expr);

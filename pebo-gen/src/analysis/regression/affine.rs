@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
 use crate::analysis::gpebo;
-use crate::analysis::tidy::{shortest, shortest_equal};
+use crate::analysis::tidy::{asking_less, shortest, shortest_equal};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::zero::decide;
@@ -67,17 +67,24 @@ pub(super) fn linear(
         let known =
             arena.add(row.known, arena.sum(row.factors.iter().zip(&chi).map(|(factor, chi)| arena.mul(*factor, *chi))));
         let written = plant.y[*output].rate.map(|rate| arena.substitute(rate.expr, &states));
-        let candidates: Vec<Expr> = written
-            .into_iter()
-            .filter(|w| !arena.depends_on(*w, &plant.hidden()))
-            .chain([shortest(arena, domain, known)])
+        let written: Vec<Expr> = written.into_iter().filter(|w| !arena.depends_on(*w, &plant.hidden())).collect();
+        let candidates = [written.as_slice(), &[shortest(arena, domain, known)]].concat();
+        phi_0.push(asking_less(arena, domain, shortest_equal(arena, domain, known, &candidates), &written));
+        // Of what is affine in z, the slopes are the factors.
+        let factors: Vec<Expr> = row
+            .factors
+            .iter()
+            .zip(extension)
+            .map(|(factor, symbol)| {
+                let slopes: Vec<Expr> = written.iter().map(|w| arena.derivative(*w, *symbol)).collect();
+                asking_less(arena, domain, *factor, &slopes)
+            })
             .collect();
-        phi_0.push(shortest_equal(arena, domain, known, &candidates));
         phi_1.push(match &cascade.lambda {
-            None => row.factors.clone(),
+            None => factors,
             Some(_) => (0..theta.len())
                 .map(|column| {
-                    let terms = row.factors.iter().zip(&plant.psi);
+                    let terms = factors.iter().zip(&plant.psi);
                     arena.sum(terms.map(|(factor, psi)| arena.mul(*factor, arena.of_symbol(psi[column]))))
                 })
                 .collect(),
