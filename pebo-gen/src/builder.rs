@@ -5,6 +5,7 @@
 use std::fmt::{self, Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 
+use crate::cas::budget::Budget;
 use crate::emit::Scalar;
 use crate::source::{Colour, Source, render};
 
@@ -29,6 +30,7 @@ pub struct Builder {
     rerun: bool,
     format: bool,
     include_file: String,
+    limit: f64,
 }
 
 /// A model that was written.
@@ -55,7 +57,14 @@ impl Default for Builder {
 impl Builder {
     /// For `f64`, into cargo's `OUT_DIR`, formatted, run again when a model file changes.
     pub fn new() -> Self {
-        Self { out_dir: None, scalar: Scalar::F64, rerun: true, format: true, include_file: "pebo.rs".to_owned() }
+        Self {
+            out_dir: None,
+            scalar: Scalar::F64,
+            rerun: true,
+            format: true,
+            include_file: "pebo.rs".to_owned(),
+            limit: Budget::SECONDS,
+        }
     }
 
     /// Writes into this folder, which is made if it is not there.
@@ -91,6 +100,14 @@ impl Builder {
     #[must_use]
     pub fn include_file(mut self, name: impl Into<String>) -> Self {
         self.include_file = name.into();
+        self
+    }
+
+    /// How much work a model may take, in seconds of a machine of today: 10 unless this says otherwise. It is counted
+    /// in steps and not by the clock, so that whether a model is accepted does not depend on the machine.
+    #[must_use]
+    pub fn limit(mut self, seconds: f64) -> Self {
+        self.limit = seconds;
         self
     }
 
@@ -152,7 +169,8 @@ impl Builder {
         let source = Source::from_bytes(&name, bytes)
             .map_err(|diagnostic| BuildError(render(&[diagnostic], &Source::unread(&name), Colour::Never)))?;
         let refused = |diagnostics: &[_]| BuildError(render(diagnostics, &source, Colour::Never));
-        let derived = crate::derive(&source).map_err(|diagnostics| refused(&diagnostics))?;
+        let derived = crate::derive_within(&source, Budget::of_seconds(self.limit))
+            .map_err(|diagnostics| refused(&diagnostics))?;
         derived.derivation.admit().map_err(refused)?;
         let emitted =
             derived.emit(self.scalar).map_err(|error| BuildError(format!("{name} cannot be emitted: {error}\n")))?;

@@ -25,6 +25,7 @@ pub mod source;
 pub use builder::{BuildError, Builder, Built};
 
 use analysis::Derivation;
+use cas::budget::Budget;
 use emit::{EmitError, Emitted, Scalar};
 use model::Model;
 use plant::Plant;
@@ -43,16 +44,28 @@ pub struct Derived {
     pub derivation: Derivation,
 }
 
-/// Derives the observer of a model file; the errors are those of a file that could not be read.
+/// Derives the observer of a model file within the usual budget of steps; the errors are those of a file that could
+/// not be read, or whose class could not be expanded.
 #[cfg(feature = "yaml")]
 pub fn derive(source: &Source) -> Result<Derived, Vec<Diagnostic>> {
-    Derived::of(Model::parse(source)?)
+    derive_within(source, Budget::default())
+}
+
+/// The same within a budget, from which all that is asked of the model later draws too.
+#[cfg(feature = "yaml")]
+pub fn derive_within(source: &Source, budget: Budget) -> Result<Derived, Vec<Diagnostic>> {
+    Derived::within(Model::parse(source)?, budget)
 }
 
 impl Derived {
-    /// Derives the observer of a model, whoever read it.
+    /// Derives the observer of a model, whoever read it, within the usual budget of steps.
     pub fn of(model: Model) -> Result<Self, Vec<Diagnostic>> {
-        let plant = Plant::resolve(&model)?;
+        Self::within(model, Budget::default())
+    }
+
+    /// The same within a budget, from which all that is asked of the model later draws too.
+    pub fn within(model: Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
+        let plant = Plant::resolve_within(&model, budget)?;
         let derivation = Derivation::derive(&plant);
         Ok(Self { model, plant, derivation })
     }

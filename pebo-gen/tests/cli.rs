@@ -292,6 +292,50 @@ fn hostile_input_ends_in_a_diagnostic() {
     assert!(text(&output.stderr).contains("error[cannot-read]"));
 }
 
+/// The models that take long are the library's to test (`limit.rs`): here, what the program makes of it.
+#[test]
+fn what_takes_too_long_is_undecided_and_names_the_phase() {
+    let folder = Folder::new();
+    let tangents = (0..18).fold("q".to_owned(), |inner, _| format!("tan({inner} + u1)"));
+    let content = "model: m\nx: [p]\ny: [q]\nu: [u1]\nf_y: {q: p}\nphi: [p]\n".to_owned()
+        + &format!("f_x: {{p: \"u1*{tangents}\"}}\n");
+    let path = folder.file("m.yaml", content);
+    for command in [["check", &path, "--limit", "0.1"], ["simulate", &path, "--limit", "0.1"]] {
+        let output = run(&command);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{command:?}: {message}");
+        assert!(message.contains("error[limit-reached]"), "{command:?}: {message}");
+        assert!(message.contains("reached in the cascade"), "{command:?}: {message}");
+    }
+    assert_eq!(run(&[&path, "--limit", "0.1"]).status.code(), Some(1));
+}
+
+#[test]
+fn a_limit_is_a_positive_number_of_seconds() {
+    for limit in ["0", "-1", "NaN", "ten", ""] {
+        let output = run(&["check", CUK, &format!("--limit={limit}")]);
+        assert_eq!(output.status.code(), Some(2), "{limit}: {}", text(&output.stderr));
+    }
+    for limit in ["inf", "1e300", "1000"] {
+        let output = run(&["check", CUK, "--limit", limit]);
+        assert_eq!(output.status.code(), Some(0), "{limit}: {}", text(&output.stderr));
+    }
+}
+
+/// Shared parts are printed wherever they are used: what would fill the memory is not printed in full.
+#[test]
+fn a_formula_that_no_page_holds_is_not_printed_in_full() {
+    let folder = Folder::new();
+    let level = |i: usize| format!("  a{i}: \"sin(a{0})*a{0} + 1\"\n", i - 1);
+    let chain: String = (1..60).map(level).collect();
+    let content = format!(
+        "model: m\nx: [p]\ny: [q]\nu: [v]\ndefine:\n  a0: q\n{chain}f_x: {{p: v*a59}}\nf_y: {{q: p + q}}\nphi: [p]\n"
+    );
+    let output = run(&["check", &folder.file("m.yaml", content)]);
+    assert!(output.status.code().is_some_and(|code| code < 2), "{}", text(&output.stderr));
+    assert!(output.stdout.len() + output.stderr.len() < 1_000_000, "{} bytes", output.stdout.len());
+}
+
 /// Names that other tools stumble over are just names.
 #[test]
 fn difficult_names_are_accepted() {

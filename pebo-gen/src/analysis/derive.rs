@@ -10,6 +10,7 @@ use crate::source::{Code, Diagnostic};
 use super::conditions::{Ask, Conditions};
 use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
 use super::left_inverse::at_phi;
+use super::limited::{ended, limited, unfinished};
 use super::remarks::Remarks;
 use super::{cascade, identifiability, known, left_inverse, regression};
 
@@ -18,21 +19,31 @@ impl Derivation {
     pub fn derive(plant: &Plant) -> Self {
         let domain = plant.domain();
         let mut found: Vec<Diagnostic> = Vec::new();
-        let (class, cascade) = cascade::prove(plant, &domain, &mut found);
-        let mut cascade = known::cascade(plant, cascade, &mut found);
-        let left_inverse = left_inverse::prove(plant, &domain, &mut found);
-        let mut left_inverse = known::left_inverse(plant, left_inverse, &mut found);
+        let mut class = Class::Pebo;
+        let mut cascade = limited(plant, "the cascade", &mut found, |found| {
+            let (kind, claim) = cascade::prove(plant, &domain, found);
+            class = kind;
+            known::cascade(plant, claim, found)
+        });
+        let mut left_inverse = limited(plant, "the left inverse", &mut found, |found| {
+            let claim = left_inverse::prove(plant, &domain, found);
+            known::left_inverse(plant, claim, found)
+        });
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
         let regression = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
-                let claim = regression::prove(plant, &domain, result, inverse, &mut found);
-                known::regression(plant, class, claim, &mut found)
+                limited(plant, "the regression", &mut found, |found| {
+                    let claim = regression::prove(plant, &domain, result, inverse, found);
+                    known::regression(plant, class, claim, found)
+                })
             }
             _ => Claim::skipped(),
         };
         let identifiability = match (&cascade.result, &regression.result) {
             (Some(cascade), Some(result)) if regression.verdict == Verdict::Proved => {
-                identifiability::prove(plant, &domain, cascade, result, inverse, &mut found)
+                limited(plant, "identifiability", &mut found, |found| {
+                    identifiability::prove(plant, &domain, cascade, result, inverse, found)
+                })
             }
             _ => Claim::skipped(),
         };
@@ -60,7 +71,8 @@ impl Derivation {
         };
         let (mut regression, mut identifiability) = match (&cascade.result, &regression.result) {
             (Some(cascade), Some(result))
-                if matches!(identifiability.verdict, Verdict::Refuted | Verdict::Undecided) =>
+                if matches!(identifiability.verdict, Verdict::Refuted | Verdict::Undecided)
+                    && !plant.arena.budget().is_exhausted() =>
             {
                 let given = (result, identifiability.verdict);
                 let more = strengthened(plant, &domain, (cascade, inverse), given, &mut found);
@@ -68,6 +80,7 @@ impl Derivation {
             }
             _ => (regression, identifiability),
         };
+        let settled = found.len();
         let mut conditions = Conditions::of(plant);
         for constant in identifiability.result.iter().flat_map(|result| &result.constants) {
             conditions.list(&plant.arena, (*constant, Relation::NonZero));
@@ -84,6 +97,14 @@ impl Derivation {
             left_inverse.doubt();
             regression.doubt();
             identifiability.doubt();
+        }
+        if plant.arena.budget().is_exhausted() {
+            // What was not shown by then may hold.
+            found.truncate(settled);
+        }
+        if ended(plant, &found) {
+            found.retain(|diagnostic| diagnostic.code != Code::NeverIdentifiable);
+            identifiability = unfinished(plant, "the conditions", &mut found);
         }
         let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
         Self {
@@ -150,7 +171,7 @@ fn strengthened(
 }
 
 impl<T> Claim<T> {
-    fn skipped() -> Self {
+    pub(super) fn skipped() -> Self {
         Self { verdict: Verdict::Skipped, result: None }
     }
 

@@ -20,6 +20,9 @@ use super::design::{Cascade, Derivation, Verdict};
 use super::elimination::Elimination;
 use super::tidy::shortest;
 
+/// The search for an operating point may take one part in so many of what the command has left.
+const SHARE: u64 = 4;
+
 /// What is known of where a plant rests.
 #[derive(Clone, Debug)]
 pub enum Equilibrium {
@@ -48,7 +51,16 @@ impl Equilibrium {
     pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
         let domain = derivation.domain(plant);
-        Some(found(plant, &domain, cascade).unwrap_or_else(|obstacle| Self::Undecided(obstacle.to_string())))
+        // Good to know, and not what the observer is emitted by: most of what is left is for that.
+        plant.arena.budget().share(SHARE, || {
+            let found = found(plant, &domain, cascade).unwrap_or_else(|obstacle| Self::Undecided(obstacle.to_string()));
+            Some(match found {
+                Self::Undecided(_) if plant.arena.budget().is_exhausted() => {
+                    Self::Undecided(Obstacle::OutOfBudget.to_string())
+                }
+                found => found,
+            })
+        })
     }
 }
 

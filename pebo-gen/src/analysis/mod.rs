@@ -34,6 +34,7 @@ mod implicit;
 mod killing;
 mod known;
 mod left_inverse;
+mod limited;
 mod motion;
 mod pencil;
 mod regression;

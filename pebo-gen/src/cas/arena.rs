@@ -9,14 +9,19 @@ use std::hash::BuildHasher;
 use hashbrown::HashTable;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
+use super::budget::Budget;
 use super::expr::{Expr, Node, Symbol};
 use super::rational::Rational;
+
+/// Steps that looking at a node takes, with its operands.
+const STEPS_OF_A_NODE: u64 = 8;
 
 /// Owns the nodes of all expressions of one question.
 ///
 /// Constructors take `&self`, so that they nest as the formula does.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Arena {
+    budget: Budget,
     nodes: RefCell<Vec<Node>>,
     table: RefCell<HashTable<Expr>>,
     names: RefCell<Vec<String>>,
@@ -27,9 +32,26 @@ pub struct Arena {
 }
 
 impl Arena {
-    /// An arena without expressions.
+    /// An arena without expressions, and without a limit on what is asked of them.
     pub fn new() -> Self {
-        Self::default()
+        Self::within(Budget::unlimited())
+    }
+
+    /// An arena without expressions; all that is asked of them draws from the budget.
+    pub fn within(budget: Budget) -> Self {
+        Self {
+            budget,
+            nodes: RefCell::default(),
+            table: RefCell::default(),
+            names: RefCell::default(),
+            symbols: RefCell::default(),
+            generated: RefCell::default(),
+        }
+    }
+
+    /// What all questions about the expressions may take together.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
     }
 
     /// What the expression is.
@@ -148,6 +170,7 @@ impl Arena {
                 open.extend(self.operands(expr));
             }
         }
+        self.budget.take(STEPS_OF_A_NODE.saturating_mul(seen.len() as u64));
         // Operands are entered before what uses them, so ascending handles are a topological order.
         seen.into_iter().collect()
     }
@@ -160,6 +183,12 @@ impl Arena {
     /// Whether the expression contains one of the symbols.
     pub fn depends_on(&self, expr: Expr, symbols: &BTreeSet<Symbol>) -> bool {
         !self.symbols_of(&[expr]).is_disjoint(symbols)
+    }
+}
+
+impl Default for Arena {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

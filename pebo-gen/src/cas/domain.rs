@@ -18,6 +18,9 @@ const MOST_TRIALS: u64 = 400;
 /// Trials with small integers and random signs.
 const PLAIN_TRIALS: u64 = 8;
 
+/// Steps that drawing a value takes.
+const STEPS_OF_A_VALUE: u64 = 50;
+
 /// The assumed domain of a question: inequalities, and symbols whose values are given.
 #[derive(Clone, Debug, Default)]
 pub struct Domain {
@@ -40,7 +43,8 @@ impl Domain {
         let mut symbols = arena.symbols_of(exprs);
         let facts = self.relevant(arena, &mut symbols);
         let ranges = ranges(arena, &facts);
-        (0..MOST_TRIALS).filter_map(move |trial| {
+        (0..MOST_TRIALS).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
+            arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
             let mut draw = Draw::new(trial);
             let mut point = Point::new();
             for (index, &symbol) in symbols.iter().enumerate() {

@@ -19,6 +19,9 @@ pub type Point = BTreeMap<Symbol, Rational>;
 /// Working precisions that are tried in turn, in bits.
 const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
 
+/// A rational value with more bits than this is enclosed instead.
+const MOST_BITS: u64 = 1 << 14;
+
 /// What rational arithmetic says of a value.
 enum Exact {
     /// It is this number.
@@ -46,8 +49,12 @@ impl Arena {
         values: &BTreeMap<Symbol, Interval>,
         precision: Precision,
     ) -> Option<Vec<Interval>> {
+        let parts = self.postorder(exprs);
+        if !self.budget().take(precision.steps().saturating_mul(parts.len() as u64)) {
+            return None;
+        }
         let mut known: FxHashMap<Expr, Interval> = FxHashMap::default();
-        for e in self.postorder(exprs) {
+        for e in parts {
             let value = self.enclosure_of(e, values, precision, &known)?;
             known.insert(e, value);
         }
@@ -78,6 +85,10 @@ impl Arena {
                         if exponent < 0 && known[base].is_zero() {
                             return Exact::Undefined;
                         }
+                        let bits = known[base].bits().saturating_mul(exponent.unsigned_abs().into());
+                        if bits > MOST_BITS {
+                            return Exact::Irrational;
+                        }
                         let Some(power) = known[base].pow(exponent) else { return Exact::Irrational };
                         total = &total * &power;
                     }
@@ -85,7 +96,7 @@ impl Arena {
                 }
                 Node::Pi | Node::Call(..) => None,
             };
-            let Some(value) = value else { return Exact::Irrational };
+            let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return Exact::Irrational };
             known.insert(e, value);
         }
         known.remove(&expr).map_or(Exact::Irrational, Exact::Value)

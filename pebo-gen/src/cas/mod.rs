@@ -5,6 +5,7 @@
 mod arena;
 pub mod asks;
 pub mod bounds;
+pub mod budget;
 mod build;
 pub mod combination;
 pub mod contrast;

@@ -9,6 +9,9 @@ use super::arena::Arena;
 use super::expr::{Expr, Node, Product, Sum};
 use super::rational::Rational;
 
+/// The length up to which a formula is printed, with all of its parts.
+const MOST_CHARACTERS: usize = 10_000_000;
+
 /// How tightly the outermost operation of a text binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
@@ -39,8 +42,12 @@ impl Text {
 
 impl Arena {
     /// The expression in the model file's grammar.
+    ///
+    /// What is shared is printed wherever it is used, so that a short model can have a result that no page holds: of
+    /// that, the text says no more than how long it is.
     pub fn print(&self, expr: Expr) -> String {
         let mut known: FxHashMap<Expr, Text> = FxHashMap::default();
+        let mut written = 0;
         for e in self.postorder(&[expr]) {
             let text = match self.node(e) {
                 Node::Number(value) => number(&value),
@@ -53,6 +60,10 @@ impl Arena {
                     Text::new(format!("{}({})", function.row().name, inner.join(", ")), Binding::Atom)
                 }
             };
+            written += text.text.len();
+            if written > MOST_CHARACTERS {
+                return format!("(a formula of more than {MOST_CHARACTERS} characters)");
+            }
             known.insert(e, text);
         }
         known.remove(&expr).map(|t| t.text).unwrap_or_default()

@@ -1,8 +1,11 @@
 //! What the command line takes.
 
+use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pebo_gen::cas::budget::Budget;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -28,6 +31,29 @@ pub(super) struct Arguments {
     pub(super) command: Option<Command>,
     #[command(flatten)]
     pub(super) generate: GenerateOptions,
+    /// Leave undecided what takes longer for a model; memory is 512 MB, and in proportion beyond 10 seconds
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = Limit(Budget::SECONDS))]
+    pub(super) limit: Limit,
+}
+
+/// Seconds: a positive number.
+#[derive(Clone, Copy)]
+pub(super) struct Limit(pub(super) f64);
+
+impl FromStr for Limit {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let seconds: f64 = text.parse().map_err(|_| "a number of seconds is expected, as 60 or 0.5")?;
+        // Beyond the largest that a clock takes there is no difference to be seen.
+        if seconds > 0.0 { Ok(Self(seconds.min(1e9))) } else { Err("a limit is positive") }
+    }
+}
+
+impl Display for Limit {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        Display::fmt(&self.0, f)
+    }
 }
 
 #[derive(Subcommand)]

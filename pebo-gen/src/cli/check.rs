@@ -6,19 +6,19 @@ use pebo_gen::analysis::Outcome;
 use pebo_gen::report;
 use pebo_gen::source::Diagnostic;
 
-use super::arguments::{CheckOptions, Format};
+use super::arguments::{CheckOptions, Format, Limit};
 use super::{Ending, files, standard, terminal};
 
-pub(super) fn run(options: &CheckOptions) -> Ending {
+pub(super) fn run(options: &CheckOptions, limit: Limit) -> Ending {
     options
         .models
         .iter()
-        .map(|model| one(model, options.format).unwrap_or_else(standard::refuse))
+        .map(|model| one(model, options.format, limit).unwrap_or_else(standard::refuse))
         .max()
         .unwrap_or(Ending::Malformed)
 }
 
-fn one(path: &Path, format: Format) -> Result<Ending, Diagnostic> {
+fn one(path: &Path, format: Format, limit: Limit) -> Result<Ending, Diagnostic> {
     let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let source = match files::read(path) {
         Ok(source) => source,
@@ -32,7 +32,7 @@ fn one(path: &Path, format: Format) -> Result<Ending, Diagnostic> {
             return Ok(Ending::Malformed);
         }
     };
-    match pebo_gen::derive(&source) {
+    match pebo_gen::derive_within(&source, limit.budget()) {
         Ok(derived) => {
             let (plant, derivation) = (&derived.plant, &derived.derivation);
             if format == Format::Json {
@@ -49,7 +49,7 @@ fn one(path: &Path, format: Format) -> Result<Ending, Diagnostic> {
             } else {
                 terminal::report(&diagnostics, &source);
             }
-            Ok(Ending::Malformed)
+            Ok(Ending::of_unread(&diagnostics))
         }
     }
 }

@@ -6,7 +6,8 @@ use std::path::Path;
 use pebo_gen::Derived;
 use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
 
-use super::{standard, terminal};
+use super::arguments::Limit;
+use super::{Ending, standard, terminal};
 
 /// Reads a model file, or standard input for `-`; the error comes with a source to show it beside.
 pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
@@ -21,20 +22,20 @@ pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
 }
 
 /// Reads and derives a model; what is wrong with it is reported.
-pub(super) fn derive(path: &Path) -> Option<(Source, Derived)> {
+pub(super) fn derive(path: &Path, limit: Limit) -> Result<(Source, Derived), Ending> {
     let source = match read(path) {
         Ok(source) => source,
         Err(unread) => {
             let (source, diagnostic) = *unread;
             terminal::report(&[diagnostic], &source);
-            return None;
+            return Err(Ending::Malformed);
         }
     };
-    match pebo_gen::derive(&source) {
-        Ok(derived) => Some((source, derived)),
+    match pebo_gen::derive_within(&source, limit.budget()) {
+        Ok(derived) => Ok((source, derived)),
         Err(diagnostics) => {
             terminal::report(&diagnostics, &source);
-            None
+            Err(Ending::of_unread(&diagnostics))
         }
     }
 }

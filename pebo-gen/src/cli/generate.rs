@@ -6,10 +6,10 @@ use pebo_gen::analysis::Outcome;
 use pebo_gen::emit::Scalar;
 use pebo_gen::report;
 
-use super::arguments::{GenerateOptions, ScalarName};
+use super::arguments::{GenerateOptions, Limit, ScalarName};
 use super::{Ending, files, terminal};
 
-pub(super) fn run(options: &GenerateOptions) -> Ending {
+pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Ending {
     let several = options.models.len() > 1;
     if several && options.output.as_deref().is_none_or(|output| !output.is_dir()) {
         terminal::say(
@@ -17,12 +17,15 @@ pub(super) fn run(options: &GenerateOptions) -> Ending {
         );
         return Ending::Malformed;
     }
-    let endings = options.models.iter().map(|model| one(model, options));
+    let endings = options.models.iter().map(|model| one(model, options, limit));
     endings.max().unwrap_or(Ending::Malformed)
 }
 
-fn one(path: &Path, options: &GenerateOptions) -> Ending {
-    let Some((source, derived)) = files::derive(path) else { return Ending::Malformed };
+fn one(path: &Path, options: &GenerateOptions, limit: Limit) -> Ending {
+    let (source, derived) = match files::derive(path, limit) {
+        Ok(read) => read,
+        Err(ending) => return ending,
+    };
     terminal::say(&report::summary(&derived.plant, &derived.derivation));
     terminal::report(&derived.derivation.diagnostics, &source);
     if derived.derivation.outcome != Outcome::Accepted {

@@ -1,6 +1,7 @@
 //! From arguments to an exit status.
 
 mod arguments;
+mod budget;
 mod check;
 mod explain;
 mod files;
@@ -14,6 +15,7 @@ mod terminal;
 use std::process::ExitCode;
 
 use clap::Parser as _;
+use pebo_gen::source::Diagnostic;
 
 use arguments::{Arguments, Command};
 
@@ -28,6 +30,13 @@ enum Ending {
     Malformed = 2,
 }
 
+impl Ending {
+    /// Of a model of which no plant was made.
+    fn of_unread(diagnostics: &[Diagnostic]) -> Self {
+        if diagnostics.iter().all(|diagnostic| diagnostic.code.is_open()) { Self::Refused } else { Self::Malformed }
+    }
+}
+
 /// Runs the command of the process's arguments.
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -35,8 +44,8 @@ pub(crate) fn run() -> ExitCode {
         Err(answer) => return ExitCode::from(said(&answer) as u8),
     };
     let ending = match arguments.command {
-        Some(Command::Check(options)) => check::run(&options),
-        Some(Command::Simulate(options)) => simulate::run(&options),
+        Some(Command::Check(options)) => check::run(&options, arguments.limit),
+        Some(Command::Simulate(options)) => simulate::run(&options, arguments.limit),
         Some(Command::Explain(options)) => explain::run(&options),
         Some(Command::Completions(options)) => manual::completions(&options),
         Some(Command::Man) => manual::page(),
@@ -44,7 +53,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Command::Solve(_)) => later::refuse("solve", "write a candidate under `phi`, and let `check` judge it"),
         Some(Command::Report(_)) => later::refuse("report", "`pebo-gen check MODEL` prints what is derived as text"),
         Some(Command::Certificate(_)) => later::refuse("certificate", "`pebo-gen check MODEL` says what is proved"),
-        None => generate::run(&arguments.generate),
+        None => generate::run(&arguments.generate, arguments.limit),
     };
     ExitCode::from(ending as u8)
 }

@@ -7,7 +7,7 @@ use pebo_gen::analysis::Outcome;
 use pebo_gen::report;
 use pebo_gen::simulate::{Overrides, Trace, figure};
 
-use super::arguments::SimulateOptions;
+use super::arguments::{Limit, SimulateOptions};
 use super::{Ending, files, terminal};
 
 /// Runs with fewer samples are over before a bar would be seen.
@@ -16,8 +16,11 @@ const LONG_RUN: u64 = 200_000;
 /// The resolution of the bar.
 const TICKS: u64 = 1000;
 
-pub(super) fn run(options: &SimulateOptions) -> Ending {
-    let Some((source, derived)) = files::derive(&options.model) else { return Ending::Malformed };
+pub(super) fn run(options: &SimulateOptions, limit: Limit) -> Ending {
+    let (source, derived) = match files::derive(&options.model, limit) {
+        Ok(read) => read,
+        Err(ending) => return ending,
+    };
     if derived.derivation.outcome != Outcome::Accepted {
         terminal::say(&report::summary(&derived.plant, &derived.derivation));
         terminal::report(&derived.derivation.diagnostics, &source);

@@ -26,6 +26,8 @@ pub enum EmitError {
         /// The code.
         code: String,
     },
+    /// The budget ended before the emitted code was read back.
+    LimitReached,
     /// The emitted code does not compute what was derived.
     Differs {
         /// The function.
@@ -49,6 +51,9 @@ impl fmt::Display for EmitError {
                 write!(f, "the target scalar cannot represent {number}")
             }
             Self::Unreadable { code } => write!(f, "the emitted code cannot be read back: {code}"),
+            Self::LimitReached => f.write_str(
+                "the limit on time or memory was reached in the check of the emitted code; allow more with `--limit SECONDS`",
+            ),
             Self::Differs { function, row, column } => {
                 write!(f, "the emitted `{function}` differs from the derived one in row {row}, column {column}")
             }

@@ -62,6 +62,9 @@ pub(super) fn confirm(
                     emitted.is_some_and(|&emitted| emitted == entry || is_zero(arena, arena.sub(emitted, entry)));
                 let same_size = columns.len() == entries.len()
                     && columns.iter().all(|column| column.len() == definition.rows.len());
+                if !equal && arena.budget().is_exhausted() {
+                    return Err(EmitError::LimitReached);
+                }
                 if !equal || !same_size {
                     let function = definition.name.to_owned();
                     return Err(EmitError::Differs { function, row: row + 1, column: column + 1 });

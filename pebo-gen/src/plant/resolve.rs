@@ -6,6 +6,7 @@
 use std::collections::BTreeSet;
 
 use crate::cas::asks::Want;
+use crate::cas::budget::Budget;
 use crate::cas::facts::Relation as Compared;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
@@ -20,10 +21,16 @@ use super::scope::Scope;
 use super::{terms, values};
 
 impl Plant {
-    /// Resolves the names and numbers of a model.
+    /// Resolves the names and numbers of a model; what is asked of the plant then has the usual budget.
     pub fn resolve(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        Self::resolve_within(model, Budget::default())
+    }
+
+    /// Resolves the names and numbers of a model; what is asked of the plant then draws from the budget, as the
+    /// expansion of a class does.
+    pub fn resolve_within(model: &Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
         let mut problems = Diagnostics::new();
-        let arena = Arena::new();
+        let arena = Arena::within(budget);
         // In this order, so that results print parameters before states before inputs.
         let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
         let names = |list: &[Spanned<String>]| -> Vec<Symbol> {
@@ -100,6 +107,11 @@ impl Plant {
         let conditions = asked(&arena, &scope, model, conditions);
         let terms = terms::of_rates(&arena, &scope, model);
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
+        if arena.budget().is_exhausted() {
+            // What was found besides may be no mistake, but something that there was no time to show.
+            let phase = if model.class.is_some() { "the expansion of the class" } else { "the reading of the model" };
+            return Err(vec![Diagnostic::limit_reached(phase, model.name.span)]);
+        }
         problems.propagate()?;
         Ok(Self {
             name: model.name.value.clone(),

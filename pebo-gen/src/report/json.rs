@@ -185,12 +185,13 @@ pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String 
     line(&report)
 }
 
-/// The object of a model that could not be read: rejected, for the diagnostics alone.
+/// The object of a model of which no plant was made: rejected for the diagnostics alone, or undecided where they say
+/// that something could not be worked out.
 pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> String {
     line(&Report {
         schema: 1,
         model: name,
-        verdict: "rejected",
+        verdict: if diagnostics.iter().all(|d| d.code.is_open()) { "undecided" } else { "rejected" },
         class: None,
         expansion: None,
         cascade: None,

@@ -13,6 +13,9 @@ pub(super) struct Remark {
 
 /// The remarks on a plant with a proved cascade.
 pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
+    if plant.arena.budget().is_exhausted() {
+        return Vec::new();
+    }
     let remark = |name, lines| Remark { name, lines };
     let rests = derivation.operating_point(plant).map(|equilibrium| match equilibrium {
         Equilibrium::At(point) => rest(plant, derivation.class, point),

@@ -43,6 +43,11 @@ macro_rules! codes {
                 match self { $(Self::$variant => None$(.or(Some($paper)))?),* }
             }
 
+            /// Whether it says that something could not be worked out, and not that the input is wrong.
+            pub fn is_open(self) -> bool {
+                matches!(self, Self::LimitReached | Self::ClassUnresolved)
+            }
+
             /// The code of that name.
             pub fn from_name(name: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|code| code.name() == name)
@@ -52,6 +57,14 @@ macro_rules! codes {
 }
 
 codes! {
+    // The command.
+
+    LimitReached "limit-reached" "the limit on time or memory was reached"
+        "A command has 10 seconds for each model, or what `--limit` says, and 512 MB (in proportion where the limit is \
+         longer). The message names the phase in which they ended; what was open then is undecided. Time is counted in \
+         steps of work first, so that the verdict is the same on any machine that is not very slow. Formulas with \
+         fewer functions, parameters with values, and named parts that are shared take less."
+
     // Files.
 
     CannotRead "cannot-read" "a file cannot be read"

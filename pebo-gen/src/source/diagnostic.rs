@@ -56,6 +56,13 @@ impl Diagnostic {
         Self::new(Severity::Warning, code, span, message)
     }
 
+    /// That the budget of the command ended in this phase of it.
+    pub fn limit_reached(phase: &str, span: Span) -> Self {
+        Self::error(Code::LimitReached, span, format!("the limit on time or memory was reached in {phase}"))
+            .note("what was not decided by then is undecided: nothing is known to be wrong")
+            .help("allow more with `--limit SECONDS` (`Builder::limit` in a build script), or write shorter formulas with fewer functions")
+    }
+
     fn new(severity: Severity, code: Code, span: Span, message: impl Into<Box<str>>) -> Self {
         let primary = Label { span, text: Box::default() };
         let message = message.into();

@@ -2,6 +2,7 @@
 
 use crate::cas::expr::{Expr, Node};
 use crate::cas::function::Function;
+use crate::cas::poly::steps;
 use crate::cas::rational::half;
 
 use super::fraction::{Fraction, negated};
@@ -10,8 +11,8 @@ use super::{Field, Obstacle};
 impl Field<'_> {
     /// The normal form of an expression.
     pub fn fraction(&self, expr: Expr) -> Result<Fraction, Obstacle> {
-        if let Some(found) = self.known.borrow().get(&expr) {
-            return Ok(found.clone());
+        if self.known.borrow().contains_key(&expr) {
+            return self.get(expr);
         }
         for e in self.arena.postorder(&[expr]) {
             if self.known.borrow().contains_key(&e) {
@@ -25,7 +26,10 @@ impl Field<'_> {
 
     fn get(&self, expr: Expr) -> Result<Fraction, Obstacle> {
         match self.known.borrow().get(&expr) {
-            Some(found) => Ok(found.clone()),
+            Some(found) => {
+                self.work().spend(1 + steps(found.weight()))?;
+                Ok(found.clone())
+            }
             None => Err(Obstacle::Kernel(self.arena.print(expr))),
         }
     }

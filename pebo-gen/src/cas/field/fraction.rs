@@ -7,7 +7,7 @@
 //! equal fractions with short denominators are stored equally.
 
 use crate::cas::integer::Integer;
-use crate::cas::poly::Poly;
+use crate::cas::poly::{Poly, steps};
 use crate::cas::rational::Rational;
 
 use super::{Field, Obstacle};
@@ -88,6 +88,7 @@ impl Fraction {
 impl Field<'_> {
     /// The canonical fraction of two polynomials.
     pub(super) fn fraction_of(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
+        self.work().spend(steps(num.term_count() + den.term_count()))?;
         let mut num = self.reduce(num)?;
         let mut den = self.reduce(den)?;
         if den.is_zero() {

@@ -80,6 +80,8 @@ const MOST_ROUNDS: usize = 12;
 pub enum Obstacle {
     /// The polynomials grow past the work limit.
     TooLarge,
+    /// The budget of all questions together is used up.
+    OutOfBudget,
     /// A denominator vanishes identically.
     DivisionByZero,
     /// Two kernels that could not be shown independent, or one that has no rules here.
@@ -96,6 +98,7 @@ impl fmt::Display for Obstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooLarge => f.write_str("the expressions grow past the work limit"),
+            Self::OutOfBudget => f.write_str("the limit on time or memory is reached"),
             Self::DivisionByZero => f.write_str("a denominator is zero everywhere"),
             Self::Kernel(what) => write!(f, "no rule decides {what}"),
             Self::NoPoint => f.write_str("no point of the assumed domain was found where the formula has a value"),
@@ -174,7 +177,7 @@ impl<'a> Field<'a> {
     pub fn over(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
         let field = Self {
             arena,
-            work: Work::new(STEPS),
+            work: Work::within(STEPS, arena.budget()),
             kernels: RefCell::default(),
             numbers: RefCell::default(),
             known: RefCell::default(),
@@ -199,6 +202,9 @@ impl<'a> Field<'a> {
             unsigned: RefCell::default(),
         };
         for _ in 0..MOST_ROUNDS {
+            if arena.budget().is_exhausted() {
+                return Err(Obstacle::OutOfBudget);
+            }
             field.restart();
             for root in roots {
                 field.fraction(*root)?;

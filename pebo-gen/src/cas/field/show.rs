@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::cas::expr::Expr;
 use crate::cas::integer::Integer;
-use crate::cas::poly::{Monomial, Poly, TooLarge};
+use crate::cas::poly::{Monomial, Poly, TooLarge, steps};
 use crate::cas::rational::Rational;
 
 use super::Field;
@@ -20,6 +20,7 @@ type Terms = Vec<(Monomial, Integer)>;
 impl Field<'_> {
     /// The fraction as an expression.
     pub fn show(&self, fraction: &Fraction) -> Expr {
+        self.count(fraction);
         let (above, num) = primitive(&fraction.num);
         let (below, den) = primitive(&fraction.den);
         let coefficient = Rational::new(above, below).unwrap_or(Rational::ZERO);
@@ -50,6 +51,12 @@ impl Field<'_> {
         product().unwrap_or_else(|_| self.show(fraction))
     }
 
+    /// What showing takes: each term is looked at once for each of its kernels that is taken out.
+    fn count(&self, fraction: &Fraction) {
+        const STEPS_OF_A_TERM: u64 = 16;
+        self.arena.budget().take(STEPS_OF_A_TERM * steps(fraction.weight() * (1 + fraction.variables().count())));
+    }
+
     /// A polynomial as an expression.
     pub(super) fn show_polynomial(&self, poly: &Poly) -> Expr {
         let (content, rest) = primitive(poly);
@@ -59,6 +66,7 @@ impl Field<'_> {
     /// The fraction as a sum over the denominators that are left when each term of the numerator cancels
     /// on its own: `(a + b)/L - G*c/C` rather than everything over `L*C`.
     pub fn show_apart(&self, fraction: &Fraction) -> Expr {
+        self.count(fraction);
         let (below, den) = primitive(&fraction.den);
         let content = den.monomial_content();
         let mut groups: BTreeMap<Vec<(u32, u32)>, Terms> = BTreeMap::new();

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use crate::cas::expr::Expr;
 use crate::cas::integer::Integer;
-use crate::cas::poly::{Monomial, Poly};
+use crate::cas::poly::{Monomial, Poly, steps};
 use crate::cas::rational::Rational;
 
 use super::fraction::{Fraction, negated, primitive};
@@ -133,6 +133,8 @@ impl Field<'_> {
                 row[column] = Rational::from(coefficient.clone());
             }
         }
+        // A row for each monomial, and a pass over all of them for each atom.
+        self.limit().spend(steps(rows.len() * columns.len() * columns.len()))?;
         let Some(solution) = solve(rows.into_values().collect(), atoms.len()) else { return Ok(None) };
         let used = atoms.iter().zip(solution).filter(|(_, share)| !share.is_zero());
         Ok(Some(used.map(|((atom, _), share)| (*atom, share)).collect()))

@@ -54,6 +54,12 @@ impl Precision {
         }
     }
 
+    /// Steps of work that a function takes at this precision.
+    pub(super) fn steps(self) -> u64 {
+        const STEPS_OF_A_WORD: u64 = 100;
+        STEPS_OF_A_WORD * u64::from(self.0.div_ceil(64))
+    }
+
     fn bits(self) -> i64 {
         self.0.into()
     }

@@ -88,7 +88,7 @@ impl Poly {
             return Err(TooLarge);
         }
         let weight = self.bits().div_ceil(64) * divisor.bits().div_ceil(64);
-        work.spend(steps(self.term_count()))?;
+        work.spend(steps(self.term_count() * (1 + self.variables().len())))?;
         let division =
             Division { layout: &self.layout, dividend: &self.keys, divisor: keys, degrees: &degrees, weight, work };
         // A double word holds as many products of words as the divisor has terms, and more.

@@ -6,7 +6,7 @@ use super::super::integer::Integer;
 use super::divide::key_quotient;
 use super::division::{Division, Outcome, Rest};
 use super::layout::MAX_WORDS;
-use super::multiply::{Factor, MAX_TERMS, Sum, Terms};
+use super::multiply::{Factor, Sum, Terms};
 use super::work::{TooLarge, steps};
 
 /// The product of two polynomials with keys of the given number of words.
@@ -131,6 +131,9 @@ impl Division<'_> {
     }
 }
 
+/// No table has more entries than fit here; growing and sorting them takes about as much again.
+const MOST_BYTES: usize = 1 << 26;
+
 /// Open addressing by linear probing; a slot holds the number of its entry plus one.
 struct Table<const N: usize, S> {
     slots: Vec<u32>,
@@ -144,7 +147,7 @@ impl<const N: usize, S: Sum> Table<N, S> {
 
     /// Makes room for some more entries, so that `sum` need not look.
     fn reserve(&mut self, more: usize) -> Result<(), TooLarge> {
-        if self.entries.len() > MAX_TERMS {
+        if self.entries.len() > MOST_BYTES / size_of::<([u64; N], S)>() {
             return Err(TooLarge);
         }
         let needed = ((self.entries.len() + more) * 2).next_power_of_two();
@@ -184,7 +187,7 @@ impl<const N: usize, S: Sum> Table<N, S> {
                 0 => {
                     let entry = self.entries.len();
                     self.entries.push((key, S::default()));
-                    #[expect(clippy::cast_possible_truncation, reason = "at most 2 * MAX_TERMS")]
+                    #[expect(clippy::cast_possible_truncation, reason = "an entry has at least 16 bytes")]
                     let number = entry as u32 + 1;
                     self.slots[slot] = number;
                     return entry;

@@ -47,7 +47,7 @@ pub use basis::gcd_free_basis;
 pub use field::{PrimeField, Residue};
 pub use monomial::Monomial;
 pub use square_free::SquareFree;
-pub use work::{TooLarge, Work};
+pub use work::{TooLarge, Work, steps};
 
 /// A polynomial with integer coefficients.
 #[derive(Clone, PartialEq, Eq, Hash)]

@@ -12,9 +12,6 @@ use super::layout::{Exponents, Layout, MAX_WORDS};
 use super::work::{TooLarge, Work, steps};
 use super::{Poly, hashed};
 
-/// No product has more terms than this: some gigabytes.
-pub(super) const MAX_TERMS: usize = 1 << 25;
-
 /// A sum of products of coefficients.
 pub(super) trait Sum: Clone + Default {
     /// The coefficients that are multiplied.
@@ -86,6 +83,7 @@ impl Poly {
         if self.is_zero() || other.is_zero() {
             return Ok(Self::zero());
         }
+        work.begin(steps(self.term_count() + other.term_count()))?;
         let words = |poly: &Self| poly.bits().div_ceil(64);
         let pairs = steps(self.term_count()).saturating_mul(steps(other.term_count()));
         work.spend(pairs.saturating_mul(words(self)).saturating_mul(words(other)))?;

@@ -6,16 +6,27 @@
 use std::cell::Cell;
 use std::fmt;
 
+use crate::cas::budget::Budget;
+
+/// Steps that an operation takes whatever its operands are.
+const STEPS_OF_AN_OPERATION: u64 = 32;
+
 /// Steps that are left to spend.
 #[derive(Debug)]
 pub struct Work {
     left: Cell<u64>,
+    whole: Budget,
 }
 
 impl Work {
-    /// A budget of the given number of steps.
+    /// So many steps.
     pub fn new(steps: u64) -> Self {
-        Self { left: Cell::new(steps) }
+        Self::within(steps, &Budget::unlimited())
+    }
+
+    /// So many steps of one question, which are steps of the whole too.
+    pub fn within(steps: u64, whole: &Budget) -> Self {
+        Self { left: Cell::new(steps), whole: whole.clone() }
     }
 
     /// The steps that remain.
@@ -23,9 +34,15 @@ impl Work {
         self.left.get()
     }
 
+    /// Draws from the whole alone what an operation takes besides its products: memory, and a look at each term of its
+    /// operands. A question's own steps bound what is multiplied.
+    pub fn begin(&self, terms: u64) -> Result<(), TooLarge> {
+        if self.whole.take(terms.saturating_add(STEPS_OF_AN_OPERATION)) { Ok(()) } else { Err(TooLarge) }
+    }
+
     /// Draws steps; once there are too few, nothing is left for anything else either.
     pub fn spend(&self, steps: u64) -> Result<(), TooLarge> {
-        let rest = self.left.get().checked_sub(steps);
+        let rest = self.left.get().checked_sub(steps).filter(|_| self.whole.take(steps));
         self.left.set(rest.unwrap_or(0));
         rest.map(|_| ()).ok_or(TooLarge)
     }
@@ -45,6 +62,6 @@ impl fmt::Display for TooLarge {
 impl std::error::Error for TooLarge {}
 
 /// A length as a number of steps.
-pub(super) fn steps(length: usize) -> u64 {
+pub fn steps(length: usize) -> u64 {
     u64::try_from(length).unwrap_or(u64::MAX)
 }

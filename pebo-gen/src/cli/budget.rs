@@ -1,0 +1,37 @@
+//! What a command may take for a model: `--limit`, by this machine's clock, and memory.
+
+use std::time::{Duration, Instant};
+
+use memory_stats::memory_stats;
+use pebo_gen::cas::budget::Budget;
+
+use super::arguments::Limit;
+
+/// Bytes of memory for a limit of usual length or shorter.
+const MEMORY: f64 = 512.0 * 1024.0 * 1024.0;
+
+/// The part of the memory that is kept for what a single operation may take before the next look.
+const RESERVE: f64 = 0.25;
+
+impl Limit {
+    /// The budget of a model that is begun now.
+    pub(super) fn budget(self) -> Budget {
+        let started = Instant::now();
+        let time = Duration::from_secs_f64(self.0);
+        let longer = (self.0 / Budget::SECONDS).max(1.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a float that is too large saturates"
+        )]
+        let memory = (MEMORY * longer * (1.0 - RESERVE)) as usize;
+        // What was taken before, for another model, is not this one's.
+        let before = resident();
+        Budget::watched(self.0, move || started.elapsed() >= time || resident().saturating_sub(before) >= memory)
+    }
+}
+
+/// The bytes that the process has in memory; none where the system does not tell.
+fn resident() -> usize {
+    memory_stats().map_or(0, |stats| stats.physical_mem)
+}
