@@ -3,6 +3,7 @@
 use pebo_gen::analysis::{Class, Equilibrium, Excitation, Fundamental, Outcome, RegressionKind, Verdict};
 use pebo_gen::cas::asks::Want;
 use pebo_gen::cas::facts::Relation;
+use pebo_gen::cas::{Expr, Symbol};
 use pebo_gen::report::summary;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Derived, derive};
@@ -339,6 +340,77 @@ const TABLE: &[(&str, &str, Answer)] = &[
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x - y*x^9}\nphi: [x]",
         Accepted("dynamic over-parameterised excitation"),
     ),
+    // Claims are made on the manifold of the identities.
+    (
+        "a factor that an identity makes zero",
+        "x: [p]\ny: [a, b, c]\nu: [v]\nf_x: {p: v}\nf_y: {a: b, b: -a, c: (a^2 + b^2 - 1)*p}\nphi: [p]\n\
+         identities: [a^2 + b^2 - 1]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "a cascade by an identity",
+        "x: [p]\ny: [a, b, q]\nu: [v]\nf_x: {p: v + (a^2 + b^2 - 1)*p}\nf_y: {a: b*v, b: -a*v, q: p}\nphi: [p]\n\
+         identities: [a^2 + b^2 - 1]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "a cascade by an identity without rational points",
+        "x: [p]\ny: [a, b, q]\nu: [v]\nf_x: {p: v + (a^2 + b^2 - 3)*p}\nf_y: {a: b*v, b: -a*v, q: p}\nphi: [p]\n\
+         identities: [a^2 + b^2 - 3]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "a cascade that fails on the manifold",
+        "x: [p]\ny: [a, b, q]\nu: [v]\nf_x: {p: v + a*p^2}\nf_y: {a: b*v, b: -a*v, q: p}\nphi: [p]\n\
+         identities: [a^2 + b^2 - 1]",
+        Rejected(Code::CascadeRefuted),
+    ),
+    (
+        "a regression by an identity",
+        "x: [p]\ny: [a, b, q]\nu: [v]\nf_x: {p: v}\nf_y: {a: b*v, b: -a*v, q: p + (a^2 + b^2 - 1)*p^3}\nphi: [p]\n\
+         identities: [a^2 + b^2 - 1]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "an identity that eliminates a state",
+        "x: [s]\ny: [c, w]\nu: [v]\nf_x: {s: v + w - 2*s}\nf_y: {c: s}\nphi: [s]\nidentities: [w - 2*s]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "a left inverse by an identity",
+        "x: [s, t]\ny: [c, w]\nu: [v]\nf_x: {s: v, t: v}\nf_y: {c: t}\nphi: [t]\nidentities: [w - s - t]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "an identity in an input",
+        "x: [p]\ny: [c, d]\nu: [v, w]\nf_x: {p: v}\nf_y: {c: p}\nphi: [p]\nidentities: [d - w*p]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "an output that an identity holds still",
+        "x: [p, q]\ny: [c, w]\nu: [v]\nf_x: {p: v, q: v}\nf_y: {c: p + w*q}\nphi: [p, q]\nidentities: [w - 3]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "an output that nothing holds still",
+        "x: [p, q]\ny: [c, w]\nu: [v]\nf_x: {p: v, q: v}\nf_y: {c: p + w*q}\nphi: [p, q]",
+        Accepted("dynamic linear excitation"),
+    ),
+    (
+        "an identity that the plant does not keep",
+        "x: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v}\nf_y: {a: b*p, b: a*p}\nphi: [p]\nidentities: [a^2 + b^2 - 1]",
+        Rejected(Code::IdentityRefuted),
+    ),
+    (
+        "an identity without a real solution",
+        "x: [p]\ny: [a]\nu: [v]\nf_x: {p: v}\nf_y: {a: p}\nphi: [p]\nidentities: [p^2 + 1]",
+        Rejected(Code::IdentityRefuted),
+    ),
+    (
+        "an identity that could not be solved",
+        "x: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v}\nf_y: {a: p}\nphi: [p]\nidentities: [b + exp(b) - 3]",
+        Undecided(Code::IdentityUndecided),
+    ),
     (
         "identity of ninth degree",
         "x: [l, m]\ny: [i, j]\nu: [v, w]\nf_x: {l: v - i, m: w - i}\nphi: [l, m]\nidentities: [(l - i)^9 + (m - j)^2 - 2]",
@@ -526,7 +598,8 @@ fn a_witness_is_a_point_where_the_residual_is_not_zero() {
     let witness = cascade.witness.as_ref().expect("a witness");
     let value = |name: &str| {
         let symbol = plant.plant.arena.symbol(name);
-        witness.point.iter().find(|(s, _)| *s == symbol).expect("a coordinate").1.to_f64()
+        let (_, value) = witness.point.iter().find(|(s, _)| *s == symbol).expect("a coordinate");
+        plant.plant.arena.as_number(*value).expect("a rational coordinate").to_f64()
     };
     assert_eq!(plant.plant.arena.print(cascade.residual[0]), "-g*x^2");
     let again = -value("g") * value("x") * value("x");
@@ -542,7 +615,8 @@ fn a_refutation_compares_points_of_the_domain() {
     let cascade = plant.derivation.cascade.result.as_ref().expect("a residual");
     let compared = cascade.witness.as_ref().and_then(|witness| witness.compared.as_ref()).expect("two points");
     let [here, there] = compared.points.as_slice() else { panic!("{compared:?}") };
-    let (here, there, u) = (here[0].1.to_f64(), there[0].1.to_f64(), compared.known[0].1.to_f64());
+    let value = |point: &[(Symbol, Expr)]| plant.plant.arena.as_number(point[0].1).expect("a rational").to_f64();
+    let (here, there, u) = (value(here), value(there), value(&compared.known));
     assert!(here > 3.0 && there > 3.0 && u > 1.0);
     // The values are of small rationals, up to rounding.
     for (p, (low, high)) in [here, there].into_iter().zip(compared.values.iter().copied()) {

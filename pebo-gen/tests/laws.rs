@@ -148,9 +148,9 @@ proptest! {
         let at = |shift: &Rational| {
             let mut point = BTreeMap::new();
             for (name, value) in NAMES.iter().zip([n, m, n - m]) {
-                point.insert(arena.symbol(name), Rational::new(value, 5).expect("a fifth"));
+                point.insert(arena.symbol(name), arena.number(Rational::new(value, 5).expect("a fifth")));
             }
-            let moved = &point[&x] + shift;
+            let moved = arena.add(point[&x], arena.number(shift.clone()));
             point.insert(x, moved);
             point
         };

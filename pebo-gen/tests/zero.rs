@@ -5,12 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use pebo_gen::cas::Arena;
 use pebo_gen::cas::domain::Domain;
 use pebo_gen::cas::facts::Relation;
 use pebo_gen::cas::field::Obstacle;
 use pebo_gen::cas::function::{Function, Value};
 use pebo_gen::cas::zero::{Answer, decide};
+use pebo_gen::cas::{Arena, Expr};
 use pebo_gen::model::formula::{Estimates, FUNCTIONS, Formula, Operator, Places, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
@@ -267,7 +267,8 @@ fn near_identities_are_refuted_with_a_witness() {
         let formula = parse(text);
         let (arena, answer) = decided(&formula, positive);
         let Answer::NonZero(witness) = answer else { panic!("{text}: {answer:?}") };
-        let point: BTreeMap<String, f64> = witness.point.iter().map(|(s, v)| (arena.name(*s), v.to_f64())).collect();
+        let rational = |v: &Expr| arena.as_number(*v).expect("a rational coordinate").to_f64();
+        let point: BTreeMap<String, f64> = witness.point.iter().map(|(s, v)| (arena.name(*s), rational(v))).collect();
         let (low, high) = (witness.value.lo(), witness.value.hi());
         assert!(low > 0.0 || high < 0.0, "{text}: [{low}, {high}] does not exclude zero");
         // Rounding of the floating-point walk, over a dozen operations on values of size 100 at most.

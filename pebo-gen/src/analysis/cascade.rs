@@ -133,10 +133,20 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             None => Component::Open(Obstacle::NoPoint),
         };
     }
-    let tidied = match Field::over(arena, &domain.facts, &[rate]).and_then(|field| {
+    let tidy = |field: Result<Field<'_>, Obstacle>| {
+        let field = field?;
         let fraction = field.fraction(rate)?;
         Ok(field.show(&fraction))
-    }) {
+    };
+    let everywhere = tidy(Field::over(arena, &domain.facts, &[rate]));
+    let tidied = match everywhere {
+        // On the manifold the rate may be free of x.
+        Ok(tidied) if !domain.manifold.is_empty() && arena.depends_on(tidied, &hidden) => {
+            tidy(Field::on(arena, domain, &[rate])).or(Ok(tidied))
+        }
+        other => other,
+    };
+    let tidied = match tidied {
         Ok(tidied) => tidied,
         // What no normal form reaches may differ at points all the same.
         Err(obstacle) => return bound(plant, domain, rate, rate).unwrap_or(Component::Open(obstacle)),
@@ -166,14 +176,13 @@ fn bound(plant: &Plant, domain: &Domain, rate: Expr, shown: Expr) -> Option<Comp
     let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
     let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
     let through: Vec<Symbol> = arena.symbols_of(&[shown]).intersection(&hidden).copied().collect();
-    let fixed: BTreeMap<Symbol, Expr> =
-        through.iter().filter_map(|s| Some((*s, arena.number(reference.get(s)?.clone())))).collect();
+    let fixed: BTreeMap<Symbol, Expr> = through.iter().filter_map(|s| Some((*s, *reference.get(s)?))).collect();
     let residual = shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed)));
     let difference = here.sub(there, Precision::new(256))?;
     let compared = Comparison::of(shown, &points, &hidden);
     let witness = Witness {
         expr: residual,
-        point: points.points[0].iter().map(|(symbol, value)| (*symbol, value.clone())).collect(),
+        point: points.points[0].iter().map(|(symbol, value)| (*symbol, *value)).collect(),
         bounds: (difference.lo(), difference.hi()),
         compared: Some(compared),
     };

@@ -12,13 +12,17 @@ use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInve
 use super::left_inverse::at_phi;
 use super::limited::{ended, limited, unfinished};
 use super::remarks::Remarks;
-use super::{cascade, identifiability, known, left_inverse, regression};
+use super::{cascade, identifiability, identities, known, left_inverse, regression};
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
     pub fn derive(plant: &Plant) -> Self {
         let domain = plant.domain();
         let mut found: Vec<Diagnostic> = Vec::new();
+        let standing = identities::prove(plant, &domain, &mut found);
+        if standing != Verdict::Proved {
+            return Self::without_claims(standing, found);
+        }
         let mut class = Class::Pebo;
         let mut cascade = limited(plant, "the cascade", &mut found, |found| {
             let (kind, claim) = cascade::prove(plant, &domain, found);
@@ -116,6 +120,21 @@ impl Derivation {
             identifiability,
             conditions: conditions.listed(),
             diagnostics: found,
+            remarks: Remarks::default(),
+        }
+    }
+
+    /// What is derived where the identities do not stand: nothing.
+    fn without_claims(standing: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
+        Self {
+            outcome: outcome(&[standing]),
+            class: Class::Pebo,
+            cascade: Claim::skipped(),
+            left_inverse: Claim::skipped(),
+            regression: Claim::skipped(),
+            identifiability: Claim::skipped(),
+            conditions: Vec::new(),
+            diagnostics,
             remarks: Remarks::default(),
         }
     }

@@ -3,7 +3,6 @@
 use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
-use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
 pub use crate::model::CascadeClass as Class;
 use crate::plant::Plant;
@@ -75,13 +74,13 @@ pub enum Fundamental {
     NotShown,
 }
 
-/// A rational point at which an expression provably is not zero.
+/// A point at which an expression provably is not zero.
 #[derive(Clone, Debug)]
 pub struct Witness {
     /// The expression.
     pub expr: Expr,
-    /// The values of its symbols.
-    pub point: Vec<(Symbol, Rational)>,
+    /// The values of its symbols: constants, rational ones as a rule.
+    pub point: Vec<(Symbol, Expr)>,
     /// Bounds of its value there, outward rounded; both of one sign.
     pub bounds: (f64, f64),
     /// The points of the domain that were compared, where it took more than one.
@@ -94,9 +93,9 @@ pub struct Comparison {
     /// The expression.
     pub expr: Expr,
     /// The unmeasured states and signals at each point.
-    pub points: Vec<Vec<(Symbol, Rational)>>,
+    pub points: Vec<Vec<(Symbol, Expr)>>,
     /// What all points share.
-    pub known: Vec<(Symbol, Rational)>,
+    pub known: Vec<(Symbol, Expr)>,
     /// Bounds of the expression's value at each point, outward rounded.
     pub values: Vec<(f64, f64)>,
 }

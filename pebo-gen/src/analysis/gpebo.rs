@@ -6,9 +6,9 @@
 //! ([`super::bounded`]).
 
 use crate::cas::Expr;
-use crate::cas::combination::combine;
+use crate::cas::combination::combine_on;
 use crate::cas::domain::Domain;
-use crate::cas::field::{Field, Obstacle};
+use crate::cas::field::Obstacle;
 use crate::cas::zero::{Answer, decide};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
@@ -41,13 +41,9 @@ pub(super) fn row(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<R
 pub(super) fn affine(plant: &Plant, domain: &Domain, expr: Expr) -> Result<Option<Row>, Obstacle> {
     let arena = &plant.arena;
     let phi = plant.transform();
-    let mut roots = phi.clone();
-    roots.push(expr);
-    let field = Field::over(arena, &domain.facts, &roots)?;
     let mut basis = vec![arena.one()];
     basis.extend(&phi);
-    let Some(coefficients) = combine(&field, expr, &basis, &plant.hidden())? else { return Ok(None) };
-    let row: Row = coefficients.iter().map(|c| field.show(c)).collect();
+    let Some(row) = combine_on(arena, domain, expr, &basis, &plant.hidden())? else { return Ok(None) };
     match decide(arena, arena.sub(expr, dot(arena, &row, &basis)), domain) {
         Answer::Zero => Ok(Some(row)),
         Answer::Open(obstacle) => Err(obstacle),

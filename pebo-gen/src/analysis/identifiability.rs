@@ -4,7 +4,8 @@
 //! point at which a rigorous elimination finds it), `excitation` where it has only together with its
 //! time derivatives along the plant, `never` where a direction of the unknowns stays unseen by every
 //! derivative (shown by exact linear algebra). Inputs, and signals without an equation, are free
-//! functions of time: their derivatives are new symbols (Ortega et al. 2015, remark R3).
+//! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
+//! et al. 2015, remark R3).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +15,7 @@ use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::linear::Echelon;
 use crate::cas::pivots::pivots;
-use crate::cas::zero::decide;
+use crate::cas::zero::{decide, refute};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
@@ -37,7 +38,7 @@ pub(super) fn prove(
 ) -> Claim<Identifiability> {
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
-    let mut flow = Flow::new(plant, cascade);
+    let mut flow = Flow::new(plant, domain, cascade);
     let mut stack = effective(arena, &flow, &regression.phi_1, &regression.primitive_1);
     let answer = |kind, direction, verdict| Claim {
         verdict,
@@ -165,7 +166,7 @@ fn of_theta(
 /// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
 fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
     let arena = &plant.arena;
-    let mut flow = Flow::new(plant, cascade);
+    let mut flow = Flow::new(plant, domain, cascade);
     let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
     let mut rank = rank_seen(arena, domain, &stack, unknowns);
     for _ in 1..unknowns {
@@ -200,13 +201,14 @@ pub(super) struct Flow {
 }
 
 impl Flow {
-    fn new(plant: &Plant, cascade: &Cascade) -> Self {
-        Self::along(plant, cascade, &BTreeSet::new(), &BTreeMap::new())
+    fn new(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Self {
+        Self::along(plant, domain, cascade, &BTreeSet::new(), &BTreeMap::new())
     }
 
     /// The motions on which some signals are constant and inputs are functions of others.
     pub(super) fn along(
         plant: &Plant,
+        domain: &Domain,
         cascade: &Cascade,
         held: &BTreeSet<Symbol>,
         equal: &BTreeMap<Symbol, Expr>,
@@ -235,7 +237,25 @@ impl Flow {
         rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
         let mut flow = Self { rates, free };
         flow.advance(plant);
+        flow.bind(plant, domain);
         flow
+    }
+
+    /// Gives a signal without an equation the rate that an identity leaves it: it is not free then.
+    fn bind(&mut self, plant: &Plant, domain: &Domain) {
+        let arena = &plant.arena;
+        for identity in &plant.identities {
+            let moved = self.rate(arena, identity.expr);
+            let slopes = self.free.iter().map(|derivative| arena.derivative(moved, *derivative));
+            let bound = slopes.enumerate().find(|(_, slope)| refute(arena, *slope, domain).is_some());
+            let Some((index, slope)) = bound else { continue };
+            let derivative = self.free.remove(index);
+            let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
+            let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
+            for rate in self.rates.values_mut() {
+                *rate = arena.substitute(*rate, &value);
+            }
+        }
     }
 
     /// Gives the latest derivatives of the free signals rates of their own.
@@ -298,8 +318,7 @@ pub(super) fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> 
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
 /// parameters where these values are nothing special.
 fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Unseen, Obstacle> {
-    let values: BTreeMap<Symbol, Expr> = domain.fixed.iter().map(|(s, v)| (*s, arena.number(v.clone()))).collect();
-    let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &values)).collect();
+    let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &domain.fixed)).collect();
     let special = null_vectors(arena, domain, &valued, columns)?;
     let general = null_vectors(arena, domain, rows, columns)?;
     let special_values = special.len() > general.len();
@@ -321,7 +340,7 @@ pub(super) fn null_vectors(
     columns: usize,
 ) -> Result<Vec<Vec<Expr>>, Obstacle> {
     let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    let field = Field::over(arena, &domain.facts, &entries)?;
+    let field = Field::on(arena, domain, &entries)?;
     let matrix = rows
         .iter()
         .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())

@@ -12,7 +12,7 @@ use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
 use crate::cas::zero::{self, Answer, decide, refute};
 use crate::cas::{Arena, Expr, Function, Symbol};
-use crate::plant::Plant;
+use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::design::{Claim, LeftInverse, Origin, Verdict, Witness};
@@ -144,7 +144,8 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, 
         both.facts.assume(arena.substitute(fact, &other), relation);
     }
     let same = |phi: &Expr| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), &both).is_zero();
-    if !plant.transform().iter().all(same) {
+    let stands = |identity: &Formula| decide(arena, arena.substitute(identity.expr, &other), &both).is_zero();
+    if !plant.transform().iter().all(same) || !plant.identities.iter().all(stands) {
         return None;
     }
     refute(arena, tested, &both)
@@ -171,11 +172,16 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
         .collect();
     let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).collect();
     // Where a class proposes a formula for every state, nothing is solved for.
-    let solved = if plant.proposal.phi_left.len() == states.len() {
+    let mut solved = if plant.proposal.phi_left.len() == states.len() {
         BTreeMap::new()
     } else {
         solve(arena, domain, &equations, &states)?
     };
+    if solved.len() < states.len() && !plant.identities.is_empty() {
+        for (state, candidates) in with_identities(plant, domain, equations, &states)? {
+            solved.entry(state).or_insert(candidates);
+        }
+    }
     Ok(plant
         .x
         .iter()
@@ -194,6 +200,26 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
             Some((state.symbol, shortest(arena, domain, *formula), state.rate.span))
         })
         .collect())
+}
+
+/// Solves the transform together with the identities; of what comes out, what is a function of z and y.
+fn with_identities(
+    plant: &Plant,
+    domain: &Domain,
+    mut equations: Vec<Equation>,
+    states: &[Symbol],
+) -> Result<BTreeMap<Symbol, Vec<Expr>>, Obstacle> {
+    let arena = &plant.arena;
+    let zero = arena.zero();
+    equations.extend(plant.identities.iter().map(|identity| Equation { formula: identity.expr, value: zero }));
+    let mut foreign = plant.hidden();
+    foreign.extend(&plant.u);
+    let mut solved = solve(arena, domain, &equations, states)?;
+    for candidates in solved.values_mut() {
+        candidates.retain(|formula| !arena.depends_on(*formula, &foreign));
+    }
+    solved.retain(|_, candidates| !candidates.is_empty());
+    Ok(solved)
 }
 
 /// What must vanish, for an angle up to periods: `phi_left(phi(x, y), y) - x`.

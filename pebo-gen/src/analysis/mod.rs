@@ -1,7 +1,7 @@
 //! The claims of a parameter-estimation-based observer, each with its verdict.
 //!
 //! ```text
-//! Plant -> cascade -> left inverse -> regression -> identifiability -> Derivation
+//! Plant -> identities -> cascade -> left inverse -> regression -> identifiability -> Derivation
 //! ```
 //!
 //! Holds after: what is called proved was shown by exact algebra, what is called refuted by rational points of the
@@ -30,6 +30,7 @@ mod equilibrium;
 mod excitation;
 mod gpebo;
 mod identifiability;
+mod identities;
 mod implicit;
 mod killing;
 mod known;

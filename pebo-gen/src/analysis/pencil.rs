@@ -5,12 +5,10 @@
 //! itself; that subspace is the kernel of `A21, A21 A11, .., A21 A11^(n-1)`, which takes no eigenvalues to
 //! compute, so the answer is exact.
 
-use std::collections::BTreeMap;
-
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::zero::{Answer, decide};
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Arena, Expr};
 use crate::plant::class::Linear;
 use crate::plant::matrix::Matrix;
 use crate::plant::{Class, Plant};
@@ -151,6 +149,5 @@ fn refused(
 
 /// The matrix at the values of the parameters that have one.
 fn valued(arena: &Arena, domain: &Domain, matrix: &Matrix) -> Matrix {
-    let values: BTreeMap<Symbol, Expr> = domain.fixed.iter().map(|(s, v)| (*s, arena.number(v.clone()))).collect();
-    matrix.map(|entry| arena.substitute(entry, &values))
+    matrix.map(|entry| arena.substitute(entry, &domain.fixed))
 }

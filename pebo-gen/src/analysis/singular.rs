@@ -56,8 +56,7 @@ impl<'a> Volume<'a> {
         let square = phi_1.len() == columns;
         let (rest, mut powers) = without_common_factors(arena, phi_1, square);
         let bases = powers.iter().map(|(base, _)| *base);
-        let field =
-            Field::over(arena, &domain.facts, &rest.iter().flatten().copied().chain(bases).collect::<Vec<_>>())?;
+        let field = Field::on(arena, domain, &rest.iter().flatten().copied().chain(bases).collect::<Vec<_>>())?;
         let core = core_of(&field, &rest)?;
         if !square {
             powers.iter_mut().for_each(|(_, power)| *power = &*power + &*power);

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use crate::cas::contrast::Contrast;
 use crate::cas::enclosure::Point;
-use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 
 use super::design::{Comparison, Witness};
@@ -65,13 +64,13 @@ impl Comparison {
     }
 }
 
-fn coordinates(point: &Point) -> Vec<(Symbol, Rational)> {
-    point.iter().map(|(symbol, value)| (*symbol, value.clone())).collect()
+fn coordinates(point: &Point) -> Vec<(Symbol, Expr)> {
+    point.iter().map(|(symbol, value)| (*symbol, *value)).collect()
 }
 
 /// `a = 1, b = 2/3`
-fn values(arena: &Arena, point: &[(Symbol, Rational)]) -> String {
-    let entry = |(s, v): &(Symbol, Rational)| format!("{} = {}", arena.name(*s), arena.print(arena.number(v.clone())));
+fn values(arena: &Arena, point: &[(Symbol, Expr)]) -> String {
+    let entry = |(s, v): &(Symbol, Expr)| format!("{} = {}", arena.name(*s), arena.print(*v));
     point.iter().map(entry).collect::<Vec<_>>().join(", ")
 }
 

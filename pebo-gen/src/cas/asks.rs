@@ -202,10 +202,10 @@ mod tests {
             let arguments = if row.arity == 2 { vec![a, b] } else { vec![a] };
             let expr = arena.call(row.function, &arguments);
             for (u, v) in values.iter().flat_map(|u| values.iter().map(move |v| (u, v))) {
-                let point: Point = symbols.into_iter().zip([u.clone(), v.clone()]).collect();
-                let at = point.iter().map(|(s, v)| (*s, arena.number(v.clone()))).collect();
+                let point: Point = symbols.into_iter().zip([u, v].map(|value| arena.number(value.clone()))).collect();
+                let at = &point;
                 let asked = arena.asked_by_call(row.function, &arguments, Want::Value);
-                let held = asked.iter().all(|(e, r)| arena.holds_of_number((arena.substitute(*e, &at), *r)));
+                let held = asked.iter().all(|(e, r)| arena.holds_of_number((arena.substitute(*e, at), *r)));
                 assert_eq!(arena.exists_at(expr, &point), held, "{} at {u:?}, {v:?}", row.name);
             }
         }

@@ -12,6 +12,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::arena::Arena;
+use super::domain::Domain;
 use super::expr::{Expr, Symbol};
 use super::field::{Field, Fraction, Obstacle};
 use super::linear::{Echelon, solve};
@@ -65,6 +67,27 @@ pub fn cancelling(
     }
     let (echelon, _) = Echelon::of(field, rows.into_values().collect(), exprs.len())?;
     Ok(echelon.null_space())
+}
+
+/// As [`combine`], of the domain: coefficients as expressions, with which the combination holds everywhere, else on the
+/// manifold of the domain.
+pub fn combine_on(
+    arena: &Arena,
+    domain: &Domain,
+    target: Expr,
+    basis: &[Expr],
+    x: &BTreeSet<Symbol>,
+) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let roots = [basis, &[target]].concat();
+    let combined = |field: Result<Field<'_>, Obstacle>| {
+        let field = field?;
+        let coefficients = combine(&field, target, basis, x)?;
+        Ok(coefficients.map(|coefficients| coefficients.iter().map(|c| field.show(c)).collect()))
+    };
+    match combined(Field::over(arena, &domain.facts, &roots)) {
+        Ok(None) | Err(_) if !domain.manifold.is_empty() => combined(Field::on(arena, domain, &roots)),
+        found => found,
+    }
 }
 
 /// The numerators of fractions over their least common denominator.

@@ -14,7 +14,6 @@ use super::enclosure::Point;
 use super::expr::{Expr, Symbol};
 use super::interval::{Interval, Precision};
 use super::pivots::pivots;
-use super::rational::Rational;
 
 /// Values of the other symbols that are tried.
 const MOST_PLACES: usize = 24;
@@ -52,7 +51,7 @@ pub fn contrast(
         // Simple values of x before any that are drawn: these are what a reader sees.
         let simple = [0, 1, 2].into_iter().filter_map(|value| {
             let mut point = first.clone();
-            point.extend(hidden.iter().map(|symbol| (*symbol, Rational::from(value))));
+            point.extend(hidden.iter().map(|symbol| (*symbol, arena.number(value))));
             domain.contains(arena, &point).then_some(point)
         });
         let beside = domain.beside(&first, x);
@@ -90,6 +89,7 @@ fn independent(arena: &Arena, exprs: &[Expr], points: &[Point], precision: Preci
 mod tests {
     use super::*;
     use crate::cas::facts::Relation;
+    use crate::cas::rational::Rational;
     use crate::cas::{Arena, Function};
 
     /// `p > 3`, with p the symbol that coefficients must not hold.

@@ -1,4 +1,4 @@
-//! Rational points of the assumed domain, for existence and for refutation.
+//! Exact points of the assumed domain, for existence and for refutation.
 //!
 //! In: facts, and values that are given. Out: points at which every fact provably holds, simple ones
 //! first, the same ones every time.
@@ -10,6 +10,7 @@ use super::enclosure::Point;
 use super::expr::{Expr, Node, Symbol};
 use super::facts::{Facts, Relation};
 use super::interval::Precision;
+use super::manifold::{Choice, Manifold};
 use super::rational::Rational;
 
 /// How many points are looked at before a search gives up.
@@ -21,13 +22,15 @@ const PLAIN_TRIALS: u64 = 8;
 /// Steps that drawing a value takes.
 const STEPS_OF_A_VALUE: u64 = 50;
 
-/// The assumed domain of a question: inequalities, and symbols whose values are given.
+/// The assumed domain of a question: inequalities, equations, and symbols whose values are given.
 #[derive(Clone, Debug, Default)]
 pub struct Domain {
     /// Inequalities that hold.
     pub facts: Facts,
     /// Given values.
     pub fixed: Point,
+    /// Equations that hold.
+    pub manifold: Manifold,
 }
 
 /// Bounds of one symbol that the facts state directly.
@@ -38,39 +41,46 @@ struct Range {
 }
 
 impl Domain {
-    /// Points of the domain over the given symbols and those of the facts that involve them.
+    /// Points of the domain over the given symbols and those of the facts and equations that involve them.
     pub fn points<'a>(&'a self, arena: &'a Arena, exprs: &[Expr]) -> impl Iterator<Item = Point> + 'a {
         let mut symbols = arena.symbols_of(exprs);
-        let facts = self.relevant(arena, &mut symbols);
+        let (facts, equations) = self.relevant(arena, &mut symbols);
         let ranges = ranges(arena, &facts);
-        (0..MOST_TRIALS).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
+        let plan = self.manifold.plan(arena, &equations, &self.fixed);
+        let trials = if plan.is_some() { MOST_TRIALS } else { 0 };
+        let plan = plan.unwrap_or_default();
+        let solved = plan.symbols();
+        (0..trials).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
             arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
             let mut draw = Draw::new(trial);
             let mut point = Point::new();
-            for (index, &symbol) in symbols.iter().enumerate() {
+            for (index, &symbol) in symbols.iter().enumerate().filter(|(_, symbol)| !solved.contains(symbol)) {
                 let value = match self.fixed.get(&symbol) {
-                    Some(value) => value.clone(),
-                    None => draw.value(ranges.get(&symbol), index),
+                    Some(value) => *value,
+                    None => arena.number(draw.value(ranges.get(&symbol), index)),
                 };
                 point.insert(symbol, value);
             }
+            plan.complete(arena, &mut point, || draw.choice())?;
             facts.iter().all(|fact| holds(arena, *fact, &point)).then_some(point)
         })
     }
 
-    /// Whether every fact that concerns the point's symbols provably holds there.
+    /// Whether every fact and equation that concerns the point's symbols provably holds there.
     pub fn contains(&self, arena: &Arena, point: &Point) -> bool {
         let concerned = |expr: Expr| arena.symbols_of(&[expr]).iter().any(|symbol| point.contains_key(symbol));
-        let given = |(symbol, value): (&Symbol, &Rational)| self.fixed.get(symbol).is_none_or(|fixed| fixed == value);
-        point.iter().all(given) && self.facts.iter().all(|fact| !concerned(fact.0) || holds(arena, fact, point))
+        let given = |(symbol, value): (&Symbol, &Expr)| self.fixed.get(symbol).is_none_or(|fixed| fixed == value);
+        point.iter().all(given)
+            && self.facts.iter().all(|fact| !concerned(fact.0) || holds(arena, fact, point))
+            && self.manifold.contains(arena, point)
     }
 
     /// What of the domain agrees with a point in all but the symbols that are free.
     #[must_use]
     pub fn beside(&self, point: &Point, free: &BTreeSet<Symbol>) -> Self {
         let mut fixed = self.fixed.clone();
-        fixed.extend(point.iter().filter(|(s, _)| !free.contains(s)).map(|(s, value)| (*s, value.clone())));
-        Self { facts: self.facts.clone(), fixed }
+        fixed.extend(point.iter().filter(|(s, _)| !free.contains(s)).map(|(s, value)| (*s, *value)));
+        Self { facts: self.facts.clone(), fixed, manifold: self.manifold.clone() }
     }
 
     /// What the facts say directly of the least and greatest values of symbols, rounded outward.
@@ -81,20 +91,25 @@ impl Domain {
         ranges.into_iter().filter(|(symbol, _)| symbols.contains(symbol)).filter_map(both).collect()
     }
 
-    /// The facts that share a symbol with the question, directly or through other facts.
-    fn relevant(&self, arena: &Arena, symbols: &mut BTreeSet<Symbol>) -> Vec<(Expr, Relation)> {
-        let mut chosen = Vec::new();
-        let mut rest: Vec<_> = self.facts.iter().collect();
+    /// The facts and equations that share a symbol with the question, directly or through others.
+    fn relevant(&self, arena: &Arena, symbols: &mut BTreeSet<Symbol>) -> (Vec<(Expr, Relation)>, Vec<Expr>) {
+        let (mut facts, mut equations) = (Vec::new(), Vec::new());
+        // An equation is a fact without a relation.
+        let inequalities = self.facts.iter().map(|(expr, relation)| (expr, Some(relation)));
+        let mut rest: Vec<_> = inequalities.chain(self.manifold.equations().iter().map(|e| (*e, None))).collect();
         loop {
             let (touching, apart): (Vec<_>, Vec<_>) =
                 rest.into_iter().partition(|(expr, _)| !arena.symbols_of(&[*expr]).is_disjoint(symbols));
             if touching.is_empty() {
-                return chosen;
+                return (facts, equations);
             }
-            for (expr, _) in &touching {
-                symbols.extend(arena.symbols_of(&[*expr]));
+            for (expr, relation) in touching {
+                symbols.extend(arena.symbols_of(&[expr]));
+                match relation {
+                    Some(relation) => facts.push((expr, relation)),
+                    None => equations.push(expr),
+                }
             }
-            chosen.extend(touching);
             rest = apart;
         }
     }
@@ -181,6 +196,13 @@ impl Draw {
     fn integer(&mut self, low: i64, high: i64) -> i64 {
         let span = u64::try_from(high - low + 1).unwrap_or(1);
         low + i64::try_from(self.next() % span).unwrap_or(0)
+    }
+
+    /// What a step of the manifold is left to choose.
+    fn choice(&mut self) -> Choice {
+        let ratio = Rational::new(self.integer(1, 7), self.integer(2, 8)).unwrap_or(Rational::ONE);
+        let share = if self.integer(0, 1) == 0 { -&ratio } else { ratio };
+        (share, self.integer(0, 1) == 0)
     }
 
     /// A value within the range; small integers in the first trials, fractions later.

@@ -1,8 +1,8 @@
-//! Rigorous values of expressions at rational points.
+//! Rigorous values of expressions at exact points.
 //!
-//! In: an expression and a rational value for each of its symbols. Out: an interval that contains the
-//! exact real value, or nothing where the value does not exist or could not be separated from a place
-//! where it does not.
+//! In: an expression and a constant for each of its symbols, as a rule a rational one. Out: an interval that contains
+//! the exact real value, or nothing where the value does not exist or could not be separated from a place where it
+//! does not.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ use super::expr::{Expr, Node, Symbol};
 use super::interval::{Interval, Precision};
 use super::rational::Rational;
 
-/// Values of symbols.
-pub type Point = BTreeMap<Symbol, Rational>;
+/// Values of symbols: constants, most of them rational; on a manifold some are roots.
+pub type Point = BTreeMap<Symbol, Expr>;
 
 /// Working precisions that are tried in turn, in bits.
 const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
@@ -37,7 +37,12 @@ impl Arena {
     pub fn enclose_all(&self, exprs: &[Expr], point: &Point, precision: Precision) -> Option<Vec<Interval>> {
         let mut values = BTreeMap::new();
         for symbol in self.symbols_of(exprs) {
-            values.insert(symbol, Interval::from_rational(point.get(&symbol)?, precision)?);
+            let constant = *point.get(&symbol)?;
+            let value = match self.as_number(constant) {
+                Some(number) => Interval::from_rational(&number, precision)?,
+                None => self.enclose_over(&[constant], &BTreeMap::new(), precision)?.pop()?,
+            };
+            values.insert(symbol, value);
         }
         self.enclose_over(exprs, &values, precision)
     }
@@ -72,7 +77,7 @@ impl Arena {
         for e in self.postorder(&[expr]) {
             let value = match self.node(e) {
                 Node::Number(value) => Some(value),
-                Node::Symbol(symbol) => point.get(&symbol).cloned(),
+                Node::Symbol(symbol) => point.get(&symbol).and_then(|constant| self.as_number(*constant)),
                 Node::Sum(sum) => {
                     Some(sum.terms.iter().fold(sum.constant.clone(), |total, (t, c)| &total + &(&known[t] * c)))
                 }

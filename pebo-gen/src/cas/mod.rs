@@ -19,6 +19,7 @@ pub mod function;
 pub mod integer;
 pub mod interval;
 pub mod linear;
+pub mod manifold;
 pub mod oriented;
 pub mod pivots;
 pub mod poly;

@@ -1,7 +1,7 @@
 //! Whether the assumptions tell how an expression compares with zero.
 //!
-//! In: a domain and an expression. Out: yes, where a fact, algebra over the facts, or an enclosure over the box that
-//! they state shows it; what cannot be decided is not shown.
+//! In: a domain and an expression. Out: yes, where a fact, algebra over the facts and the equations, or an enclosure over
+//! the box that they state shows it; what cannot be decided is not shown.
 
 use super::arena::Arena;
 use super::domain::Domain;
@@ -12,8 +12,8 @@ use super::field::{Field, Obstacle};
 impl Domain {
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
     pub(crate) fn shows(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
-        let shown = || {
-            let field = Field::over(arena, &self.facts, &[expr])?;
+        let shown = |field: Result<Field<'_>, Obstacle>| {
+            let field = field?;
             let fraction = field.fraction(expr)?;
             match relation {
                 Relation::Positive => field.is_positive(&fraction),
@@ -23,10 +23,12 @@ impl Domain {
         };
         let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
         self.facts.iter().any(|fact| fact == (expr, relation))
-            || shown().unwrap_or(false)
+            || shown(Field::over(arena, &self.facts, &[expr])).unwrap_or(false)
+            || (!self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
             || divides()
             || self.sign_over_box(arena, expr).is_some_and(|positive| positive || relation == Relation::NonZero)
     }
+
     /// Whether the expression vanishes only where something does that is assumed not to: its factors are among those
     /// of the facts, as `d - 1` is of `L*(1 - d) != 0`.
     fn divides(&self, arena: &Arena, expr: Expr) -> Result<bool, Obstacle> {

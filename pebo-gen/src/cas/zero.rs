@@ -1,7 +1,7 @@
 //! The zero test: proved, refuted with a witness, or open with the obstacle.
 //!
 //! Proved: the normal form is zero, and the expression has a value at a point of the domain (so that
-//! the proof is not about nothing). Refuted: at a rational point of the domain a rigorous enclosure of
+//! the proof is not about nothing). Refuted: at an exact point of the domain a rigorous enclosure of
 //! the value excludes zero. Neither relies on floating point or on the kernels being independent.
 
 use super::arena::Arena;
@@ -64,10 +64,17 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
         }
         exists = true;
     }
-    let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
+    let vanishes = |field: Result<Field<'_>, Obstacle>| {
+        let field = field?;
         let fraction = field.fraction(expr)?;
         if fraction.is_zero() { Ok(()) } else { Err(field.doubt(&fraction)) }
-    });
+    };
+    let mut normal = vanishes(Field::over(arena, &domain.facts, &[expr]));
+    // What vanishes everywhere does so on the manifold; the converse is false.
+    if normal.is_err() && !domain.manifold.is_empty() {
+        let unsolved = domain.manifold.open().map(|equation| Obstacle::Unsolved(arena.print(equation)));
+        normal = vanishes(Field::on(arena, domain, &[expr])).map_err(|obstacle| unsolved.unwrap_or(obstacle));
+    }
     match normal {
         Ok(()) if exists || point_of(arena, expr, domain).is_some() => Answer::Zero,
         Ok(()) => Answer::Open(Obstacle::NoPoint),

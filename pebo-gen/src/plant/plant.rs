@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
+use crate::cas::manifold::Manifold;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::model::CascadeClass;
@@ -42,7 +43,8 @@ pub struct Plant {
     pub phi: Vec<Formula>,
     /// The left inverse as the author gave it: states with formulas in z and y.
     pub phi_left: Option<Vec<(Symbol, Formula)>>,
-    /// Expressions that are zero by physics; of an output that is given by its value, the difference of the two.
+    /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of the
+    /// two.
     pub identities: Vec<Formula>,
     /// States that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,
@@ -172,9 +174,17 @@ impl Plant {
         domain
     }
 
-    /// What is assumed of values: the author's inequalities, and the values of the parameters.
+    /// What is assumed of values: the author's inequalities and identities, and the values of the parameters.
     pub fn assumed(&self) -> Domain {
-        assumed(&self.arena, &self.assumptions, &self.parameters)
+        let mut domain = assumed(&self.arena, &self.assumptions, &self.parameters);
+        if !self.identities.is_empty() {
+            let outputs = self.y.iter().map(|output| output.symbol);
+            let constants = self.parameters.iter().map(|parameter| parameter.symbol);
+            let groups = vec![self.hidden(), outputs.collect(), self.u.iter().copied().collect(), constants.collect()];
+            let equations = self.identities.iter().map(|identity| identity.expr).collect();
+            domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, groups);
+        }
+        domain
     }
 }
 
@@ -186,7 +196,7 @@ pub(super) fn assumed(arena: &Arena, assumptions: &[Assumption], parameters: &[P
     }
     for parameter in parameters {
         let Some(value) = &parameter.value else { continue };
-        domain.fixed.insert(parameter.symbol, value.clone());
+        domain.fixed.insert(parameter.symbol, arena.number(value.clone()));
         let symbol = arena.of_symbol(parameter.symbol);
         match value.signum() {
             1 => domain.facts.assume(symbol, Relation::Positive),

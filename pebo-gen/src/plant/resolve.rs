@@ -85,7 +85,7 @@ impl Plant {
         };
         let class::Expansion { x: states, y: mut outputs, phi, proposal, class, conditions } = dynamics;
         let mut identities =
-            problems.all(model.identities.iter().map(|f| within(f, &on_states, "an identity in x and y")));
+            problems.all(model.identities.iter().map(|f| within(f, &with(&[&x, &y, &u]), "an identity in x, y and u")));
         values::confine(&arena, &outputs, &with(&[&x, &y, &u]), &mut problems);
         identities.extend(values::identities(&arena, &outputs));
         values::move_along(&arena, &states, &mut outputs, &constants);

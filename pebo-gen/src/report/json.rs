@@ -8,7 +8,6 @@ use crate::analysis::{
     Blind, Cascade, Claim, Class, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Origin, Outcome,
     Regression, RegressionKind, Verdict, Witness,
 };
-use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Located, Source};
@@ -223,8 +222,7 @@ fn matrix(arena: &Arena, rows: &[Vec<Expr>]) -> Vec<Vec<String>> {
 }
 
 fn witness(arena: &Arena, witness: &Witness) -> WitnessReport {
-    let coordinates =
-        |point: &[(Symbol, Rational)]| point.iter().map(|(s, v)| (arena.name(*s), v.to_string())).collect();
+    let coordinates = |point: &[(Symbol, Expr)]| point.iter().map(|(s, v)| (arena.name(*s), arena.print(*v))).collect();
     WitnessReport {
         expression: arena.print(witness.expr),
         point: coordinates(&witness.point),

@@ -244,6 +244,14 @@ codes! {
 
     // Claims.
 
+    IdentityRefuted "identity-refuted" "an identity holds nowhere, or the plant does not keep it"
+        "The claims are made where the identities hold, and of trajectories that stay there. This one has no real \
+         solution, or its derivative along the plant is not zero where the identities hold; the witness is such a point. \
+         Then either the identity or a rate is mistaken."
+    IdentityUndecided "identity-undecided" "an identity is neither proved to be kept by the plant nor refuted"
+        "The claims are made where the identities hold. No values were found at which they do, or it could not be decided \
+         whether the plant keeps this one. An identity is understood that can be solved for one of its names, \
+         which stands in it to the first or second power, or in one power alone, with a factor that is never zero."
     CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
         "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone, or for the \
          generalised cascade an affine function of phi with such coefficients; `class: pebo` in a model asks for the \

@@ -19,7 +19,6 @@ use std::time::{Duration, Instant};
 use pebo_gen::cas::Arena;
 use pebo_gen::cas::domain::Domain;
 use pebo_gen::cas::facts::Relation;
-use pebo_gen::cas::rational::Rational;
 use pebo_gen::cas::zero::{Answer, decide};
 use pebo_gen::model::formula::{Estimates, Formula, Places, parse_formula};
 use pebo_gen::plant::{Scope, lower};
@@ -101,7 +100,8 @@ fn decided(case: &Case, formula: &Formula) -> Option<(Answer, Point)> {
     if let Answer::NonZero(witness) = &answer {
         for name in NAMES {
             // What the formula does not depend on may have any value.
-            point.insert(name, witness.point.get(&arena.symbol(name)).map_or(0.5, Rational::to_f64));
+            let value = witness.point.get(&arena.symbol(name)).and_then(|value| arena.as_number(*value));
+            point.insert(name, value.map_or(0.5, |value| value.to_f64()));
         }
     }
     Some((answer, point))

@@ -38,7 +38,7 @@ impl Field<'_> {
         match self.arena.node(expr) {
             Node::Number(value) => Ok(Fraction::constant(&value)),
             Node::Pi => Ok(self.entered(expr, None, true)),
-            Node::Symbol(_) => Ok(self.entered(expr, None, false)),
+            Node::Symbol(symbol) => self.of_symbol(expr, symbol),
             Node::Sum(sum) => {
                 let mut total = Fraction::constant(&sum.constant);
                 for (term, coefficient) in &sum.terms {

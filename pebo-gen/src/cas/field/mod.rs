@@ -7,7 +7,7 @@
 //! A kernel is what a polynomial may take as a variable. Angles are first split into an integer basis
 //! (so that `sin(2*q + p)` becomes a polynomial in the sines and cosines of q and p), exponents
 //! likewise, roots into roots of coprime parts. What relates kernels (`sin^2 = 1 - cos^2`, `r^2 = a`)
-//! is reduced away.
+//! is reduced away, and so is what relates symbols on a manifold.
 //!
 //! Holds after: every rewriting is an identity wherever the expressions have values, up to points in
 //! whose neighbourhood they have values too, so a fraction that is zero proves that the expression is
@@ -36,6 +36,7 @@ mod kernel;
 mod known;
 mod logarithm;
 mod magnitude;
+mod manifold;
 mod nature;
 mod parts;
 mod quadratic;
@@ -57,6 +58,7 @@ use super::arena::Arena;
 use super::domain::Domain;
 use super::expr::{Expr, Symbol};
 use super::facts::{Facts, Relation};
+use super::manifold::Step;
 use super::poly::{Poly, TooLarge, Work};
 use super::rational::Rational;
 
@@ -88,6 +90,8 @@ pub enum Obstacle {
     Kernel(String),
     /// No point of the assumed domain was found at which the expression has a value.
     NoPoint,
+    /// An equation of the domain that the normal form does not know of.
+    Unsolved(String),
     /// The normal form is not zero, but no point shows it.
     NoWitness,
     /// The same, and it has two kernels that were not shown to be independent.
@@ -102,6 +106,9 @@ impl fmt::Display for Obstacle {
             Self::DivisionByZero => f.write_str("a denominator is zero everywhere"),
             Self::Kernel(what) => write!(f, "no rule decides {what}"),
             Self::NoPoint => f.write_str("no point of the assumed domain was found where the formula has a value"),
+            Self::Unsolved(equation) => {
+                write!(f, "the identity `{equation}` could not be solved for a symbol without losing solutions")
+            }
             Self::NoWitness => {
                 f.write_str("the normal form is not zero, yet no point was found where it provably differs")
             }
@@ -165,6 +172,8 @@ pub struct Field<'a> {
     signs: RefCell<Vec<(Poly, Relation)>>,
     asked: Cell<bool>,
     roots: Vec<Expr>,
+    /// What symbols are on the manifold.
+    steps: BTreeMap<Symbol, Step>,
     /// What must hold for the expressions to have values.
     learned: RefCell<Vec<(Expr, Relation)>>,
     /// Parts of whose unknown signs something was made.
@@ -175,6 +184,18 @@ impl<'a> Field<'a> {
     /// The field that holds all the roots; afterwards [`Self::fraction`] answers for each of them and
     /// for whatever is built of the same kernels.
     pub fn over(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
+        Self::of(arena, facts, &[], roots)
+    }
+
+    /// The field of the roots on the domain's manifold: a symbol for which an equation is solved is what it is there.
+    ///
+    /// Holds after: every rewriting is an identity where the equations hold. What an equation that was not solved
+    /// would make zero is not seen to be zero.
+    pub fn on(arena: &'a Arena, domain: &Domain, roots: &[Expr]) -> Result<Self, Obstacle> {
+        Self::of(arena, &domain.facts, domain.manifold.steps(), roots)
+    }
+
+    fn of(arena: &'a Arena, facts: &Facts, steps: &[Step], roots: &[Expr]) -> Result<Self, Obstacle> {
         let field = Self {
             arena,
             work: Work::within(STEPS, arena.budget()),
@@ -198,6 +219,7 @@ impl<'a> Field<'a> {
             signs: RefCell::default(),
             asked: Cell::default(),
             roots: roots.to_vec(),
+            steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
             learned: RefCell::default(),
             unsigned: RefCell::default(),
         };

@@ -5,8 +5,6 @@
 //! combined to T1 = I, so the question is whether `A11 + T2 A21 = 0` has a solution: whether the rows of
 //! A11 are combinations of those of A21 (Ortega et al. 2015, Section 4, eq. 19).
 
-use std::collections::BTreeMap;
-
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::linear::solve_each;
@@ -77,8 +75,7 @@ pub(super) fn expand(
     let open = |obstacle: Obstacle| Stop::from(unresolved("the transform", first.span, &obstacle));
     // Values at which ranks are others than in general are written in for the parameters: what follows
     // holds for these values and no others.
-    let values: BTreeMap<_, _> = place.domain.fixed.iter().map(|(s, v)| (*s, arena.number(v.clone()))).collect();
-    let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(entry, &values));
+    let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(entry, &place.domain.fixed));
     let ranks = |a11: &Matrix, a21: &Matrix| -> Result<[usize; 2], Obstacle> {
         let both = Matrix::new(a11.rows().iter().chain(a21.rows()).cloned().collect());
         Ok([a21.rank(arena, facts)?, both.rank(arena, facts)?])
@@ -93,8 +90,11 @@ pub(super) fn expand(
     } else {
         blocks
     };
-    let special =
-        if differ { valued_symbols.into_iter().filter(|s| values.contains_key(s)).collect() } else { Vec::new() };
+    let special = if differ {
+        valued_symbols.into_iter().filter(|s| place.domain.fixed.contains_key(s)).collect()
+    } else {
+        Vec::new()
+    };
     let (t1, t2, unsolved) = if written.t1.is_some() {
         (t1, t2, Vec::new())
     } else {
