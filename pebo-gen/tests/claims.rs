@@ -884,7 +884,7 @@ fn a_parameter_given_as_zero_is_zero() {
     let listed: Vec<String> = free.derivation.conditions.iter().map(|(e, _)| arena.print(*e)).collect();
     assert_eq!((free.derivation.outcome, listed), (Outcome::Accepted, vec!["a".to_owned()]));
     let divided = "model: m\nparameters: {a: 0}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v/a}\nf_y: {q: p}\nphi: [p]\n";
-    let refused = derive(&Source::new("m", divided).expect("a text")).err().expect("a refusal");
+    let refused = derive(&Source::new("m", divided).expect("a text")).expect_err("a refusal");
     assert_eq!(refused[0].code, Code::DivisionByZero);
 }
 

@@ -55,7 +55,7 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
     ("x*y", &["x"], Nothing),
     ("x*y", &[">= x", ">= y"], NotNegative),
     ("x*y", &[">= x", "y"], NotNegative),
-    ("x*y", &[">= x", "-y"], Open),
+    ("x*y", &[">= x", "-y"], NotPositive),
     ("x/y", &["x", "-y"], Negative),
     ("x^2", &[], NotNegative),
     ("-x^2", &[], NotPositive),

@@ -55,7 +55,9 @@ fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundam
         }
         fades |= alone == Fate::Fades;
         let fate = system.beside(&block, alone, &rows);
-        block.iter().for_each(|&component| rows[component] = fate);
+        for component in block {
+            rows[component] = fate;
+        }
     }
     let bounded = rows.iter().all(|fate| matches!(fate, Fate::Fades | Fate::Stays));
     Ok(if bounded { Fundamental::Bounded { fades } } else { Fundamental::NotShown })

@@ -36,7 +36,9 @@ impl Conditions {
         let strict_first = |ask: &&Ask| ask.1 == Relation::Positive;
         signs.iter().filter(strict_first).for_each(|ask| conditions.list(&plant.arena, *ask));
         signs.iter().filter(|ask| !strict_first(ask)).for_each(|ask| conditions.list(&plant.arena, *ask));
-        others.into_iter().for_each(|ask| conditions.list(&plant.arena, ask));
+        for ask in others {
+            conditions.list(&plant.arena, ask);
+        }
         conditions
     }
 
@@ -74,14 +76,15 @@ impl Conditions {
 
     /// What the formulas of the cascade ask.
     pub(super) fn ask_cascade(&mut self, plant: &Plant, cascade: &Cascade) -> Option<Ask> {
-        let formulas = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()).copied().collect();
-        self.ask(plant, formulas, &BTreeMap::new())
+        let formulas: Vec<Expr> = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()).copied().collect();
+        self.ask(plant, &formulas, &BTreeMap::new())
     }
 
     /// What the left inverse asks of z = phi(x, y); estimates of z may lie elsewhere.
     pub(super) fn ask_left_inverse(&mut self, plant: &Plant, inverse: &LeftInverse) -> Option<Ask> {
         let transform = plant.z.iter().copied().zip(plant.transform()).collect();
-        self.ask(plant, inverse.x.iter().map(|(_, formula)| *formula).collect(), &transform)
+        let formulas: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+        self.ask(plant, &formulas, &transform)
     }
 
     /// What the regression asks, for all values of the extension, and its way back to theta of the functions of theta.
@@ -89,16 +92,16 @@ impl Conditions {
         let rows = [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten();
         let formulas = rows.chain(&regression.phi_0).chain(&regression.primitive_0).chain(&regression.eta).copied();
         let back = regression.eta_symbols.iter().copied().zip(regression.eta.iter().copied()).collect();
-        self.ask(plant, formulas.collect(), &BTreeMap::new())
-            .or_else(|| self.ask(plant, regression.theta.clone(), &back))
+        let formulas: Vec<Expr> = formulas.collect();
+        self.ask(plant, &formulas, &BTreeMap::new()).or_else(|| self.ask(plant, &regression.theta, &back))
     }
 
     /// Lists what the formulas ask at these values; the first ask that cannot be listed is handed back.
     ///
     /// Read off the formulas as they stand: what they are at the values may simplify.
-    fn ask(&mut self, plant: &Plant, formulas: Vec<Expr>, values: &BTreeMap<Symbol, Expr>) -> Option<Ask> {
+    fn ask(&mut self, plant: &Plant, formulas: &[Expr], values: &BTreeMap<Symbol, Expr>) -> Option<Ask> {
         let arena = &plant.arena;
-        for (part, relation) in arena.asks(&formulas, Want::Value) {
+        for (part, relation) in arena.asks(formulas, Want::Value) {
             let ask = (arena.substitute(part, values), relation);
             if arena.holds_of_number(ask) || self.known.shows(arena, ask.0, relation) {
                 continue;

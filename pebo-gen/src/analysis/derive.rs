@@ -52,26 +52,10 @@ impl Derivation {
             _ => Claim::skipped(),
         };
         let (regression, identifiability) = match &cascade.result {
-            // What the outputs' rates do not show, an identity may.
-            Some(result) if identifiability.verdict == Verdict::Refuted && !plant.identities.is_empty() => {
-                let mut others = Vec::new();
-                let other = regression::from_identities(plant, &domain, result, inverse, &mut others);
-                let other = known::regression(plant, class, other, &mut others);
-                let seen = other
-                    .result
-                    .as_ref()
-                    .map(|r| identifiability::prove(plant, &domain, result, r, inverse, &mut others))
-                    .filter(|seen| seen.verdict == Verdict::Proved);
-                match seen {
-                    Some(seen) => {
-                        found.retain(|d| d.code != Code::NeverIdentifiable);
-                        found.extend(others);
-                        (other, seen)
-                    }
-                    None => (regression, identifiability),
-                }
+            Some(result) => {
+                from_identities(plant, &domain, (class, result, inverse), (regression, identifiability), &mut found)
             }
-            _ => (regression, identifiability),
+            None => (regression, identifiability),
         };
         let (mut regression, mut identifiability) = match (&cascade.result, &regression.result) {
             (Some(cascade), Some(result))
@@ -218,6 +202,31 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     } else {
         Outcome::Undecided
     }
+}
+
+/// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.
+fn from_identities(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    if given.1.verdict != Verdict::Refuted || plant.identities.is_empty() {
+        return given;
+    }
+    let mut others = Vec::new();
+    let other = regression::from_identities(plant, domain, cascade, inverse, &mut others);
+    let other = known::regression(plant, class, other, &mut others);
+    let seen = other
+        .result
+        .as_ref()
+        .map(|r| identifiability::prove(plant, domain, cascade, r, inverse, &mut others))
+        .filter(|seen| seen.verdict == Verdict::Proved);
+    let Some(seen) = seen else { return given };
+    found.retain(|d| d.code != Code::NeverIdentifiable);
+    found.extend(others);
+    (other, seen)
 }
 
 /// Formulas that have no value where the claim is made.

@@ -233,7 +233,9 @@ impl Flow {
         let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
         let free = plant.u.iter().copied().chain(plant.w.iter().copied()).chain(unruled);
         let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
-        rates.values_mut().for_each(|rate| *rate = arena.substitute(*rate, equal));
+        for rate in rates.values_mut() {
+            *rate = arena.substitute(*rate, equal);
+        }
         rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
         let mut flow = Self { rates, free };
         flow.advance(plant);

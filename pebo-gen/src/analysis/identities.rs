@@ -18,7 +18,7 @@ use super::design::{Verdict, Witness};
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Verdict {
     let arena = &plant.arena;
     let Some(first) = plant.identities.first() else { return Verdict::Proved };
-    let everywhere = Domain { facts: domain.facts.clone(), fixed: domain.fixed.clone(), ..Domain::default() };
+    let everywhere = domain.everywhere();
     let signed = |identity: &&Formula| {
         let opposite = arena.neg(identity.expr);
         [identity.expr, opposite].iter().any(|side| everywhere.shows(arena, *side, Relation::Positive))

@@ -59,7 +59,9 @@ impl<'a> Volume<'a> {
         let field = Field::on(arena, domain, &rest.iter().flatten().copied().chain(bases).collect::<Vec<_>>())?;
         let core = core_of(&field, &rest)?;
         if !square {
-            powers.iter_mut().for_each(|(_, power)| *power = &*power + &*power);
+            for (_, power) in &mut powers {
+                *power = &*power + &*power;
+            }
         }
         Ok(Self { arena, field, powers, rest, core, square })
     }
@@ -247,7 +249,7 @@ fn take_common(arena: &Arena, entries: &mut [Expr]) -> Vec<(Expr, Rational)> {
 /// The factors of a product as it is written.
 fn factors(arena: &Arena, expr: Expr) -> Vec<(Expr, Rational)> {
     match arena.node(expr) {
-        Node::Product(product) => product.factors.iter().cloned().collect(),
+        Node::Product(product) => product.factors.clone(),
         Node::Number(_) => Vec::new(),
         _ => vec![(expr, Rational::ONE)],
     }

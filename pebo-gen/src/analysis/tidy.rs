@@ -34,7 +34,9 @@ pub(super) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
         return true;
     }
     let mut there = domain.clone();
-    own.into_iter().for_each(|(part, relation)| there.facts.assume(part, relation));
+    for (part, relation) in own {
+        there.facts.assume(part, relation);
+    }
     more.into_iter().all(|(part, relation)| there.shows(arena, part, relation))
 }
 

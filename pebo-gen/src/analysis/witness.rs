@@ -59,7 +59,7 @@ impl Comparison {
     /// What the points share of what the expression reads.
     fn with_the_same(&self, arena: &Arena) -> String {
         let read = arena.symbols_of(&[self.expr]);
-        let shared: Vec<_> = self.known.iter().filter(|(symbol, _)| read.contains(symbol)).cloned().collect();
+        let shared: Vec<_> = self.known.iter().filter(|(symbol, _)| read.contains(symbol)).copied().collect();
         if shared.is_empty() { String::new() } else { format!(", with the same {}", values(arena, &shared)) }
     }
 }

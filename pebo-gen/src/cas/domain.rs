@@ -66,6 +66,12 @@ impl Domain {
         })
     }
 
+    /// The same without its equations.
+    #[must_use]
+    pub fn everywhere(&self) -> Self {
+        Self { manifold: Manifold::default(), ..self.clone() }
+    }
+
     /// Whether every fact and equation that concerns the point's symbols provably holds there.
     pub fn contains(&self, arena: &Arena, point: &Point) -> bool {
         let concerned = |expr: Expr| arena.symbols_of(&[expr]).iter().any(|symbol| point.contains_key(symbol));

@@ -22,6 +22,9 @@ use super::field::{Field, Fraction, Obstacle};
 use super::poly::Poly;
 use super::rational::Rational;
 
+/// A kernel, and the coefficients of its powers.
+type Powers = (u32, BTreeMap<u32, Fraction>);
+
 /// A power of a symbol beyond which no root is taken.
 const MOST_DEGREE: u32 = 12;
 
@@ -243,12 +246,7 @@ impl Solver<'_> {
     }
 
     /// The coefficients of the powers of a symbol, if it stands in no kernel but its own.
-    fn powers_of(
-        &self,
-        field: &Field<'_>,
-        poly: &Poly,
-        symbol: Symbol,
-    ) -> Result<Option<(u32, BTreeMap<u32, Fraction>)>, Obstacle> {
+    fn powers_of(&self, field: &Field<'_>, poly: &Poly, symbol: Symbol) -> Result<Option<Powers>, Obstacle> {
         let kernels = field.kernels_of(&BTreeSet::from([symbol]));
         let mut kernels = poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
         let (Some(kernel), None) = (kernels.next(), kernels.next()) else { return Ok(None) };

@@ -42,21 +42,7 @@ impl Plant {
         let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
         let own = Own::of(&arena, class::components(model));
 
-        let mut scope = Scope::new();
-        for name in model.declared() {
-            scope.define(&name.value, arena.variable(&name.value));
-        }
-        // One that is given as zero is zero, wherever it stands.
-        for parameter in parameters.iter().filter(|p| p.value.as_ref().is_some_and(Rational::is_zero)) {
-            scope.define(arena.name(parameter.symbol), arena.zero());
-        }
-        // Each uses only those before it: no definition is a symbol.
-        for definition in &model.define {
-            let meaning = problems.keep(lower(&arena, &scope, &definition.value));
-            // One that fails was reported, and there will be no plant; what uses it is looked at all the same.
-            let meaning = meaning.unwrap_or_else(|| arena.variable(&definition.name.value));
-            scope.define(&definition.name.value, meaning);
-        }
+        let scope = names_of(&arena, model, &parameters, &mut problems);
         let constants: BTreeSet<Symbol> = parameters.iter().map(|p| p.symbol).collect();
         let with = |groups: &[&[Symbol]]| -> BTreeSet<Symbol> {
             groups.iter().flat_map(|g| g.iter().copied()).chain(constants.iter().copied()).collect()
@@ -143,6 +129,27 @@ impl Plant {
     }
 }
 
+/// The names of a model with what they stand for: a symbol, zero for a parameter that is given so, or what a definition
+/// says.
+fn names_of(arena: &Arena, model: &Model, parameters: &[Parameter], problems: &mut Diagnostics) -> Scope {
+    let mut scope = Scope::new();
+    for name in model.declared() {
+        scope.define(&name.value, arena.variable(&name.value));
+    }
+    // One that is given as zero is zero, wherever it stands.
+    for parameter in parameters.iter().filter(|p| p.value.as_ref().is_some_and(Rational::is_zero)) {
+        scope.define(arena.name(parameter.symbol), arena.zero());
+    }
+    // Each uses only those before it: no definition is a symbol.
+    for definition in &model.define {
+        let meaning = problems.keep(lower(arena, &scope, &definition.value));
+        // One that fails was reported, and there will be no plant; what uses it is looked at all the same.
+        let meaning = meaning.unwrap_or_else(|| arena.variable(&definition.name.value));
+        scope.define(&definition.name.value, meaning);
+    }
+    scope
+}
+
 /// What the formulas ask of their parts to have values, and the transform to have derivatives, beside what a class
 /// asks already: of its formulas some are differentiated.
 fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
@@ -157,7 +164,9 @@ fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>)
     let smooth: Vec<&model::Formula> = model.phi.iter().chain(values).chain(of_class).collect();
     let plain = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value).chain(&model.identities);
     plain.for_each(|formula| collect(formula, Want::Value));
-    smooth.iter().for_each(|formula| collect(formula, Want::Slope));
+    for formula in &smooth {
+        collect(formula, Want::Slope);
+    }
     // A definition that a differentiated formula uses, directly or through others, is differentiated too.
     let mut users = smooth;
     let mut differentiated = BTreeSet::new();

@@ -37,7 +37,9 @@ pub(in crate::analysis) fn from_identities(
         return Claim { verdict: Verdict::Refuted, result: None };
     }
     if cascade.lambda.is_some() {
-        let rows = plant.identities.iter().map(|identity| gpebo::affine(plant, domain, identity.expr)).collect();
+        // Where it holds an identity says 0 = 0: what it says of z is read off it elsewhere.
+        let everywhere = domain.everywhere();
+        let rows = plant.identities.iter().map(|identity| gpebo::affine(plant, &everywhere, identity.expr)).collect();
         return under_lambda(plant, domain, (rows, plant.identities[0].span), found);
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };

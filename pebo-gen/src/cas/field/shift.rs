@@ -116,107 +116,104 @@ mod tests {
         arena.power(a, &Rational::from(exponent))
     }
 
+    const CASES: &[(&str, Case)] = &[
+        (
+            "a cube above its bound",
+            (
+                |a, [p, ..]| vec![(less(a, p, 3), Relation::Positive)],
+                |a, [p, ..]| less(a, power(a, p, 3), 27),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "at the bound it may vanish",
+            (
+                |a, [p, ..]| vec![(less(a, p, 3), Relation::NonNegative)],
+                |a, [p, ..]| less(a, power(a, p, 3), 27),
+                Some(Sign::NonNegative),
+            ),
+        ),
+        (
+            "below the bound it may not",
+            (|a, [p, ..]| vec![(less(a, p, 3), Relation::Positive)], |a, [p, ..]| less(a, power(a, p, 3), 28), None),
+        ),
+        (
+            "from above",
+            (
+                |a, [p, ..]| vec![(a.sub(a.number(-2), p), Relation::Positive)],
+                |a, [p, ..]| a.add(power(a, p, 3), a.number(8)),
+                Some(Sign::Negative),
+            ),
+        ),
+        (
+            "a bound that is no integer",
+            (
+                |a, [p, ..]| vec![(less(a, a.scale(p, &Rational::from(2)), 1), Relation::Positive)],
+                |a, [p, ..]| less(a, a.scale(power(a, p, 4), &Rational::from(16)), 1),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "two variables",
+            (
+                |a, [p, q, _]| vec![(less(a, p, 1), Relation::Positive), (less(a, q, 2), Relation::Positive)],
+                |a, [p, q, _]| less(a, a.mul(p, power(a, q, 2)), 4),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "one from above and one from below",
+            (
+                |a, [p, q, _]| vec![(less(a, p, 1), Relation::Positive), (a.sub(a.number(-1), q), Relation::Positive)],
+                |a, [p, q, _]| a.add(a.mul(p, power(a, q, 3)), a.one()),
+                Some(Sign::Negative),
+            ),
+        ),
+        (
+            "a bound that is a symbol",
+            (
+                |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive), (q, Relation::Positive)],
+                |a, [p, q, _]| a.sub(power(a, p, 3), power(a, q, 3)),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "a chain of bounds",
+            (
+                |a, [p, q, r]| {
+                    vec![
+                        (a.sub(p, q), Relation::Positive),
+                        (a.sub(q, r), Relation::NonNegative),
+                        (r, Relation::Positive),
+                    ]
+                },
+                |a, [p, _, r]| a.sub(power(a, p, 2), a.mul(p, r)),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "of the other sign where nothing bounds it",
+            (
+                |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive)],
+                |a, [p, q, _]| a.sub(power(a, p, 2), power(a, q, 2)),
+                None,
+            ),
+        ),
+        (
+            "what only does not vanish is no bound",
+            (|a, [p, ..]| vec![(less(a, p, 3), Relation::NonZero)], |a, [p, ..]| less(a, power(a, p, 3), 27), None),
+        ),
+    ];
+
     #[test]
     fn bounds_show_signs() {
-        const CASES: &[(&str, Case)] = &[
-            (
-                "a cube above its bound",
-                (
-                    |a, [p, ..]| vec![(less(a, p, 3), Relation::Positive)],
-                    |a, [p, ..]| less(a, power(a, p, 3), 27),
-                    Some(Sign::Positive),
-                ),
-            ),
-            (
-                "at the bound it may vanish",
-                (
-                    |a, [p, ..]| vec![(less(a, p, 3), Relation::NonNegative)],
-                    |a, [p, ..]| less(a, power(a, p, 3), 27),
-                    Some(Sign::NonNegative),
-                ),
-            ),
-            (
-                "below the bound it may not",
-                (
-                    |a, [p, ..]| vec![(less(a, p, 3), Relation::Positive)],
-                    |a, [p, ..]| less(a, power(a, p, 3), 28),
-                    None,
-                ),
-            ),
-            (
-                "from above",
-                (
-                    |a, [p, ..]| vec![(a.sub(a.number(-2), p), Relation::Positive)],
-                    |a, [p, ..]| a.add(power(a, p, 3), a.number(8)),
-                    Some(Sign::Negative),
-                ),
-            ),
-            (
-                "a bound that is no integer",
-                (
-                    |a, [p, ..]| vec![(less(a, a.scale(p, &Rational::from(2)), 1), Relation::Positive)],
-                    |a, [p, ..]| less(a, a.scale(power(a, p, 4), &Rational::from(16)), 1),
-                    Some(Sign::Positive),
-                ),
-            ),
-            (
-                "two variables",
-                (
-                    |a, [p, q, _]| vec![(less(a, p, 1), Relation::Positive), (less(a, q, 2), Relation::Positive)],
-                    |a, [p, q, _]| less(a, a.mul(p, power(a, q, 2)), 4),
-                    Some(Sign::Positive),
-                ),
-            ),
-            (
-                "one from above and one from below",
-                (
-                    |a, [p, q, _]| {
-                        vec![(less(a, p, 1), Relation::Positive), (a.sub(a.number(-1), q), Relation::Positive)]
-                    },
-                    |a, [p, q, _]| a.add(a.mul(p, power(a, q, 3)), a.one()),
-                    Some(Sign::Negative),
-                ),
-            ),
-            (
-                "a bound that is a symbol",
-                (
-                    |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive), (q, Relation::Positive)],
-                    |a, [p, q, _]| a.sub(power(a, p, 3), power(a, q, 3)),
-                    Some(Sign::Positive),
-                ),
-            ),
-            (
-                "a chain of bounds",
-                (
-                    |a, [p, q, r]| {
-                        vec![
-                            (a.sub(p, q), Relation::Positive),
-                            (a.sub(q, r), Relation::NonNegative),
-                            (r, Relation::Positive),
-                        ]
-                    },
-                    |a, [p, _, r]| a.sub(power(a, p, 2), a.mul(p, r)),
-                    Some(Sign::Positive),
-                ),
-            ),
-            (
-                "of the other sign where nothing bounds it",
-                (
-                    |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive)],
-                    |a, [p, q, _]| a.sub(power(a, p, 2), power(a, q, 2)),
-                    None,
-                ),
-            ),
-            (
-                "what only does not vanish is no bound",
-                (|a, [p, ..]| vec![(less(a, p, 3), Relation::NonZero)], |a, [p, ..]| less(a, power(a, p, 3), 27), None),
-            ),
-        ];
         for (what, (facts, question, expected)) in CASES {
             let arena = Arena::new();
             let symbols = ["p", "q", "r"].map(|name| arena.variable(name));
             let mut assumed = Facts::new();
-            facts(&arena, symbols).into_iter().for_each(|(expr, relation)| assumed.assume(expr, relation));
+            for (expr, relation) in facts(&arena, symbols) {
+                assumed.assume(expr, relation);
+            }
             let question = question(&arena, symbols);
             let field = Field::over(&arena, &assumed, &[question]).expect("polynomials");
             let fraction = field.fraction(question).expect("a polynomial");

@@ -323,7 +323,7 @@ fn factors_that_are_linear_in_a_variable_are_found() {
     let one = Poly::one();
     let product = |factors: &[Poly]| factors.iter().fold(Poly::one(), |product, factor| mul(&product, factor));
     let vandermonde: Vec<Poly> =
-        [(&a, &b), (&a, &c), (&a, &d), (&b, &c), (&b, &d), (&c, &d)].map(|(v, w)| &*v - w).to_vec();
+        [(&a, &b), (&a, &c), (&a, &d), (&b, &c), (&b, &d), (&c, &d)].map(|(v, w)| v - w).to_vec();
     for factors in [
         vec![&one - &a, &one - &b],
         vec![&a - &b, &a + &b],

@@ -63,7 +63,7 @@ impl Arguments {
         match (name.as_str(), meta) {
             ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, places)?),
             ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, places)?),
-            ("class", Meta::NameValue(pair)) => self.class = Some(class(text(pair, places)?)?),
+            ("class", Meta::NameValue(pair)) => self.class = Some(class(&text(pair, places)?)?),
             ("assume", Meta::List(list)) => {
                 for part in split(list.tokens.clone(), is_comma) {
                     let chain = chain(part, places);
@@ -112,7 +112,7 @@ fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Di
     }
 }
 
-fn class(name: Spanned<String>) -> Result<Spanned<CascadeClass>, Diagnostic> {
+fn class(name: &Spanned<String>) -> Result<Spanned<CascadeClass>, Diagnostic> {
     let Some(value) = CascadeClass::from_name(&name.value) else {
         let message = format!("{} is none of the choices", quoted(&name.value));
         return Err(Diagnostic::error(Code::WrongChoice, name.span, message)

@@ -4,6 +4,7 @@ use crate::plant::Scope;
 use crate::program::lower;
 use crate::simulate::Overrides;
 use crate::simulate::flow::{Flow, Stuck};
+use crate::simulate::layout::time;
 use crate::simulate::signal::Signal;
 use crate::source::{Diagnostics, Source};
 
@@ -26,11 +27,11 @@ fn a_spring_swings_as_its_closed_form_says() {
 fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8) -> Result<Vec<f64>, Stuck> {
     let arena = Arena::new();
     let (state, course) = (arena.variable("a"), arena.variable("s"));
-    let symbols = [arena.symbol("t"), arena.symbol("a"), arena.symbol("s")];
+    let symbols = [time(&arena), arena.symbol("a"), arena.symbol("s")];
     let text = with(SPRING, "duration", &format!("signals: {{s: {signal}}}, duration"));
     let model = Model::parse(&Source::new("test", text).unwrap()).unwrap();
     let mut scope = Scope::new();
-    scope.define("t", arena.variable("t"));
+    scope.define("t", arena.of_symbol(time(&arena)));
     let mut problems = Diagnostics::new();
     let signal = Signal::resolve(&arena, &scope, &model.simulation.unwrap().signals[0], &mut problems);
     assert!(!problems.has_errors());
