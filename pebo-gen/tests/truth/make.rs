@@ -4,7 +4,7 @@
 //! outputs; the rates of the states follow from them. What is true of the model is what the parts are known for.
 
 use super::draw::Draw;
-use super::formula::{Comparison, Formula, Values};
+use super::formula::{Comparison, Evaluated, Formula, Values};
 
 /// What is true of a model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -13,6 +13,8 @@ pub(crate) enum Truth {
     Holds,
     /// A claim fails: it must not be accepted.
     Fails,
+    /// Not known by construction: what is accepted has to stand before the judge.
+    Open,
 }
 
 /// A model with its truth.
@@ -306,8 +308,11 @@ impl Recipe {
             "subtle" if i == self.hidden => {
                 let term = self.pick(SUBTLE).replace('@', &x);
                 let domain = self.assume.iter().filter(|text| Comparison::read(text).names().contains(&x));
-                if !vanishes(&term, &x, &domain.map(String::as_str).collect::<Vec<_>>()) {
-                    self.truth = Truth::Fails;
+                let (domain, g) = (domain.map(String::as_str).collect::<Vec<_>>(), at(self.parts[i].g, &x));
+                // What is affine in the transform is part of a generalised cascade.
+                let affine = affine_in(&term, &g, &x, &domain);
+                if !vanishes(&term, &x, &domain) {
+                    self.truth = if affine { Truth::Open } else { Truth::Fails };
                 }
                 format!("{known} + {term}")
             }
@@ -350,14 +355,30 @@ impl Recipe {
     }
 }
 
-/// Whether a term in a state is zero throughout what is assumed of the state, as far as many points tell.
-fn vanishes(term: &str, x: &str, domain: &[&str]) -> bool {
-    let term = Formula::read(term);
-    (-400..400).all(|step| {
+/// Values of formulas in a state where what is assumed of the state holds and all of them have a value.
+fn sampled<const N: usize>(formulas: [&str; N], x: &str, domain: &[&str]) -> Vec<[Evaluated; N]> {
+    let formulas = formulas.map(Formula::read);
+    let at = |step: i32| {
         let value = f64::from(step) * 0.01 + 0.003;
         let values: Values = [(x, value), ("q1", 1.37)].map(|(name, value)| (name.to_owned(), (value, 0.0))).into();
         let inside = domain.iter().all(|text| Comparison::read(text).holds(&values));
-        let found = term.at(&values);
-        !inside || !found.value.is_finite() || found.value.abs() <= 1e-13 * found.size.max(1.0)
+        let found: [Evaluated; N] = std::array::from_fn(|i| formulas[i].at(&values));
+        (inside && found.iter().all(|found| found.value.is_finite())).then_some(found)
+    };
+    (-400..400).filter_map(at).collect()
+}
+
+/// Whether a term in a state is zero throughout what is assumed of the state, as far as many points tell.
+fn vanishes(term: &str, x: &str, domain: &[&str]) -> bool {
+    sampled([term], x, domain).iter().all(|[found]| found.value.abs() <= 1e-13 * found.size.max(1.0))
+}
+
+/// Whether a term is an affine function of another there: all points lie on one line, by more than rounding.
+fn affine_in(term: &str, other: &str, x: &str, domain: &[&str]) -> bool {
+    let points = sampled([term, other], x, domain);
+    let (Some([t, g]), Some([u, k])) = (points.first(), points.last()) else { return false };
+    points.iter().all(|[v, m]| {
+        let area = (v.value - t.value) * (k.value - g.value) - (u.value - t.value) * (m.value - g.value);
+        area.abs() <= 1e-12 * (v.size + u.size + t.size) * (m.size + k.size + g.size)
     })
 }
