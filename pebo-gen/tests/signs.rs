@@ -48,6 +48,9 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
     ("x", &["-x - 1"], Negative),
     ("x", &["1 - x"], Nothing),
     ("x", &["2*x - 3"], Positive),
+    // A fact that is a fraction: of roots, its normal form may vanish where the fact holds, as at a = 1, b = -1.
+    ("a*b", &["a/b"], Positive),
+    ("(sqrt(a) + b)*(a - b^2)", &["1/(sqrt(a) - b)"], NotNegative),
     // Products and powers.
     ("x*y", &["x", "y"], Positive),
     ("x*y", &["x", "-y"], Negative),

@@ -65,6 +65,8 @@ fn value(formula: &Formula, point: &BTreeMap<String, f64>) -> f64 {
 }
 
 const ZERO: &[(&str, &[&str])] = &[
+    // A cube root of a product of powers.
+    ("((x^5*y)^(1/3) + 1)*((x^5*y)^(2/3) - (x^5*y)^(1/3) + 1) - x^5*y - 1", &[]),
     ("(x + y)^2 - x^2 - 2*x*y - y^2", &[]),
     ("(x^3 - y^3)/(x - y) - x^2 - x*y - y^2", &[]),
     ("1/(x*(x + 1)) - 1/x + 1/(x + 1)", &[]),

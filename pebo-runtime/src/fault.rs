@@ -44,6 +44,21 @@ pub enum Fault {
     State,
     /// The left inverse would give an infinite or NaN estimate.
     Estimate,
+    /// A parameter is infinite or NaN, or out of the range that the proofs of the model assume.
+    Parameter {
+        /// The place of the first condition that does not hold, from 0, among those of the model's `Parameters::check`.
+        index: usize,
+    },
+}
+
+impl Fault {
+    /// Accepts parameters of which all these conditions hold.
+    ///
+    /// # Errors
+    /// [`Fault::Parameter`] with the place of the first that does not.
+    pub fn of_parameters<const N: usize>(conditions: [bool; N]) -> Result<(), Self> {
+        conditions.iter().position(|holds| !holds).map_or(Ok(()), |index| Err(Self::Parameter { index }))
+    }
 }
 
 impl fmt::Display for Fault {
@@ -62,6 +77,7 @@ impl fmt::Display for Fault {
             Self::Singular => f.write_str("the extension cannot be advanced by this step: singular system"),
             Self::State => f.write_str("the new state would not be finite"),
             Self::Estimate => f.write_str("the left inverse is not finite here"),
+            Self::Parameter { index } => write!(f, "condition {index} of the parameters does not hold"),
         }
     }
 }

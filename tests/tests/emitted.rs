@@ -88,6 +88,25 @@ fn values_of_every_model() {
     assert!(compared > 1000, "only {compared} values were compared");
 }
 
+/// All parameters of the Cuk converter are positive.
+#[test]
+fn parameters_beside_the_proofs_are_refused() {
+    use pebo_runtime::Fault;
+    use tests::emitted::cuk_f32::Parameters;
+    let given = Parameters::default();
+    assert_eq!(given.check(), Ok(()));
+    let refused = [
+        (0, Parameters { l1: 0.0, ..given.clone() }),
+        (1, Parameters { c2: -1.0, ..given.clone() }),
+        (4, Parameters { g: f32::NAN, ..given.clone() }),
+        (5, Parameters { e: f32::INFINITY, ..given.clone() }),
+        (0, Parameters { l1: f32::NAN, e: f32::NAN, ..given.clone() }),
+    ];
+    for (index, parameters) in refused {
+        assert_eq!(parameters.check(), Err(Fault::Parameter { index }), "{parameters:?}");
+    }
+}
+
 /// The velocities of a mechanical model are the rates of its outputs: what the regression says of z without theta.
 #[test]
 fn velocities_are_the_rates_of_the_outputs() {

@@ -51,8 +51,11 @@ fn the_commands_that_are_shown_mean_one_program() {
 }
 
 fn estimate_currents() -> Result<SVector<f64, 2>, Fault> {
+    let parameters = cuk::Parameters { e: 24.0, ..cuk::Parameters::default() };
+    // The proofs hold for these values too: they have the signs that the model gives.
+    parameters.check()?;
     let mut observer = cuk::Observer::new(
-        cuk::Cuk::new(&cuk::Parameters::default()),
+        cuk::Cuk::new(&parameters),
         Gradient::diagonal(&SVector::from([0.001, 0.001]))?,
         Filter::new(0.5, Hold::First)?,
         SVector::zeros(),

@@ -38,8 +38,14 @@ pub(super) fn prove(
 ) -> Claim<Identifiability> {
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
-    let mut flow = Flow::new(plant, domain, cascade);
-    let mut stack = effective(arena, &flow, &regression.phi_1, &regression.primitive_1);
+    // Of an implicit regression the rates are part of what multiplies the unknowns.
+    let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
+    let flow = Flow::new(plant, domain, cascade);
+    let mut stack = match &flow {
+        Ok(flow) => effective(arena, flow, &regression.phi_1, &regression.primitive_1),
+        Err(_) if !by_rates => regression.phi_1.clone(),
+        Err(obstacle) => return open(plant, obstacle, found),
+    };
     let answer = |kind, direction, verdict| Claim {
         verdict,
         result: Some(Identifiability {
@@ -54,9 +60,8 @@ pub(super) fn prove(
     };
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
-        // Of an implicit regression the rates are part of what multiplies the unknowns: nothing to read off.
-        let shown = regression.primitive_1.iter().flatten().all(|factor| arena.is_zero(*factor));
-        let (places, gram) = if shown { excitation::of(plant, domain, &phi_1) } else { (Places::default(), None) };
+        // Nothing can be read off rates.
+        let (places, gram) = if by_rates { (Places::default(), None) } else { excitation::of(plant, domain, &phi_1) };
         let result = Identifiability {
             kind: Excitation::Instant,
             singular_where: places.signals,
@@ -68,6 +73,10 @@ pub(super) fn prove(
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) };
     }
+    let mut flow = match flow {
+        Ok(flow) => flow,
+        Err(obstacle) => return open(plant, &obstacle, found),
+    };
     let excited = || {
         let (motion, constants) = motion::of(plant, domain, cascade, regression);
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
@@ -166,7 +175,7 @@ fn of_theta(
 /// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
 fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
     let arena = &plant.arena;
-    let mut flow = Flow::new(plant, domain, cascade);
+    let Ok(mut flow) = Flow::new(plant, domain, cascade) else { return false };
     let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
     let mut rank = rank_seen(arena, domain, &stack, unknowns);
     for _ in 1..unknowns {
@@ -201,7 +210,7 @@ pub(super) struct Flow {
 }
 
 impl Flow {
-    fn new(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Self {
+    fn new(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Self, Obstacle> {
         Self::along(plant, domain, cascade, &BTreeSet::new(), &BTreeMap::new())
     }
 
@@ -212,7 +221,7 @@ impl Flow {
         cascade: &Cascade,
         held: &BTreeSet<Symbol>,
         equal: &BTreeMap<Symbol, Expr>,
-    ) -> Self {
+    ) -> Result<Self, Obstacle> {
         let arena = &plant.arena;
         let mut rates = plant.rates();
         match &cascade.lambda {
@@ -239,18 +248,25 @@ impl Flow {
         rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
         let mut flow = Self { rates, free };
         flow.advance(plant);
-        flow.bind(plant, domain);
-        flow
+        flow.bind(plant, domain)?;
+        Ok(flow)
     }
 
-    /// Gives a signal without an equation the rate that an identity leaves it: it is not free then.
-    fn bind(&mut self, plant: &Plant, domain: &Domain) {
+    /// Gives a signal without an equation the rate that an identity leaves it: it is not free then. Whether an identity
+    /// binds one must be decided, or a rank could be seen that no motion has.
+    fn bind(&mut self, plant: &Plant, domain: &Domain) -> Result<(), Obstacle> {
         let arena = &plant.arena;
         for identity in &plant.identities {
             let moved = self.rate(arena, identity.expr);
-            let slopes = self.free.iter().map(|derivative| arena.derivative(moved, *derivative));
-            let bound = slopes.enumerate().find(|(_, slope)| refute(arena, *slope, domain).is_some());
-            let Some((index, slope)) = bound else { continue };
+            let slopes: Vec<Expr> = self.free.iter().map(|derivative| arena.derivative(moved, *derivative)).collect();
+            let bound = slopes.iter().position(|slope| refute(arena, *slope, domain).is_some());
+            let Some(index) = bound else {
+                if slopes.iter().all(|slope| decide(arena, *slope, domain).is_zero()) {
+                    continue;
+                }
+                return Err(Obstacle::Unsolved(arena.print(identity.expr)));
+            };
+            let slope = slopes[index];
             let derivative = self.free.remove(index);
             let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
             let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
@@ -258,6 +274,7 @@ impl Flow {
                 *rate = arena.substitute(*rate, &value);
             }
         }
+        Ok(())
     }
 
     /// Gives the latest derivatives of the free signals rates of their own.

@@ -37,6 +37,7 @@ mod known;
 mod left_inverse;
 mod limited;
 mod motion;
+mod parameters;
 mod pencil;
 mod regression;
 mod relations;
@@ -56,5 +57,6 @@ pub use design::{
 };
 pub use drift::Drift;
 pub use equilibrium::{Equilibrium, OperatingPoint};
+pub use parameters::Sign;
 #[cfg(test)]
 pub(crate) use remarks::Remarks;

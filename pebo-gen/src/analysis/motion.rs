@@ -108,7 +108,7 @@ impl Question<'_> {
         } else {
             restricted(arena, domain, &restriction.equal).ok_or(Obstacle::NoPoint)?
         };
-        let mut flow = Flow::along(plant, &domain, cascade, &restriction.held, &restriction.equal);
+        let mut flow = Flow::along(plant, &domain, cascade, &restriction.held, &restriction.equal)?;
         let there = |rows: &[Vec<Expr>]| -> Vec<Vec<Expr>> {
             rows.iter().map(|row| arena.substitute_all(row, &restriction.equal)).collect()
         };

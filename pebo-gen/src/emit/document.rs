@@ -13,7 +13,7 @@ use crate::program::{Cost, Staged};
 
 /// The documentation of the module.
 pub(super) fn module(module: &Module<'_>) -> Vec<String> {
-    let &Module { plant, derivation, definitions, staged, scalar, rebase } = module;
+    let &Module { plant, derivation, definitions, staged, scalar, rebase, .. } = module;
     let mut lines = Vec::new();
     let title = plant.title.as_deref().unwrap_or(&plant.name);
     lines.push(sentence(title));
@@ -230,7 +230,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     if !plant.parameters.is_empty() {
         lines.extend([
             String::new(),
-            "The proofs hold for all values of the parameters that keep the signs of the model's.".to_owned(),
+            "The proofs hold for all values of the parameters that keep the signs of the model's: `Parameters::check` tells.".to_owned(),
         ]);
     }
     lines

@@ -8,6 +8,7 @@
 //! that depends on `pebo_runtime` alone. Holds after: the tokens were interpreted again, and each
 //! function's value is, by the caller's zero test, what was derived.
 
+mod check;
 mod definition;
 mod describe;
 mod document;
@@ -34,7 +35,7 @@ use proc_macro2::TokenStream;
 use crate::analysis::Derivation;
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
-use crate::program::{Task, stage};
+use crate::program::{Task, Undeclared, lower, stage};
 use definition::Definitions;
 use module::Module;
 
@@ -73,12 +74,16 @@ pub fn emit(
             outputs: definition.rows.concat(),
         })
         .collect();
-    let staged = stage(arena, &parameters, &tasks)
-        .map_err(|undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) })?;
+    let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
+    let staged = stage(arena, &parameters, &tasks).map_err(undeclared)?;
+    let asked = derivation.asked_of_parameters(plant);
+    let values: Vec<Expr> = asked.iter().map(|(value, _)| *value).collect();
+    let checked = lower(arena, &parameters, &values).map_err(undeclared)?;
     let rebase = derivation.can_rebase(plant);
-    let module = Module { plant, derivation, definitions: &definitions, staged: &staged, scalar, rebase };
+    let definitions = &definitions;
+    let module = Module { plant, derivation, definitions, staged: &staged, asked: &asked, checked, scalar, rebase };
     let tokens = module.tokens()?;
-    read_back::confirm(plant, &definitions, scalar, &tokens, is_zero)?;
+    read_back::confirm(plant, definitions, &asked, scalar, &tokens, is_zero)?;
     let text = layout::text(&tokens)?;
     Ok(Emitted { tokens, text, type_name: names::camel(&plant.name) })
 }

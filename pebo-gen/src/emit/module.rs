@@ -13,9 +13,9 @@ use super::expression::{self, Body, Piece, ident, render};
 use super::literal::{Scalar, literal, whole};
 use super::names::{Names, camel};
 use super::permission;
-use crate::analysis::{Class, Derivation, RegressionKind};
-use crate::cas::Symbol;
+use crate::analysis::{Class, Derivation, RegressionKind, Sign};
 use crate::cas::rational::Rational;
+use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Constant, Program, Staged};
 
@@ -25,6 +25,10 @@ pub(super) struct Module<'a> {
     pub(super) derivation: &'a Derivation,
     pub(super) definitions: &'a Definitions<'a>,
     pub(super) staged: &'a Staged,
+    /// What is asked of the parameters.
+    pub(super) asked: &'a [(Expr, Sign)],
+    /// From the parameters to the values that are asked for.
+    pub(super) checked: Program,
     pub(super) scalar: Scalar,
     /// Whether the model may be re-based.
     pub(super) rebase: bool,
@@ -53,6 +57,7 @@ impl Module<'_> {
             if definition.name == VELOCITY { own = Some(function) } else { functions.push(function) }
         }
         let parameters = self.parameters(&mut scope);
+        let check = (!self.asked.is_empty()).then(|| self.check(&mut scope));
         let ratios = self.ratios(&scope);
 
         let lines = document::module(self);
@@ -84,6 +89,7 @@ impl Module<'_> {
             #(#sizes)*
             #ratios
             #parameters
+            #check
             #model
             #precision
             impl Model<NX, NY, NU, NZ, NR, NE> for #type_name {
@@ -108,7 +114,7 @@ impl Module<'_> {
     }
 
     fn programs(&self) -> impl Iterator<Item = &Program> {
-        std::iter::once(&self.staged.setup).chain(&self.staged.programs)
+        [&self.staged.setup, &self.checked].into_iter().chain(&self.staged.programs)
     }
 
     fn scope(&self) -> Scope {
@@ -136,9 +142,10 @@ impl Module<'_> {
         let pi = self.programs().any(|program| program.constants.contains(&Constant::Pi));
         let pi = pi.then(|| quote!(use core::#scalar::consts::PI;));
         // In alphabetical order, as rustfmt has them.
+        let fault = (!self.asked.is_empty()).then(|| quote!(Fault,));
         let first = match self.definitions.class {
-            Class::Pebo => quote!(Gradient, #extension),
-            Class::Gpebo => quote!(#extension, Gradient),
+            Class::Pebo => quote!(#fault Gradient, #extension),
+            Class::Gpebo => quote!(#fault #extension, Gradient),
         };
         quote! {
             #pi

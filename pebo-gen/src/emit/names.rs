@@ -84,8 +84,9 @@ const RESERVED: [&str; 61] = [
 ];
 
 /// Types that an emitted module declares or imports.
-const TYPES: [&str; 13] = [
+const TYPES: [&str; 14] = [
     "Default",
+    "Fault",
     "Fundamental",
     "Gradient",
     "Integrator",

@@ -11,11 +11,12 @@ use proc_macro2::TokenStream;
 use quote::ToTokens;
 use syn::{FnArg, ImplItem, Item, Pat, Stmt};
 
+use super::check::{self, Condition};
 use super::definition::{Argument, Definitions, VELOCITY};
 use super::error::EmitError;
 use super::literal::Scalar;
 use super::value::{Scope, Value, expression, unreadable};
-use crate::analysis::RegressionKind;
+use crate::analysis::{RegressionKind, Sign};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
@@ -24,6 +25,7 @@ use crate::plant::Plant;
 pub(super) fn confirm(
     plant: &Plant,
     definitions: &Definitions,
+    asked: &[(Expr, Sign)],
     scalar: Scalar,
     tokens: &TokenStream,
     is_zero: impl Fn(&Arena, Expr) -> bool,
@@ -50,6 +52,10 @@ pub(super) fn confirm(
     if !plant.parameters.is_empty() && read.default != values {
         return Err(EmitError::Unreadable { code: "the values of the parameters".to_owned() });
     }
+    let asked: Vec<Condition> = asked.iter().map(|asked| Condition::of(arena, *asked)).collect();
+    if !plant.parameters.is_empty() && !same_conditions(arena, &read.checked, &asked, &is_zero) {
+        return Err(EmitError::Unreadable { code: "the check of the parameters".to_owned() });
+    }
     if read.functions.len() != definitions.functions.len() {
         return Err(EmitError::Unreadable { code: "another set of functions".to_owned() });
     }
@@ -75,10 +81,30 @@ pub(super) fn confirm(
     Ok(())
 }
 
+/// Whether the conditions are the same, one by one.
+fn same_conditions(
+    arena: &Arena,
+    read: &[Condition],
+    asked: &[Condition],
+    is_zero: impl Fn(&Arena, Expr) -> bool,
+) -> bool {
+    let same = |read: &Condition, asked: &Condition| {
+        let compared = match (read.compared, asked.compared) {
+            (Some((a, how)), Some((b, asked))) => how == asked && (a == b || is_zero(arena, arena.sub(a, b))),
+            (None, None) => true,
+            _ => false,
+        };
+        compared && read.finite == asked.finite
+    };
+    read.len() == asked.len() && read.iter().zip(asked).all(|(read, asked)| same(read, asked))
+}
+
 /// What the tokens say.
 #[derive(Debug, Default)]
 struct Read {
     default: Option<Vec<Rational>>,
+    /// What is asked of the parameters.
+    checked: Vec<Condition>,
     /// Associated types and constants, by the last segment of their values.
     choices: BTreeMap<String, String>,
     /// The columns of each function's value.
@@ -131,6 +157,12 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                 Some("Model") => model(plant, definitions, item, &globals, &stored, &mut read)?,
                 None if only_function(item)?.sig.ident == VELOCITY => {
                     model(plant, definitions, item, &globals, &stored, &mut read)?;
+                }
+                None if last_segment(&item.self_ty)? == "Parameters" => {
+                    let mut scope = globals.clone();
+                    scope.declare("self", Value::Fields(fields.clone()));
+                    let (last, scope) = statements(arena, only_function(item)?, scope)?;
+                    read.checked = check::read(arena, last, &scope)?;
                 }
                 None => {
                     let mut scope = globals.clone();
@@ -220,7 +252,17 @@ fn of_argument(arena: &Arena, definitions: &Definitions, argument: Argument) -> 
 }
 
 /// The value of a function: its statements in order, then its last expression.
-fn body(arena: &Arena, function: &syn::ImplItemFn, mut scope: Scope) -> Result<Value, EmitError> {
+fn body(arena: &Arena, function: &syn::ImplItemFn, scope: Scope) -> Result<Value, EmitError> {
+    let (last, scope) = statements(arena, function, scope)?;
+    expression(arena, last, &scope)
+}
+
+/// The last expression of a function, and the names that its statements bind before.
+fn statements<'a>(
+    arena: &Arena,
+    function: &'a syn::ImplItemFn,
+    mut scope: Scope,
+) -> Result<(&'a syn::Expr, Scope), EmitError> {
     let (last, statements) = function.block.stmts.split_last().ok_or_else(|| unreadable(&function.sig))?;
     for statement in statements {
         let Stmt::Local(local) = statement else {
@@ -233,7 +275,7 @@ fn body(arena: &Arena, function: &syn::ImplItemFn, mut scope: Scope) -> Result<V
         scope.bind(&local.pat, value)?;
     }
     match last {
-        Stmt::Expr(value, None) => expression(arena, value, &scope),
+        Stmt::Expr(value, None) => Ok((value, scope)),
         other => Err(unreadable(other)),
     }
 }

@@ -42,6 +42,13 @@ impl Field<'_> {
         Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
     }
 
+    /// Whether an algebraic relation says something of a kernel that occurs.
+    pub(super) fn has_relations(&self, fraction: &Fraction) -> bool {
+        let kernels = self.kernels.borrow();
+        let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());
+        variables.any(|variable| kernels[*variable as usize].relation.is_some())
+    }
+
     /// How many units of its basis argument a multiple is; refines the unit where it is none.
     pub(super) fn multiple(&self, family: Family, key: Expr, factor: &Rational) -> Result<(Rational, i64), Obstacle> {
         const MOST: i64 = 1 << 10;

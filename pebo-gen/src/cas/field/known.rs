@@ -49,10 +49,20 @@ impl Field<'_> {
 
     fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
         let fraction = self.fraction(expr)?;
-        // n/d > 0 has the sign of n*d
-        let poly =
-            if fraction.den.is_constant() { fraction.num } else { fraction.num.mul(&fraction.den, self.limit())? };
-        self.signs.borrow_mut().push((poly, compared));
+        if fraction.den.is_constant() {
+            self.signs.borrow_mut().push((fraction.num, compared));
+            return Ok(());
+        }
+        // n/d > 0 has the sign of n*d. But a denominator may have been cleared of roots by a factor that vanishes where
+        // the fact holds: then n*d is zero there.
+        let cleared = self.has_relations(&fraction);
+        let compared = match compared {
+            Compared::Positive | Compared::NonNegative if cleared => Compared::NonNegative,
+            Compared::NonZero if cleared => return Ok(()),
+            exact => exact,
+        };
+        let product = fraction.num.mul(&fraction.den, self.limit())?;
+        self.signs.borrow_mut().push((product, compared));
         Ok(())
     }
 

@@ -145,6 +145,13 @@ fn flat(syntax: &Expr) -> Result<String, EmitError> {
                 BinOp::Sub(_) => "-",
                 BinOp::Mul(_) => "*",
                 BinOp::Div(_) => "/",
+                BinOp::And(_) => "&&",
+                BinOp::Gt(_) => ">",
+                BinOp::Ge(_) => ">=",
+                BinOp::Lt(_) => "<",
+                BinOp::Le(_) => "<=",
+                BinOp::Ne(_) => "!=",
+                BinOp::Eq(_) => "==",
                 _ => return Err(unknown(syntax)),
             };
             format!("{} {operator} {}", flat(&binary.left)?, flat(&binary.right)?)
@@ -206,6 +213,7 @@ pub(super) fn type_text(syntax: &Type) -> Result<String, EmitError> {
     match syntax {
         Type::Reference(reference) => Ok(format!("&{}", type_text(&reference.elem)?)),
         Type::Path(path) => path_text(&path.path),
+        Type::Tuple(tuple) if tuple.elems.is_empty() => Ok("()".to_owned()),
         _ => Err(unknown(syntax)),
     }
 }

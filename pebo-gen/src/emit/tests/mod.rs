@@ -155,10 +155,11 @@ fn a_number_out_of_range_is_an_error() {
 fn tampered_tokens_are_refused() {
     let (plant, derivation) = CUK.build();
     let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let asked = derivation.asked_of_parameters(&plant);
     let text = emitted(CUK);
     let confirm = |text: &str| {
         let tokens = text.parse().unwrap();
-        read_back::confirm(&plant, &definitions, Scalar::F64, &tokens, vanishes)
+        read_back::confirm(&plant, &definitions, &asked, Scalar::F64, &tokens, vanishes)
     };
     assert_eq!(confirm(&text), Ok(()));
     for (from, to) in [
@@ -172,6 +173,12 @@ fn tampered_tokens_are_refused() {
         ("NX: usize = 2", "NX: usize = 3"),
         ("pub l1: f64", "pub c2: f64"),
         ("SVector::from(", "SVector::of("),
+        ("self.l1 > 0.0", "self.l1 >= 0.0"),
+        ("self.l3 > 0.0", "self.l1 > 0.0"),
+        ("self.c2.is_finite() && ", ""),
+        ("self.c2.is_finite() && ", "self.l1.is_finite() && "),
+        ("self.g.is_finite() && self.g > 0.0,", ""),
+        ("Fault::of_parameters", "Fault::of_values"),
     ] {
         assert!(text.contains(from), "{from}");
         assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
@@ -185,8 +192,10 @@ fn an_unconfirmed_emission_is_refused() {
     let (plant, derivation) = Sketch { phi_0: ROWS, ..CUK }.build();
     let definitions = Definitions::of(&plant, &derivation).unwrap();
     let tokens = emitted(Sketch { phi_0: &["1.0", "0.0"], ..CUK }).parse().unwrap();
-    let confirm =
-        |is_zero: fn(&Arena, Expr) -> bool| read_back::confirm(&plant, &definitions, Scalar::F64, &tokens, is_zero);
+    let asked = derivation.asked_of_parameters(&plant);
+    let confirm = |is_zero: fn(&Arena, Expr) -> bool| {
+        read_back::confirm(&plant, &definitions, &asked, Scalar::F64, &tokens, is_zero)
+    };
     assert_eq!(confirm(vanishes), Ok(()));
     let refused = confirm(|arena, expr| {
         let call = |&inner: &Expr| matches!(arena.node(inner), Node::Call(..));
@@ -194,6 +203,36 @@ fn an_unconfirmed_emission_is_refused() {
     });
     let function = "phi_0".to_owned();
     assert_eq!(refused, Err(EmitError::Differs { function, row: 1, column: 1 }));
+}
+
+#[test]
+fn parameters_are_checked_for_what_is_assumed() {
+    let sketch = Sketch {
+        // Without a value, and with values of each sign.
+        parameters: &[("L1", ""), ("C2", "-2"), ("L3", "0"), ("C4", ""), ("G", "0.5"), ("E", "")],
+        assume: &["L1", "G", "1.0 - d", "-E", "C4 - 3.0*G*L1"],
+        ..CUK
+    };
+    let text = emitted(sketch);
+    let code = function(&text, "check");
+    let (_, rows) = code.split_once("of_parameters([").unwrap();
+    let rows: Vec<&str> = rows.lines().map(str::trim).filter(|line| line.ends_with(',')).collect();
+    let expected = [
+        "self.l1.is_finite() && self.l1 > 0.0,",
+        "self.c2.is_finite() && self.c2 < 0.0,",
+        "self.l3 == 0.0,",
+        "self.c4.is_finite(),",
+        "self.g.is_finite() && self.g > 0.0,",
+        "self.e.is_finite() && self.e < 0.0,",
+        "self.c4 - 3.0 * self.l1 * self.g > 0.0,",
+    ];
+    assert_eq!(rows, expected, "{code}");
+}
+
+#[test]
+fn what_the_rows_of_single_parameters_show_is_not_checked_again() {
+    let assume = &["L1", "L1*C2 + G", "1.0 + E*E"];
+    assert!(!emitted(Sketch { assume, ..CUK }).contains("self.l1 * "));
 }
 
 #[test]
