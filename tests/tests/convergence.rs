@@ -60,7 +60,7 @@ fn text(model: &str) -> String {
 fn run(text: &str) -> Trace {
     let derived = derive(&Source::new("model", text).expect("a text")).expect("a model");
     let scenario = derived.scenario(&Overrides::default()).expect("a closed loop");
-    scenario.run(&mut |_| {}).expect("a run to the end")
+    scenario.run().expect("a run to the end")
 }
 
 /// The norm of the errors of all estimates, row by row.

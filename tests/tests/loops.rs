@@ -42,7 +42,7 @@ fn derived(text: &str) -> Derived {
 
 fn run(text: &str, overrides: &Overrides) -> Trace {
     let scenario = derived(text).scenario(overrides).expect("a closed loop");
-    scenario.run(&mut |_| {}).expect("a run to the end")
+    scenario.run().expect("a run to the end")
 }
 
 fn feedback(name: &str) -> Overrides {
@@ -128,7 +128,7 @@ fn shorter_steps_approach_continuous_time() {
 fn figures_show_every_panel_and_stay_small() {
     for text in [CASE_1, CASE_2] {
         let scenario = derived(text).scenario(&Overrides::default()).expect("a closed loop");
-        let trace = scenario.run(&mut |_| {}).expect("a run to the end");
+        let trace = scenario.run().expect("a run to the end");
         let svg = figure::draw(&trace, &scenario);
         let panels = text.matches("- {title:").count();
         assert!(panels >= 3);

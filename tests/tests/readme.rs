@@ -94,7 +94,7 @@ fn the_section_observer_that_is_shown_runs() {
     let (_, after) = rest.split_once("simulation:\n").expect("a section behind it");
     let text = format!("{before}{section}simulation:\n{after}");
     let overrides = Overrides { duration: Some(2e-3), every: Some(1e-5), ..Overrides::default() };
-    let trace = derived(&text).scenario(&overrides).expect("a closed loop").run(&mut |_| {}).expect("a run to the end");
+    let trace = derived(&text).scenario(&overrides).expect("a closed loop").run().expect("a run to the end");
     for name in ["i1_error", "v4_error"] {
         let errors = trace.column(name).expect("a recovered state");
         let late = errors[100..].iter().fold(0.0_f64, |largest, error| largest.max(error.abs()));
@@ -160,6 +160,6 @@ fn verdicts_are_printed_as_shown() {
 #[test]
 fn the_figure_is_what_the_command_draws() {
     let scenario = derived(&model("cuk.yaml")).scenario(&Overrides::default()).expect("a closed loop");
-    let trace = scenario.run(&mut |_| {}).expect("a run to the end");
+    let trace = scenario.run().expect("a run to the end");
     assert!(figure::draw(&trace, &scenario) == model("cuk.svg"), "draw models/cuk.svg again");
 }

@@ -1,6 +1,5 @@
 //! What the command line takes.
 
-use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -31,9 +30,10 @@ pub(super) struct Arguments {
     pub(super) command: Option<Command>,
     #[command(flatten)]
     pub(super) generate: GenerateOptions,
-    /// Leave undecided what takes longer for a model; memory is 512 MB, and in proportion beyond 10 seconds
-    #[arg(long, global = true, value_name = "SECONDS", default_value_t = Limit(Budget::SECONDS))]
-    pub(super) limit: Limit,
+    /// Leave undecided what takes longer than this for a model, 10 seconds unless given; memory is 512 MB, and in
+    /// proportion beyond 10 seconds. If given, `simulate` stops a run that takes longer
+    #[arg(long, global = true, value_name = "SECONDS")]
+    pub(super) limit: Option<Limit>,
 }
 
 /// Seconds: a positive number.
@@ -50,9 +50,9 @@ impl FromStr for Limit {
     }
 }
 
-impl Display for Limit {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        Display::fmt(&self.0, f)
+impl Default for Limit {
+    fn default() -> Self {
+        Self(Budget::SECONDS)
     }
 }
 

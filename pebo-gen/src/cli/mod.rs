@@ -44,7 +44,7 @@ pub(crate) fn run() -> ExitCode {
         Err(answer) => return ExitCode::from(said(&answer) as u8),
     };
     let ending = match arguments.command {
-        Some(Command::Check(options)) => check::run(&options, arguments.limit),
+        Some(Command::Check(options)) => check::run(&options, arguments.limit.unwrap_or_default()),
         Some(Command::Simulate(options)) => simulate::run(&options, arguments.limit),
         Some(Command::Explain(options)) => explain::run(&options),
         Some(Command::Completions(options)) => manual::completions(&options),
@@ -53,7 +53,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Command::Solve(_)) => later::refuse("solve", "write a candidate under `phi`, and let `check` judge it"),
         Some(Command::Report(_)) => later::refuse("report", "`pebo-gen check MODEL` prints what is derived as text"),
         Some(Command::Certificate(_)) => later::refuse("certificate", "`pebo-gen check MODEL` says what is proved"),
-        None => generate::run(&arguments.generate, arguments.limit),
+        None => generate::run(&arguments.generate, arguments.limit.unwrap_or_default()),
     };
     ExitCode::from(ending as u8)
 }

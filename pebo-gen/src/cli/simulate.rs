@@ -1,6 +1,8 @@
 //! `pebo-gen simulate`: runs the closed loop that the model file describes.
 
 use std::io::IsTerminal as _;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use pebo_gen::analysis::Outcome;
@@ -16,8 +18,8 @@ const LONG_RUN: u64 = 200_000;
 /// The resolution of the bar.
 const TICKS: u64 = 1000;
 
-pub(super) fn run(options: &SimulateOptions, limit: Limit) -> Ending {
-    let (source, derived) = match files::derive(&options.model, limit) {
+pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Ending {
+    let (source, derived) = match files::derive(&options.model, limit.unwrap_or_default()) {
         Ok(read) => read,
         Err(ending) => return ending,
     };
@@ -36,7 +38,12 @@ pub(super) fn run(options: &SimulateOptions, limit: Limit) -> Ending {
         }
     };
     let bar = progress(scenario.samples());
-    let run = scenario.run(&mut |done| bar.set_position(share(done)));
+    // A run that nobody limits ends by itself: its samples are counted before it starts, and it shows how far it is.
+    let (start, most) = (Instant::now(), limit.map(|limit| Duration::from_secs_f64(limit.0)));
+    let run = scenario.run_while(&mut |done| {
+        bar.set_position(share(done));
+        if most.is_some_and(|most| start.elapsed() > most) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
     bar.finish_and_clear();
     let trace = match run {
         Ok(trace) => trace,

@@ -28,6 +28,11 @@ pub enum Failure {
         /// Why.
         fault: Fault,
     },
+    /// The caller ended the run.
+    Stopped {
+        /// When, in seconds of the run.
+        at: f64,
+    },
 }
 
 impl Failure {
@@ -43,6 +48,7 @@ impl Failure {
                  method"
             }
             Self::Refused { .. } => "check the gains, the domain of the observer's formulas, and the step",
+            Self::Stopped { .. } => "allow more, as `--limit 60`, choose a longer step, or simulate a shorter time",
         }
     }
 }
@@ -55,6 +61,7 @@ impl fmt::Display for Failure {
                 write!(f, "the integration got stuck at t = {at} s, after {steps} steps there")
             }
             Self::Refused { at, fault } => write!(f, "the observer refused the sample at t = {at} s: {fault}"),
+            Self::Stopped { at } => write!(f, "the run reached its limit at t = {at} s"),
         }
     }
 }

@@ -4,6 +4,8 @@
 //! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, told of u_0 -> u_1 -> ..
 //! ```
 
+use std::ops::ControlFlow;
+
 use crate::program::{Interpreter, Program};
 
 use super::curve::Curve;
@@ -20,8 +22,14 @@ use super::trace::Trace;
 const REPORTS: u64 = 500;
 
 impl Scenario {
-    /// Runs the loop from its start to its end; `progress` is told now and then which part is done, 0 to 1.
-    pub fn run(&self, progress: &mut dyn FnMut(f64)) -> Result<Trace, Failure> {
+    /// Runs the loop from its start to its end.
+    pub fn run(&self) -> Result<Trace, Failure> {
+        self.run_while(&mut |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, but for a caller who is told now and then which part is done, 0 to 1, and may end it there with
+    /// [`Failure::Stopped`].
+    pub fn run_while(&self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Trace, Failure> {
         let mut machine = Machine::start(self)?;
         let mut record = Record::new(self);
         let samples = self.timing.samples;
@@ -32,8 +40,8 @@ impl Scenario {
             }
             machine.control()?;
             record.take(sample, &machine.table);
-            if sample % stride == 0 {
-                progress(real(sample) / real(samples));
+            if sample % stride == 0 && progress(real(sample) / real(samples)).is_break() {
+                return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
         Ok(record.finish())

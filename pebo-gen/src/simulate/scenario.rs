@@ -96,7 +96,11 @@ impl Scenario {
 
     /// A failure of a run as a diagnostic at the section that was run.
     pub fn explain(&self, failure: &Failure) -> Diagnostic {
-        Diagnostic::error(Code::SimulationFailed, self.span, failure.to_string()).help(failure.help())
+        let code = match failure {
+            Failure::Stopped { .. } => Code::LimitReached,
+            _ => Code::SimulationFailed,
+        };
+        Diagnostic::error(code, self.span, failure.to_string()).help(failure.help())
     }
 }
 

@@ -5,7 +5,7 @@ use crate::simulate::{Overrides, Scenario};
 use super::{CUK_CASE_2, SPRING, resolve, with};
 
 fn figure(scenario: &Scenario) -> String {
-    draw(&scenario.run(&mut |_| {}).unwrap(), scenario)
+    draw(&scenario.run().unwrap(), scenario)
 }
 
 /// Whether every element is closed in its order, every attribute quoted, every entity known.

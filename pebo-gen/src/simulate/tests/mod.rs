@@ -43,7 +43,7 @@ fn resolve(text: &str, overrides: &Overrides) -> Result<Scenario, Vec<Diagnostic
 }
 
 fn run(text: &str, overrides: &Overrides) -> Trace {
-    resolve(text, overrides).unwrap().run(&mut |_| {}).unwrap()
+    resolve(text, overrides).unwrap().run().unwrap()
 }
 
 /// A text with one part replaced, which it must have.

@@ -116,7 +116,7 @@ fn settings_of_a_call_are_refused_too() {
 }
 
 fn failure(scenario: &Scenario) -> Failure {
-    let failure = scenario.run(&mut |_| {}).unwrap_err();
+    let failure = scenario.run().unwrap_err();
     let diagnostic = scenario.explain(&failure);
     assert_eq!(diagnostic.code, Code::SimulationFailed);
     assert!(diagnostic.help.is_some());

@@ -1,6 +1,8 @@
+use std::ops::ControlFlow;
+
 use crate::analysis::Derivation;
 use crate::plant::Plant;
-use crate::simulate::{Overrides, Scenario, Trace};
+use crate::simulate::{Failure, Overrides, Scenario, Trace};
 use crate::source::Code;
 
 use super::{CUK_CASE_2, SPRING, read, resolve, run, with};
@@ -44,10 +46,23 @@ fn rows_are_on_the_grid_that_was_asked_for() {
 fn a_run_can_be_repeated() {
     let scenario = resolve(CUK_CASE_2, &short(0.01)).unwrap();
     let mut reports = Vec::new();
-    let first = scenario.run(&mut |part| reports.push(part)).unwrap().csv();
-    assert_eq!(first, scenario.run(&mut |_| {}).unwrap().csv());
+    let mut keep = |part| {
+        reports.push(part);
+        ControlFlow::Continue(())
+    };
+    let first = scenario.run_while(&mut keep).unwrap().csv();
+    assert_eq!(first, scenario.run().unwrap().csv());
     assert_eq!((reports.first(), reports.last()), (Some(&0.0), Some(&1.0)));
     assert!(reports.is_sorted() && reports.len() < 1000);
+}
+
+#[test]
+fn the_caller_may_end_a_run() {
+    let scenario = resolve(CUK_CASE_2, &short(0.01)).unwrap();
+    let half = |part| if part < 0.5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    let failure = scenario.run_while(&mut { half }).unwrap_err();
+    assert!(matches!(failure, Failure::Stopped { at } if (at - 0.005).abs() < 1e-4), "{failure}");
+    assert_eq!(scenario.explain(&failure).code, Code::LimitReached);
 }
 
 /// The control signal at the first row and at the last.
@@ -171,7 +186,7 @@ fn an_unmeasured_signal_runs_its_course() {
     let plant = Plant::resolve(&model).unwrap();
     let derivation = Derivation::derive(&plant);
     let scenario = Scenario::resolve(&model, &plant, &derivation, &Overrides::default()).unwrap();
-    let trace = scenario.run(&mut |_| {}).unwrap();
+    let trace = scenario.run().unwrap();
     let column = |name: &str| trace.column(name).unwrap();
     for ((l1, l2), (i1, i2)) in column("l1").iter().zip(column("l2")).zip(column("i1").iter().zip(column("i2"))) {
         // The magnet keeps its flux: what the regression is made of.
