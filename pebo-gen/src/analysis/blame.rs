@@ -9,7 +9,7 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::{Formula, Plant};
 use crate::source::Diagnostic;
 
-use super::tidy::shortest;
+use crate::cas::tidy::shortest;
 
 /// More places than this show nothing.
 const MOST_PLACES: usize = 3;

@@ -1,9 +1,13 @@
 //! Claim 1, the cascade: the transform moves by known signals.
 //!
 //! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and
-//! h(y, u) with `Lambda phi + h` on the right ([`super::gpebo`]), or what keeps the derivative from being free of
+//! h(y, u) with `Lambda phi + h` on the right ([`gpebo`]), or what keeps the derivative from being free of
 //! x, a point that shows it, and a mended transform if adding multiples of the outputs makes one (Ortega et al.
 //! 2015, eq. 3).
+
+mod bounded;
+mod gpebo;
+mod killing;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,10 +21,12 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::{self, Formula, Plant};
 use crate::source::{Code, Diagnostic, listed};
 
-use super::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
-use super::killing::{self, Column};
-use super::tidy::{asking_less, proved_shortest, shortest};
-use super::{blame, gpebo, pencil};
+use self::killing::Column;
+use crate::analysis::affine;
+use crate::analysis::blame;
+use crate::analysis::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
+use crate::analysis::pencil;
+use crate::cas::tidy::{asking_less, proved_shortest, shortest};
 
 /// One component of the derivative of the transform.
 enum Component {
@@ -46,7 +52,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
         Component::Bound { .. } | Component::Open(_) => gpebo::row(plant, domain, *rate),
     };
-    let rows: Vec<Result<Option<gpebo::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
+    let rows: Vec<Result<Option<affine::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
     let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
     let mends = mends(plant, domain, &lie, &components);
     if generalised && plant.asked != Some(Class::Pebo) {
@@ -77,7 +83,7 @@ fn refuse(
     plant: &Plant,
     domain: &Domain,
     (components, mends): (&[Component], &[Option<Expr>]),
-    row: impl Fn(usize) -> Result<Option<gpebo::Row>, Obstacle>,
+    row: impl Fn(usize) -> Result<Option<affine::Row>, Obstacle>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Cascade> {
     let mut residuals = vec![plant.arena.zero(); components.len()];

@@ -13,7 +13,7 @@ use crate::cas::field::{Field, Obstacle};
 use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::plant::Plant;
 
-use super::design::{Cascade, LeftInverse, Regression};
+use crate::analysis::design::{Cascade, LeftInverse, Regression};
 
 /// A comparison with zero.
 pub(super) type Ask = (Expr, Relation);

@@ -7,12 +7,19 @@ use crate::cas::zero::MOST_POINTS;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
-use super::conditions::{Ask, Conditions};
-use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
-use super::left_inverse::at_phi;
-use super::limited::{ended, limited, unfinished};
-use super::remarks::Remarks;
-use super::{cascade, identifiability, identities, known, left_inverse, regression};
+use crate::analysis::advice::remarks::Remarks;
+use crate::analysis::cascade;
+use crate::analysis::conditions::{Ask, Conditions};
+use crate::analysis::design::{
+    Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict,
+};
+use crate::analysis::identifiability;
+use crate::analysis::identities;
+use crate::analysis::known;
+use crate::analysis::left_inverse;
+use crate::analysis::left_inverse::at_phi;
+use crate::analysis::limited::{ended, limited, unfinished};
+use crate::analysis::regression;
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.

@@ -8,7 +8,7 @@ pub use crate::model::CascadeClass as Class;
 use crate::plant::Plant;
 use crate::source::Diagnostic;
 
-use super::remarks::Remarks;
+use crate::analysis::advice::remarks::Remarks;
 
 /// The verdict on one claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

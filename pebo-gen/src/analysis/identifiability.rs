@@ -7,25 +7,23 @@
 //! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
 //! et al. 2015, remark R3).
 
-use std::collections::{BTreeMap, BTreeSet};
+mod excitation;
+mod flow;
+mod motion;
+mod singular;
 
 use crate::cas::domain::Domain;
-use crate::cas::enclosure::Point;
-use crate::cas::field::{Field, Fraction, Obstacle};
-use crate::cas::interval::{Interval, Precision};
-use crate::cas::linear::Echelon;
-use crate::cas::pivots::pivots;
-use crate::cas::zero::{decide, refute};
+use crate::cas::field::Obstacle;
+use crate::cas::rank::{full_rank, null_vectors, rank_seen};
+use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
-use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
-use super::singular::Places;
-use super::{excitation, motion, pencil};
-
-/// Points that are tried before a rank counts as deficient.
-const MOST_POINTS: usize = 6;
+use self::flow::{Flow, effective, without_psi};
+use self::singular::Places;
+use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
+use crate::analysis::pencil;
 
 /// Decides how the unknowns are identified.
 pub(super) fn prove(
@@ -192,148 +190,6 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
     false
 }
 
-/// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
-pub(super) fn effective(arena: &Arena, flow: &Flow, phi_1: &[Vec<Expr>], primitive_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
-    let mut rows = phi_1.to_vec();
-    for (row, primitive) in rows.iter_mut().zip(primitive_1) {
-        for (entry, factor) in row.iter_mut().zip(primitive) {
-            *entry = arena.sub(*entry, flow.rate(arena, *factor));
-        }
-    }
-    rows
-}
-
-/// The plant's motion with its observer's extension: rates of all that moves.
-pub(super) struct Flow {
-    rates: BTreeMap<Symbol, Expr>,
-    free: Vec<Symbol>,
-}
-
-impl Flow {
-    fn new(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Self, Obstacle> {
-        Self::along(plant, domain, cascade, &BTreeSet::new(), &BTreeMap::new())
-    }
-
-    /// The motions on which some signals are constant and inputs are functions of others.
-    pub(super) fn along(
-        plant: &Plant,
-        domain: &Domain,
-        cascade: &Cascade,
-        held: &BTreeSet<Symbol>,
-        equal: &BTreeMap<Symbol, Expr>,
-    ) -> Result<Self, Obstacle> {
-        let arena = &plant.arena;
-        let mut rates = plant.rates();
-        match &cascade.lambda {
-            None => rates.extend(plant.chi.iter().copied().zip(cascade.h.iter().copied())),
-            Some(lambda) => {
-                let of = |row: &[Expr], vector: &[Symbol]| {
-                    arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, arena.of_symbol(*b))))
-                };
-                for (index, row) in lambda.iter().enumerate() {
-                    rates.insert(plant.xi[index], arena.add(of(row, &plant.xi), cascade.h[index]));
-                    for column in 0..plant.z.len() {
-                        let psi: Vec<Symbol> = plant.psi.iter().map(|r| r[column]).collect();
-                        rates.insert(plant.psi[index][column], of(row, &psi));
-                    }
-                }
-            }
-        }
-        let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
-        let free = plant.u.iter().copied().chain(plant.w.iter().copied()).chain(unruled);
-        let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
-        for rate in rates.values_mut() {
-            *rate = arena.substitute(*rate, equal);
-        }
-        rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
-        let mut flow = Self { rates, free };
-        flow.advance(plant);
-        flow.bind(plant, domain)?;
-        Ok(flow)
-    }
-
-    /// Gives a signal without an equation the rate that an identity leaves it: it is not free then. Whether an identity
-    /// binds one must be decided, or a rank could be seen that no motion has.
-    fn bind(&mut self, plant: &Plant, domain: &Domain) -> Result<(), Obstacle> {
-        let arena = &plant.arena;
-        for identity in &plant.identities {
-            let moved = self.rate(arena, identity.expr);
-            let slopes: Vec<Expr> = self.free.iter().map(|derivative| arena.derivative(moved, *derivative)).collect();
-            let bound = slopes.iter().position(|slope| refute(arena, *slope, domain).is_some());
-            let Some(index) = bound else {
-                if slopes.iter().all(|slope| decide(arena, *slope, domain).is_zero()) {
-                    continue;
-                }
-                return Err(Obstacle::Unsolved(arena.print(identity.expr)));
-            };
-            let slope = slopes[index];
-            let derivative = self.free.remove(index);
-            let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
-            let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
-            for rate in self.rates.values_mut() {
-                *rate = arena.substitute(*rate, &value);
-            }
-        }
-        Ok(())
-    }
-
-    /// Gives the latest derivatives of the free signals rates of their own.
-    pub(super) fn advance(&mut self, plant: &Plant) {
-        let arena = &plant.arena;
-        self.free = self
-            .free
-            .iter()
-            .map(|signal| {
-                let rate = arena.generated(&format!("{}'", arena.name(*signal)));
-                self.rates.insert(*signal, arena.of_symbol(rate));
-                rate
-            })
-            .collect();
-    }
-
-    pub(super) fn rate(&self, arena: &Arena, expr: Expr) -> Expr {
-        arena.directional(expr, &self.rates)
-    }
-}
-
-/// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere.
-fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
-    rows.len() >= columns && rank_seen(arena, domain, rows, columns) == columns
-}
-
-/// The largest rank that the matrix provably has at a point of the domain; almost everywhere it is no smaller.
-pub(super) fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
-    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    let mut most = 0;
-    for point in domain.points(arena, &entries).take(MOST_POINTS) {
-        most = most.max(rank_at(arena, &entries, columns, &point));
-        if most == columns {
-            break;
-        }
-    }
-    most
-}
-
-fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> usize {
-    const PRECISION: Precision = Precision::new(256);
-    let Some(values) = arena.enclose_all(entries, point, PRECISION) else { return 0 };
-    let rows: Vec<Vec<Interval>> = values.chunks(columns).map(<[Interval]>::to_vec).collect();
-    pivots(rows, columns, PRECISION).map_or(0, |chosen| chosen.len())
-}
-
-/// The regressor with the fundamental matrix at its initial value: being invertible at all times, it takes
-/// nothing from the rank.
-pub(super) fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
-    let arena = &plant.arena;
-    let identity: BTreeMap<Symbol, Expr> = plant
-        .psi
-        .iter()
-        .enumerate()
-        .flat_map(|(i, row)| row.iter().enumerate().map(move |(j, symbol)| (*symbol, arena.number(i64::from(i == j)))))
-        .collect();
-    phi_1.iter().map(|row| arena.substitute_all(row, &identity)).collect()
-}
-
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
 /// parameters where these values are nothing special.
 fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Unseen, Obstacle> {
@@ -349,33 +205,6 @@ struct Unseen {
     directions: Vec<Vec<Expr>>,
     /// Whether other values of the parameters leave fewer.
     special_values: bool,
-}
-
-/// Vectors that every row provably annihilates.
-pub(super) fn null_vectors(
-    arena: &Arena,
-    domain: &Domain,
-    rows: &[Vec<Expr>],
-    columns: usize,
-) -> Result<Vec<Vec<Expr>>, Obstacle> {
-    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    let field = Field::on(arena, domain, &entries)?;
-    let matrix = rows
-        .iter()
-        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
-        .collect::<Result<Vec<_>, _>>()?;
-    let (echelon, _) = Echelon::of(&field, matrix, columns)?;
-    let vectors: Vec<Vec<Expr>> =
-        echelon.null_space().iter().map(|vector| vector.iter().map(|e| field.show(e)).collect()).collect();
-    for vector in &vectors {
-        for row in rows {
-            let product = arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, *b)));
-            if !decide(arena, product, domain).is_zero() {
-                return Err(Obstacle::NoWitness);
-            }
-        }
-    }
-    Ok(vectors)
 }
 
 fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Claim<Identifiability> {

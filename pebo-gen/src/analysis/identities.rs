@@ -12,7 +12,7 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic};
 
-use super::design::{Verdict, Witness};
+use crate::analysis::design::{Verdict, Witness};
 
 /// Proves or refutes that the identities have a common point, and that the plant stays where they hold.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Verdict {

@@ -10,7 +10,7 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 
-use super::design::{Cascade, Claim, Class, LeftInverse, Regression, Verdict};
+use crate::analysis::design::{Cascade, Claim, Class, LeftInverse, Regression, Verdict};
 
 /// A function: its name, its entries, and what it may contain besides the parameters.
 type Function = (&'static str, Vec<Expr>, Vec<Symbol>);

@@ -15,10 +15,10 @@ use crate::cas::{Arena, Expr, Function, Symbol};
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
-use super::design::{Claim, LeftInverse, Origin, Verdict, Witness};
-use super::identifiability::null_vectors;
-use super::solve::{Equation, solve};
-use super::tidy::shortest;
+use crate::analysis::design::{Claim, LeftInverse, Origin, Verdict, Witness};
+use crate::cas::rank::null_vectors;
+use crate::cas::solve::{Equation, solve};
+use crate::cas::tidy::shortest;
 
 /// Proves or refutes the left inverse.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Claim<LeftInverse> {

@@ -18,45 +18,32 @@
 //! What formulas ask is read off the one table of operations ([`crate::cas::asks`], [`crate::cas::function`]), and
 //! listed in one place, after all claims (`conditions`).
 
+mod advice;
+mod affine;
 mod blame;
-mod bounded;
 mod cascade;
 mod conditions;
 mod derive;
 mod design;
-mod drift;
-mod elimination;
-mod equilibrium;
-mod excitation;
-mod gpebo;
 mod identifiability;
 mod identities;
-mod implicit;
-mod killing;
 mod known;
 mod left_inverse;
 mod limited;
-mod motion;
 mod parameters;
 mod pencil;
 mod regression;
-mod relations;
-mod remarks;
-mod separation;
-mod singular;
-mod solve;
-mod tidy;
 mod witness;
 
 #[cfg(test)]
 mod tests;
 
+pub use advice::drift::Drift;
+pub use advice::equilibrium::{Equilibrium, OperatingPoint};
+#[cfg(test)]
+pub(crate) use advice::remarks::Remarks;
 pub use design::{
     Blind, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse,
     Motion, Origin, Outcome, Place, Positive, Regression, RegressionKind, Verdict, Witness,
 };
-pub use drift::Drift;
-pub use equilibrium::{Equilibrium, OperatingPoint};
 pub use parameters::Sign;
-#[cfg(test)]
-pub(crate) use remarks::Remarks;

@@ -8,7 +8,7 @@ use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 
-use super::Derivation;
+use crate::analysis::Derivation;
 
 /// How a value compares with zero where the proofs hold.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -14,7 +14,7 @@ use crate::plant::matrix::Matrix;
 use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic};
 
-use super::design::{Cascade, Claim, Verdict, Witness};
+use crate::analysis::design::{Cascade, Claim, Verdict, Witness};
 
 /// A basis of the states that never show in the outputs, as columns; none if the plant is observable.
 ///

@@ -3,11 +3,14 @@
 //! In: the plant and its proved cascade. Out: a dynamic regression y' = `Phi_0` + `Phi_1` theta from the
 //! decomposition `f_y = A(y, u) + B(y, u) phi` (which needs no left inverse and finds the linear form
 //! where substituting the left inverse would hide it), else one in functions of theta
-//! ([`super::separation`]), else a static one from an identity (Ortega et al. 2015, eqs. 16 and 28).
+//! ([`separation`]), else a static one from an identity (Ortega et al. 2015, eqs. 16 and 28).
 
-mod affine;
 mod functions;
+mod implicit;
+mod linear;
 mod refusal;
+mod relations;
+mod separation;
 mod standing;
 mod together;
 mod unveiled;
@@ -20,10 +23,10 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Span};
 
-use super::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
-use super::{blame, separation};
-use affine::{decompose, linear};
+use crate::analysis::blame;
+use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
 use functions::{over_parameterised, under_derivative};
+use linear::{decompose, linear};
 use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};
 pub(super) use standing::from_identities;
 use standing::from_relations;

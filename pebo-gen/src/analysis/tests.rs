@@ -1,6 +1,9 @@
 //! Verdicts that were wrong once, each on the smallest plant that showed it.
 
-use super::{Derivation, Excitation, Outcome, Verdict};
+use crate::analysis::Derivation;
+use crate::analysis::Excitation;
+use crate::analysis::Outcome;
+use crate::analysis::Verdict;
 use crate::cas::Expr;
 use crate::model::Model;
 use crate::plant::Plant;

@@ -6,7 +6,7 @@ use crate::cas::contrast::Contrast;
 use crate::cas::enclosure::Point;
 use crate::cas::{Arena, Expr, Symbol};
 
-use super::design::{Comparison, Witness};
+use crate::analysis::design::{Comparison, Witness};
 
 /// A longer formula is cut in a sentence: its value is what counts there.
 const MOST_CHARACTERS: usize = 300;

@@ -97,6 +97,31 @@ impl Domain {
         ranges.into_iter().filter(|(symbol, _)| symbols.contains(symbol)).filter_map(both).collect()
     }
 
+    /// The domain of the symbols that stay free; none unless some point of it is found.
+    pub(crate) fn restricted(&self, arena: &Arena, values: &BTreeMap<Symbol, Expr>) -> Option<Self> {
+        let mut there = Self { fixed: self.fixed.clone(), ..Self::default() };
+        let mut constant = Vec::new();
+        for (fact, relation) in self.facts.iter() {
+            let fact = arena.substitute(fact, values);
+            if relation == Relation::NonNegative && arena.is_zero(fact) {
+                continue;
+            }
+            if arena.symbols_of(&[fact]).is_empty() {
+                constant.push((fact, relation));
+            } else {
+                there.facts.assume(fact, relation);
+            }
+        }
+        let holds = |(fact, relation): &(Expr, Relation)| {
+            let value = arena.separated_from_zero(*fact, &BTreeMap::new());
+            value.is_some_and(|value| *relation == Relation::NonZero || value.is_positive())
+        };
+        let mut all: Vec<Expr> = values.values().copied().collect();
+        all.extend(there.facts.iter().map(|(fact, _)| fact));
+        let exists = |point: &Point| values.values().all(|value| arena.exists_at(*value, point));
+        (constant.iter().all(holds) && there.points(arena, &all).any(|point| exists(&point))).then_some(there)
+    }
+
     /// The facts and equations that share a symbol with the question, directly or through others.
     fn relevant(&self, arena: &Arena, symbols: &mut BTreeSet<Symbol>) -> (Vec<(Expr, Relation)>, Vec<Expr>) {
         let (mut facts, mut equations) = (Vec::new(), Vec::new());

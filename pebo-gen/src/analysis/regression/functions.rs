@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::analysis::implicit;
 use crate::analysis::left_inverse::is_whole_turns;
-use crate::analysis::separation::{self, Recovered, Separated};
-use crate::analysis::tidy::shortest;
+use crate::analysis::regression::implicit;
+use crate::analysis::regression::separation::{self, Recovered, Separated};
 use crate::cas::domain::Domain;
+use crate::cas::tidy::shortest;
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;

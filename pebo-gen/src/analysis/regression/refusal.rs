@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::analysis::affine;
+use crate::analysis::blame;
 use crate::analysis::design::{Claim, Comparison, LeftInverse, Regression, Verdict, Witness};
-use crate::analysis::{blame, relations};
 use crate::cas::Expr;
 use crate::cas::Symbol;
 use crate::cas::domain::Domain;
@@ -102,7 +103,7 @@ pub(super) fn nonlinear(
     if let Some(witness) = left_inverse.and_then(|inverse| curvature(plant, domain, rate, inverse)) {
         return Some(format!("as a function of z it bends: {}", witness.sentence(arena)));
     }
-    let points = relations::not_affine(plant, domain, rate)?;
+    let points = affine::refuted(plant, domain, rate)?;
     let compared = Comparison::of(rate, &points, &plant.hidden());
     Some(format!("no affine function of phi takes its values: {}", compared.sentence(arena, "it")))
 }

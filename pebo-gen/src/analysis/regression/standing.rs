@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::{relations, separation};
+use crate::analysis::affine;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::analysis::tidy::{proved_shortest, shortest, shortest_equal};
-use crate::analysis::{gpebo, relations, separation};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
+use crate::cas::tidy::{proved_shortest, shortest, shortest_equal};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
@@ -39,7 +40,7 @@ pub(in crate::analysis) fn from_identities(
     if cascade.lambda.is_some() {
         // Where it holds an identity says 0 = 0: what it says of z is read off it elsewhere.
         let everywhere = domain.everywhere();
-        let rows = plant.identities.iter().map(|identity| gpebo::affine(plant, &everywhere, identity.expr)).collect();
+        let rows = plant.identities.iter().map(|identity| affine::of(plant, &everywhere, identity.expr)).collect();
         return under_lambda(plant, domain, (rows, plant.identities[0].span), found);
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
@@ -76,7 +77,7 @@ pub(super) fn from_relations(
 }
 
 /// What vanishes as an affine function of z, the known part first; none where it is no such function.
-fn in_z(plant: &Plant, relation: Expr) -> Option<gpebo::Row> {
+fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
     let arena = &plant.arena;
     let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
     let slopes: Vec<Expr> = plant.z.iter().map(|z| arena.derivative(relation, *z)).collect();
@@ -91,7 +92,7 @@ fn in_z(plant: &Plant, relation: Expr) -> Option<gpebo::Row> {
 fn under_lambda(
     plant: &Plant,
     domain: &Domain,
-    (rows, span): (Vec<Result<Option<gpebo::Row>, Obstacle>>, Span),
+    (rows, span): (Vec<Result<Option<affine::Row>, Obstacle>>, Span),
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;

@@ -6,18 +6,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::{relations, separation};
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::analysis::tidy::shortest;
-use crate::analysis::{relations, separation};
 use crate::cas::domain::Domain;
+use crate::cas::tidy::shortest;
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use crate::source::Diagnostic;
 
-use super::affine::decompose;
 use super::functions::over_parameterised;
+use super::linear::decompose;
 use super::unveiled::{Combination, combinations, moved_freely, outputs_but};
 
 /// `d/dt primitive = rate`, the rate as a function of z, y and u.

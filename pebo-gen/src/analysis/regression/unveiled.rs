@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use crate::analysis::tidy::shortest;
 use crate::cas::combination::cancelling;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::pivots::pivots;
+use crate::cas::tidy::shortest;
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;

@@ -10,17 +10,17 @@
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cas::domain::Domain;
-use crate::cas::facts::Relation;
-use crate::cas::field::{Field, Fraction, Obstacle};
-use crate::cas::poly::Poly;
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Symbol};
+use super::domain::Domain;
+use super::facts::Relation;
+use super::field::{Field, Fraction, Obstacle};
+use super::poly::Poly;
+use super::rational::Rational;
+use super::{Arena, Expr, Symbol};
 
 use super::solve::{Equation, solve};
 
 /// What is to be determined.
-pub(super) struct Elimination<'a> {
+pub(crate) struct Elimination<'a> {
     pub arena: &'a Arena,
     /// Where the symbols lie.
     pub domain: &'a Domain,
@@ -74,7 +74,7 @@ const MOST_PARTS: usize = 600;
 impl Elimination<'_> {
     /// The first solution that the check accepts, by the first of the starts that has one; else a formula that was not
     /// made to vanish. A start is values to begin with.
-    pub(super) fn run<T>(
+    pub(crate) fn run<T>(
         &self,
         equations: &[Expr],
         starts: &[Values],

@@ -8,7 +8,6 @@
 use std::collections::BTreeMap;
 
 use crate::cas::domain::Domain;
-use crate::cas::enclosure::Point;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
 use crate::cas::oriented::oriented;
@@ -16,9 +15,9 @@ use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
-use super::design::{Cascade, Derivation, Verdict};
-use super::elimination::Elimination;
-use super::tidy::shortest;
+use crate::analysis::design::{Cascade, Derivation, Verdict};
+use crate::cas::elimination::Elimination;
+use crate::cas::tidy::shortest;
 
 /// The search for an operating point may take one part in so many of what the command has left.
 const SHARE: u64 = 4;
@@ -48,7 +47,7 @@ pub struct OperatingPoint {
 
 impl Equilibrium {
     /// Looks for the operating points of a plant; none without a proved cascade.
-    pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
+    pub(in crate::analysis) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
         let domain = derivation.domain(plant);
         // Good to know, and not what the observer is emitted by: most of what is left is for that.
@@ -113,7 +112,8 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
 /// reason.
 fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
     let arena = &plant.arena;
-    let there = restricted(arena, domain, values)
+    let there = domain
+        .restricted(arena, values)
         .ok_or_else(|| "no operating point was found within the assumptions and conditions".to_owned())?;
     match plant.rates().iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
@@ -145,31 +145,6 @@ fn rank<'a>(arena: &Arena, domain: &Domain, mut rates: impl Iterator<Item = &'a 
         return Some(1);
     }
     rates.all(|rate| decide(arena, *rate, domain).is_zero()).then_some(0)
-}
-
-/// The domain of the symbols that stay free; none unless some point of it is found.
-pub(super) fn restricted(arena: &Arena, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Option<Domain> {
-    let mut there = Domain { fixed: domain.fixed.clone(), ..Domain::default() };
-    let mut constant = Vec::new();
-    for (fact, relation) in domain.facts.iter() {
-        let fact = arena.substitute(fact, values);
-        if relation == Relation::NonNegative && arena.is_zero(fact) {
-            continue;
-        }
-        if arena.symbols_of(&[fact]).is_empty() {
-            constant.push((fact, relation));
-        } else {
-            there.facts.assume(fact, relation);
-        }
-    }
-    let holds = |(fact, relation): &(Expr, Relation)| {
-        let value = arena.separated_from_zero(*fact, &BTreeMap::new());
-        value.is_some_and(|value| *relation == Relation::NonZero || value.is_positive())
-    };
-    let mut all: Vec<Expr> = values.values().copied().collect();
-    all.extend(there.facts.iter().map(|(fact, _)| fact));
-    let exists = |point: &Point| values.values().all(|value| arena.exists_at(*value, point));
-    (constant.iter().all(holds) && there.points(arena, &all).any(|point| exists(&point))).then_some(there)
 }
 
 #[cfg(test)]

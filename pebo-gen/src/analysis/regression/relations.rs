@@ -7,7 +7,6 @@
 use std::collections::BTreeMap;
 
 use crate::cas::combination::combine;
-use crate::cas::contrast::{Contrast, contrast};
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::zero::decide;
@@ -15,7 +14,7 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 
-use super::identifiability::rank_seen;
+use crate::cas::rank::rank_seen;
 
 /// With more components the products are too many to be compared.
 const MOST_COMPONENTS: usize = 6;
@@ -57,31 +56,6 @@ pub(super) fn among(plant: &Plant, domain: &Domain) -> Result<Vec<Expr>, Obstacl
         before.push(monomial);
     }
     Ok(found)
-}
-
-/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values of
-/// an expression.
-pub(super) fn not_affine(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Contrast> {
-    let mut basis = vec![plant.arena.one()];
-    basis.extend(independent(plant, domain));
-    contrast(&plant.arena, expr, &basis, &plant.hidden(), domain)
-}
-
-/// The components of the transform that are no combination of 1 and those before them with coefficients free of x.
-fn independent(plant: &Plant, domain: &Domain) -> Vec<Expr> {
-    let arena = &plant.arena;
-    let mut basis = vec![arena.one()];
-    for component in plant.transform() {
-        let combined = || {
-            let field = Field::over(arena, &domain.facts, &[basis.as_slice(), &[component]].concat())?;
-            combine(&field, component, &basis, &plant.hidden())
-        };
-        // One that is undecided stays: what it hides is then not refuted.
-        if !matches!(combined(), Ok(Some(_))) {
-            basis.push(component);
-        }
-    }
-    basis.split_off(1)
 }
 
 /// Whether the components of the transform may have to do with each other: that none can is seen at a point where they

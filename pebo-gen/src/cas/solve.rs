@@ -9,17 +9,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cas::domain::Domain;
-use crate::cas::field::{Field, Fraction, Obstacle};
-use crate::cas::function::Function;
-use crate::cas::linear::Echelon;
-use crate::cas::poly::Monomial;
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Node, Symbol};
+use super::domain::Domain;
+use super::field::{Field, Fraction, Obstacle};
+use super::function::Function;
+use super::linear::Echelon;
+use super::poly::Monomial;
+use super::rational::Rational;
+use super::{Arena, Expr, Node, Symbol};
 
 /// `formula = value`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Equation {
+pub(crate) struct Equation {
     /// What depends on the unknowns.
     pub formula: Expr,
     /// What it equals.
@@ -27,7 +27,7 @@ pub(super) struct Equation {
 }
 
 /// Candidates for those unknowns that the equations give, the likelier first.
-pub(super) fn solve(
+pub(crate) fn solve(
     arena: &Arena,
     domain: &Domain,
     equations: &[Equation],

@@ -3,15 +3,15 @@
 //! A form counts only if it has a value wherever the result has: `sqrt(q) - 1` over `q - 1` does not stand for
 //! `1/(1 + sqrt(q))`.
 
-use crate::cas::asks::Want;
-use crate::cas::domain::Domain;
-use crate::cas::field::Field;
-use crate::cas::oriented::oriented;
-use crate::cas::zero::decide;
-use crate::cas::{Arena, Expr, Node};
+use super::asks::Want;
+use super::domain::Domain;
+use super::field::Field;
+use super::oriented::oriented;
+use super::zero::decide;
+use super::{Arena, Expr, Node};
 
 /// The shortest of an expression and the ways to write its normal form.
-pub(super) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
         let fraction = field.fraction(expr)?;
         Ok([field.show(&fraction), field.show_apart(&fraction)])
@@ -26,7 +26,7 @@ pub(super) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
 }
 
 /// Whether a form asks for nothing, to have a value, but what the expression asks too or what the domain shows.
-pub(super) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
+pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
     let own = arena.asks(&[expr], Want::Value);
     let mut more = arena.asks(&[form], Want::Value);
     more.retain(|ask| !own.contains(ask));
@@ -42,7 +42,7 @@ pub(super) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
 
 /// The first of the candidates that asks for less than the expression of what the domain does not show and is proved
 /// equal to it: of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
-pub(super) fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+pub(crate) fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
     let unshown = |form: Expr| {
         let asked = arena.asks(&[form], Want::Value).into_iter();
         asked.filter(|(part, relation)| !domain.shows(arena, *part, *relation)).count()
@@ -56,18 +56,18 @@ pub(super) fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates
 }
 
 /// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
-pub(super) fn proved_shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+pub(crate) fn proved_shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     let candidate = shortest(arena, domain, expr);
     shortest_equal(arena, domain, expr, &[candidate])
 }
 
 /// The one of two equal expressions that takes fewer operations; the first where they are level.
-pub(super) fn shorter(arena: &Arena, first: Expr, second: Expr) -> Expr {
+pub(crate) fn shorter(arena: &Arena, first: Expr, second: Expr) -> Expr {
     if operations(arena, second) < operations(arena, first) { second } else { first }
 }
 
 /// The first of the candidates by length that is proved equal to the expression.
-pub(super) fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+pub(crate) fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
     let mut best = expr;
     for &candidate in candidates {
         if operations(arena, candidate) < operations(arena, best)
@@ -81,7 +81,7 @@ pub(super) fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candida
 }
 
 /// The number of operations of an expression, shared parts once; functions weigh more.
-pub(super) fn operations(arena: &Arena, expr: Expr) -> usize {
+pub(crate) fn operations(arena: &Arena, expr: Expr) -> usize {
     const FUNCTION: usize = 10;
     arena
         .postorder(&[expr])

@@ -15,13 +15,13 @@ use crate::cas::zero::{Answer, decide};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
-use super::left_inverse::is_whole_turns;
-use super::solve::{Equation, solve};
-use super::tidy::shortest;
+use crate::analysis::left_inverse::is_whole_turns;
+use crate::cas::solve::{Equation, solve};
+use crate::cas::tidy::shortest;
 
 /// Expressions as `known + factors * eta`.
 #[derive(Clone, Debug)]
-pub(super) struct Separated {
+pub(in crate::analysis) struct Separated {
     /// What is known of each expression.
     pub known: Vec<Expr>,
     /// The factors of each eta, a row for each expression.
@@ -31,7 +31,11 @@ pub(super) struct Separated {
 }
 
 /// Separates expressions in z at z = chi + theta; none where a kernel mixes theta with signals.
-pub(super) fn separate(plant: &Plant, domain: &Domain, in_z: &[Expr]) -> Result<Option<Separated>, Obstacle> {
+pub(in crate::analysis) fn separate(
+    plant: &Plant,
+    domain: &Domain,
+    in_z: &[Expr],
+) -> Result<Option<Separated>, Obstacle> {
     let arena = &plant.arena;
     let shifted: BTreeMap<Symbol, Expr> = plant
         .z
@@ -124,7 +128,7 @@ fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) 
 
 /// Joins all functions of theta whose factors are constants of the plant into one, together with the
 /// constants of the known part: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
-pub(super) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separated) -> Separated {
+pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separated) -> Separated {
     let arena = &plant.arena;
     // With several rows the constants would differ from row to row.
     let [factors] = separated.factors.as_slice() else { return separated };
@@ -155,7 +159,11 @@ pub(super) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separa
 
 /// Joins functions of theta whose factors are constant combinations of other factors: these cannot be told apart, but
 /// their sums can, as `theta1 + theta2^2` in a rate `a + b^2`.
-pub(super) fn join_dependent(plant: &Plant, domain: &Domain, separated: &Separated) -> Result<Separated, Obstacle> {
+pub(in crate::analysis) fn join_dependent(
+    plant: &Plant,
+    domain: &Domain,
+    separated: &Separated,
+) -> Result<Separated, Obstacle> {
     let arena = &plant.arena;
     // A symbol for each row, so that one expression holds a column.
     let marks: Vec<Symbol> = (0..separated.factors.len()).map(|row| arena.generated(&format!("row {row}"))).collect();
@@ -195,7 +203,7 @@ pub(super) fn join_dependent(plant: &Plant, domain: &Domain, separated: &Separat
 
 /// theta as functions of eta, each proved.
 #[derive(Clone, Debug)]
-pub(super) struct Recovered {
+pub(in crate::analysis) struct Recovered {
     /// An entry for each theta, in the eta symbols.
     pub theta: Vec<Expr>,
     /// Positions of those that are determined only up to whole turns, as from sine and cosine of theta.
@@ -203,7 +211,7 @@ pub(super) struct Recovered {
 }
 
 /// theta from its functions, if they determine it at least up to whole turns.
-pub(super) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Recovered> {
+pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Recovered> {
     let arena = &plant.arena;
     let symbols = plant.eta(eta.len());
     let equations: Vec<Equation> =

@@ -17,9 +17,9 @@ use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
-use super::design::{Gram, Positive};
-use super::singular::{Places, Volume, gram};
-use super::tidy::{shorter, shortest};
+use crate::analysis::design::{Gram, Positive};
+use crate::analysis::identifiability::singular::{Places, Volume, gram};
+use crate::cas::tidy::{shorter, shortest};
 
 /// Parts that a box is divided into before the proof is given up.
 const MOST_PARTS: usize = 4096;

@@ -19,7 +19,7 @@ use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
-use super::tidy::shortest;
+use crate::cas::tidy::shortest;
 
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;

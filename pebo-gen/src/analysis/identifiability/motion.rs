@@ -16,10 +16,11 @@ use crate::cas::poly::Poly;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
-use super::design::{Blind, Cascade, Motion, Place, Regression};
-use super::equilibrium::restricted;
-use super::identifiability::{Flow, effective, null_vectors, rank_seen, without_psi};
-use super::singular::Volume;
+use crate::analysis::design::{Blind, Cascade, Motion, Place, Regression};
+use crate::cas::rank::{null_vectors, rank_seen};
+
+use super::flow::{Flow, effective, without_psi};
+use crate::analysis::identifiability::singular::Volume;
 
 /// Parts of the rows with their derivatives, and inputs, up to which motions are tried one by one.
 const MOST_PARTS: usize = 600;
@@ -106,7 +107,7 @@ impl Question<'_> {
         let domain = if restriction.equal.is_empty() {
             domain.clone()
         } else {
-            restricted(arena, domain, &restriction.equal).ok_or(Obstacle::NoPoint)?
+            domain.restricted(arena, &restriction.equal).ok_or(Obstacle::NoPoint)?
         };
         let mut flow = Flow::along(plant, &domain, cascade, &restriction.held, &restriction.equal)?;
         let there = |rows: &[Vec<Expr>]| -> Vec<Vec<Expr>> {

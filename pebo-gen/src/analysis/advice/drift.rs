@@ -5,7 +5,7 @@ use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
-use super::design::{Class, Derivation, Regression, RegressionKind, Verdict};
+use crate::analysis::design::{Class, Derivation, Regression, RegressionKind, Verdict};
 
 /// The components of the extension that a constant bias makes run away.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Drift {
 
 impl Drift {
     /// The open integrators of an extension; none without a proved cascade.
-    pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
+    pub(in crate::analysis) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
         let arena = &plant.arena;
         let domain = plant.domain();
@@ -42,7 +42,7 @@ impl Drift {
 /// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase` of the runtime): the
 /// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
 /// not move. None where the unknowns are not theta itself, or stand under the derivative.
-pub(super) fn rebase_residuals(plant: &Plant, class: Class, regression: &Regression) -> Option<Vec<Expr>> {
+pub(in crate::analysis) fn rebase_residuals(plant: &Plant, class: Class, regression: &Regression) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
     let unknowns = regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
     if unknowns.ne(regression.theta.iter().copied()) || regression.kind == RegressionKind::Implicit {

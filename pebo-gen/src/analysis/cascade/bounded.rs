@@ -16,7 +16,7 @@ use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::plant::Plant;
 use crate::plant::matrix::determinant;
 
-use super::design::Fundamental;
+use crate::analysis::design::Fundamental;
 
 /// A block with more components is not judged by its characteristic polynomial.
 const MOST_COMPONENTS: usize = 6;

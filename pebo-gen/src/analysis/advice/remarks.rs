@@ -8,9 +8,9 @@ use std::cell::OnceCell;
 use crate::cas::zero::decide;
 use crate::plant::Plant;
 
-use super::design::Derivation;
-use super::drift::{Drift, rebase_residuals};
-use super::equilibrium::Equilibrium;
+use crate::analysis::advice::drift::{Drift, rebase_residuals};
+use crate::analysis::advice::equilibrium::Equilibrium;
+use crate::analysis::design::Derivation;
 
 /// What has been asked for so far.
 #[derive(Debug, Default)]

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::analysis::affine;
 use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
-use crate::analysis::gpebo;
-use crate::analysis::tidy::{asking_less, shortest, shortest_equal};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
+use crate::cas::tidy::{asking_less, shortest, shortest_equal};
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
@@ -30,7 +30,7 @@ pub(super) fn decompose(plant: &Plant, domain: &Domain, index: usize, rate: Expr
             return Ok(Some(Row { known: *known, factors: factors.clone() }));
         }
     }
-    let Some(row) = gpebo::affine(plant, domain, rate)? else { return Ok(None) };
+    let Some(row) = affine::of(plant, domain, rate)? else { return Ok(None) };
     let (known, factors) = (row[0], &row[1..]);
     // Where the transform is the state itself, the author's own coefficients may be shorter.
     let factors = factors

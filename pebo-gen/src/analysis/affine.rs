@@ -1,0 +1,56 @@
+//! Formulas as affine combinations of the transform, `A(y, u) + B(y, u) phi`: the question behind the generalised cascade,
+//! the linear regression and the use of identities.
+//!
+//! In: a formula. Out: its coefficients, free of x and proved; or points that show that there are none.
+
+use crate::cas::Expr;
+use crate::cas::combination::{combine, combine_on};
+use crate::cas::contrast::{Contrast, contrast};
+use crate::cas::domain::Domain;
+use crate::cas::field::{Field, Obstacle};
+use crate::cas::zero::{Answer, decide};
+use crate::plant::Plant;
+use crate::plant::matrix::dot;
+
+/// The known part, then the factor of each component.
+pub(super) type Row = Vec<Expr>;
+
+/// An expression as an affine combination of the transform with coefficients free of x, proved: the known part, then
+/// the factors; none where there is no such combination.
+pub(super) fn of(plant: &Plant, domain: &Domain, expr: Expr) -> Result<Option<Row>, Obstacle> {
+    let arena = &plant.arena;
+    let phi = plant.transform();
+    let mut basis = vec![arena.one()];
+    basis.extend(&phi);
+    let Some(row) = combine_on(arena, domain, expr, &basis, &plant.hidden())? else { return Ok(None) };
+    match decide(arena, arena.sub(expr, dot(arena, &row, &basis)), domain) {
+        Answer::Zero => Ok(Some(row)),
+        Answer::Open(obstacle) => Err(obstacle),
+        Answer::NonZero(_) => Err(Obstacle::NoWitness),
+    }
+}
+
+/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values of
+/// an expression.
+pub(super) fn refuted(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Contrast> {
+    let mut basis = vec![plant.arena.one()];
+    basis.extend(independent(plant, domain));
+    contrast(&plant.arena, expr, &basis, &plant.hidden(), domain)
+}
+
+/// The components of the transform that are no combination of 1 and those before them with coefficients free of x.
+fn independent(plant: &Plant, domain: &Domain) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let mut basis = vec![arena.one()];
+    for component in plant.transform() {
+        let combined = || {
+            let field = Field::over(arena, &domain.facts, &[basis.as_slice(), &[component]].concat())?;
+            combine(&field, component, &basis, &plant.hidden())
+        };
+        // One that is undecided stays: what it hides is then not refuted.
+        if !matches!(combined(), Ok(Some(_))) {
+            basis.push(component);
+        }
+    }
+    basis.split_off(1)
+}
