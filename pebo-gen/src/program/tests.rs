@@ -236,6 +236,20 @@ fn a_shared_denominator_is_divided_by_once() {
 }
 
 #[test]
+fn a_fraction_before_a_quotient_joins_the_divisor_that_nothing_shares() {
+    let third = |shared: bool| {
+        cost(move |a| {
+            let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+            let scaled = |e| a.scale(a.div(e, d), &Rational::new(1, 3).unwrap());
+            if shared { vec![scaled(x), scaled(y)] } else { vec![scaled(x)] }
+        })
+    };
+    // x/(3*d); then x*(1/3)*(1/d).
+    assert_eq!(third(false), "1 mul, 1 div");
+    assert_eq!(third(true), "4 mul, 1 div");
+}
+
+#[test]
 fn a_division_by_parameters_is_a_multiplication() {
     let build = |a: &Arena| {
         let [x, d, l, c] = ["x", "d", "L", "C"].map(|name| a.variable(name));

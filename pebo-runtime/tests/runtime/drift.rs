@@ -1,7 +1,7 @@
 //! Re-basing: the remedy against the drift of the open integrator (the paper, remark R5).
 
 use pebo_runtime::nalgebra::Vector2;
-use pebo_runtime::{Fault, Rebase};
+use pebo_runtime::{Drift, Fault, Rebase};
 use proptest::prelude::*;
 
 use crate::converter::{Case, CaseOne, CaseTwo, CaseTwoGeneralised, CukObserver, Loop};
@@ -98,5 +98,24 @@ fn bad_shift_is_refused() {
     for (shift, fault) in [(f64::NAN, Fault::Start), (f64::INFINITY, Fault::Start), (f64::MAX, Fault::State)] {
         assert_eq!(closed.observer.rebase(&Vector2::new(0.0, shift)), Err(fault));
         assert_eq!(format!("{:?}", closed.observer), before);
+    }
+}
+
+#[test]
+fn a_leak_takes_its_share_of_each_step() {
+    let (rate, dt) = (50.0, 1e-3);
+    let mut observer = Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], dt).unwrap().observer;
+    observer.rebase(&Vector2::new(-1.0, 2.0)).unwrap();
+    // At v2 = E, v4 = 0 and d = 0 this converter's h is zero: nothing but the leak moves chi.
+    let mut step = || {
+        observer.step_without_drift(&Vector2::new(12.0, 0.0), &[0.0].into(), dt, Drift::Leak(rate)).unwrap();
+        *observer.extension().chi()
+    };
+    let mut before = step();
+    assert!(before.norm() > 1.0);
+    for _ in 0..20 {
+        let after = step();
+        assert!((after - before * (-rate * dt).exp()).norm() < 1e-14, "{before} {after}");
+        before = after;
     }
 }

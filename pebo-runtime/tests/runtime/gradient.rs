@@ -195,3 +195,18 @@ fn gains_must_be_positive() {
     let start = Vector3::new(0.0, f64::NAN, 0.0);
     assert_eq!(Gradient::diagonal(&Vector3::new(1.0, 1.0, 1.0)).unwrap().starting_at(&start), Err(Fault::Start));
 }
+
+/// Whether the estimator calls itself finite at an estimate.
+fn is_finite_at<E: Estimator<f64, 1, 2>>(mut estimator: E, estimate: &Vector2<f64>) -> bool {
+    estimator.reset(estimate);
+    estimator.is_finite()
+}
+
+#[test]
+fn an_estimate_that_is_no_number_is_told() {
+    let gradient = Gradient::diagonal(&Vector2::new(1.0, 2.0)).unwrap();
+    assert!(is_finite_at(gradient, &Vector2::new(1.0, -2.0)));
+    for broken in [f64::NAN, f64::INFINITY] {
+        assert!(!is_finite_at(gradient, &Vector2::new(0.0, broken)), "{broken}");
+    }
+}

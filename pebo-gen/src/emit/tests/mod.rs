@@ -54,6 +54,9 @@ fn parentheses_keep_the_value() {
     assert_eq!(line("-(v2 + v4)*d"), "-(d * (v2 + v4))");
     assert_eq!(line("v2 - (v4 - d)"), "d + v2 - v4");
     assert_eq!(line("v2/v4 - d"), "v2 / v4 - d");
+    assert_eq!(line("1.0 - d"), "1.0 - d");
+    assert_eq!(line("d - 1.0"), "d - 1.0");
+    assert_eq!(line("d + 1.0"), "d + 1.0");
     assert_eq!(line("(v2 - v4)*(v2 + v4)"), "(v2 - v4) * (v2 + v4)");
     assert_eq!(line("1.0/(1.0/v2 + v4)"), "1.0 / (v4 + 1.0 / v2)");
 }
