@@ -50,7 +50,7 @@ impl Conditions {
         };
         for (key, part) in parts {
             let known = self.listed.iter().any(|(other, (_, relation))| *other == key && *relation == ask.1);
-            if !known && !arena.holds_of_number((part, ask.1)) && !self.known.shows(arena, part, ask.1) {
+            if !known && !arena.holds_of_number((part, ask.1)) && !self.known.implies(arena, part, ask.1) {
                 self.listed.push((key, (part, ask.1)));
                 self.known.facts.assume(part, ask.1);
             }
@@ -103,7 +103,7 @@ impl Conditions {
         let arena = &plant.arena;
         for (part, relation) in arena.asks(formulas, Want::Value) {
             let ask = (arena.substitute(part, values), relation);
-            if arena.holds_of_number(ask) || self.known.shows(arena, ask.0, relation) {
+            if arena.holds_of_number(ask) || self.known.implies(arena, ask.0, relation) {
                 continue;
             }
             let free = arena.symbols_of(&[ask.0]).iter().any(|symbol| plant.is_of_extension(*symbol));

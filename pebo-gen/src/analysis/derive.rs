@@ -15,10 +15,10 @@ use crate::analysis::design::{
 };
 use crate::analysis::identifiability;
 use crate::analysis::identities;
-use crate::analysis::known;
 use crate::analysis::left_inverse;
 use crate::analysis::left_inverse::at_phi;
 use crate::analysis::limited::{ended, limited, unfinished};
+use crate::analysis::permitted;
 use crate::analysis::regression;
 
 impl Derivation {
@@ -34,18 +34,18 @@ impl Derivation {
         let mut cascade = limited(plant, "the cascade", &mut found, |found| {
             let (kind, claim) = cascade::prove(plant, &domain, found);
             class = kind;
-            known::cascade(plant, claim, found)
+            permitted::cascade(plant, claim, found)
         });
         let mut left_inverse = limited(plant, "the left inverse", &mut found, |found| {
             let claim = left_inverse::prove(plant, &domain, found);
-            known::left_inverse(plant, claim, found)
+            permitted::left_inverse(plant, claim, found)
         });
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
         let regression = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
                 limited(plant, "the regression", &mut found, |found| {
                     let claim = regression::prove(plant, &domain, result, inverse, found);
-                    known::regression(plant, class, claim, found)
+                    permitted::regression(plant, class, claim, found)
                 })
             }
             _ => Claim::skipped(),
@@ -153,7 +153,7 @@ fn strengthened(
     let mut last = None;
     let class = if cascade.lambda.is_some() { Class::Gpebo } else { Class::Pebo };
     for claim in together.regressions {
-        let claim = known::regression(plant, class, claim, &mut said);
+        let claim = permitted::regression(plant, class, claim, &mut said);
         let Some(more) = claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved) else { continue };
         let mut others = Vec::new();
         let seen = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
@@ -224,7 +224,7 @@ fn from_identities(
     }
     let mut others = Vec::new();
     let other = regression::from_identities(plant, domain, cascade, inverse, &mut others);
-    let other = known::regression(plant, class, other, &mut others);
+    let other = permitted::regression(plant, class, other, &mut others);
     let seen = other
         .result
         .as_ref()

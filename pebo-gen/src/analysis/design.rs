@@ -263,7 +263,7 @@ impl Derivation {
         let mut asked = arena.asks(&formulas, Want::Value);
         asked.retain(|(part, relation)| {
             let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
-            free && !domain.shows(arena, *part, *relation)
+            free && !domain.implies(arena, *part, *relation)
         });
         asked
     }

@@ -21,7 +21,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let everywhere = domain.everywhere();
     let signed = |identity: &&Formula| {
         let opposite = arena.neg(identity.expr);
-        [identity.expr, opposite].iter().any(|side| everywhere.shows(arena, *side, Relation::Positive))
+        [identity.expr, opposite].iter().any(|side| everywhere.implies(arena, *side, Relation::Positive))
     };
     if let Some(identity) = plant.identities.iter().find(signed) {
         found.push(

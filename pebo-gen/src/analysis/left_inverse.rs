@@ -102,7 +102,7 @@ fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relatio
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let asked = arena.asks(&[formula], Want::Value).into_iter();
     let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
-    there.filter(|(_, ask)| !arena.holds_of_number(*ask) && !domain.shows(arena, ask.0, ask.1)).collect()
+    there.filter(|(_, ask)| !arena.holds_of_number(*ask) && !domain.implies(arena, ask.0, ask.1)).collect()
 }
 
 /// Whether the formula provably has a value wherever the plant has, but for what must only not vanish and is listed

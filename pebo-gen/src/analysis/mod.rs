@@ -27,11 +27,11 @@ mod derive;
 mod design;
 mod identifiability;
 mod identities;
-mod known;
 mod left_inverse;
 mod limited;
 mod parameters;
 mod pencil;
+mod permitted;
 mod regression;
 mod witness;
 

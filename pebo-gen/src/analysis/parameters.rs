@@ -53,7 +53,7 @@ impl Derivation {
             asked.push((symbol, sign));
         }
         for (expr, relation) in facts {
-            if !domain.shows(arena, expr, relation) {
+            if !domain.implies(arena, expr, relation) {
                 domain.facts.assume(expr, relation);
                 asked.push((expr, Sign::Is(relation)));
             }

@@ -5,6 +5,7 @@
 //! where substituting the left inverse would hide it), else one in functions of theta
 //! ([`separation`]), else a static one from an identity (Ortega et al. 2015, eqs. 16 and 28).
 
+mod cancelling;
 mod functions;
 mod implicit;
 mod linear;
@@ -13,7 +14,6 @@ mod relations;
 mod separation;
 mod standing;
 mod together;
-mod unveiled;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,13 +25,13 @@ use crate::source::{Diagnostic, Span};
 
 use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
+use cancelling::combinations;
 use functions::{over_parameterised, under_derivative};
 use linear::{decompose, linear};
 use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};
 pub(super) use standing::from_identities;
 use standing::from_relations;
 pub(super) use together::together;
-use unveiled::combinations;
 
 const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
     polynomials, exponentials, sines and cosines of z go";
@@ -52,19 +52,19 @@ pub(super) fn prove(
     let unmeasured: BTreeSet<Symbol> = plant.w.iter().copied().collect();
     let mut affine = Vec::new();
     let mut obstacles = Vec::new();
-    let mut veiled = Vec::new();
+    let mut moved = Vec::new();
     for (index, rate, span) in &rows {
         match decompose(plant, domain, *index, *rate) {
             Ok(Some(row)) => affine.push(row),
-            Ok(None) | Err(_) if plant.arena.depends_on(*rate, &unmeasured) => veiled.push((*index, *rate, *span)),
+            Ok(None) | Err(_) if plant.arena.depends_on(*rate, &unmeasured) => moved.push((*index, *rate, *span)),
             Ok(None) => obstacles.push((*index, *rate, *span, None)),
             Err(obstacle) => obstacles.push((*index, *rate, *span, Some(obstacle))),
         }
     }
     // A rate that an unmeasured signal moves tells nothing, unless combinations are free of it; the others have to do.
-    rows.retain(|row| !veiled.contains(row));
+    rows.retain(|row| !moved.contains(row));
     if rows.is_empty() {
-        let outputs: Vec<usize> = veiled.iter().map(|row| row.0).collect();
+        let outputs: Vec<usize> = moved.iter().map(|row| row.0).collect();
         let combined = combinations(plant, domain, &outputs);
         if !combined.is_empty()
             && let Some(claim) = together::of_combinations(plant, domain, cascade, left_inverse, &combined, found)
@@ -73,7 +73,7 @@ pub(super) fn prove(
         }
         if plant.identities.is_empty() {
             return from_relations(plant, domain, cascade, left_inverse, found)
-                .unwrap_or_else(|| hidden_by_signals(plant, domain, &veiled, combined.len(), found));
+                .unwrap_or_else(|| hidden_by_signals(plant, domain, &moved, combined.len(), found));
         }
         return from_identities(plant, domain, cascade, left_inverse, found);
     }

@@ -210,7 +210,7 @@ impl Elimination<'_> {
                 let exponent = power.powers().first().map_or(0, |(_, exponent)| *exponent);
                 coefficients[exponent as usize] = field.of_polynomial(&coefficient)?;
             }
-            let nowhere_zero = || self.domain.shows(arena, arena.of_symbol(*symbol), Relation::NonZero);
+            let nowhere_zero = || self.domain.implies(arena, arena.of_symbol(*symbol), Relation::NonZero);
             if coefficients[0].is_zero() && nowhere_zero() {
                 continue;
             }

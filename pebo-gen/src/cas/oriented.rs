@@ -39,7 +39,7 @@ fn turned(arena: &Arena, domain: &Domain, product: &Product) -> Expr {
             continue;
         }
         let opposite = arena.neg(*base);
-        if domain.shows(arena, opposite, Relation::Positive) {
+        if domain.implies(arena, opposite, Relation::Positive) {
             *base = opposite;
             changed = true;
             if !is_even(exponent) {

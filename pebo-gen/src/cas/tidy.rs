@@ -37,7 +37,7 @@ pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
     for (part, relation) in own {
         there.facts.assume(part, relation);
     }
-    more.into_iter().all(|(part, relation)| there.shows(arena, part, relation))
+    more.into_iter().all(|(part, relation)| there.implies(arena, part, relation))
 }
 
 /// The first of the candidates that asks for less than the expression of what the domain does not show and is proved
@@ -45,7 +45,7 @@ pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
 pub(crate) fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
     let unshown = |form: Expr| {
         let asked = arena.asks(&[form], Want::Value).into_iter();
-        asked.filter(|(part, relation)| !domain.shows(arena, *part, *relation)).count()
+        asked.filter(|(part, relation)| !domain.implies(arena, *part, *relation)).count()
     };
     let most = unshown(expr);
     if most == 0 {

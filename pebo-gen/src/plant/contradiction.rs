@@ -89,7 +89,7 @@ fn excluded<'a>(
                 Relation::NonNegative => Relation::Positive,
                 Relation::NonZero => return vanishes(arena, &others, valued[index]),
             };
-            !arena.symbols_of(&[valued[index]]).is_empty() && others.shows(arena, arena.neg(valued[index]), opposite)
+            !arena.symbols_of(&[valued[index]]).is_empty() && others.implies(arena, arena.neg(valued[index]), opposite)
         })
         .map(|index| &assumptions[index])
 }

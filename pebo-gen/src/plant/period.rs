@@ -12,7 +12,7 @@ use super::plant::Formula;
 
 /// Refuses a period that the values and assumptions do not show to be positive.
 pub(super) fn positive(arena: &Arena, domain: &Domain, period: Formula) -> Result<(), Diagnostic> {
-    let shows = |expr, relation| domain.shows(arena, expr, relation);
+    let shows = |expr, relation| domain.implies(arena, expr, relation);
     if shows(period.expr, Relation::Positive) {
         return Ok(());
     }

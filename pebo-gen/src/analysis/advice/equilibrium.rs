@@ -69,7 +69,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
     let rates = plant.rates();
-    if let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.shows(arena, **rate, Relation::NonZero)) {
+    if let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero)) {
         return Ok(Equilibrium::Nowhere(*symbol));
     }
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();

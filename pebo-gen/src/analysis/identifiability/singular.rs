@@ -104,7 +104,7 @@ impl<'a> Volume<'a> {
         let field = &self.field;
         let open = |factor: &Poly| -> Result<bool, Obstacle> {
             let formula = field.show(&field.of_polynomial(factor)?);
-            Ok(!field.never_zero(factor) && !domain.shows(self.arena, formula, Relation::NonZero))
+            Ok(!field.never_zero(factor) && !domain.implies(self.arena, formula, Relation::NonZero))
         };
         let mut shared = false;
         for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
@@ -137,7 +137,7 @@ impl<'a> Volume<'a> {
             });
             match there {
                 Some((true, _)) => self.add(&factor, plant, places)?,
-                Some((false, there)) if domain.shows(self.arena, there, Relation::NonZero) => {}
+                Some((false, there)) if domain.implies(self.arena, there, Relation::NonZero) => {}
                 _ => places.all = false,
             }
         }

@@ -13,25 +13,25 @@ use crate::cas::zero::refute;
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span, listed};
 
-use super::unveiled::moved_freely;
+use super::cancelling::moved_freely;
 
 /// Every rate that is given depends on a signal that nobody knows, and so do all combinations but so many, of which no
 /// regression was found.
 pub(super) fn hidden_by_signals(
     plant: &Plant,
     domain: &Domain,
-    veiled: &[(usize, Expr, Span)],
+    moved: &[(usize, Expr, Span)],
     combined: usize,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
-    let outputs: Vec<usize> = veiled.iter().map(|row| row.0).collect();
+    let outputs: Vec<usize> = moved.iter().map(|row| row.0).collect();
     if combined > 0 || !moved_freely(plant, domain, &outputs, 0) {
-        found.push(maybe_hidden(plant, &outputs, veiled.first().map_or(Span::point(0), |row| row.2)));
+        found.push(maybe_hidden(plant, &outputs, moved.first().map_or(Span::point(0), |row| row.2)));
         return Claim { verdict: Verdict::Undecided, result: None };
     }
     let mut verdict = Verdict::Refuted;
-    for (index, rate, span) in veiled {
+    for (index, rate, span) in moved {
         let seen = plant.w.iter().find_map(|w| {
             let slope = arena.derivative(*rate, *w);
             refute(arena, slope, domain).map(|point| (*w, Witness::of(slope, &point)))

@@ -16,9 +16,9 @@ use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use crate::source::Diagnostic;
 
+use super::cancelling::{Combination, combinations, moved_freely, outputs_but};
 use super::functions::over_parameterised;
 use super::linear::decompose;
-use super::unveiled::{Combination, combinations, moved_freely, outputs_but};
 
 /// `d/dt primitive = rate`, the rate as a function of z, y and u.
 struct Equation {

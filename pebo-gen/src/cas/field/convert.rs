@@ -5,27 +5,27 @@ use crate::cas::function::Function;
 use crate::cas::poly::steps;
 use crate::cas::rational::half;
 
-use super::fraction::{Fraction, negated};
-use super::{Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, negated};
+use crate::cas::field::{Field, Obstacle};
 
 impl Field<'_> {
     /// The normal form of an expression.
     pub fn fraction(&self, expr: Expr) -> Result<Fraction, Obstacle> {
-        if self.known.borrow().contains_key(&expr) {
+        if self.round.fractions.borrow().contains_key(&expr) {
             return self.get(expr);
         }
         for e in self.arena.postorder(&[expr]) {
-            if self.known.borrow().contains_key(&e) {
+            if self.round.fractions.borrow().contains_key(&e) {
                 continue;
             }
             let fraction = self.convert(e)?;
-            self.known.borrow_mut().insert(e, fraction);
+            self.round.fractions.borrow_mut().insert(e, fraction);
         }
         self.get(expr)
     }
 
     fn get(&self, expr: Expr) -> Result<Fraction, Obstacle> {
-        match self.known.borrow().get(&expr) {
+        match self.round.fractions.borrow().get(&expr) {
             Some(found) => {
                 self.work().spend(1 + steps(found.weight()))?;
                 Ok(found.clone())
@@ -98,7 +98,7 @@ impl Field<'_> {
     }
 
     /// The same call over arguments in normal form, so that equal arguments make equal kernels.
-    pub(super) fn tidy_call(&self, expr: Expr) -> Result<Expr, Obstacle> {
+    pub(in crate::cas::field) fn tidy_call(&self, expr: Expr) -> Result<Expr, Obstacle> {
         let Node::Call(function, arguments) = self.arena.node(expr) else { return Ok(expr) };
         let mut tidied = Vec::with_capacity(arguments.len());
         for argument in arguments.iter() {

@@ -10,7 +10,7 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::{Poly, steps};
 use crate::cas::rational::Rational;
 
-use super::{Field, Obstacle};
+use crate::cas::field::{Field, Obstacle};
 
 /// Terms of a denominator that its conjugate may still multiply: what is longer grows out of proportion.
 const MOST_CLEARED: usize = 16;
@@ -18,8 +18,8 @@ const MOST_CLEARED: usize = 16;
 /// A quotient of polynomials, canonical with respect to one [`Field`].
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Fraction {
-    pub(super) num: Poly,
-    pub(super) den: Poly,
+    pub(in crate::cas::field) num: Poly,
+    pub(in crate::cas::field) den: Poly,
 }
 
 impl Fraction {
@@ -39,7 +39,7 @@ impl Fraction {
     }
 
     /// A polynomial.
-    pub(super) fn polynomial(num: Poly) -> Self {
+    pub(in crate::cas::field) fn polynomial(num: Poly) -> Self {
         Self { num, den: Poly::one() }
     }
 
@@ -87,7 +87,7 @@ impl Fraction {
 
 impl Field<'_> {
     /// The canonical fraction of two polynomials.
-    pub(super) fn fraction_of(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn fraction_of(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
         self.work().spend(steps(num.term_count() + den.term_count()))?;
         let mut num = self.reduce(num)?;
         let mut den = self.reduce(den)?;
@@ -201,17 +201,17 @@ impl Field<'_> {
 
     /// Replaces powers of algebraic kernels by their relations, the last kernel first: relations
     /// lead to earlier kernels only.
-    pub(super) fn reduce(&self, poly: &Poly) -> Result<Poly, Obstacle> {
+    pub(in crate::cas::field) fn reduce(&self, poly: &Poly) -> Result<Poly, Obstacle> {
         let mut poly = poly.clone();
-        let kernels = self.kernels.borrow();
+        let kernels = self.round.kernels.borrow();
         let mut above = u32::MAX;
         loop {
             let next = poly.variables().iter().rev().copied().find(|&variable| {
                 variable < above
-                    && kernels[variable as usize].relation.as_ref().is_some_and(|r| poly.degree(variable) >= r.degree)
+                    && kernels[variable].relation.as_ref().is_some_and(|r| poly.degree(variable) >= r.degree)
             });
             let Some(variable) = next else { return Ok(poly) };
-            if let Some(relation) = &kernels[variable as usize].relation {
+            if let Some(relation) = &kernels[variable].relation {
                 poly = poly.reduce_power(variable, relation.degree, &relation.value, self.work())?;
             }
             above = variable;
@@ -222,8 +222,8 @@ impl Field<'_> {
     /// multiples that are free of roots have no factor in common.
     pub fn may_vanish_together(&self, a: &Poly, b: &Poly) -> Result<bool, Obstacle> {
         let (a, b) = (self.cleared(a)?, self.cleared(b)?);
-        let kernels = self.kernels.borrow();
-        let algebraic = |poly: &Poly| poly.variables().iter().any(|v| kernels[*v as usize].relation.is_some());
+        let kernels = self.round.kernels.borrow();
+        let algebraic = |poly: &Poly| poly.variables().iter().any(|v| kernels[*v].relation.is_some());
         // Of roots that were not cleared, a relation may hide what is common.
         let hidden = !a.is_constant() && !b.is_constant() && (algebraic(&a) || algebraic(&b));
         Ok(hidden || !a.gcd(&b, self.work())?.is_constant())
@@ -236,10 +236,13 @@ impl Field<'_> {
 
     /// What clears the last quadratic kernel from a denominator.
     fn conjugate(&self, den: &Poly) -> Result<Option<Poly>, Obstacle> {
-        let kernels = self.kernels.borrow();
-        let algebraic = den.variables().iter().rev().copied().find(|&variable| {
-            kernels[variable as usize].relation.as_ref().is_some_and(|relation| relation.degree == 2)
-        });
+        let kernels = self.round.kernels.borrow();
+        let algebraic = den
+            .variables()
+            .iter()
+            .rev()
+            .copied()
+            .find(|&variable| kernels[variable].relation.as_ref().is_some_and(|relation| relation.degree == 2));
         let Some(variable) = algebraic else { return Ok(None) };
         // den = a + b v, conjugate a - b v
         let flipped = den.terms().map(|(monomial, coefficient)| {
@@ -256,7 +259,7 @@ impl Field<'_> {
 }
 
 /// `-a`.
-pub(super) fn negated(a: &Fraction) -> Fraction {
+pub(in crate::cas::field) fn negated(a: &Fraction) -> Fraction {
     Fraction { num: -&a.num, den: a.den.clone() }
 }
 
@@ -266,7 +269,7 @@ fn exact(quotient: Option<Poly>) -> Result<Poly, Obstacle> {
 }
 
 /// A positive rational that makes the polynomial primitive, and the primitive polynomial.
-pub(super) fn primitive(poly: &Poly) -> (Integer, Poly) {
+pub(in crate::cas::field) fn primitive(poly: &Poly) -> (Integer, Poly) {
     let content = poly.content();
     match poly.div_integer(&content) {
         Some(rest) if !content.is_zero() => (content, rest),

@@ -1,14 +1,28 @@
 //! The table of kernels: what polynomials take as variables, with the relations among them.
 
-use super::fraction::Fraction;
-use super::{Family, Field, Obstacle};
+pub(super) mod argument;
+mod cyclotomic;
+mod exponential;
+pub(super) mod inverse;
+mod logarithm;
+mod magnitude;
+pub(super) mod radical;
+pub(super) mod range;
+mod symbol;
+pub(super) mod trigonometric;
+
+use std::ops::Index;
+
+use rustc_hash::FxHashMap;
+
 use crate::cas::expr::Expr;
+use crate::cas::field::Field;
+use crate::cas::field::fraction::Fraction;
 use crate::cas::poly::Poly;
-use crate::cas::rational::Rational;
 
 /// A variable of the polynomials.
 #[derive(Debug)]
-pub(super) struct Kernel {
+pub(in crate::cas::field) struct Kernel {
     /// What it stands for.
     pub expr: Expr,
     /// Its algebraic relation to earlier kernels, if there is one.
@@ -19,50 +33,73 @@ pub(super) struct Kernel {
 
 /// `kernel ^ degree = value`, the value in earlier kernels.
 #[derive(Clone, Debug)]
-pub(super) struct Relation {
+pub(in crate::cas::field) struct Relation {
     pub degree: u32,
     pub value: Poly,
 }
 
-impl Field<'_> {
-    /// The number of the kernel that stands for an expression, entered if it is new.
-    pub(super) fn enter(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> u32 {
-        if let Some(&number) = self.numbers.borrow().get(&expr) {
-            return number;
+/// The kernels of a round, numbered in the order in which they were met: a relation speaks of earlier ones alone.
+#[derive(Default, Debug)]
+pub(in crate::cas::field) struct Kernels {
+    entries: Vec<Kernel>,
+    numbers: FxHashMap<Expr, u32>,
+}
+
+impl Kernels {
+    /// The number of the kernel that stands for an expression.
+    pub(in crate::cas::field) fn number_of(&self, expr: Expr) -> Option<u32> {
+        self.numbers.get(&expr).copied()
+    }
+
+    /// The same, entered if it is new; one that is known stays what it is.
+    pub(in crate::cas::field) fn enter(&mut self, kernel: Kernel) -> u32 {
+        let next = self.count();
+        let number = *self.numbers.entry(kernel.expr).or_insert(next);
+        if number == next {
+            self.entries.push(kernel);
         }
-        let mut kernels = self.kernels.borrow_mut();
-        let number = u32::try_from(kernels.len()).unwrap_or(u32::MAX);
-        kernels.push(Kernel { expr, relation, positive });
-        self.numbers.borrow_mut().insert(expr, number);
         number
     }
 
+    /// Adds the relation of a kernel that could not be told before it had a number.
+    pub(in crate::cas::field) fn relate(&mut self, number: u32, relation: Relation) {
+        self.entries[number as usize].relation = Some(relation);
+    }
+
+    /// How many there are: the number that the next will have.
+    pub(in crate::cas::field) fn count(&self) -> u32 {
+        u32::try_from(self.entries.len()).unwrap_or(u32::MAX)
+    }
+
+    /// The kernels with their numbers.
+    pub(in crate::cas::field) fn iter(&self) -> impl Iterator<Item = (u32, &Kernel)> {
+        (0..).zip(&self.entries)
+    }
+}
+
+impl Index<u32> for Kernels {
+    type Output = Kernel;
+
+    fn index(&self, number: u32) -> &Kernel {
+        &self.entries[number as usize]
+    }
+}
+
+impl Field<'_> {
+    /// The number of the kernel that stands for an expression, entered if it is new.
+    pub(in crate::cas::field) fn enter(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> u32 {
+        self.round.kernels.borrow_mut().enter(Kernel { expr, relation, positive })
+    }
+
     /// The kernel as a fraction.
-    pub(super) fn entered(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> Fraction {
+    pub(in crate::cas::field) fn entered(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> Fraction {
         Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
     }
 
     /// Whether an algebraic relation says something of a kernel that occurs.
-    pub(super) fn has_relations(&self, fraction: &Fraction) -> bool {
-        let kernels = self.kernels.borrow();
+    pub(in crate::cas::field) fn has_relations(&self, fraction: &Fraction) -> bool {
+        let kernels = self.round.kernels.borrow();
         let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());
-        variables.any(|variable| kernels[*variable as usize].relation.is_some())
-    }
-
-    /// How many units of its basis argument a multiple is; refines the unit where it is none.
-    pub(super) fn multiple(&self, family: Family, key: Expr, factor: &Rational) -> Result<(Rational, i64), Obstacle> {
-        const MOST: i64 = 1 << 10;
-        let mut units = self.units.borrow_mut();
-        let unit = units.entry((family, key)).or_insert_with(|| factor.abs());
-        let finer = unit.gcd(factor);
-        if finer != *unit {
-            *unit = finer;
-            *self.refined.borrow_mut() = true;
-        }
-        let times = factor.checked_div(unit).and_then(|n| n.to_i64()).ok_or(Obstacle::TooLarge)?;
-        if times.abs() > MOST {
-            return Err(Obstacle::TooLarge);
-        }
-        Ok((unit.clone(), times))
+        variables.any(|variable| kernels[*variable].relation.is_some())
     }
 }

@@ -26,31 +26,16 @@
 //! sums of roots that do not denest, and inverse trigonometric functions beyond sums of three. Nothing
 //! here relies on independence for a verdict: what refutes is an enclosure (see [`super::zero`]).
 
-mod angle;
-mod circle;
 mod convert;
-mod exponent;
+mod coprime;
+mod express;
 mod fraction;
-mod inverse;
 mod kernel;
-mod known;
-mod logarithm;
-mod magnitude;
-mod manifold;
-mod nature;
-mod parts;
-mod quadratic;
-mod range;
-mod root;
-mod shift;
-mod show;
+mod obstacle;
 mod sign;
-mod span;
-mod square;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 use rustc_hash::FxHashMap;
 
@@ -59,71 +44,24 @@ use super::domain::Domain;
 use super::expr::{Expr, Symbol};
 use super::facts::{Facts, Relation};
 use super::manifold::Step;
-use super::poly::{Poly, TooLarge, Work};
-use super::rational::Rational;
+use super::poly::{Poly, Work};
 
 pub use fraction::Fraction;
+pub use obstacle::Obstacle;
 
-use angle::Pair;
-use inverse::{Known, domain_of};
-use kernel::Kernel;
-use parts::Parts;
-use root::Whole;
-use sign::Sign;
+use coprime::CoprimeBase;
+use kernel::Kernels;
+use kernel::argument::{Atoms, Units};
+use kernel::inverse::{InverseAngle, domain_of};
+use kernel::radical::ProductRoot;
+use kernel::trigonometric::Pair;
+use sign::Signs;
 
 /// Steps of polynomial arithmetic that one field may spend, some seconds' worth.
 const STEPS: u64 = 50_000_000;
 
 /// How often the bases of angles and exponents may be refined before the field is given up.
 const MOST_ROUNDS: usize = 12;
-
-/// Why a question stays open.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Obstacle {
-    /// The polynomials grow past the work limit.
-    TooLarge,
-    /// The budget of all questions together is used up.
-    OutOfBudget,
-    /// A denominator vanishes identically.
-    DivisionByZero,
-    /// Two kernels that could not be shown independent, or one that has no rules here.
-    Kernel(String),
-    /// No point of the assumed domain was found at which the expression has a value.
-    NoPoint,
-    /// An equation of the domain that the normal form does not know of.
-    Unsolved(String),
-    /// The normal form is not zero, but no point shows it.
-    NoWitness,
-    /// The same, and it has two kernels that were not shown to be independent.
-    Related(String, String),
-}
-
-impl fmt::Display for Obstacle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooLarge => f.write_str("the expressions grow past the work limit"),
-            Self::OutOfBudget => f.write_str("the limit on time or memory is reached"),
-            Self::DivisionByZero => f.write_str("a denominator is zero everywhere"),
-            Self::Kernel(what) => write!(f, "no rule decides {what}"),
-            Self::NoPoint => f.write_str("no point of the assumed domain was found where the formula has a value"),
-            Self::Unsolved(equation) => {
-                write!(f, "the identity `{equation}` could not be solved for a symbol without losing solutions")
-            }
-            Self::NoWitness => {
-                f.write_str("the normal form is not zero, yet no point was found where it provably differs")
-            }
-            Self::Related(a, b) => write!(f, "no rule shows whether {a} and {b} are independent"),
-        }
-    }
-}
-
-impl std::error::Error for Obstacle {}
-
-impl From<TooLarge> for Obstacle {
-    fn from(_: TooLarge) -> Self {
-        Self::TooLarge
-    }
-}
 
 /// Which argument a basis serves.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -141,43 +79,41 @@ enum Family {
 pub struct Field<'a> {
     arena: &'a Arena,
     work: Work,
-    kernels: RefCell<Vec<Kernel>>,
-    numbers: RefCell<FxHashMap<Expr, u32>>,
-    known: RefCell<FxHashMap<Expr, Fraction>>,
-    /// The step of which all multiples of a basis argument are integer multiples.
-    units: RefCell<BTreeMap<(Family, Expr), Rational>>,
-    /// What arguments are combinations of, each with the expression it stands for.
-    atoms: RefCell<BTreeMap<Family, Vec<(Expr, Fraction)>>>,
-    /// The m of `cos(pi/m)`, of which all other multiples of pi are multiples.
-    finest: Cell<Option<u32>>,
-    /// Inverse functions that are kernels.
-    inverses: RefCell<Vec<Known>>,
-    /// Arguments of sines and cosines.
-    angles: RefCell<Vec<(Fraction, Pair)>>,
+    /// What is assumed.
     domain: Domain,
-    /// Signs of expressions over the box that the facts state.
-    boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
-    /// Kernels whose signs are being asked for.
-    asking: RefCell<BTreeSet<u32>>,
-    /// Signs of kernels by what they are, with so many signs known.
-    natures: RefCell<FxHashMap<(u32, usize), Option<Sign>>>,
-    /// Those of them that were found within another question, which may have kept more from being seen.
-    passing: RefCell<Vec<(u32, usize)>>,
-    /// How deep the question of a sign is nested.
-    depth: Cell<u32>,
-    refined: RefCell<bool>,
-    parts: RefCell<Parts>,
-    wholes: RefCell<Vec<Whole>>,
-    /// What is known of signs; empty until the first question of a sign.
-    signs: RefCell<Vec<(Poly, Relation)>>,
-    asked: Cell<bool>,
-    roots: Vec<Expr>,
     /// What symbols are on the manifold.
     steps: BTreeMap<Symbol, Step>,
+    /// What the kernels are made for.
+    roots: Vec<Expr>,
+    /// The step of which all multiples of an atom are integer multiples.
+    units: RefCell<Units>,
+    /// The m of `cos(pi/m)`, of which all other multiples of pi are multiples.
+    finest: Cell<Option<u32>>,
+    /// What roots, logarithms and magnitudes are taken of.
+    base: RefCell<CoprimeBase>,
     /// What must hold for the expressions to have values.
     learned: RefCell<Vec<(Expr, Relation)>>,
-    /// Parts of whose unknown signs something was made.
-    unsigned: RefCell<BTreeSet<Poly>>,
+    /// Signs of expressions over the box that the facts state.
+    boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
+    round: Round,
+}
+
+/// What is forgotten where the kernels turn out to be too coarse, and is made anew.
+#[derive(Default, Debug)]
+struct Round {
+    kernels: RefCell<Kernels>,
+    /// The normal forms so far.
+    fractions: RefCell<FxHashMap<Expr, Fraction>>,
+    atoms: RefCell<Atoms>,
+    /// Inverse functions that are kernels.
+    inverses: RefCell<Vec<InverseAngle>>,
+    /// Arguments of sines and cosines.
+    angles: RefCell<Vec<(Fraction, Pair)>>,
+    /// Roots of products.
+    products: RefCell<Vec<ProductRoot>>,
+    signs: Signs,
+    /// Whether something became finer that kernels were made of.
+    finer: Cell<bool>,
 }
 
 impl<'a> Field<'a> {
@@ -196,64 +132,33 @@ impl<'a> Field<'a> {
     }
 
     fn of(arena: &'a Arena, facts: &Facts, steps: &[Step], roots: &[Expr]) -> Result<Self, Obstacle> {
-        let field = Self {
+        let mut field = Self {
             arena,
             work: Work::within(STEPS, arena.budget()),
-            kernels: RefCell::default(),
-            numbers: RefCell::default(),
-            known: RefCell::default(),
-            units: RefCell::default(),
-            atoms: RefCell::default(),
-            finest: Cell::default(),
-            inverses: RefCell::default(),
-            angles: RefCell::default(),
             domain: domain_of(facts),
-            boxed: RefCell::default(),
-            asking: RefCell::default(),
-            natures: RefCell::default(),
-            passing: RefCell::default(),
-            depth: Cell::default(),
-            refined: RefCell::new(false),
-            parts: RefCell::default(),
-            wholes: RefCell::default(),
-            signs: RefCell::default(),
-            asked: Cell::default(),
-            roots: roots.to_vec(),
             steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
+            roots: roots.to_vec(),
+            units: RefCell::default(),
+            finest: Cell::default(),
+            base: RefCell::default(),
             learned: RefCell::default(),
-            unsigned: RefCell::default(),
+            boxed: RefCell::default(),
+            round: Round::default(),
         };
         for _ in 0..MOST_ROUNDS {
             if arena.budget().is_exhausted() {
                 return Err(Obstacle::OutOfBudget);
             }
-            field.restart();
             for root in roots {
                 field.fraction(*root)?;
             }
-            if !*field.refined.borrow() {
+            if !field.round.finer.get() {
                 return Ok(field);
             }
+            field.keep_base();
+            field.round = Round::default();
         }
         Err(Obstacle::TooLarge)
-    }
-
-    /// Forgets the kernels, but not the units, the parts and what was learned.
-    fn restart(&self) {
-        self.keep_parts();
-        self.kernels.borrow_mut().clear();
-        self.numbers.borrow_mut().clear();
-        self.known.borrow_mut().clear();
-        self.atoms.borrow_mut().clear();
-        self.inverses.borrow_mut().clear();
-        self.angles.borrow_mut().clear();
-        self.wholes.borrow_mut().clear();
-        self.signs.borrow_mut().clear();
-        self.natures.borrow_mut().clear();
-        self.passing.borrow_mut().clear();
-        self.unsigned.borrow_mut().clear();
-        self.asked.set(false);
-        *self.refined.borrow_mut() = false;
     }
 
     fn work(&self) -> &Work {
@@ -267,13 +172,13 @@ impl<'a> Field<'a> {
 
     /// The numbers of the kernels that depend on one of the symbols.
     pub fn kernels_of(&self, symbols: &BTreeSet<Symbol>) -> BTreeSet<u32> {
-        let kernels = self.kernels.borrow();
-        (0..).zip(kernels.iter()).filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
+        let kernels = self.round.kernels.borrow();
+        kernels.iter().filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
     }
 
     /// What a kernel stands for.
     pub fn kernel(&self, number: u32) -> Expr {
-        self.kernels.borrow()[number as usize].expr
+        self.round.kernels.borrow()[number].expr
     }
 
     /// Why a fraction that is not zero may stand for zero all the same: its last two kernels that are

@@ -1,20 +1,31 @@
 //! Signs of polynomials on the assumed domain.
 //!
 //! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the
-//! kernels have values, or none. The rules are sound and simple: numbers, kernels ([`super::nature`]),
-//! sums of like signs, facts ([`super::known`]), factors, discriminants ([`super::quadratic`]), distances from
-//! bounds ([`super::shift`]), and last enclosures over the box that the facts state.
+//! kernels have values, or none. The rules are sound and simple: numbers, kernels ([`crate::cas::field::sign::kernel`]),
+//! sums of like signs, facts ([`crate::cas::field::sign::facts`]), factors, discriminants ([`crate::cas::field::sign::discriminant`]), distances from
+//! bounds ([`crate::cas::field::sign::shift`]), and last enclosures over the box that the facts state.
+
+mod discriminant;
+mod facts;
+mod kernel;
+mod memo;
+mod shift;
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
 
 use crate::cas::enclosure::Point;
 use crate::cas::expr::Expr;
+use crate::cas::facts::Relation;
 use crate::cas::poly::Poly;
 
-use super::fraction::{Fraction, primitive};
-use super::{Field, Obstacle};
+use self::memo::Memo;
+use crate::cas::field::fraction::{Fraction, primitive};
+use crate::cas::field::{Field, Obstacle};
 
 /// The sign of a value throughout a domain.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Sign {
+pub(in crate::cas::field) enum Sign {
     /// Greater than zero.
     Positive,
     /// Greater than or equal to zero.
@@ -25,8 +36,23 @@ pub(super) enum Sign {
     Negative,
 }
 
+/// What a round knows of signs.
+#[derive(Default, Debug)]
+pub(in crate::cas::field) struct Signs {
+    /// Polynomials of known signs: the facts, once they are read, and what must hold for the expressions to have values.
+    pub(in crate::cas::field) facts: RefCell<Vec<(Poly, Relation)>>,
+    /// Whether the facts were read: most questions ask for no sign.
+    read: Cell<bool>,
+    /// Of kernels.
+    memo: RefCell<Memo>,
+    /// How deep questions by discriminants are nested.
+    depth: Cell<u32>,
+    /// Factors of whose unknown signs something was made: with another sign it would be something else.
+    pub(in crate::cas::field) undecided: RefCell<BTreeSet<Poly>>,
+}
+
 impl Sign {
-    pub(super) fn is_positive_or_zero(self) -> bool {
+    pub(in crate::cas::field) fn is_positive_or_zero(self) -> bool {
         self != Self::Negative
     }
 
@@ -43,7 +69,7 @@ impl Sign {
 
 impl Field<'_> {
     /// The sign of a fraction.
-    pub(super) fn sign_of(&self, fraction: &Fraction) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn sign_of(&self, fraction: &Fraction) -> Result<Option<Sign>, Obstacle> {
         let (Some(top), Some(bottom)) = (self.sign(&fraction.num)?, self.sign(&fraction.den)?) else {
             return Ok(None);
         };
@@ -51,7 +77,7 @@ impl Field<'_> {
     }
 
     /// The sign of a polynomial.
-    pub(super) fn sign(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn sign(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         if let Some(number) = poly.to_constant() {
             return Ok(Some(if number.is_zero() {
                 Sign::Zero
@@ -140,7 +166,7 @@ impl Field<'_> {
     }
 
     /// By the signs of the terms.
-    pub(super) fn plain_sign(&self, poly: &Poly) -> Option<Sign> {
+    pub(in crate::cas::field) fn plain_sign(&self, poly: &Poly) -> Option<Sign> {
         if poly.is_zero() {
             return Some(Sign::Zero);
         }
@@ -151,7 +177,7 @@ impl Field<'_> {
     }
 
     /// The sign of a part: by algebra, or by enclosing it over the box that the facts state.
-    pub(super) fn sign_of_part(&self, part: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn sign_of_part(&self, part: &Poly) -> Result<Option<Sign>, Obstacle> {
         if let Some(sign) = self.sign(part)? {
             return Ok(Some(sign));
         }
@@ -181,7 +207,7 @@ impl Field<'_> {
 }
 
 /// The sign that all terms of a polynomial have, by the signs of its variables.
-pub(super) fn sign_of_terms(poly: &Poly, sign_of: impl Fn(u32) -> Option<Sign>) -> Option<Sign> {
+pub(in crate::cas::field) fn sign_of_terms(poly: &Poly, sign_of: impl Fn(u32) -> Option<Sign>) -> Option<Sign> {
     let mut signs = poly.terms().map(|(monomial, coefficient)| {
         let first = if coefficient.is_negative() { Sign::Negative } else { Sign::Positive };
         monomial.powers().iter().try_fold(first, |sign, &(variable, exponent)| {

@@ -18,7 +18,6 @@
 //! Operations whose cost can explode take a [`Work`] limit and fail with [`TooLarge`]; all others
 //! are linear in the number of terms, up to sorting.
 
-mod basis;
 mod boxed;
 mod divide;
 mod division;
@@ -43,7 +42,6 @@ use std::fmt;
 use super::integer::Integer;
 use layout::{Layout, MAX_EXPONENT, Variables};
 
-pub use basis::gcd_free_basis;
 pub use field::{PrimeField, Residue};
 pub use monomial::Monomial;
 pub use square_free::SquareFree;

@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::super::integer::Integer;
 use super::super::rational::Rational;
-use super::{Monomial, Poly, PrimeField, Work, gcd_free_basis};
+use super::{Monomial, Poly, PrimeField, Work};
 
 fn work() -> Work {
     Work::new(1 << 40)
@@ -253,28 +253,6 @@ proptest! {
             prop_assert!(times > 0);
         }
         prop_assert!(rest.variables().iter().all(|v| !inner.contains(v)));
-    }
-
-    #[test]
-    fn bases(a in poly(3, 2), b in poly(3, 2), c in poly(3, 2)) {
-        let given = [mul(&a, &b), mul(&b, &c), mul(&a, &mul(&c, &c))];
-        let basis = gcd_free_basis(&given, &work()).expect("small");
-        for (index, element) in basis.iter().enumerate() {
-            prop_assert!(!element.is_constant());
-            for other in &basis[..index] {
-                prop_assert!(gcd(element, other).is_one());
-            }
-        }
-        for mut poly in given {
-            for element in &basis {
-                while !poly.is_zero()
-                    && let Some(rest) = poly.div_exact(element, &work()).expect("small")
-                {
-                    poly = rest;
-                }
-            }
-            prop_assert!(poly.is_constant());
-        }
     }
 }
 

@@ -3,23 +3,23 @@
 use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 
-use super::sign::Sign;
-use super::{Field, Obstacle};
+use crate::cas::field::sign::Sign;
+use crate::cas::field::{Field, Obstacle};
 
 impl Field<'_> {
     /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
     /// out.
-    pub(super) fn sign_by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn sign_by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         const MOST_TERMS: usize = 40;
         const DEEPEST: u32 = 3;
         // Each step asks for the signs of polynomials in one variable less.
-        let depth = self.depth.get();
+        let depth = self.round.signs.depth.get();
         if poly.term_count() > MOST_TERMS || depth == DEEPEST {
             return Ok(None);
         }
-        self.depth.set(depth + 1);
+        self.round.signs.depth.set(depth + 1);
         let sign = self.sign_as_quadratic(poly);
-        self.depth.set(depth);
+        self.round.signs.depth.set(depth);
         sign
     }
 

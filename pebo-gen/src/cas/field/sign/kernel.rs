@@ -7,19 +7,19 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::half;
 
-use super::Field;
-use super::sign::Sign;
+use crate::cas::field::Field;
+use crate::cas::field::sign::Sign;
 
 impl Field<'_> {
-    /// The sign of a kernel: by its nature or by a fact about it alone.
-    pub(super) fn kernel_sign(&self, variable: u32) -> Option<Sign> {
-        if self.kernels.borrow().get(variable as usize).is_some_and(|kernel| kernel.positive) {
+    /// The sign of a kernel: by its function or by a fact about it alone.
+    pub(in crate::cas::field) fn kernel_sign(&self, variable: u32) -> Option<Sign> {
+        if self.round.kernels.borrow()[variable].positive {
             return Some(Sign::Positive);
         }
-        if let Some(sign) = self.sign_by_nature(variable) {
+        if let Some(sign) = self.sign_by_function(variable) {
             return Some(sign);
         }
-        for (fact, compared) in self.signs.borrow().iter() {
+        for (fact, compared) in self.round.signs.facts.borrow().iter() {
             if fact.variables() != [variable] {
                 continue;
             }
@@ -46,10 +46,10 @@ impl Field<'_> {
 
     /// Roots and absolute values are not negative; a root of something positive is positive. A cosine
     /// is positive where its angle is within the right half, a sine where it is within the upper one.
-    fn sign_by_nature(&self, variable: u32) -> Option<Sign> {
+    fn sign_by_function(&self, variable: u32) -> Option<Sign> {
         let (expr, radicand) = {
-            let kernels = self.kernels.borrow();
-            let kernel = kernels.get(variable as usize)?;
+            let kernels = self.round.kernels.borrow();
+            let kernel = &kernels[variable];
             (kernel.expr, kernel.relation.as_ref().map(|relation| relation.value.clone()))
         };
         let root = self.is_plain_root(expr);
@@ -59,33 +59,23 @@ impl Field<'_> {
         // A fact may have the kernel itself in it: then its form is all that is known.
         let by_form =
             (root || matches!(self.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
-        let state = (variable, self.signs.borrow().len());
-        if let Some(sign) = self.natures.borrow().get(&state) {
+        let state = (variable, self.round.signs.facts.borrow().len());
+        let memo = &self.round.signs.memo;
+        if let Some(sign) = memo.borrow().answer(state) {
             return *sign;
         }
-        if !self.asking.borrow_mut().insert(variable) {
+        if !memo.borrow_mut().begin(variable) {
             return by_form;
         }
         let sign = self.sign_by_arguments(expr, radicand).or(by_form);
-        self.asking.borrow_mut().remove(&variable);
-        // What was found within another question holds for that question alone: asked by itself, it may show more.
-        let mut passing = self.passing.borrow_mut();
-        let mut natures = self.natures.borrow_mut();
-        if self.asking.borrow().is_empty() && self.depth.get() == 0 {
-            passing.drain(..).for_each(|state| {
-                natures.remove(&state);
-            });
-        } else {
-            passing.push(state);
-        }
-        natures.insert(state, sign);
+        memo.borrow_mut().end(state, sign, self.round.signs.depth.get() == 0);
         sign
     }
 
     fn sign_by_arguments(&self, expr: Expr, radicand: Option<Poly>) -> Option<Sign> {
         match self.arena.node(expr) {
             Node::Call(function @ (Function::Sin | Function::Cos), arguments) => {
-                self.sign_on_circle(function, arguments[0])
+                self.sign_by_angle(function, arguments[0])
             }
             Node::Call(function @ (Function::Asin | Function::Acos | Function::Atan | Function::Atan2), arguments) => {
                 self.range_of_inverse(function, &arguments).ok()?.sign()
@@ -96,8 +86,8 @@ impl Field<'_> {
     }
 
     /// The sign of a sine or cosine by the range of its angle.
-    fn sign_on_circle(&self, function: Function, angle: Expr) -> Option<Sign> {
-        if self.signs.borrow().is_empty() {
+    fn sign_by_angle(&self, function: Function, angle: Expr) -> Option<Sign> {
+        if self.round.signs.facts.borrow().is_empty() {
             return None;
         }
         let right = self.scale(&self.fraction(self.arena.pi()).ok()?, &half()).ok()?;
@@ -115,12 +105,12 @@ impl Field<'_> {
         Some(if strict { Sign::Positive } else { Sign::NonNegative })
     }
 
-    /// Whether the polynomial is known to be zero nowhere by the nature of its kernels: exponentials,
+    /// Whether the polynomial is known to be zero nowhere by its kernels: exponentials,
     /// and roots of what is positive.
     pub fn never_zero(&self, poly: &Poly) -> bool {
         let never = |variable: &u32| {
             let (positive, radicand) = {
-                let kernel = &self.kernels.borrow()[*variable as usize];
+                let kernel = &self.round.kernels.borrow()[*variable];
                 let root = kernel.relation.as_ref().filter(|_| self.is_plain_root(kernel.expr));
                 (kernel.positive, root.map(|relation| relation.value.clone()))
             };

@@ -10,16 +10,16 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::{Rational, half};
 
-use super::fraction::{Fraction, negated};
-use super::kernel::Relation;
-use super::{Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, negated};
+use crate::cas::field::kernel::Relation;
+use crate::cas::field::{Field, Obstacle};
 
 /// The largest m in `cos(pi/m)`: the minimal polynomial has a degree below m.
 const FINEST: u32 = 240;
 
 impl Field<'_> {
     /// Sine and cosine of a rational multiple of pi.
-    pub(super) fn multiple_of_pi(&self, factor: &Rational) -> Result<(Fraction, Fraction), Obstacle> {
+    pub(in crate::cas::field) fn multiple_of_pi(&self, factor: &Rational) -> Result<(Fraction, Fraction), Obstacle> {
         let quarters = Rational::from((factor * &Rational::from(2)).floor());
         let rest = factor - &(&quarters * &half());
         let twelfths = &rest * &Rational::from(12);
@@ -57,7 +57,7 @@ impl Field<'_> {
         let needed = lcm(wanted, finest.unwrap_or(2)).filter(|m| *m <= FINEST).ok_or(Obstacle::TooLarge)?;
         if finest != Some(needed) {
             self.finest.set(Some(needed));
-            *self.refined.borrow_mut() = true;
+            self.round.finer.set(true);
         }
         let times = (rest * &Rational::from(i64::from(needed))).to_i64().ok_or(Obstacle::TooLarge)?;
         let times = u32::try_from(times).map_err(|_| Obstacle::TooLarge)?;
@@ -69,16 +69,16 @@ impl Field<'_> {
 
     /// `2 cos(times * pi/m)` over the kernel `2 cos(pi/m)`.
     fn double_cosine(&self, m: u32, times: u32) -> Result<Poly, Obstacle> {
-        let kernel = self.circle_kernel(m)?;
+        let kernel = self.cosine_kernel(m)?;
         let times = times % (2 * m);
         self.reduce(&chebyshev(kernel, times.min(2 * m - times), self)?)
     }
 
-    fn circle_kernel(&self, m: u32) -> Result<u32, Obstacle> {
+    fn cosine_kernel(&self, m: u32) -> Result<u32, Obstacle> {
         let share = Rational::new(1, i64::from(m)).ok_or(Obstacle::DivisionByZero)?;
         let cosine = self.arena.call(Function::Cos, &[self.arena.scale(self.arena.pi(), &share)]);
         let expr = self.arena.scale(cosine, &Rational::from(2));
-        if let Some(&number) = self.numbers.borrow().get(&expr) {
+        if let Some(number) = self.round.kernels.borrow().number_of(expr) {
             return Ok(number);
         }
         let number = self.enter(expr, None, true);
@@ -86,12 +86,12 @@ impl Field<'_> {
         let degree = minimal.degree(number);
         let leading = Poly::variable(number).pow(degree, self.limit())?;
         let value = &leading - &minimal;
-        self.kernels.borrow_mut()[number as usize].relation = Some(Relation { degree, value });
+        self.round.kernels.borrow_mut().relate(number, Relation { degree, value });
         Ok(number)
     }
 
     /// The square root of a prime, where the kernel's field contains it.
-    pub(super) fn root_on_circle(&self, prime: &Integer) -> Result<Option<Poly>, Obstacle> {
+    pub(in crate::cas::field) fn gauss_sum(&self, prime: &Integer) -> Result<Option<Poly>, Obstacle> {
         let Some(m) = self.finest.get() else { return Ok(None) };
         let Some(p) = prime.to_i64().and_then(|p| u32::try_from(p).ok()) else { return Ok(None) };
         if p == 2 {
@@ -151,4 +151,40 @@ fn lcm(a: u32, b: u32) -> Option<u32> {
         (x, y) = (y, x % y);
     }
     (a / x).checked_mul(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+    use crate::cas::facts::Facts;
+
+    /// `2 cos(pi/m)` has degree `phi(2m)/2`: half the odd numbers below 2m that have no factor in common with m.
+    #[test]
+    fn minimal_polynomials_have_the_degree_of_their_number() {
+        let arena = Arena::new();
+        let field = Field::over(&arena, &Facts::new(), &[]).unwrap();
+        for m in 2..40_u32 {
+            let poly = minimal_polynomial(0, m, &field).unwrap();
+            let units = (1..2 * m).step_by(2).filter(|j| lcm(*j, m) == Some(j * m)).count();
+            assert_eq!(poly.degree(0) as usize, units / 2, "{m}: {poly:?}");
+            let x = 2.0 * (std::f64::consts::PI / f64::from(m)).cos();
+            let value: f64 = poly
+                .terms()
+                .map(|(monomial, c)| {
+                    Rational::from(c.clone()).to_f64() * x.powi(i32::try_from(monomial.degree()).unwrap())
+                })
+                .sum();
+            // Coefficients up to a binomial of 20, some 2e5, times rounding.
+            assert!(value.abs() < 1e-8, "{m}: {value}");
+        }
+    }
+
+    #[test]
+    fn quadratic_residues_are_squares() {
+        let residues = |p: u32| (1..p).filter(|k| is_residue(*k, p)).collect::<Vec<u32>>();
+        assert_eq!(residues(5), [1, 4]);
+        assert_eq!(residues(7), [1, 2, 4]);
+        assert_eq!(residues(11), [1, 3, 4, 5, 9]);
+    }
 }

@@ -8,13 +8,13 @@
 use crate::cas::expr::{Expr, Symbol};
 use crate::cas::poly::Poly;
 
-use super::fraction::Fraction;
-use super::kernel::Relation;
-use super::{Field, Obstacle};
+use crate::cas::field::fraction::Fraction;
+use crate::cas::field::kernel::Relation;
+use crate::cas::field::{Field, Obstacle};
 
 impl Field<'_> {
     /// A symbol: a kernel, or what an exact step of the manifold says of it.
-    pub(super) fn of_symbol(&self, expr: Expr, symbol: Symbol) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn of_symbol(&self, expr: Expr, symbol: Symbol) -> Result<Fraction, Obstacle> {
         let Some(step) = self.steps.get(&symbol) else { return Ok(self.entered(expr, None, false)) };
         let middle = self.fraction(step.middle)?;
         let Some(root) = &step.root else { return Ok(middle) };

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use crate::cas::facts::Relation as Compared;
 use crate::cas::poly::Poly;
 
-use super::sign::{Sign, sign_of_terms};
-use super::{Field, Obstacle};
+use crate::cas::field::sign::{Sign, sign_of_terms};
+use crate::cas::field::{Field, Obstacle};
 
 /// How many ways of shifting are tried.
 const MOST_TRIES: u32 = 12;
@@ -24,11 +24,11 @@ type Distances = BTreeMap<u32, Sign>;
 
 impl Field<'_> {
     /// The sign after variables are measured from their bounds.
-    pub(super) fn sign_by_shift(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn sign_by_shift(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         if poly.term_count() > MOST_TERMS || poly.total_degree() > MOST_DEGREE {
             return Ok(None);
         }
-        let facts = self.signs.borrow().clone();
+        let facts = self.round.signs.facts.borrow().clone();
         let mut tries = MOST_TRIES;
         self.shifted(poly, &facts, &Distances::new(), &mut tries)
     }

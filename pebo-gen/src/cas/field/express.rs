@@ -8,8 +8,8 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::{Monomial, Poly, TooLarge, steps};
 use crate::cas::rational::Rational;
 
-use super::Field;
-use super::fraction::{Fraction, primitive};
+use crate::cas::field::Field;
+use crate::cas::field::fraction::{Fraction, primitive};
 
 /// The numbers of terms from which on a polynomial may be a power, and up to which it is worth looking.
 const TERMS_OF_POWERS: std::ops::RangeInclusive<usize> = 3..=200;
@@ -58,7 +58,7 @@ impl Field<'_> {
     }
 
     /// A polynomial as an expression.
-    pub(super) fn show_polynomial(&self, poly: &Poly) -> Expr {
+    pub(in crate::cas::field) fn show_polynomial(&self, poly: &Poly) -> Expr {
         let (content, rest) = primitive(poly);
         self.arena.multiply(&Rational::from(content), self.factors(&rest, 1))
     }

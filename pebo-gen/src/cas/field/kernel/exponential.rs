@@ -7,12 +7,12 @@ use crate::cas::expr::{Expr, Node};
 use crate::cas::function::Function;
 use crate::cas::rational::Rational;
 
-use super::fraction::Fraction;
-use super::{Family, Field, Obstacle};
+use crate::cas::field::fraction::Fraction;
+use crate::cas::field::{Family, Field, Obstacle};
 
 impl Field<'_> {
     /// The exponential of an argument.
-    pub(super) fn exponential(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn exponential(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
         let mut total = Fraction::one();
         for (key, factor) in self.split(Family::Exponent, argument)? {
             let part = match self.arena.node(key) {
@@ -31,7 +31,7 @@ impl Field<'_> {
     }
 
     /// `exp(factor * key)` for a basis argument.
-    pub(super) fn basic_exponential(&self, key: Expr, factor: &Rational) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn basic_exponential(&self, key: Expr, factor: &Rational) -> Result<Fraction, Obstacle> {
         let (unit, times) = self.multiple(Family::Exponent, key, factor)?;
         let argument = self.arena.scale(key, &unit);
         let kernel = self.entered(self.arena.call(Function::Exp, &[argument]), None, true);

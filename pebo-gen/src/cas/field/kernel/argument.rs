@@ -13,8 +13,8 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::{Monomial, Poly, steps};
 use crate::cas::rational::Rational;
 
-use super::fraction::{Fraction, negated, primitive};
-use super::{Family, Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, negated, primitive};
+use crate::cas::field::{Family, Field, Obstacle};
 
 /// The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one atom.
 const MOST_SUMMANDS: usize = 8;
@@ -22,9 +22,66 @@ const MOST_SUMMANDS: usize = 8;
 /// Atoms that a linear dependence is looked for among.
 const MOST_ATOMS: usize = 40;
 
+/// Multiples that one unit may be taken, as in `sin(n*q)`: the polynomials have that degree.
+const MOST_MULTIPLES: i64 = 1 << 10;
+
+/// What arguments are combinations of, each with the expression it stands for.
+pub(in crate::cas::field) type Atoms = BTreeMap<Family, Vec<(Expr, Fraction)>>;
+
+/// The units of atoms: all multiples of an atom that occur are whole multiples of its unit.
+#[derive(Default, Debug)]
+pub(in crate::cas::field) struct Units(BTreeMap<(Family, Expr), Rational>);
+
+/// A multiple of an atom in its units.
+#[derive(PartialEq, Eq, Debug)]
+pub(in crate::cas::field) struct Multiple {
+    pub(in crate::cas::field) unit: Rational,
+    pub(in crate::cas::field) times: i64,
+    /// Whether the unit had to become finer: what was made of the one before does not go with it.
+    pub(in crate::cas::field) finer: bool,
+}
+
+impl Units {
+    /// How many units of an atom a multiple is; the unit is refined where it is no whole number of them.
+    pub(in crate::cas::field) fn multiple(
+        &mut self,
+        family: Family,
+        atom: Expr,
+        factor: &Rational,
+    ) -> Result<Multiple, Obstacle> {
+        let unit = self.0.entry((family, atom)).or_insert_with(|| factor.abs());
+        let common = unit.gcd(factor);
+        let finer = common != *unit;
+        *unit = common;
+        let times = factor.checked_div(unit).and_then(|n| n.to_i64()).ok_or(Obstacle::TooLarge)?;
+        if times.abs() > MOST_MULTIPLES {
+            return Err(Obstacle::TooLarge);
+        }
+        Ok(Multiple { unit: unit.clone(), times, finer })
+    }
+}
+
 impl Field<'_> {
+    /// How many units of its atom a multiple is.
+    pub(in crate::cas::field) fn multiple(
+        &self,
+        family: Family,
+        atom: Expr,
+        factor: &Rational,
+    ) -> Result<(Rational, i64), Obstacle> {
+        let Multiple { unit, times, finer } = self.units.borrow_mut().multiple(family, atom, factor)?;
+        if finer {
+            self.round.finer.set(true);
+        }
+        Ok((unit, times))
+    }
+
     /// Splits an argument into rational multiples of atoms.
-    pub(super) fn split(&self, family: Family, argument: &Fraction) -> Result<Vec<(Expr, Rational)>, Obstacle> {
+    pub(in crate::cas::field) fn split(
+        &self,
+        family: Family,
+        argument: &Fraction,
+    ) -> Result<Vec<(Expr, Rational)>, Obstacle> {
         let mut pieces = self.pieces(argument)?;
         if pieces.len() > MOST_SUMMANDS {
             pieces = vec![argument.clone()];
@@ -83,7 +140,7 @@ impl Field<'_> {
     /// A piece as a combination of atoms; a new one where it is none.
     fn over_atoms(&self, family: Family, piece: &Fraction) -> Result<Vec<(Expr, Rational)>, Obstacle> {
         let (key, bare, factor) = self.undivided(piece)?;
-        let atoms = self.atoms.borrow().get(&family).cloned().unwrap_or_default();
+        let atoms = self.round.atoms.borrow().get(&family).cloned().unwrap_or_default();
         if atoms.iter().any(|(atom, _)| *atom == key) {
             return Ok(vec![(key, factor)]);
         }
@@ -95,7 +152,7 @@ impl Field<'_> {
         {
             return Ok(combination.into_iter().map(|(atom, share)| (atom, &share * &factor)).collect());
         }
-        self.atoms.borrow_mut().entry(family).or_default().push((key, bare));
+        self.round.atoms.borrow_mut().entry(family).or_default().push((key, bare));
         Ok(vec![(key, factor)])
     }
 
@@ -173,4 +230,29 @@ fn solve(mut rows: Vec<Vec<Rational>>, unknowns: usize) -> Option<Vec<Rational>>
         solution[column] = row[unknowns].clone();
     }
     Some(solution)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+
+    #[test]
+    fn units_become_as_fine_as_their_multiples_ask() {
+        let arena = Arena::new();
+        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+        let mut units = Units::default();
+        let mut of = |atom, n, d| {
+            let Multiple { unit, times, finer } =
+                units.multiple(Family::Angle, atom, &Rational::new(n, d).unwrap()).unwrap();
+            (unit.to_string(), times, finer)
+        };
+        assert_eq!(of(x, 1, 2), ("1/2".to_owned(), 1, false));
+        assert_eq!(of(x, -3, 2), ("1/2".to_owned(), -3, false));
+        assert_eq!(of(x, 1, 3), ("1/6".to_owned(), 2, true), "what had units of a half is made anew");
+        assert_eq!(of(x, 1, 2), ("1/6".to_owned(), 3, false));
+        assert_eq!(of(y, 5, 1), ("5".to_owned(), 1, false), "each atom has its own");
+        let huge = units.multiple(Family::Angle, x, &Rational::from(MOST_MULTIPLES));
+        assert_eq!(huge, Err(Obstacle::TooLarge));
+    }
 }

@@ -13,10 +13,10 @@ use crate::cas::function::Function;
 use crate::cas::interval::Precision;
 use crate::cas::rational::{Rational, half};
 
-use super::angle::Pair;
-use super::fraction::{Fraction, negated};
-use super::range::Range;
-use super::{Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, negated};
+use crate::cas::field::kernel::range::Range;
+use crate::cas::field::kernel::trigonometric::Pair;
+use crate::cas::field::{Field, Obstacle};
 
 /// Angles that a new one is compared with.
 const MOST_ANGLES: usize = 8;
@@ -26,7 +26,7 @@ const MOST_TWELFTHS: i32 = 48;
 
 /// An angle with its sine and cosine.
 #[derive(Clone, Debug)]
-pub(super) struct Known {
+pub(in crate::cas::field) struct InverseAngle {
     value: Fraction,
     pair: Pair,
     range: Range,
@@ -41,9 +41,9 @@ struct Guess {
 
 impl Field<'_> {
     /// An inverse trigonometric function at arguments whose normal form is known.
-    pub(super) fn inverse_function(&self, expr: Expr) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn inverse_function(&self, expr: Expr) -> Result<Fraction, Obstacle> {
         let call = self.tidy_call(expr)?;
-        if let Some(&number) = self.numbers.borrow().get(&call) {
+        if let Some(number) = self.round.kernels.borrow().number_of(call) {
             return Ok(Fraction::polynomial(crate::cas::poly::Poly::variable(number)));
         }
         if let Some(angle) = self.angle_inside(expr)? {
@@ -67,7 +67,7 @@ impl Field<'_> {
             return Ok(Fraction::constant(&value));
         }
         let value = self.entered(call, None, false);
-        self.inverses.borrow_mut().push(Known { value: value.clone(), pair, range });
+        self.round.inverses.borrow_mut().push(InverseAngle { value: value.clone(), pair, range });
         Ok(value)
     }
 
@@ -75,7 +75,7 @@ impl Field<'_> {
     fn angle_inside(&self, expr: Expr) -> Result<Option<Fraction>, Obstacle> {
         let Node::Call(function, arguments) = self.arena.node(expr) else { return Ok(None) };
         let argument = self.fraction(arguments[0])?;
-        let angles = self.angles.borrow().clone();
+        let angles = self.round.angles.borrow().clone();
         for (value, (sin, cos)) in angles {
             let fits = match function {
                 Function::Asin => argument == sin,
@@ -91,8 +91,8 @@ impl Field<'_> {
     }
 
     /// Remembers an angle of which sine and cosine were taken.
-    pub(super) fn remember_angle(&self, value: &Fraction, pair: &Pair) {
-        let mut angles = self.angles.borrow_mut();
+    pub(in crate::cas::field) fn remember_angle(&self, value: &Fraction, pair: &Pair) {
+        let mut angles = self.round.angles.borrow_mut();
         if angles.len() < MOST_ANGLES
             && value.to_constant().is_none()
             && !angles.iter().any(|(known, _)| known == value)
@@ -102,19 +102,19 @@ impl Field<'_> {
     }
 
     /// The angles that came before and whose range is known.
-    fn known_angles(&self) -> Result<Vec<Known>, Obstacle> {
-        let mut known: Vec<Known> = self.inverses.borrow().iter().take(MOST_ANGLES).cloned().collect();
-        let angles = self.angles.borrow().clone();
+    fn known_angles(&self) -> Result<Vec<InverseAngle>, Obstacle> {
+        let mut known: Vec<InverseAngle> = self.round.inverses.borrow().iter().take(MOST_ANGLES).cloned().collect();
+        let angles = self.round.angles.borrow().clone();
         for (value, pair) in angles {
             if let Some(range) = self.range_of_angle(&value)? {
-                known.push(Known { value, pair, range });
+                known.push(InverseAngle { value, pair, range });
             }
         }
         Ok(known)
     }
 
     /// Combinations that fit at two points of the domain, the simplest first.
-    fn guesses(&self, call: Expr, known: &[Known]) -> Vec<Guess> {
+    fn guesses(&self, call: Expr, known: &[InverseAngle]) -> Vec<Guess> {
         let exprs: Vec<Expr> = [call].into_iter().chain(known.iter().map(|k| self.show(&k.value))).collect();
         let samples: Vec<Vec<f64>> = {
             let precision = Precision::new(64);
@@ -153,7 +153,7 @@ impl Field<'_> {
     }
 
     /// Whether the guess is an identity.
-    fn holds(&self, guess: &Guess, pair: &Pair, range: &Range, known: &[Known]) -> Result<bool, Obstacle> {
+    fn holds(&self, guess: &Guess, pair: &Pair, range: &Range, known: &[InverseAngle]) -> Result<bool, Obstacle> {
         let mut total = self.repeated(pair, u64::from(guess.own.unsigned_abs()))?;
         let mut within = range.times(i64::from(guess.own));
         let opposite = |(sin, cos): Pair| (negated(&sin), cos);
@@ -168,7 +168,7 @@ impl Field<'_> {
     }
 
     /// Sine and cosine of an inverse trigonometric function.
-    pub(super) fn pair_of(&self, expr: Expr) -> Result<Option<Pair>, Obstacle> {
+    pub(in crate::cas::field) fn pair_of(&self, expr: Expr) -> Result<Option<Pair>, Obstacle> {
         let Node::Call(function, arguments) = self.arena.node(expr) else { return Ok(None) };
         if !matches!(function, Function::Asin | Function::Acos | Function::Atan | Function::Atan2) {
             return Ok(None);
@@ -195,7 +195,7 @@ impl Field<'_> {
     ///
     /// `cos(a/2) = sqrt((1 + cos a)/2)` is not negative for |a| <= pi and not zero for |a| < pi, where
     /// `sin(a/2) = sin(a) / (2 cos(a/2))`; for 0 <= a <= pi, `sin(a/2) = sqrt((1 - cos a)/2)`.
-    pub(super) fn half_of(&self, (sin, cos): &Pair, range: &Range) -> Result<Option<Pair>, Obstacle> {
+    pub(in crate::cas::field) fn half_of(&self, (sin, cos): &Pair, range: &Range) -> Result<Option<Pair>, Obstacle> {
         let root = |square: &Fraction| self.root(&self.scale(square, &half())?, &half());
         let half_cos = root(&self.add(&Fraction::one(), cos)?)?;
         if range.is_upper_half() {
@@ -213,6 +213,6 @@ fn ratio(n: i32, d: i32) -> Rational {
 }
 
 /// The domain that guesses are tried on.
-pub(super) fn domain_of(facts: &Facts) -> Domain {
+pub(in crate::cas::field) fn domain_of(facts: &Facts) -> Domain {
     Domain { facts: facts.clone(), ..Domain::default() }
 }

@@ -1,7 +1,7 @@
 //! Roots of fractions.
 //!
 //! In: a fraction and a rational exponent. Out: powers of kernels `r = part^(1/q)` with `r^q = part`,
-//! one for each part of known sign (see [`super::parts`]). A power of parts of unknown signs has a
+//! one for each part of known sign (see [`crate::cas::field::coprime`]). A power of parts of unknown signs has a
 //! kernel for the product: where that has a value, the product is not negative, which is learned as a
 //! fact. Products of such roots are written over those that came before.
 //!
@@ -15,15 +15,15 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::{Rational, half};
 
-use super::fraction::{Fraction, primitive};
-use super::kernel::Relation;
-use super::logarithm::prime_powers;
-use super::sign::Sign;
-use super::{Family, Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, primitive};
+use crate::cas::field::kernel::Relation;
+use crate::cas::field::kernel::logarithm::prime_powers;
+use crate::cas::field::sign::Sign;
+use crate::cas::field::{Family, Field, Obstacle};
 
 /// A root of a product of parts whose signs are not known.
 #[derive(Clone, Debug)]
-pub(super) struct Whole {
+pub(in crate::cas::field) struct ProductRoot {
     degree: u32,
     negative: bool,
     powers: Vec<(Poly, i64)>,
@@ -32,7 +32,7 @@ pub(super) struct Whole {
 
 impl Field<'_> {
     /// `base ^ exponent` for an exponent that is not an integer; the real power of what is not negative.
-    pub(super) fn root(&self, base: &Fraction, exponent: &Rational) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn root(&self, base: &Fraction, exponent: &Rational) -> Result<Fraction, Obstacle> {
         if base.is_zero() {
             return if exponent.is_negative() { Err(Obstacle::DivisionByZero) } else { Ok(Fraction::zero()) };
         }
@@ -108,42 +108,43 @@ impl Field<'_> {
             let power = self.power_of(&size, &(&Rational::from(*times) * exponent))?;
             return self.mul(&total, &power);
         }
-        let root = self.whole_root(negative, odd, u32::try_from(degree).map_err(|_| Obstacle::TooLarge)?)?;
+        let root = self.root_of_product(negative, odd, u32::try_from(degree).map_err(|_| Obstacle::TooLarge)?)?;
         let times = exponent.numerator().to_i64().ok_or(Obstacle::TooLarge)?;
         self.mul(&total, &self.pow(&root, times)?)
     }
 
     /// The root of a product as one kernel, or over the roots of products that came before.
-    fn whole_root(&self, negative: bool, powers: Vec<(Poly, i64)>, degree: u32) -> Result<Fraction, Obstacle> {
+    fn root_of_product(&self, negative: bool, powers: Vec<(Poly, i64)>, degree: u32) -> Result<Fraction, Obstacle> {
         let mut value = if negative { Poly::constant(-1) } else { Poly::one() };
         for (part, times) in &powers {
             let times = u32::try_from(*times).map_err(|_| Obstacle::TooLarge)?;
             value = value.mul(&part.pow(times, self.limit())?, self.limit())?;
         }
         for (part, _) in &powers {
-            self.unsigned.borrow_mut().insert(part.clone());
+            self.round.signs.undecided.borrow_mut().insert(part.clone());
         }
         self.learn_from_existence(&value, Compared::NonNegative)?;
-        if let Some(root) = self.over_whole_roots(negative, &powers, degree)? {
+        if let Some(root) = self.over_earlier_roots(negative, &powers, degree)? {
             return Ok(root);
         }
         let value = self.reduce(&value)?;
         let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
         let shown = self.arena.power(self.show_polynomial(&value), &exponent);
         let kernel = self.enter(shown, Some(Relation { degree, value }), false);
-        self.wholes.borrow_mut().push(Whole { degree, negative, powers, kernel });
+        self.round.products.borrow_mut().push(ProductRoot { degree, negative, powers, kernel });
         Ok(Fraction::polynomial(Poly::variable(kernel)))
     }
 
     /// A square root as a product of one or two earlier ones over magnitudes: all of them have values,
     /// so `sqrt(a b) = sqrt(a c) sqrt(b c) / |c|`.
-    fn over_whole_roots(
+    fn over_earlier_roots(
         &self,
         negative: bool,
         powers: &[(Poly, i64)],
         degree: u32,
     ) -> Result<Option<Fraction>, Obstacle> {
-        let earlier: Vec<Whole> = self.wholes.borrow().iter().filter(|whole| whole.degree == degree).cloned().collect();
+        let earlier: Vec<ProductRoot> =
+            self.round.products.borrow().iter().filter(|whole| whole.degree == degree).cloned().collect();
         if let Some(same) = earlier.iter().find(|whole| whole.negative == negative && whole.powers == powers) {
             return Ok(Some(Fraction::polynomial(Poly::variable(same.kernel))));
         }
@@ -189,7 +190,7 @@ impl Field<'_> {
     }
 
     /// `part ^ exponent` for a part that is not negative.
-    pub(super) fn power_of(&self, part: &Poly, exponent: &Rational) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn power_of(&self, part: &Poly, exponent: &Rational) -> Result<Fraction, Obstacle> {
         if let Some(times) = exponent.to_i64() {
             return self.pow(&Fraction::polynomial(part.clone()), times);
         }
@@ -225,7 +226,7 @@ impl Field<'_> {
         let mut degree = degree;
         if degree % 2 == 0
             && let Some(prime) = part.to_constant()
-            && let Some(root) = self.root_on_circle(&prime)?
+            && let Some(root) = self.gauss_sum(&prime)?
         {
             // r^q = p is r^(q/2) = sqrt(p) there.
             degree /= 2;
@@ -234,7 +235,7 @@ impl Field<'_> {
                 return self.mul(&outside, &self.pow(&Fraction::polynomial(value), times)?);
             }
         }
-        // A root is zero where its radicand is: positive by nature is only that of a number.
+        // A root is zero where its radicand is: positive wherever it exists is only that of a number.
         let root = self.entered(self.arena.power(key, &unit), Some(Relation { degree, value }), part.is_constant());
         self.mul(&outside, &self.pow(&root, times)?)
     }
@@ -282,16 +283,16 @@ impl Field<'_> {
 
     /// The square roots that occur linearly in a polynomial, with their radicands.
     fn square_roots_in(&self, poly: &Poly) -> Vec<(u32, Poly)> {
-        let kernels = self.kernels.borrow();
+        let kernels = self.round.kernels.borrow();
         let of = |&variable: &u32| {
-            let kernel = &kernels[variable as usize];
+            let kernel = &kernels[variable];
             let relation = kernel.relation.as_ref().filter(|relation| relation.degree == 2)?;
             (self.is_plain_root(kernel.expr) && poly.degree(variable) == 1).then(|| (variable, relation.value.clone()))
         };
         poly.variables().iter().filter_map(of).collect()
     }
 
-    pub(super) fn is_plain_root(&self, expr: Expr) -> bool {
+    pub(in crate::cas::field) fn is_plain_root(&self, expr: Expr) -> bool {
         match self.arena.node(expr) {
             Node::Product(product) => {
                 product.coefficient.is_one()

@@ -4,14 +4,14 @@ use crate::cas::function::Function;
 use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 
-use super::fraction::{Fraction, primitive};
-use super::kernel::Relation;
-use super::sign::Sign;
-use super::{Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, primitive};
+use crate::cas::field::kernel::Relation;
+use crate::cas::field::sign::Sign;
+use crate::cas::field::{Field, Obstacle};
 
 impl Field<'_> {
     /// The absolute value of a fraction.
-    pub(super) fn absolute(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn absolute(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
         let above = self.magnitude(argument.numerator())?;
         self.div(&above, &self.magnitude(argument.denominator())?)
     }
@@ -34,13 +34,13 @@ impl Field<'_> {
     }
 
     /// `|part|`: by its sign where that is known, else a kernel whose square is known.
-    pub(super) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
         match self.sign_of_part(part)? {
             Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(part.clone())),
             Some(Sign::Negative) => return Ok(Fraction::polynomial(-part)),
             _ => {}
         }
-        self.unsigned.borrow_mut().insert(part.clone());
+        self.round.signs.undecided.borrow_mut().insert(part.clone());
         let kernel = self.arena.call(Function::Abs, &[self.show_polynomial(part)]);
         let value = self.reduce(&part.mul(part, self.limit())?)?;
         Ok(self.entered(kernel, Some(Relation { degree: 2, value }), false))

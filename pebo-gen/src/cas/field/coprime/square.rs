@@ -7,7 +7,7 @@
 use crate::cas::integer::Integer;
 use crate::cas::poly::{Monomial, Poly};
 
-use super::{Field, Obstacle};
+use crate::cas::field::{Field, Obstacle};
 
 /// The angles that a square is looked for in.
 const MOST_ANGLES: usize = 3;
@@ -17,7 +17,7 @@ const MOST_TERMS: usize = 60;
 
 impl Field<'_> {
     /// A primitive polynomial and an integer n with `root^2 = n * poly`, if there are any.
-    pub(super) fn hidden_root(&self, poly: &Poly) -> Result<Option<(Poly, Integer)>, Obstacle> {
+    pub(in crate::cas::field) fn hidden_root(&self, poly: &Poly) -> Result<Option<(Poly, Integer)>, Obstacle> {
         let angles = self.angles_in(poly);
         if angles.is_empty() || angles.len() > MOST_ANGLES || poly.term_count() > MOST_TERMS {
             return Ok(None);
@@ -45,7 +45,7 @@ impl Field<'_> {
 
     /// The cosine and sine kernels of the angles that occur.
     fn angles_in(&self, poly: &Poly) -> Vec<(u32, u32)> {
-        let count = u32::try_from(self.kernels.borrow().len()).unwrap_or(u32::MAX);
+        let count = self.round.kernels.borrow().count();
         let pairs = (0..count).filter_map(|cos| Some((cos, self.sine_beside(cos)?)));
         pairs.filter(|(cos, sin)| poly.degree(*cos) > 0 || poly.degree(*sin) > 0).collect()
     }

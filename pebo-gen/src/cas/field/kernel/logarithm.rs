@@ -11,13 +11,13 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 
-use super::fraction::{Fraction, primitive};
-use super::sign::Sign;
-use super::{Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, primitive};
+use crate::cas::field::sign::Sign;
+use crate::cas::field::{Field, Obstacle};
 
 impl Field<'_> {
     /// The logarithm of an argument.
-    pub(super) fn logarithm(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
+    pub(in crate::cas::field) fn logarithm(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
         if argument.is_zero() {
             return Err(Obstacle::DivisionByZero);
         }
@@ -96,7 +96,7 @@ impl Field<'_> {
 }
 
 /// The prime factors of a positive integer, small ones by trial; what remains counts as one.
-pub(super) fn prime_powers(number: &Integer) -> Vec<(Integer, u32)> {
+pub(in crate::cas::field) fn prime_powers(number: &Integer) -> Vec<(Integer, u32)> {
     const LARGEST: i64 = 1000;
     let mut rest = number.abs();
     let mut powers = Vec::new();

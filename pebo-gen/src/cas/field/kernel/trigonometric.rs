@@ -10,17 +10,17 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 
-use super::fraction::{Fraction, negated};
-use super::kernel::Relation;
-use super::range::Range;
-use super::{Family, Field, Obstacle};
+use crate::cas::field::fraction::{Fraction, negated};
+use crate::cas::field::kernel::Relation;
+use crate::cas::field::kernel::range::Range;
+use crate::cas::field::{Family, Field, Obstacle};
 
 /// Sine and cosine of one angle.
-pub(super) type Pair = (Fraction, Fraction);
+pub(in crate::cas::field) type Pair = (Fraction, Fraction);
 
 impl Field<'_> {
     /// Sine and cosine of an argument.
-    pub(super) fn angle(&self, argument: &Fraction) -> Result<Pair, Obstacle> {
+    pub(in crate::cas::field) fn angle(&self, argument: &Fraction) -> Result<Pair, Obstacle> {
         let mut total = (Fraction::zero(), Fraction::one());
         for (key, factor) in self.split(Family::Angle, argument)? {
             let pair = match self.arena.node(key) {
@@ -34,7 +34,7 @@ impl Field<'_> {
     }
 
     /// Sine and cosine of a sum, from those of the summands.
-    pub(super) fn sum_of_angles(&self, a: &Pair, b: &Pair) -> Result<Pair, Obstacle> {
+    pub(in crate::cas::field) fn sum_of_angles(&self, a: &Pair, b: &Pair) -> Result<Pair, Obstacle> {
         let sin = self.add(&self.mul(&a.0, &b.1)?, &self.mul(&a.1, &b.0)?)?;
         let cos = self.sub(&self.mul(&a.1, &b.1)?, &self.mul(&a.0, &b.0)?)?;
         Ok((sin, cos))
@@ -63,7 +63,7 @@ impl Field<'_> {
     }
 
     /// Sine and cosine of `times` as much, by repeated doubling.
-    pub(super) fn repeated(&self, basic: &Pair, times: u64) -> Result<Pair, Obstacle> {
+    pub(in crate::cas::field) fn repeated(&self, basic: &Pair, times: u64) -> Result<Pair, Obstacle> {
         let mut total = (Fraction::zero(), Fraction::one());
         for bit in (0..u64::BITS - times.leading_zeros()).rev() {
             total = self.sum_of_angles(&total, &total)?;

@@ -11,7 +11,7 @@ use super::field::{Field, Obstacle};
 
 impl Domain {
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
-    pub(crate) fn shows(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+    pub(crate) fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
         let shown = |field: Result<Field<'_>, Obstacle>| {
             let field = field?;
             let fraction = field.fraction(expr)?;

@@ -11,8 +11,8 @@ use crate::cas::facts::Relation as Compared;
 use crate::cas::function::Function;
 use crate::cas::poly::Poly;
 
-use super::sign::Sign;
-use super::{Field, Obstacle};
+use crate::cas::field::sign::Sign;
+use crate::cas::field::{Field, Obstacle};
 
 /// How many facts may be combined to show a sign.
 const MOST_FACTS: usize = 3;
@@ -22,8 +22,8 @@ impl Field<'_> {
     /// question, and what was learned in earlier rounds.
     ///
     /// Most questions ask for no sign, so this waits for the first that does.
-    pub(super) fn learn(&self) -> Result<(), Obstacle> {
-        if self.asked.replace(true) {
+    pub(in crate::cas::field) fn learn(&self) -> Result<(), Obstacle> {
+        if self.round.signs.read.replace(true) {
             return Ok(());
         }
         let occurring: BTreeSet<Expr> = self.arena.postorder(&self.roots).into_iter().collect();
@@ -50,7 +50,7 @@ impl Field<'_> {
     fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
         let fraction = self.fraction(expr)?;
         if fraction.den.is_constant() {
-            self.signs.borrow_mut().push((fraction.num, compared));
+            self.round.signs.facts.borrow_mut().push((fraction.num, compared));
             return Ok(());
         }
         // n/d > 0 has the sign of n*d. But a denominator may have been cleared of roots by a factor that vanishes where
@@ -62,13 +62,13 @@ impl Field<'_> {
             exact => exact,
         };
         let product = fraction.num.mul(&fraction.den, self.limit())?;
-        self.signs.borrow_mut().push((product, compared));
+        self.round.signs.facts.borrow_mut().push((product, compared));
         Ok(())
     }
 
     /// Learns the sign of what must have it for the expressions to have values. Where something was
     /// already made of an unknown sign, the field starts again.
-    pub(super) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
+    pub(in crate::cas::field) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
         let known = self.sign(poly)?;
         let enough = match compared {
             Compared::Positive => known == Some(Sign::Positive),
@@ -80,17 +80,17 @@ impl Field<'_> {
         let entry = (self.show_polynomial(poly), compared);
         if !self.learned.borrow().contains(&entry) {
             self.learned.borrow_mut().push(entry);
-            if !self.unsigned.borrow().is_empty() {
-                *self.refined.borrow_mut() = true;
+            if !self.round.signs.undecided.borrow().is_empty() {
+                self.round.finer.set(true);
             }
         }
-        self.signs.borrow_mut().push((poly.clone(), compared));
+        self.round.signs.facts.borrow_mut().push((poly.clone(), compared));
         Ok(())
     }
 
     /// As a positive combination of facts plus what is not negative, or the negation of that; also after
     /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
-    pub(super) fn sign_by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn sign_by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         let facts = self.facts_about(poly);
         let mut found = None;
         for form in [Some(poly.clone()), self.with_sines(poly)?].into_iter().flatten() {
@@ -112,7 +112,7 @@ impl Field<'_> {
 
     /// The facts, and that no sine or cosine exceeds one.
     fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Compared)> {
-        let mut facts = self.signs.borrow().clone();
+        let mut facts = self.round.signs.facts.borrow().clone();
         for &variable in poly.variables() {
             if let Node::Call(Function::Sin | Function::Cos, _) = self.arena.node(self.kernel(variable)) {
                 let value = Poly::variable(variable);
