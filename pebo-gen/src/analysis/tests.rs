@@ -97,3 +97,50 @@ fn values_of_parameters_that_hide_an_unknown_are_refuted() {
         assert_eq!(derivation.identifiability.result.unwrap().kind, Excitation::Never);
     }
 }
+
+fn conditions((plant, derivation): &(Plant, Derivation)) -> Vec<String> {
+    let shown = derivation.conditions.iter();
+    shown.map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
+}
+
+#[test]
+fn what_the_regression_alone_asks_is_listed() {
+    // The rate of r is z1/q; the one state that is recovered needs no division.
+    let lines = "x: [p, s]\ny: [q, r, v]\nu: [w]\nf_x: {p: w - p*w, s: w}\nf_y: {q: q*w, r: p, v: s}\nphi: [p*q, s]";
+    let partial = derive(&format!("{lines}\nphi_left: {{s: z2}}"));
+    assert_eq!((partial.1.outcome, conditions(&partial)), (Outcome::Accepted, vec!["q != 0".to_owned()]));
+    let excluded = derive(&format!("{lines}\nphi_left: {{s: z2}}\nassume: [q > 0]"));
+    assert_eq!((excluded.1.outcome, conditions(&excluded)), (Outcome::Accepted, Vec::new()));
+}
+
+#[test]
+fn claims_about_no_point_that_was_found_stay_open() {
+    let lines = "x: [p]\ny: [q]\nu: [w]\nf_x: {p: w}\nf_y: {q: p}\nphi: [p]";
+    let (_, anywhere) = derive(&format!("{lines}\nassume: [sin(q) + cos(3*q) > 1]"));
+    assert_eq!(anywhere.outcome, Outcome::Accepted);
+    // There are such q, in intervals so short that none is drawn.
+    let (_, nowhere) = derive(&format!("{lines}\nassume: [sin(q) + cos(41*q) > 1.9999999]"));
+    assert_eq!((nowhere.outcome, codes(&nowhere)), (Outcome::Undecided, vec![Code::ContradictoryAssumptions]));
+}
+
+#[test]
+fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
+    let lines = "x: [p]\ny: [q]\nu: [w]\nf_x: {p: (a + b + c + d + e)*w}\nf_y: {q: p}\nphi: [p]\n\
+                 parameters: {a: null, b: null, c: null, d: -3, e: 0}";
+    let asked = |assume: &str| -> Vec<String> {
+        let (plant, derivation) = derive(&format!("{lines}\nassume: [{assume}]"));
+        let shown = derivation.asked_of_parameters(&plant);
+        shown.iter().map(|(expr, sign)| format!("{} {sign:?}", plant.arena.print(*expr))).collect()
+    };
+    let given = ["d Opposite(Positive)", "e Zero"];
+    assert_eq!(asked("q > 0"), ["a Any", "b Any", "c Any", given[0], given[1]]);
+    assert_eq!(
+        asked("a >= 0, a > 0, b != 0, c <= 0"),
+        ["a Is(Positive)", "b Is(NonZero)", "c Opposite(NonNegative)", given[0], given[1]]
+    );
+    assert_eq!(
+        asked("a > 0, c > 0, a - d > 0, a > c, q > a"),
+        ["a Is(Positive)", "b Any", "c Is(Positive)", given[0], given[1], "a - c Is(Positive)"],
+        "what follows from the signs is not asked again, and nothing of signals"
+    );
+}

@@ -18,13 +18,13 @@ pub const MODULES: [Module; 4] = [
         name: "field",
         package: "pebo-gen",
         sources: &["pebo-gen/src/cas/field"],
-        tests: &[("zero", ""), ("claims", ""), ("signs", "")],
+        tests: &[("lib", "cas::field::"), ("zero", ""), ("claims", ""), ("signs", "")],
     },
     Module {
         name: "analysis",
         package: "pebo-gen",
         sources: &["pebo-gen/src/analysis"],
-        tests: &[("lib", "analysis::"), ("claims", "")],
+        tests: &[("lib", "analysis::"), ("claims", ""), ("lib", "emit::")],
     },
     Module {
         name: "program",
