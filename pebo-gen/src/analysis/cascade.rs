@@ -26,7 +26,7 @@ use crate::analysis::affine;
 use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
 use crate::analysis::pencil;
-use crate::cas::tidy::{asking_less, proved_shortest, shortest};
+use crate::cas::tidy::{asking_less, authors, proved_shortest, shortest};
 
 /// One component of the derivative of the transform.
 enum Component {
@@ -164,7 +164,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                Component::Free(asking_less(arena, domain, tidied, &[plain]))
+                let forms = if decide(arena, arena.sub(plain, tidied), domain).is_zero() {
+                    vec![tidied, plain]
+                } else {
+                    vec![tidied]
+                };
+                let own = authors(arena, rate, &forms).unwrap_or(tidied);
+                Component::Free(asking_less(arena, domain, own, &forms))
             }
             Answer::Open(obstacle) => Component::Open(obstacle),
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),

@@ -16,6 +16,7 @@ use super::arena::Arena;
 use super::domain::Domain;
 use super::expr::{Expr, Symbol};
 use super::field::{Field, Fraction, Obstacle};
+use super::frozen::Frozen;
 use super::linear::{Echelon, solve};
 use super::poly::{Monomial, Poly};
 
@@ -79,6 +80,16 @@ pub fn combine_on(
     x: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Expr>>, Obstacle> {
     let roots = [basis, &[target]].concat();
+    // In the author's own functions of what is known, where that is enough.
+    let mut frozen = Frozen::new(arena, x);
+    let signals = frozen.freeze(&roots);
+    if !frozen.is_empty()
+        && let Some((target, basis)) = signals.split_last()
+        && let Ok(field) = Field::over(arena, &domain.facts, &signals)
+        && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
+    {
+        return Ok(Some(coefficients.iter().map(|c| frozen.thaw(field.show(c))).collect()));
+    }
     let combined = |field: Result<Field<'_>, Obstacle>| {
         let field = field?;
         let coefficients = combine(&field, target, basis, x)?;

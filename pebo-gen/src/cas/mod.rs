@@ -16,6 +16,7 @@ pub mod enclosure;
 mod expr;
 pub mod facts;
 pub mod field;
+pub(crate) mod frozen;
 pub mod function;
 mod implied;
 pub mod integer;

@@ -3,6 +3,8 @@
 //! A form counts only if it has a value wherever the result has: `sqrt(q) - 1` over `q - 1` does not stand for
 //! `1/(1 + sqrt(q))`.
 
+use std::collections::BTreeSet;
+
 use super::asks::Want;
 use super::domain::Domain;
 use super::field::Field;
@@ -19,10 +21,38 @@ pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     let forms = normal.into_iter().flatten();
     let turned = |form: Expr| [form, oriented(arena, domain, form)];
     let forms = [expr].into_iter().chain(forms).flat_map(turned);
+    let own = functions(arena, expr);
     forms.fold(expr, |best, form| {
-        let shorter = operations(arena, form) < operations(arena, best);
+        let shorter = operations(arena, form) < operations(arena, best) && functions(arena, form).is_subset(&own);
         if shorter && asks_no_more(arena, domain, expr, form) { form } else { best }
     })
+}
+
+/// The calls and roots of an expression. A form with others is not the author's: `tanh(100*w)` as a quotient of
+/// exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
+fn functions(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
+    let mut found = BTreeSet::new();
+    for e in arena.postorder(&[expr]) {
+        match arena.node(e) {
+            Node::Call(..) => {
+                found.insert(e);
+            }
+            Node::Product(product) => {
+                found.extend(
+                    product.factors.iter().filter(|(_, exponent)| !exponent.is_integer()).map(|(base, _)| *base),
+                );
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Of equal forms the shortest in the functions of the author's formula; the first where none keeps to them.
+pub(crate) fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
+    let own = functions(arena, written);
+    let kept = forms.iter().copied().filter(|form| functions(arena, *form).is_subset(&own));
+    kept.min_by_key(|form| operations(arena, *form)).or_else(|| forms.first().copied())
 }
 
 /// Whether a form asks for nothing, to have a value, but what the expression asks too or what the domain shows.
