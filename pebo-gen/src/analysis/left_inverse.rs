@@ -18,7 +18,7 @@ use crate::source::{Code, Diagnostic, Span};
 use crate::analysis::design::{Claim, LeftInverse, Origin, Verdict, Witness};
 use crate::cas::rank::null_vectors;
 use crate::cas::solve::{Equation, solve};
-use crate::cas::tidy::shortest;
+use crate::cas::tidy::{operations, shortest};
 
 /// Proves or refutes the left inverse.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Claim<LeftInverse> {
@@ -172,11 +172,9 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
         .collect();
     let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).collect();
     // Where a class proposes a formula for every state, nothing is solved for.
-    let mut solved = if plant.proposal.phi_left.len() == states.len() {
-        BTreeMap::new()
-    } else {
-        solve(arena, domain, &equations, &states)?
-    };
+    let proposed = |state: &Symbol| plant.proposal.phi_left.iter().any(|(own, _)| own == state);
+    let mut solved =
+        if states.iter().all(proposed) { BTreeMap::new() } else { solve(arena, domain, &equations, &states)? };
     if solved.len() < states.len() && !plant.identities.is_empty() {
         for (state, candidates) in with_identities(plant, domain, equations, &states)? {
             solved.entry(state).or_insert(candidates);
@@ -190,9 +188,11 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
                 plant.proposal.phi_left.iter().filter(|(s, _)| *s == state.symbol).map(|(_, formula)| *formula);
             let mut candidates: Vec<Expr> =
                 proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
-            // Of several the one that has a value wherever the plant has.
+            // Of several the one that has a value wherever the plant has, then the shortest.
             if candidates.len() > 1 {
-                candidates.sort_by_cached_key(|formula| unshown(plant, domain, *formula).len());
+                candidates.iter_mut().for_each(|formula| *formula = shortest(arena, domain, *formula));
+                let merit = |formula: &Expr| (unshown(plant, domain, *formula).len(), operations(arena, *formula));
+                candidates.sort_by_cached_key(merit);
             }
             let right = |formula: &&Expr| check(plant, domain, state.symbol, **formula).1.is_zero();
             // A candidate that is wrong may still show that the transform is not one-to-one.

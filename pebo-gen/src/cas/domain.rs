@@ -4,6 +4,7 @@
 //! first, the same ones every time.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use super::arena::Arena;
 use super::enclosure::Point;
@@ -31,6 +32,8 @@ pub struct Domain {
     pub fixed: Point,
     /// Equations that hold.
     pub manifold: Manifold,
+    /// Calls and roots that the author writes: results may be shown with them.
+    pub written: Rc<BTreeSet<Expr>>,
 }
 
 /// Bounds of one symbol that the facts state directly.
@@ -86,7 +89,7 @@ impl Domain {
     pub fn beside(&self, point: &Point, free: &BTreeSet<Symbol>) -> Self {
         let mut fixed = self.fixed.clone();
         fixed.extend(point.iter().filter(|(s, _)| !free.contains(s)).map(|(s, value)| (*s, *value)));
-        Self { facts: self.facts.clone(), fixed, manifold: self.manifold.clone() }
+        Self { fixed, ..self.clone() }
     }
 
     /// What the facts say directly of the least and greatest values of symbols, rounded outward.
@@ -99,7 +102,7 @@ impl Domain {
 
     /// The domain of the symbols that stay free; none unless some point of it is found.
     pub(crate) fn restricted(&self, arena: &Arena, values: &BTreeMap<Symbol, Expr>) -> Option<Self> {
-        let mut there = Self { fixed: self.fixed.clone(), ..Self::default() };
+        let mut there = Self { fixed: self.fixed.clone(), written: Rc::clone(&self.written), ..Self::default() };
         let mut constant = Vec::new();
         for (fact, relation) in self.facts.iter() {
             let fact = arena.substitute(fact, values);

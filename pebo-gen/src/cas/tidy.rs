@@ -16,23 +16,24 @@ use super::{Arena, Expr, Node};
 pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
         let fraction = field.fraction(expr)?;
-        Ok([field.show(&fraction), field.show_apart(&fraction)])
+        Ok([Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction)])
     });
-    let forms = normal.into_iter().flatten();
+    let forms = normal.into_iter().flatten().flatten();
     let turned = |form: Expr| [form, oriented(arena, domain, form)];
     let forms = [expr].into_iter().chain(forms).flat_map(turned);
-    let own = functions(arena, expr);
+    let own = functions(arena, &[expr]);
     forms.fold(expr, |best, form| {
-        let shorter = operations(arena, form) < operations(arena, best) && functions(arena, form).is_subset(&own);
+        let kept = || functions(arena, &[form]).iter().all(|call| own.contains(call) || domain.written.contains(call));
+        let shorter = operations(arena, form) < operations(arena, best) && kept() && divides_as(arena, expr, form);
         if shorter && asks_no_more(arena, domain, expr, form) { form } else { best }
     })
 }
 
-/// The calls and roots of an expression. A form with others is not the author's: `tanh(100*w)` as a quotient of
+/// The calls of expressions, and what their roots are taken of. A form with others is not the author's: `tanh(100*w)` as a quotient of
 /// exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
-fn functions(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
+pub(crate) fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
     let mut found = BTreeSet::new();
-    for e in arena.postorder(&[expr]) {
+    for e in arena.postorder(exprs) {
         match arena.node(e) {
             Node::Call(..) => {
                 found.insert(e);
@@ -48,10 +49,30 @@ fn functions(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
     found
 }
 
+/// Whether a form divides by no sum by which the expression does not divide: `cos(q)^2 - 1` in place of `sin(q)^2`
+/// has lost its digits where it is small.
+fn divides_as(arena: &Arena, expr: Expr, form: Expr) -> bool {
+    let own = divisors(arena, expr);
+    divisors(arena, form).iter().all(|sum| own.contains(sum) || own.contains(&arena.neg(*sum)))
+}
+
+/// The sums by which an expression divides.
+fn divisors(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
+    let mut found = BTreeSet::new();
+    for e in arena.postorder(&[expr]) {
+        if let Node::Product(product) = arena.node(e) {
+            let below = product.factors.iter().filter(|(_, exponent)| exponent.is_negative()).map(|(base, _)| *base);
+            found.extend(below.filter(|base| matches!(arena.node(*base), Node::Sum(_))));
+        }
+    }
+    found
+}
+
 /// Of equal forms the shortest in the functions of the author's formula; the first where none keeps to them.
 pub(crate) fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
-    let own = functions(arena, written);
-    let kept = forms.iter().copied().filter(|form| functions(arena, *form).is_subset(&own));
+    let own = functions(arena, &[written]);
+    let keeps = |form: &Expr| functions(arena, &[*form]).is_subset(&own) && divides_as(arena, written, *form);
+    let kept = forms.iter().copied().filter(keeps);
     kept.min_by_key(|form| operations(arena, *form)).or_else(|| forms.first().copied())
 }
 

@@ -1,11 +1,13 @@
 //! What a model means: names resolved, numbers exact.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::manifold::Manifold;
 use crate::cas::rational::Rational;
+use crate::cas::tidy::functions;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::model::CascadeClass;
 use crate::source::Span;
@@ -171,6 +173,8 @@ impl Plant {
         for condition in &self.conditions {
             domain.facts.assume(condition.expr, condition.relation);
         }
+        let formulas: Vec<Expr> = self.rates().into_values().chain(self.transform()).collect();
+        domain.written = Rc::new(functions(&self.arena, &formulas));
         domain
     }
 

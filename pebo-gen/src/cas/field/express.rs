@@ -77,13 +77,13 @@ impl Field<'_> {
             group.push((divided(&monomial, &cancelled), coefficient.clone()));
         }
         let rest: Terms = den.terms().map(|(m, c)| (divided(&m, &content), c.clone())).collect();
-        let rest = self.grouped(rest);
+        let rest = self.grouped(rest, &|variable| self.kernel(variable));
         let scale = Rational::new(Integer::ONE, below).unwrap_or(Rational::ONE);
         self.arena.sum(groups.into_iter().map(|(left, terms)| {
             let (above, terms) = without_content(terms);
             let mut factors: Vec<(Expr, Rational)> =
                 left.iter().map(|&(v, e)| (self.kernel(v), Rational::from(-i64::from(e)))).collect();
-            factors.push((self.grouped(terms), Rational::ONE));
+            factors.push((self.grouped(terms, &|variable| self.kernel(variable)), Rational::ONE));
             factors.push((rest, Rational::from(-1)));
             self.arena.multiply(&(&scale * &Rational::from(above)), factors)
         }))
@@ -117,12 +117,12 @@ impl Field<'_> {
             .collect();
         let rest: Terms =
             poly.terms().map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient.clone())).collect();
-        factors.push((self.grouped(rest), Rational::from(exponent)));
+        factors.push((self.grouped(rest, &|variable| self.kernel(variable)), Rational::from(exponent)));
         factors
     }
 
-    /// A sum with its commonest kernel taken out of the terms that have it, repeatedly.
-    fn grouped(&self, terms: Terms) -> Expr {
+    /// A sum with its commonest kernel taken out of the terms that have it, repeatedly; kernels by these names.
+    pub(super) fn grouped(&self, terms: Terms, named: &dyn Fn(u32) -> Expr) -> Expr {
         // How many terms have the kernel, and how many of them have something else besides.
         let mut counts: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
         for (monomial, _) in &terms {
@@ -135,7 +135,7 @@ impl Field<'_> {
         // Of the commonest the one that saves most products, then the first: the same every time.
         let commonest = counts.iter().max_by_key(|(variable, count)| (**count, std::cmp::Reverse(**variable)));
         let Some((&variable, _)) = commonest.filter(|(_, count)| count.0 > 1) else {
-            return self.arena.sum(terms.iter().map(|(monomial, coefficient)| self.term(monomial, coefficient)));
+            return self.arena.sum(terms.iter().map(|(monomial, coefficient)| self.term(monomial, coefficient, named)));
         };
         let (with, without): (Terms, Terms) = terms.into_iter().partition(|(m, _)| m.exponent(variable) > 0);
         let mut content = with[0].0.clone();
@@ -145,12 +145,12 @@ impl Field<'_> {
         let inner =
             with.into_iter().map(|(monomial, coefficient)| (divided(&monomial, &content), coefficient)).collect();
         let (number, inner) = without_content(inner);
-        let group = self.arena.mul(self.term(&content, &number), self.grouped(inner));
-        if without.is_empty() { group } else { self.arena.add(self.grouped(without), group) }
+        let group = self.arena.mul(self.term(&content, &number, named), self.grouped(inner, named));
+        if without.is_empty() { group } else { self.arena.add(self.grouped(without, named), group) }
     }
 
-    fn term(&self, monomial: &Monomial, coefficient: &Integer) -> Expr {
-        let factors = monomial.powers().iter().map(|&(v, e)| (self.kernel(v), Rational::from(i64::from(e))));
+    fn term(&self, monomial: &Monomial, coefficient: &Integer, named: &dyn Fn(u32) -> Expr) -> Expr {
+        let factors = monomial.powers().iter().map(|&(v, e)| (named(v), Rational::from(i64::from(e))));
         self.arena.multiply(&Rational::from(coefficient.clone()), factors)
     }
 }

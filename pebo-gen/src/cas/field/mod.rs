@@ -29,6 +29,7 @@
 mod convert;
 mod coprime;
 mod express;
+mod fourier;
 mod fraction;
 mod kernel;
 mod obstacle;

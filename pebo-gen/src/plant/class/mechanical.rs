@@ -122,9 +122,12 @@ pub(super) fn expand(
         span: name.span,
     });
     let phi = (0..n).map(|i| Formula { expr: dot(arena, &frame.column(i), &p), span: column(t, i) });
-    let inverse = inverse_frame.transpose();
+    // T^-T = M T W^-1, where the inverse of a large T has grown out of proportion.
+    let inverse = inverse_frame.transpose().apply(arena, &z);
+    let product = inertia.mul(arena, &frame).mul(arena, &inverse_metric).apply(arena, &z);
+    let momenta = [inverse, product].into_iter().flat_map(|z| names.x.iter().copied().zip(z));
     let proposal = Proposal {
-        phi_left: names.x.iter().zip(inverse.apply(arena, &z)).map(|(s, e)| (*s, e)).collect(),
+        phi_left: momenta.collect(),
         rates: names.y.iter().zip(velocity.rows()).map(|(s, row)| (*s, (arena.zero(), row.clone()))).collect(),
     };
     let energy = arena.add(arena.scale(dot(arena, &p, &rates), &half()), potential);
