@@ -94,7 +94,9 @@ fn describes_itself() {
         (&["completions", "bash"], "complete -F"),
         (&["completions", "fish"], "complete -c pebo-gen"),
         (&["man"], ".TH pebo-gen"),
-        (&["schema"], "json-schema.org"),
+        (&["schema"], "The verdict on one model"),
+        (&["schema", "check"], "The verdict on one model"),
+        (&["schema", "model"], "A model file of pebo-gen"),
     ] {
         let output = run(arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));

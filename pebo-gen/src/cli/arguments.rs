@@ -68,8 +68,8 @@ pub(super) enum Command {
     Completions(CompletionsOptions),
     /// Print the manual page
     Man,
-    /// Print the JSON schema of `check --format json`
-    Schema,
+    /// Print the JSON schema of `check --format json`, or of model files
+    Schema(SchemaOptions),
     /// Propose a transform (not yet)
     Solve(LaterOptions),
     /// Write the derivation as a page (not yet)
@@ -83,6 +83,21 @@ pub(super) struct CompletionsOptions {
     /// The shell
     #[arg(value_enum)]
     pub(super) shell: clap_complete::Shell,
+}
+
+#[derive(Args)]
+pub(super) struct SchemaOptions {
+    /// Of what
+    #[arg(value_enum, value_name = "NAME", default_value_t = SchemaName::Check)]
+    pub(super) of: SchemaName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(super) enum SchemaName {
+    /// The verdicts of `check --format json`
+    Check,
+    /// Model files, for editors
+    Model,
 }
 
 #[derive(Args)]
