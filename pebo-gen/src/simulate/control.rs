@@ -30,7 +30,7 @@ pub(super) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
         _ => Diagnostic::error(
             Code::WrongChoice,
             Span::NOWHERE,
-            format!("`{name}`, which the command line names for feedback, is not an observer of this simulation"),
+            format!("`{name}`, which the call names for feedback, is not an observer of this simulation"),
         ),
     };
     problems.push(match nearest(name, choices.iter().copied()) {

@@ -52,7 +52,7 @@ impl Timing {
         let intervals = duration.seconds.checked_div(&step.seconds)?.to_f64();
         if intervals > MOST_SAMPLES {
             let message = format!(
-                "the simulation has {intervals:.3e} samples: that many steps of {} in {} s",
+                "the simulation has {intervals:.3e} samples: {} is too short for a duration of {} s",
                 step.said("step"),
                 duration.to_f64()
             );
