@@ -94,7 +94,9 @@ fn describes_itself() {
         (&["completions", "bash"], "complete -F"),
         (&["completions", "fish"], "complete -c pebo-gen"),
         (&["man"], ".TH pebo-gen"),
-        (&["schema"], "json-schema.org"),
+        (&["schema"], "The verdict on one model"),
+        (&["schema", "check"], "The verdict on one model"),
+        (&["schema", "model"], "A model file of pebo-gen"),
     ] {
         let output = run(arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
@@ -183,7 +185,7 @@ fn settings_of_the_call_are_refused_without_the_file() {
         (&["--every", "NaN"], "number-out-of-range", "`every` of the call is NaN", "above zero"),
         (&["--step", "2"], "number-out-of-range", "longer than the duration of 1 s", "a shorter `step`"),
         (&["--step", "1e-30"], "simulation-too-long", "`step` of the call, 1e-30 s", "a longer step"),
-        (&["--step", "1e-8", "--every", "1e-8"], "simulation-too-long", "rows", "a larger `every`"),
+        (&["--step", "1e-8", "--every", "1e-8"], "simulation-too-long", "rows", "a larger `--every`"),
         (&["--feedback", "trueth"], "wrong-choice", "the call", "did you mean `truth`?"),
     ] {
         let output = run(&[&["simulate", CUK], arguments].concat());

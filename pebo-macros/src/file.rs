@@ -70,13 +70,13 @@ pub(crate) fn module(arguments: TokenStream, module: ItemMod) -> Result<TokenStr
 /// A unit struct, which becomes the model's type, beside a module with all that is emitted.
 pub(crate) fn structure(arguments: TokenStream, item: &ItemStruct) -> Result<TokenStream, Error> {
     if !matches!(item.fields, Fields::Unit) || !item.generics.params.is_empty() {
-        let message = "this attribute stands on a unit struct, whose fields it writes";
+        let message = "this attribute needs a unit struct, because it writes the fields";
         return Err(Error::new_spanned(&item.ident, format!("{message}\nhelp: write `pub struct {};`", item.ident)));
     }
     let read = read(arguments)?;
     let ItemStruct { attrs, vis, ident, .. } = item;
     if let Some(derive) = attrs.iter().find(|attribute| !attribute.path().is_ident("doc")) {
-        let message = "the model's type is written by this attribute, with the traits that it can have";
+        let message = "this attribute writes the model's type together with all its traits";
         return Err(Error::new_spanned(derive, format!("{message}\nhelp: remove the other attribute")));
     }
     let module = format_ident!("{}", snake(&ident.to_string()), span = ident.span());

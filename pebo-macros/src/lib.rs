@@ -83,7 +83,7 @@ fn expand(arguments: TokenStream, item: TokenStream) -> Result<TokenStream, Erro
         )),
         (other, _) => Err(Error::new_spanned(
             other,
-            "this attribute stands on a module of plain Rust, or with the path of a model file on a unit struct\n\
+            "this attribute needs a module of plain Rust, or the path of a model file and a unit struct\n\
              help: write `pub mod plant { .. }`, or #[pebo_model(\"models/plant.yaml\")] `pub struct Plant;`",
         )),
     }

@@ -52,6 +52,12 @@ fn text_is_free_of_known_faults() {
         for fault in ["powi", "mul_add", "unwrap", "expect(", "unsafe", "std::", "panic", "vec!", "consts::E"] {
             assert!(!code.contains(fault), "{} contains {fault}", path.display());
         }
+        // A formula may be longer than a line; prose is not.
+        let mut in_formulas = false;
+        for line in text.lines() {
+            in_formulas ^= line.contains("```");
+            assert!(in_formulas || line.chars().count() <= 100, "{}: {line}", path.display());
+        }
     }
 }
 

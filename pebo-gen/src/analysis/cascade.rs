@@ -65,13 +65,14 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         let mut refusals = Vec::new();
         let claim = pencil::refuse(plant, domain, &mut refusals);
         let claim = claim.unwrap_or_else(|| refuse(plant, domain, (&components, &mends), |_| Ok(None), &mut refusals));
-        let note = "it is Lambda(y, u) phi + h(y, u): without `class: pebo` a generalised observer takes phi as it is";
+        let note =
+            "d(phi)/dt is Lambda(y, u) phi + h(y, u): without `class: pebo` this phi gives a generalised observer";
         found.extend(refusals.into_iter().map(|refusal| if generalised { refusal.note(note) } else { refusal }));
         return (Class::Pebo, claim);
     }
     let mut refusals = Vec::new();
     let claim = refuse(plant, domain, (&components, &mends), |index| rows[index].clone(), &mut refusals);
-    let note = "nor is it Lambda(y, u) phi + h(y, u), which a generalised observer would take";
+    let note = "d(phi)/dt is not of the form Lambda(y, u) phi + h(y, u) either, which a generalised observer needs";
     let noted = |refusal: Diagnostic| if refusal.code == Code::CascadeRefuted { refusal.note(note) } else { refusal };
     found.extend(refusals.into_iter().map(noted));
     (Class::Pebo, claim)
@@ -262,7 +263,7 @@ fn refuted(
         ),
     )
     .label(format!("its derivative keeps the term `{shown}`"))
-    .note(format!("d(phi)/dt must be a function of y and u alone, but {term} survives in z{component}'"))
+    .note(format!("d(phi)/dt must be a function of y and u alone, but {term} remains in z{component}'"))
     .note(
         witness
             .compared
@@ -283,7 +284,11 @@ fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) 
     let name = index + 1;
     let noted = entries.into_iter().fold(refusal, |refusal, (row, column, entry)| {
         let entry = arena.print(shortest(arena, domain, entry));
-        refusal.note(format!("B_({name}) + B_({name})' has the entry ({}, {}) = {entry}", row + 1, column + 1))
+        refusal.note(format!(
+            "in Assumption 3, B_({name}) + B_({name})' has the nonzero entry ({}, {}) = {entry}",
+            row + 1,
+            column + 1
+        ))
     });
     noted.help(format!("choose for column {name} of T a Killing field of M: one along which M does not change"))
 }

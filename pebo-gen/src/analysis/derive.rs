@@ -273,6 +273,6 @@ fn nowhere(plant: &Plant) -> Diagnostic {
     };
     let message = "no values were found at which all assumptions hold and all formulas have values";
     Diagnostic::error(Code::ContradictoryAssumptions, span, message)
-        .note("if there are none, the claims say nothing; so none of them is called proved")
-        .help("see that the assumptions do not exclude one another, or bound each symbol by numbers")
+        .note("claims about an empty domain say nothing, so no claim is called proved")
+        .help("check that the assumptions do not exclude one another, or give numeric bounds for each symbol")
 }

@@ -122,7 +122,7 @@ pub(super) fn prove(
     }
     let refusal = never(plant, domain, &direction, regression, left_inverse);
     found.push(if unseen.special_values {
-        refusal.note("this holds for the values of the parameters that are given, not for values in general")
+        refusal.note("this holds for the given values of the parameters, not for general values")
     } else {
         refusal
     });
@@ -156,17 +156,17 @@ fn of_theta(
         at_phi(plant),
         "no linear regression was found that identifies the unknowns",
     )
-    .label(format!("({}) can move along ({}) unseen by the outputs", eta.join(", "), entries.join(", ")));
+    .label(format!("the outputs do not change when ({}) moves along ({})", eta.join(", "), entries.join(", ")));
     let doubt = if apart {
         doubt.note(
-            "theta itself can be told apart near almost every value, but not by a linear estimator of these functions",
+            "theta itself can be identified near almost every value, but not by a linear estimator of these functions",
         )
     } else {
-        doubt.note("whether theta itself can be told apart could not be decided")
+        doubt.note("it could not be decided whether theta itself can be identified")
     };
     Some(doubt.help(
-        "take the products of states that stand in the rates as components of phi: where their rates are linear in phi \
-         again, the cascade is a generalised one and the regression linear",
+        "take the products of states that occur in the rates as components of phi: if their own rates are linear in phi \
+         again, the cascade is a generalised one and the regression is linear",
     ))
 }
 
@@ -212,7 +212,7 @@ fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Clai
         Diagnostic::error(
             Code::IdentifiabilityUndecided,
             at_phi(plant),
-            "it could not be decided whether the unknowns can be told apart",
+            "it could not be decided whether the unknowns can be identified",
         )
         .note(format!("obstacle: {obstacle}"))
         .help("give the parameters values, or state signs under `assume`"),
@@ -225,9 +225,9 @@ pub(super) fn not_all_used(plant: &Plant) -> Diagnostic {
     Diagnostic::error(
         Code::IdentifiabilityUndecided,
         at_phi(plant),
-        "it could not be decided whether the unknowns can be told apart",
+        "it could not be decided whether the unknowns can be identified",
     )
-    .note("this regression does not tell them apart, but outputs or identities of the plant are not used in it")
+    .note("this regression does not identify all unknowns, but it leaves outputs or identities of the plant unused")
     .help("measure another output, or write what relates phi to the outputs under `identities`")
 }
 
@@ -248,9 +248,10 @@ fn never(
     let (first, others) = moving.split_first().map_or((at_phi(plant), &[][..]), |(first, rest)| (*first, rest));
     let diagnostic =
         Diagnostic::error(Code::NeverIdentifiable, first, format!("no input and no trajectory identifies {unknown}"));
-    let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(*other, "together with this"));
+    let diagnostic =
+        others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(*other, "together with this component"));
     let mut diagnostic =
-        diagnostic.label(format!("{unknown} can move along ({}) unseen by the outputs", entries.join(", ")));
+        diagnostic.label(format!("the outputs do not change when {unknown} moves along ({})", entries.join(", ")));
     if linear && let Some(left_inverse) = left_inverse {
         let harmless = left_inverse.x.iter().all(|(_, formula)| {
             let slope = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(*formula, *z), *d));
@@ -272,7 +273,7 @@ fn never(
     match blind {
         Some(blind) => diagnostic
             .note(blind)
-            .note("the cascade exists all the same, but theta needs observability (Proposition 2, claims C2 and C3)")
+            .note("the cascade exists, but theta needs an observable plant (Proposition 2, claims C2 and C3)")
             .help("measure another output"),
         None => diagnostic.help("measure another output, or choose another phi"),
     }

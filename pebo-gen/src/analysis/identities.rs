@@ -26,8 +26,8 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     if let Some(identity) = plant.identities.iter().find(signed) {
         found.push(
             Diagnostic::error(Code::IdentityRefuted, identity.span, "this identity holds nowhere")
-                .label("this is never zero, whatever the values of its names are")
-                .help("correct the identity: an expression that is zero by physics"),
+                .label("this expression is never zero")
+                .help("correct the identity: it has to be an expression that is zero by physics"),
         );
         return Verdict::Refuted;
     }
@@ -40,8 +40,10 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
                 first.span.to(last.span),
                 "no values were found that satisfy the identities and the assumptions",
             )
-            .note("a claim about no values at all says nothing")
-            .help("see that they do not exclude one another, and write each so that it can be solved for one of its names"),
+            .note("claims about an empty set of values say nothing")
+            .help(
+                "check that they do not exclude one another, and that each identity can be solved for one of its names",
+            ),
         );
         return Verdict::Undecided;
     }
@@ -79,20 +81,26 @@ fn kept(plant: &Plant, domain: &Domain, identity: &Formula) -> (Verdict, Option<
     match decide(arena, rate, domain) {
         Answer::Zero => (Verdict::Proved, None),
         Answer::NonZero(point) => {
-            let refusal =
-                Diagnostic::error(Code::IdentityRefuted, identity.span, "the plant does not keep this identity")
-                    .label(along)
-                    .note(Witness::of(rate, &point).sentence(arena))
-                    .note("the identities hold there, and a moment later this one does not")
-                    .help("correct the identity, or the rates under `f_x` and `f_y`");
+            let refusal = Diagnostic::error(
+                Code::IdentityRefuted,
+                identity.span,
+                "this identity is not invariant along the trajectories of the plant",
+            )
+            .label(along)
+            .note(Witness::of(rate, &point).sentence(arena))
+            .note("the identities hold at this point, but this one does not stay true along the trajectory")
+            .help("correct the identity, or the rates under `f_x` and `f_y`");
             (Verdict::Refuted, Some(refusal))
         }
         Answer::Open(obstacle) => {
-            let message = "it could not be decided whether the plant keeps this identity";
+            let message =
+                "it could not be decided whether this identity is invariant along the trajectories of the plant";
             let refusal = Diagnostic::error(Code::IdentityUndecided, identity.span, message)
                 .label(along)
                 .note(format!("obstacle: {obstacle}"))
-                .help("write it so that it can be solved for one of its names, or give the parameters values");
+                .help(
+                    "write the identity so that it can be solved for one of its names, or give the parameters values",
+                );
             (Verdict::Undecided, Some(refusal))
         }
     }

@@ -123,10 +123,15 @@ fn defined(
         Diagnostic::error(
             Code::LeftInverseUndecided,
             span,
-            format!("phi_left gives back {} only where it has a value", arena.name(state)),
+            format!(
+                "phi_left, which recovers {}, was not shown to have a value throughout the domain",
+                arena.name(state)
+            ),
         )
-        .label(format!("this needs {} {sign}", arena.print(part)))
-        .note(format!("at z = phi(x, y) that is `{at_phi} {sign}`, which the assumptions do not show"))
+        .label(format!("it needs `{} {sign}`", arena.print(part)))
+        .note(format!(
+            "at z = phi(x, y) this condition is `{at_phi} {sign}`, which does not follow from the assumptions"
+        ))
         .help(format!("if it holds, write `{at_phi} {sign}` under `assume`")),
     );
     false
@@ -277,13 +282,12 @@ pub(super) fn is_whole_turns(arena: &Arena, domain: &Domain, angle: Expr) -> boo
 fn refuted(plant: &Plant, domain: &Domain, state: Symbol, span: Span, witness: &Witness) -> Diagnostic {
     let arena = &plant.arena;
     let name = arena.name(state);
-    let mut diagnostic =
-        Diagnostic::error(Code::LeftInverseRefuted, span, format!("phi_left does not give back {name}"))
-            .label(format!("with z = phi(x, y) this is not {name}"))
-            .note(witness.sentence(arena));
+    let mut diagnostic = Diagnostic::error(Code::LeftInverseRefuted, span, format!("phi_left does not recover {name}"))
+        .label(format!("at z = phi(x, y) this formula is not equal to {name}"))
+        .note(witness.sentence(arena));
     if let Some(period) = plant.period(state) {
         diagnostic = diagnostic
-            .note(format!("that is not zero, so it fails also up to whole periods of {}", arena.print(period)));
+            .note(format!("this is not zero, so the two differ by more than whole periods of {}", arena.print(period)));
     }
     let mend = derived(plant, domain).ok().and_then(|all| {
         let (_, formula, _) = all.into_iter().find(|(s, ..)| *s == state)?;
@@ -301,7 +305,7 @@ fn not_injective(plant: &Plant, state: Symbol, formula: Expr, witness: &Witness)
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let other = arena.print(arena.substitute(formula, &transform));
     Diagnostic::error(Code::LeftInverseRefuted, at_phi(plant), format!("phi does not determine {name}"))
-        .label(format!("{name} and {other} have the same z"))
+        .label(format!("the states {name} and {other} give the same z"))
         .note(format!("they differ: {}", witness.sentence(arena)))
         .help(format!("state the sign of {name} under `assume`, or choose a phi that is one-to-one in {name}"))
 }
@@ -315,7 +319,7 @@ fn degenerate(plant: &Plant, direction: &[Expr]) -> Diagnostic {
         .map(|(s, d)| format!("{}' = {}", arena.name(s.symbol), arena.print(*d)))
         .collect();
     Diagnostic::error(Code::LeftInverseRefuted, at_phi(plant), "phi does not determine x")
-        .label(format!("z does not change along {}", entries.join(", ")))
+        .label(format!("z does not change along the direction {}", entries.join(", ")))
         .help("add components to phi, or give `phi_left` for the states that it determines: a partial observer")
 }
 
@@ -332,7 +336,7 @@ fn undecided(plant: &Plant, state: Symbol, span: Span, obstacle: &Obstacle) -> D
     Diagnostic::error(
         Code::LeftInverseUndecided,
         span,
-        format!("it could not be decided whether phi_left gives back {name}"),
+        format!("it could not be decided whether phi_left recovers {name}"),
     )
     .note(format!("obstacle: {obstacle}"))
     .help("state the signs of the quantities under roots and logarithms under `assume`")
@@ -348,5 +352,5 @@ fn underivable(plant: &Plant, missing: &[Symbol], obstacle: Option<&Obstacle>) -
     if let Some(obstacle) = obstacle {
         diagnostic = diagnostic.note(format!("obstacle: {obstacle}"));
     }
-    diagnostic.help("give it under `phi_left`, or state signs of states under `assume`")
+    diagnostic.help("give the left inverse under `phi_left`, or state the signs of states under `assume`")
 }

@@ -43,7 +43,7 @@ pub(super) fn blindness(plant: &Plant, domain: &Domain, linear: &Linear) -> Resu
     if !others.is_empty() {
         let vectors: Vec<String> = basis.iter().map(|v| printed(v)).collect();
         return Ok(Some(format!(
-            "the plant is not observable: [s I - A11; A21] loses rank at {} eigenvalues of A11, whose vectors are \
+            "the plant is not observable: [s I - A11; A21] loses rank at {} eigenvalues of A11, whose eigenvectors are \
              combinations of {}",
             basis.len(),
             vectors.join(", ")
@@ -133,18 +133,16 @@ fn refused(
     let refusal = Diagnostic::error(
         Code::CascadeRefuted,
         linear.span,
-        "no transform T1 x + T2 y of this plant moves by known signals: no PEBO exists",
+        "no transform T1 x + T2 y of this plant has a rate that is free of x: no PEBO exists",
     )
     .label("T1 A11 + T2 A21 = 0 has no solution with T1 of full column rank")
     .note(format!(
-        "along x = ({}) the rates of the outputs show nothing, A21 x = 0, yet A11 x is not zero",
+        "along x = ({}) the rates of the outputs do not depend on x (A21 x = 0), but A11 x is not zero",
         entries.join(", ")
     ));
     // Of a number there is nothing to show.
     let refusal = if arena.as_number(witness.expr).is_some() { refusal } else { refusal.note(witness.sentence(arena)) };
-    Ok(refusal
-        .note(observability)
-        .help("measure further outputs, until every row of A11 is a combination of rows of A21"))
+    Ok(refusal.note(observability).help("measure more outputs, until every row of A11 is a combination of rows of A21"))
 }
 
 /// The matrix at the values of the parameters that have one.

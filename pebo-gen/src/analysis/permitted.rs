@@ -84,11 +84,12 @@ fn confined<T>(
     });
     let Some((name, stray)) = stray else { return claim };
     let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
-    let message = format!("{name} was derived as a function of `{}`, which it cannot know", plant.arena.name(stray));
+    let message =
+        format!("{name} was derived as a function of `{}`, which is not among its arguments", plant.arena.name(stray));
     found.push(
         Diagnostic::error(code, span, message)
             .note("the model may be right: this is a defect of pebo-gen")
-            .help("report it together with the model"),
+            .help("report the defect together with the model"),
     );
     Claim { verdict: Verdict::Undecided, result: None }
 }

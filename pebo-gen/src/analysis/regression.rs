@@ -33,8 +33,8 @@ pub(super) use standing::from_identities;
 use standing::from_relations;
 pub(super) use together::together;
 
-const NO_SEPARATION: &str = "it is no sum of products of functions of theta with known signals either, as far as \
-    polynomials, exponentials, sines and cosines of z go";
+const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
+    exponentials, sines and cosines of z were tried";
 
 /// Proves or refutes the regression.
 pub(super) fn prove(
@@ -95,8 +95,10 @@ pub(super) fn prove(
                 if let Some(claim) = over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found) {
                     return claim;
                 }
-                stands_against =
-                    format!("it is linear in {}, but theta could not be recovered from these", eta.join(", "));
+                stands_against = format!(
+                    "the rate is linear in {}, but theta could not be recovered from these functions",
+                    eta.join(", ")
+                );
             }
             Ok(None) if cascade.lambda.is_none() => {
                 let outputs: Vec<usize> = rows.iter().map(|r| r.0).collect();

@@ -12,7 +12,7 @@ Examples:
   pebo-gen models/*.yaml -o src/observers/        the same for several models, a file each
   pebo-gen check models/*.yaml --format json      verdicts for programs, a line each
   pebo-gen simulate models/cuk.yaml --plot cuk.svg
-  pebo-gen explain cascade-refuted                the longer story of a diagnostic
+  pebo-gen explain cascade-refuted                what a diagnostic means, with an example
   generate_model | pebo-gen -                     a model from standard input
 
 Exit status: 0 accepted, 1 a claim is refuted or undecided, 2 the input or the call is malformed.";
@@ -30,8 +30,8 @@ pub(super) struct Arguments {
     pub(super) command: Option<Command>,
     #[command(flatten)]
     pub(super) generate: GenerateOptions,
-    /// Leave undecided what takes longer than this for a model, 10 seconds unless given; memory is 512 MB, and in
-    /// proportion beyond 10 seconds. If given, `simulate` stops a run that takes longer
+    /// Time for each model, 10 seconds by default; what is not decided by then is undecided. Memory is limited to
+    /// 512 MB, in proportion more beyond 10 seconds. If given, `simulate` also stops a run that takes longer
     #[arg(long, global = true, value_name = "SECONDS")]
     pub(super) limit: Option<Limit>,
 }
@@ -46,7 +46,7 @@ impl FromStr for Limit {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let seconds: f64 = text.parse().map_err(|_| "a number of seconds is expected, as 60 or 0.5")?;
         // Beyond the largest that a clock takes there is no difference to be seen.
-        if seconds > 0.0 { Ok(Self(seconds.min(1e9))) } else { Err("a limit is positive") }
+        if seconds > 0.0 { Ok(Self(seconds.min(1e9))) } else { Err("the limit must be positive") }
     }
 }
 
@@ -58,18 +58,18 @@ impl Default for Limit {
 
 #[derive(Subcommand)]
 pub(super) enum Command {
-    /// Say what is proved of models, and emit nothing
+    /// Check models and print what is proved, without emitting code
     Check(CheckOptions),
-    /// Close the loop of plant, control law and observer
+    /// Simulate the closed loop of plant, control law and observer
     Simulate(SimulateOptions),
-    /// Tell the longer story of a diagnostic's code
+    /// Explain a diagnostic by its code
     Explain(ExplainOptions),
-    /// Print a shell's completions
+    /// Print the completions for a shell
     Completions(CompletionsOptions),
     /// Print the manual page
     Man,
-    /// Print the JSON schema of `check --format json`
-    Schema,
+    /// Print the JSON schema of `check --format json`, or of model files
+    Schema(SchemaOptions),
     /// Propose a transform (not yet)
     Solve(LaterOptions),
     /// Write the derivation as a page (not yet)
@@ -86,6 +86,21 @@ pub(super) struct CompletionsOptions {
 }
 
 #[derive(Args)]
+pub(super) struct SchemaOptions {
+    /// Of what
+    #[arg(value_enum, value_name = "NAME", default_value_t = SchemaName::Check)]
+    pub(super) of: SchemaName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(super) enum SchemaName {
+    /// The verdicts of `check --format json`
+    Check,
+    /// Model files, for editors
+    Model,
+}
+
+#[derive(Args)]
 pub(super) struct LaterOptions {
     /// What the command will take
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
@@ -94,10 +109,10 @@ pub(super) struct LaterOptions {
 
 #[derive(Args)]
 pub(super) struct GenerateOptions {
-    /// The model files to check and turn into Rust; `-` reads standard input
+    /// The model files to check and emit as Rust; `-` reads standard input
     #[arg(required = true, value_name = "MODEL")]
     pub(super) models: Vec<PathBuf>,
-    /// Write the Rust code here instead of to standard output; for several models a folder
+    /// Write the Rust code to this file instead of standard output; for several models, to this folder
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// The floating-point type of the emitted code
@@ -116,7 +131,7 @@ pub(super) struct CheckOptions {
     /// The model files; `-` reads standard input
     #[arg(required = true, value_name = "MODEL")]
     pub(super) models: Vec<PathBuf>,
-    /// For people, or one JSON object a line and model
+    /// As text for people, or as one line of JSON for each model
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub(super) format: Format,
 }

@@ -2,7 +2,7 @@
 
 use clap::CommandFactory as _;
 
-use super::arguments::{Arguments, CompletionsOptions};
+use super::arguments::{Arguments, CompletionsOptions, SchemaName, SchemaOptions};
 use super::{Ending, standard};
 
 pub(super) fn completions(options: &CompletionsOptions) -> Ending {
@@ -19,6 +19,9 @@ pub(super) fn page() -> Ending {
     }
 }
 
-pub(super) fn schema() -> Ending {
-    standard::print(pebo_gen::report::SCHEMA.as_bytes())
+pub(super) fn schema(options: &SchemaOptions) -> Ending {
+    match options.of {
+        SchemaName::Check => standard::print(pebo_gen::report::SCHEMA.as_bytes()),
+        SchemaName::Model => standard::print(pebo_gen::model::json_schema().as_bytes()),
+    }
 }

@@ -49,7 +49,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Command::Explain(options)) => explain::run(&options),
         Some(Command::Completions(options)) => manual::completions(&options),
         Some(Command::Man) => manual::page(),
-        Some(Command::Schema) => manual::schema(),
+        Some(Command::Schema(options)) => manual::schema(&options),
         Some(Command::Solve(_)) => later::refuse("solve", "write a candidate under `phi`, and let `check` judge it"),
         Some(Command::Report(_)) => later::refuse("report", "`pebo-gen check MODEL` prints what is derived as text"),
         Some(Command::Certificate(_)) => later::refuse("certificate", "`pebo-gen check MODEL` says what is proved"),

@@ -5,6 +5,7 @@
 
 use super::definition::{Argument, Definitions, VELOCITY};
 use super::module::Module;
+use super::prose::{self, sentence};
 use crate::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind};
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Symbol};
@@ -36,23 +37,25 @@ pub(super) fn module(module: &Module<'_>) -> Vec<String> {
     lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
     lines.extend(costs(definitions, staged));
-    lines
+    prose::wrapped(lines, MODULE)
 }
+
+/// The longest line of the module's documentation behind `//! `.
+const MODULE: usize = 96;
 
 fn equations(plant: &Plant) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = section("Plant");
-    let mut vectors = vec![
-        format!("unmeasured {}", listed(arena, plant.x.iter().map(|state| state.symbol))),
-        format!("measured {}", listed(arena, plant.y.iter().map(|output| output.symbol))),
+    let groups: [(&str, Vec<Symbol>); 4] = [
+        ("Unmeasured state", plant.x.iter().map(|state| state.symbol).collect()),
+        ("output", plant.y.iter().map(|output| output.symbol).collect()),
+        ("input", plant.u.clone()),
+        ("unknown signal", plant.w.clone()),
     ];
-    if !plant.u.is_empty() {
-        vectors.push(format!("input {}", listed(arena, plant.u.iter().copied())));
-    }
-    if !plant.w.is_empty() {
-        vectors.push(format!("unknown {}", listed(arena, plant.w.iter().copied())));
-    }
-    lines.push(capitalised(&format!("{}.", vectors.join("; "))));
+    let signals = groups.into_iter().filter(|(_, symbols)| !symbols.is_empty()).map(|(name, symbols)| {
+        format!("{name}{} {}", if symbols.len() == 1 { "" } else { "s" }, listed(arena, symbols.into_iter()))
+    });
+    lines.push(format!("{}.", signals.collect::<Vec<String>>().join("; ")));
     let states = plant.x.iter().map(|state| (state.symbol, Some(state.rate.expr)));
     let outputs = plant.y.iter().map(|o| (o.symbol, o.rate.as_ref().map(|rate| rate.expr)));
     let rates = states
@@ -84,9 +87,12 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     lines.extend([
         String::new(),
         match definitions.class {
-            Class::Pebo => "The unknown constant `theta` is what the extension misses of `z`:".to_owned(),
-            Class::Gpebo => "The unknown constant `theta` is the start of what the extension misses of `z`:".to_owned(),
-        },
+            Class::Pebo => "The extension `chi` has the rate of `z`; the unknown constant `theta` is `z - chi`:",
+            Class::Gpebo => {
+                "The extension `xi` copies the dynamics of `z`; the unknown constant `theta` is `z - xi` at the start:"
+            }
+        }
+        .to_owned(),
     ]);
     let mut laws = match definitions.class {
         Class::Pebo => vec!["chi' = h(y, u)".to_owned(), "z = chi + theta".to_owned()],
@@ -139,25 +145,27 @@ fn fundamental(derivation: &Derivation) -> Vec<String> {
         None => return Vec::new(),
         Some(Fundamental::Bounded { fades: false }) => return vec![String::new(), "`Psi` stays bounded.".to_owned()],
         Some(Fundamental::Bounded { fades: true }) => {
-            "`Psi` stays bounded, but dies out in part: what the model misses later stays uncorrected there."
+            "`Psi` stays bounded but decays in some directions, in which later disturbances of `z` are not corrected."
         }
-        Some(Fundamental::Grows) => "`Psi` grows without bound, and with it every error of `theta`.",
-        Some(Fundamental::NotShown) => "It was not shown that `Psi` stays bounded: errors of `theta` may grow with it.",
+        Some(Fundamental::Grows) => "`Psi` grows without bound and amplifies every error of `theta`.",
+        Some(Fundamental::NotShown) => {
+            "It was not shown that `Psi` stays bounded; if it grows, it amplifies errors of `theta`."
+        }
     };
-    let restart = "`Observer::restart` at the estimate of `z`, with `theta` zero, makes it the identity again.";
-    vec![String::new(), fate.to_owned(), restart.to_owned()]
+    let restart = "`Observer::restart` from the estimate of `z` with zero `theta` sets `Psi` back to the identity.";
+    vec![String::new(), format!("{fate} {restart}")]
 }
 
 /// What the extension does under a constant bias, and what there is against it.
 fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
     let Some(drift) = derivation.drift(plant) else { return Vec::new() };
     let remedy = match (derivation.class, rebase) {
-        (Class::Pebo, true) => "`Observer::step_without_drift` keeps the extension bounded",
-        (Class::Gpebo, true) => "`Observer::rebase` moves what has grown into `theta`",
-        (_, false) => "start the observer anew before the extension loses its digits",
+        (Class::Pebo, true) => "Use `Observer::step_without_drift`, which keeps the extension bounded.",
+        (Class::Gpebo, true) => "Use `Observer::rebase`, which moves a part of the extension into `theta`.",
+        (_, false) => "Restart the observer before the extension grows so large that rounding matters.",
     };
     let integrators = listed(&plant.arena, drift.integrators.iter().copied());
-    vec![String::new(), format!("A constant bias makes {integrators} grow: {remedy}.")]
+    vec![String::new(), format!("A constant bias makes {integrators} grow without bound. {remedy}")]
 }
 
 fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Vec<String> {
@@ -165,7 +173,9 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     let mut lines = section("Proved");
     lines.push(match definitions.class {
         Class::Pebo => "- Cascade: the derivative of `z` along the plant is `h(y, u)`.".to_owned(),
-        Class::Gpebo => "- Generalised cascade: the derivative of `z` along the plant is `lambda z + h`.".to_owned(),
+        Class::Gpebo => {
+            "- Generalised cascade: the derivative of `z` along the plant is `lambda(y, u) z + h(y, u)`.".to_owned()
+        }
     });
     let origin = match definitions.left_inverse.origin {
         Origin::Given => "as the model gives it",
@@ -176,14 +186,14 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         inverse += &[", `", &arena.name(*state), "` modulo `", &arena.print(*period), "`"].concat();
     }
     if definitions.left_inverse.x.len() < plant.x.len() {
-        inverse.push_str(", for a part of the states");
+        inverse.push_str(", for some of the states");
     }
     lines.push(format!("{inverse}."));
     let asked = derivation.asked_of_estimates(plant);
     if !asked.is_empty() {
         let asked: Vec<String> = asked.iter().map(|(e, relation)| compared(arena, *e, *relation)).collect();
         lines.push(format!(
-            "  It asks of estimates that {}: a step without a finite estimate is refused with `Fault::Estimate`.",
+            "  It needs estimates with {}; `step` refuses a sample whose estimate is not finite with `Fault::Estimate`.",
             asked.join(", ")
         ));
     }
@@ -206,7 +216,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             Excitation::Instant => "- Identifiability: almost every input excites".to_owned(),
             Excitation::Excitation => {
                 let lines = identifiability.motion.iter().flat_map(|motion| motion.lines(plant));
-                format!("- Identifiability: over time, {}", lines.collect::<Vec<String>>().join("; "))
+                format!("- Identifiability: over time; {}", lines.collect::<Vec<String>>().join("; "))
             }
             Excitation::Never => "- Identifiability: none".to_owned(),
         };
@@ -225,12 +235,14 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     let conditions: Vec<String> =
         derivation.conditions.iter().map(|(e, relation)| compared(arena, *e, *relation)).collect();
     if !conditions.is_empty() {
-        lines.extend([String::new(), format!("For the formulas to have values: {}.", conditions.join(", "))]);
+        lines.extend([String::new(), format!("The proofs also require: {}.", conditions.join(", "))]);
     }
     if !plant.parameters.is_empty() {
         lines.extend([
             String::new(),
-            "The proofs hold for all values of the parameters that keep the signs of the model's: `Parameters::check` tells.".to_owned(),
+            "The proofs hold for all parameters that have the signs of the model's values and meet its assumptions. \
+             `Parameters::check` refuses all others."
+                .to_owned(),
         ]);
     }
     lines
@@ -261,59 +273,42 @@ pub(super) fn size(plant: &Plant, definitions: &Definitions, name: &str) -> Stri
     match name {
         "NX" => {
             let states = definitions.left_inverse.x.iter().map(|state| state.0);
-            format!("Entries of `x`, the recovered states: {}.", listed(arena, states))
+            format!("The number of recovered states: {}.", listed(arena, states))
         }
         "NY" => {
             let outputs = definitions.symbols(Argument::Y).into_iter();
-            format!("Entries of `y`, the outputs: {}.", listed(arena, outputs))
+            format!("The number of outputs: {}.", listed(arena, outputs))
         }
         "NU" => {
             let inputs = definitions.symbols(Argument::U).into_iter();
-            format!("Entries of `u`, the inputs: {}.", listed(arena, inputs))
+            format!("The number of inputs: {}.", listed(arena, inputs))
         }
-        "NZ" => "Coordinates of the transform.".to_owned(),
-        "NR" => "Equations of the regression.".to_owned(),
-        _ => "Unknowns of the regression.".to_owned(),
+        "NZ" => "The number of components of the transform `z`.".to_owned(),
+        "NR" => "The number of equations of the regression.".to_owned(),
+        _ => "The number of unknowns of the regression.".to_owned(),
     }
 }
 
-/// What a function returns, in a line.
-pub(super) fn function(name: &str, kind: RegressionKind) -> &'static str {
+/// What a function returns.
+pub(super) fn function(name: &str, definitions: &Definitions) -> &'static str {
     match name {
-        "h" => "`h` of the cascade.",
-        "lambda" => "`lambda` of the cascade, by columns.",
-        "phi_0" => "What is known in the regression.",
-        "phi_1" => "The factors of the unknowns, by columns: one for each unknown.",
-        "primitive_0" if kind == RegressionKind::Implicit => "What is known under the derivative of the regression.",
-        "primitive_0" => "The outputs whose rates the regression gives.",
-        "primitive_1" => "The factors of the unknowns under the derivative, by columns.",
-        "theta" => "`theta` from the unknowns of the regression.",
-        VELOCITY => {
-            "The rates of the outputs, `M^-1 p`, from the coordinates: of an observer `extension().coordinates(&theta())`."
+        "h" if definitions.class == Class::Gpebo => "The term `h` of the cascade `z' = lambda(y, u) z + h(y, u)`.",
+        "h" => "The right side `h` of the cascade `z' = h(y, u)`.",
+        "lambda" => "The matrix `lambda` of the cascade, written by columns.",
+        "phi_0" => "The known term `phi_0` of the regression.",
+        "phi_1" => "The regressor `phi_1`, written by columns: one for each unknown.",
+        "primitive_0" if definitions.regression.kind == RegressionKind::Implicit => {
+            "The known term under the time derivative of the regression."
         }
-        _ => "The recovered states.",
+        "primitive_0" => "The outputs whose rates are the left side of the regression.",
+        "primitive_1" => "The factors of the unknowns under the time derivative, written by columns.",
+        "theta" => "The constant `theta`, from the unknowns of the regression.",
+        VELOCITY => {
+            "The velocities `M^-1 p`, which are the rates of the outputs, from the coordinates `z`. An observer has its \
+             estimate of `z` as `extension().coordinates(&theta())`."
+        }
+        _ => "The recovered states, by the left inverse of the transform.",
     }
-}
-
-/// A text as prose: one line, names as code, nothing that Markdown or rustdoc would read.
-pub(super) fn prose(text: &str) -> String {
-    let words = text.split_whitespace().map(|word| {
-        let camel = word.chars().zip(word.chars().skip(1)).any(|(a, b)| a.is_lowercase() && b.is_uppercase());
-        let special = word.contains(['_', '[', ']', '<', '>', '*', '`', '|', '\\', '#', '&', '~', '$']);
-        if camel || special || word.contains("::") { format!("`{}`", word.replace('`', "'")) } else { word.to_owned() }
-    });
-    words.collect::<Vec<String>>().join(" ")
-}
-
-fn sentence(text: &str) -> String {
-    let prose = prose(text);
-    if prose.ends_with(['.', '!', '?']) { prose } else { format!("{prose}.") }
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    first.chain(letters).collect()
 }
 
 fn section(title: &str) -> Vec<String> {
@@ -341,7 +336,7 @@ fn named(arena: &Arena, names: &[Symbol], rows: &[Vec<Expr>]) -> Vec<String> {
     entries.map(|(name, entry)| format!("{} = {}", arena.name(*name), arena.print(*entry))).collect()
 }
 
-/// A matrix with its columns aligned.
+/// A matrix with its columns aligned; entry by entry, where a row of it would be longer than a line.
 fn bracketed(arena: &Arena, name: &str, rows: &[Vec<Expr>]) -> Vec<String> {
     let entries: Vec<Vec<String>> =
         rows.iter().map(|row| row.iter().map(|&entry| arena.print(entry)).collect()).collect();
@@ -353,5 +348,15 @@ fn bracketed(arena: &Arena, name: &str, rows: &[Vec<Expr>]) -> Vec<String> {
         let lead = if index == 0 { format!("{name} = ") } else { " ".repeat(name.len() + 3) };
         format!("{lead}[ {} ]", cells.join("   "))
     });
-    rows.collect()
+    let rows: Vec<String> = rows.collect();
+    if rows.iter().all(|row| row.chars().count() <= MODULE) {
+        return rows;
+    }
+    let place = |row: usize, column: usize| {
+        if columns == 1 { format!("{name}[{}]", row + 1) } else { format!("{name}[{}, {}]", row + 1, column + 1) }
+    };
+    let listed = entries.iter().enumerate().flat_map(|(row, cells)| {
+        cells.iter().enumerate().map(move |(column, entry)| format!("{} = {entry}", place(row, column)))
+    });
+    listed.collect()
 }

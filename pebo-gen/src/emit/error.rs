@@ -45,7 +45,7 @@ impl fmt::Display for EmitError {
             Self::NotAccepted => f.write_str("not every claim is proved"),
             Self::Missing(what) => write!(f, "the derivation lacks its {what}"),
             Self::Undeclared { symbol } => {
-                write!(f, "`{symbol}` occurs in a function that does not know it")
+                write!(f, "`{symbol}` occurs in a function that does not receive it")
             }
             Self::OutOfRange { number } => {
                 write!(f, "the target scalar cannot represent {number}")

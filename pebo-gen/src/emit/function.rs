@@ -79,8 +79,7 @@ impl Module<'_> {
             symbols.iter().enumerate().filter(read).map(|(_, symbol)| scope.locals[symbol].clone()).collect();
         let similar = permission::for_names(&named);
         let long = permission::for_length(statements.len() + program.outputs.len());
-        let (name, doc) =
-            (ident(definition.name), doc(document::function(definition.name, self.definitions.regression.kind)));
+        let (name, doc) = (ident(definition.name), doc(document::function(definition.name, self.definitions)));
         // What the trait does not know is the model's own.
         let visibility = (definition.name == VELOCITY).then(|| quote!(#[must_use] pub));
         quote! {

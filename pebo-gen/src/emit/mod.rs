@@ -21,6 +21,7 @@ mod module;
 mod names;
 mod parameters;
 mod permission;
+mod prose;
 mod read_back;
 mod value;
 

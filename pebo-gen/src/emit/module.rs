@@ -13,6 +13,7 @@ use super::expression::{self, Body, Piece, ident, render};
 use super::literal::{Scalar, literal, whole};
 use super::names::{Names, camel};
 use super::permission;
+use super::prose;
 use crate::analysis::{Class, Derivation, RegressionKind, Sign};
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
@@ -214,10 +215,13 @@ pub(super) fn numbers(program: &Program) -> impl Iterator<Item = Rational> {
     })
 }
 
-/// A line of documentation.
-pub(super) fn doc(line: &str) -> TokenStream {
-    let line = spaced(line);
-    quote!(#[doc = #line])
+/// The documentation of an item: a paragraph, wrapped to lines.
+pub(super) fn doc(paragraph: &str) -> TokenStream {
+    /// The longest line behind `///` and the indentation of a function in a block.
+    const WIDTH: usize = 92;
+    let lines = prose::wrapped(vec![paragraph.to_owned()], WIDTH);
+    let lines = lines.iter().map(|line| spaced(line));
+    quote!(#(#[doc = #lines])*)
 }
 
 /// A line as it stands behind `///`.

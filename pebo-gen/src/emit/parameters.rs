@@ -74,7 +74,8 @@ impl Module<'_> {
         let inputs: Vec<Piece> = read.collect();
         let body = scope.render(&self.staged.setup, &inputs);
         let fields: Vec<_> = scope.fields.iter().map(|field| ident(field)).collect();
-        let summary = doc("The functions of the model, with what depends on the parameters alone computed once.");
+        let summary =
+            doc("The functions of the model. What depends on the parameters alone is computed once, in `new`.");
         let unread = self.plant.parameters.is_empty() || fields.is_empty();
         let argument = ident(if unread { "_parameters" } else { "parameters" });
         let precision = permission::for_numbers(self.scalar, numbers(&self.staged.setup));

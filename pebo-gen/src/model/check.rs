@@ -157,7 +157,7 @@ impl Pass<'_> {
         if choices.contains(&feedback.value.as_str()) {
             return;
         }
-        let message = format!("{} gives no estimates", quoted(&feedback.value));
+        let message = format!("{} is not an observer of this simulation", quoted(&feedback.value));
         self.diagnostics.push(
             Diagnostic::error(Code::WrongChoice, feedback.span, message)
                 .help(format!("write one of {}", listed(choices))),
@@ -168,10 +168,10 @@ impl Pass<'_> {
         if before.value.to_f64() < after.value.to_f64() {
             return;
         }
-        let message = "start times do not ascend";
+        let message = "the start times are not in ascending order";
         self.diagnostics.push(
             Diagnostic::error(Code::NumberOutOfRange, after.span, message)
-                .also(before.span, "the piece before starts here")
+                .also(before.span, "the previous piece starts here")
                 .help("order the pieces by their start times"),
         );
     }
@@ -193,6 +193,6 @@ fn stranger(name: &Spanned<String>, group: &Group<'_>, section: &str) -> Diagnos
     match nearest(&name.value, group.names.iter().copied()) {
         Some(near) => diagnostic.suggest(Some(near)),
         None if group.names.is_empty() => diagnostic.help("remove it, or declare it"),
-        None => diagnostic.help(format!("entries here are for {}", listed(group.names.iter().copied()))),
+        None => diagnostic.help(format!("the entries of this map are for {}", listed(group.names.iter().copied()))),
     }
 }

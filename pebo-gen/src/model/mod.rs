@@ -34,6 +34,15 @@ pub use written::{Baseline, CascadeClass, Entry, Model, Panel, Piece, Scale, Sim
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};
 
+/// The JSON schema of model files (draft 2020-12), for editors that complete and check them: keys and the shapes of their
+/// values, from the table by which [`Model::parse`] reads. What else makes a model, as names and formulas, only the
+/// reader says.
+#[cfg(feature = "yaml")]
+#[must_use]
+pub fn json_schema() -> String {
+    yaml::json_schema()
+}
+
 #[cfg(feature = "yaml")]
 impl Model {
     /// Reads a model file.

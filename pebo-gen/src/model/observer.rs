@@ -189,8 +189,12 @@ impl Observer {
             }
         }
         let not_negative = [
-            (&self.forgetting, "the rate of forgetting must not be negative", "write 0 to forget nothing"),
-            (&self.normalisation, "the normalisation must not be negative", "write 0 for the gradient as it is"),
+            (&self.forgetting, "the rate of forgetting must not be negative", "write 0 for no forgetting"),
+            (
+                &self.normalisation,
+                "the normalisation must not be negative",
+                "write 0 for the gradient without normalisation",
+            ),
         ];
         for (number, message, help) in not_negative {
             if let Some(number) = number {
@@ -198,7 +202,7 @@ impl Observer {
             }
         }
         if let Some(clip) = &self.clip {
-            let help = "write a number above 0 and below 1: 0.1 amplifies noise ten times at most";
+            let help = "write a number above 0 and below 1: 0.1 amplifies noise at most ten times";
             within(clip, |value| value > 0.0 && value < 1.0, "the clip must be between 0 and 1", help);
         }
         if let Some(window) = &self.window {
@@ -206,7 +210,7 @@ impl Observer {
             within(window, whole, "a window is a number of samples", "write a whole number above zero");
         }
         if let (Some(filter), Some(window)) = (&self.filter, &self.window) {
-            let message = "a window beside a filter";
+            let message = "the observer has both a filter and a window";
             diagnostics.push(
                 Diagnostic::error(Code::SettingConflict, window.span, message)
                     .also(filter.span, "the filter")
@@ -224,10 +228,12 @@ impl Observer {
         let diagnostic = Diagnostic::error(Code::SettingConflict, place, message)
             .note(format!("`{key}` is a setting of {}", listed(others)));
         match &self.estimator {
-            Some(estimator) => diagnostic
-                .also(estimator.span, "which was chosen here")
-                .help(format!("remove it, or choose another estimator: this one has {}", listed(own))),
-            None => diagnostic.help("add `estimator:` with one that has it: without, it is a gradient"),
+            Some(estimator) => diagnostic.also(estimator.span, "the estimator is chosen here").help(format!(
+                "remove `{key}`, or choose another estimator: the settings of this one are {}",
+                listed(own)
+            )),
+            None => diagnostic
+                .help("add `estimator:` with one that has this setting; without that key the estimator is `gradient`"),
         }
     }
 }

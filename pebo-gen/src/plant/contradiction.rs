@@ -103,9 +103,9 @@ fn vanishes(arena: &Arena, domain: &Domain, expr: Expr) -> bool {
 fn impossible(arena: &Arena, assumption: &Assumption, alone: bool) -> Diagnostic {
     let shown = format!("`{} {}`", arena.print(assumption.expr), assumption.relation.sign());
     let (message, label) = if alone {
-        ("no values satisfy this assumption", format!("there are none with {shown}"))
+        ("no values satisfy this assumption", format!("no values have {shown}"))
     } else {
-        ("no values satisfy the assumptions together", format!("the others exclude {shown}"))
+        ("no values satisfy the assumptions together", format!("the other assumptions exclude {shown}"))
     };
     Diagnostic::error(Code::ContradictoryAssumptions, assumption.span, message).label(label).help("correct one of them")
 }
@@ -159,7 +159,7 @@ fn violated(arena: &Arena, assumption: &Assumption, parameters: &[Parameter]) ->
 fn contradictory(arena: &Arena, quantity: Expr, low: &Bound, high: &Bound) -> Diagnostic {
     let than = |bound: &Bound, strict: &str, loose: &str| {
         format!(
-            "this asks for `{} {} {}`",
+            "this assumption requires `{} {} {}`",
             arena.print(quantity),
             if bound.strict { strict } else { loose },
             arena.print(bound.value)

@@ -19,7 +19,9 @@ pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let remark = |name, lines| Remark { name, lines };
     let rests = derivation.operating_point(plant).map(|equilibrium| match equilibrium {
         Equilibrium::At(point) => rest(plant, derivation.class, point),
-        Equilibrium::Nowhere(symbol) => vec![format!("none: `{}` never rests", plant.arena.name(*symbol))],
+        Equilibrium::Nowhere(symbol) => {
+            vec![format!("none: the rate of `{}` is never zero", plant.arena.name(*symbol))]
+        }
         Equilibrium::Undecided(reason) => vec![format!("none was found: {reason}")],
     });
     let mut remarks = fundamental(plant, derivation);
@@ -27,10 +29,12 @@ pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     remarks.extend(special(plant).map(|line| remark("values", vec![line])));
     if derivation.outcome == Outcome::Accepted {
         let drift = derivation.drift(plant);
-        remarks.extend(drift.map(|drift| {
-            remark("drift", vec![grows(plant, drift), format!("against it {}", remedy(plant, derivation))])
-        }));
-        let jump = "another constant after a jump of the state: then start anew, or let the estimator forget";
+        remarks.extend(
+            drift.map(|drift| {
+                remark("drift", vec![grows(plant, drift), format!("remedy: {}", remedy(plant, derivation))])
+            }),
+        );
+        let jump = "a jump of the state changes theta: restart the observer then, or use an estimator with forgetting";
         remarks.push(remark("theta", vec![jump.to_owned()]));
     }
     remarks
@@ -43,14 +47,17 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         return Vec::new();
     };
     let lines: &[&str] = match fundamental {
-        Fundamental::Bounded { fades: false } => &["bounded: no error of theta is amplified"],
+        Fundamental::Bounded { fades: false } => &["stays bounded: errors of theta are not amplified"],
         Fundamental::Bounded { fades: true } => &[
-            "bounded, but theta is forgotten where Psi dies out: what the model misses later stays uncorrected there",
+            "stays bounded but decays in some directions, in which later disturbances of z are not corrected",
             RESTART,
         ],
-        Fundamental::Grows => &["grows, and with it every error of theta, until a number overflows", RESTART],
+        Fundamental::Grows => {
+            &["grows without bound: it amplifies every error of theta until numbers overflow", RESTART]
+        }
         Fundamental::NotShown => &[
-            "not shown to be bounded: if it grows, so does every error of theta; if it dies out, theta is forgotten",
+            "was not shown to stay bounded",
+            "if it grows, it amplifies errors of theta; if it decays, later disturbances of z are not corrected",
             RESTART,
         ],
     };
@@ -59,10 +66,11 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     remarks.extend(cascade.mend.iter().map(|mend| {
         let phi: Vec<String> = mend.iter().map(|component| plant.arena.print(*component)).collect();
         Remark {
-            name: "plain instead",
+            name: "plain cascade",
             lines: vec![
-                format!("phi: [{}] has a plain cascade, z' = h(y, u), without Psi", phi.join(", ")),
-                "its extension is an open integrator: a constant bias of a sensor or input makes it drift".to_owned(),
+                format!("phi: [{}] has the plain cascade z' = h(y, u) and needs no Psi", phi.join(", ")),
+                "its extension is an open integrator, which drifts under a constant bias of a sensor or input"
+                    .to_owned(),
             ],
         }
     }));
@@ -70,7 +78,7 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
 }
 
 /// What makes the fundamental matrix the identity again.
-const RESTART: &str = "`restart` at the estimate of z, with theta = 0, makes Psi the identity again";
+const RESTART: &str = "remedy: `restart` from the estimate of z with theta = 0 sets Psi back to the identity";
 
 /// On which values the verdict rests, where it is another than in general.
 fn special(plant: &Plant) -> Option<String> {
@@ -82,7 +90,8 @@ fn special(plant: &Plant) -> Option<String> {
     };
     let values: Vec<String> = linear.special.iter().filter_map(value).collect();
     let given = listed(values.iter().map(String::as_str));
-    (!values.is_empty()).then(|| format!("the ranks are others for {given} than in general: the verdict is for these"))
+    (!values.is_empty())
+        .then(|| format!("the verdict holds for {given}: with general values, some matrix ranks are different"))
 }
 
 /// The point, and what holds there.
@@ -95,11 +104,11 @@ fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
         .collect();
     if point.still {
         lines.push(match class {
-            Class::Pebo => "h = 0 there: chi rests but for a bias".to_owned(),
-            Class::Gpebo => "Lambda z + h = 0 there: z rests".to_owned(),
+            Class::Pebo => "h = 0 there: chi is constant if no sensor or input has a bias".to_owned(),
+            Class::Gpebo => "Lambda z + h = 0 there: z is constant".to_owned(),
         });
         lines.extend(point.rank.filter(|rank| *rank > 0).map(|rank| {
-            format!("rank [f; h_i] falls from {rank} to 0 there: Frobenius' theorem gives no phi, this one is explicit")
+            format!("rank [f; h_i] drops from {rank} to 0 there: Frobenius' theorem gives no phi, but this phi is proved directly")
         }));
     }
     lines
@@ -112,16 +121,16 @@ fn grows(plant: &Plant, drift: &Drift) -> String {
     };
     let integrators = names(&drift.integrators);
     if drift.integrated.is_empty() {
-        return format!("without end in {integrators}");
+        return format!("the constant h makes {integrators} grow without bound");
     }
-    format!("in {integrators} under a constant bias of {}", names(&drift.integrated))
+    format!("a constant bias of {} makes {integrators} grow without bound", names(&drift.integrated))
 }
 
 /// What the runtime has against drift.
 fn remedy(plant: &Plant, derivation: &Derivation) -> &'static str {
     match (derivation.class, derivation.can_rebase(plant)) {
-        (Class::Pebo, true) => "use `step_without_drift`, and an estimator that forgets",
-        (Class::Gpebo, true) => "use `rebase`, and an estimator that forgets",
-        (_, false) => "start anew before the extension loses its digits",
+        (Class::Pebo, true) => "use `step_without_drift` and an estimator with forgetting",
+        (Class::Gpebo, true) => "use `rebase` and an estimator with forgetting",
+        (_, false) => "restart the observer before the extension grows so large that rounding matters",
     }
 }

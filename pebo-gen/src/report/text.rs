@@ -33,14 +33,16 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         let mut lines = vec![match r.kind {
             Excitation::Instant => format!("instant: {regressor} has full column rank"),
             Excitation::Excitation => format!("over time: {regressor} and its derivatives have full column rank"),
-            Excitation::Never => "never: a direction of the unknowns stays unseen".to_owned(),
+            Excitation::Never => "never: the outputs do not depend on one direction of the unknowns".to_owned(),
         }];
         if !r.singular_where.is_empty() {
             let places = listed(r.singular_where.iter().map(String::as_str));
-            lines.push(format!("except where {places}: do not stay there"));
+            lines.push(format!("except where {places}: do not operate the plant there for long"));
         }
         if r.kind == Excitation::Instant && !r.everywhere_else {
-            lines.push("at almost every point: not all places were found where it may not".to_owned());
+            lines.push(
+                "this holds at almost every point; the points where the rank drops were not all found".to_owned(),
+            );
         }
         lines.extend(r.motion.iter().flat_map(|motion| motion.lines(plant)));
         lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
@@ -67,14 +69,13 @@ fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
     let rows = gram.matrix.iter().map(row).collect::<Vec<_>>().join(", ");
     let determinant = arena.print(gram.determinant);
     if rows.len() <= MOST_CHARACTERS {
-        lines.extend([format!("Phi_1' Phi_1 = [{rows}]"), format!("its determinant {determinant}")]);
-    } else {
-        lines.push(format!("the determinant of Phi_1' Phi_1, {determinant}"));
+        lines.push(format!("Phi_1' Phi_1 = [{rows}]"));
     }
+    lines.push(format!("det(Phi_1' Phi_1) = {determinant}"));
     lines.extend(gram.positive.map(|positive| match positive {
-        Positive::Assumed => "is positive wherever the assumptions hold: every input excites".to_owned(),
+        Positive::Assumed => "the determinant is positive wherever the assumptions hold: every input excites".to_owned(),
         Positive::Divided => {
-            "is positive throughout the assumed box, at the parameters' values: every input excites".to_owned()
+            "the determinant is positive throughout the assumed box at the given parameter values: every input excites".to_owned()
         }
     }));
     lines
@@ -127,7 +128,7 @@ fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
         }
     };
     if derivation.class == Class::Gpebo {
-        lines.insert(0, "generalised: z' = Lambda z + h, z = xi + Psi theta".to_owned());
+        lines.insert(0, "generalised: z' = Lambda z + h, with z = xi + Psi theta".to_owned());
     }
     lines
 }
@@ -155,12 +156,13 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
         .map(|s| arena.name(s.symbol))
         .collect();
     if !missing.is_empty() && derivation.left_inverse.verdict == Verdict::Proved {
-        lines.push(format!("a partial observer: {} not recovered", listed(missing.iter().map(String::as_str))));
+        lines
+            .push(format!("a partial observer, which does not recover {}", listed(missing.iter().map(String::as_str))));
     }
     let asked = super::conditions(arena, &derivation.asked_of_estimates(plant));
     if !asked.is_empty() {
         let asked = listed(asked.iter().map(String::as_str));
-        lines.push(format!("asks of estimates that {asked}: a step without a finite estimate is refused"));
+        lines.push(format!("needs estimates with {asked}: `step` refuses a sample whose estimate is not finite"));
     }
     lines
 }
@@ -196,7 +198,7 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         if regression.eta.len() > plant.theta.len() {
             let (unknowns, components) = (regression.eta.len(), plant.theta.len());
             lines.push(format!(
-                "{unknowns} unknowns stand for {components} of theta: the inputs have to excite all {unknowns}"
+                "eta has {unknowns} components and theta has {components}: all components of eta have to be excited"
             ));
         }
     }

@@ -24,13 +24,15 @@ pub(super) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
         return Some(name.to_owned());
     }
     let diagnostic = match written {
-        Some(written) if overrides.feedback.is_none() => {
-            Diagnostic::error(Code::WrongChoice, written.span, format!("`{name}` gives no estimates"))
-        }
+        Some(written) if overrides.feedback.is_none() => Diagnostic::error(
+            Code::WrongChoice,
+            written.span,
+            format!("`{name}` is not an observer of this simulation"),
+        ),
         _ => Diagnostic::error(
             Code::WrongChoice,
             Span::NOWHERE,
-            format!("`{name}`, which the call names for feedback, gives no estimates"),
+            format!("`{name}`, which the call names for feedback, is not an observer of this simulation"),
         ),
     };
     problems.push(match nearest(name, choices.iter().copied()) {

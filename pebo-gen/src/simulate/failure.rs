@@ -48,7 +48,9 @@ impl Failure {
                  method"
             }
             Self::Refused { .. } => "check the gains, the domain of the observer's formulas, and the step",
-            Self::Stopped { .. } => "allow more, as `--limit 60`, choose a longer step, or simulate a shorter time",
+            Self::Stopped { .. } => {
+                "allow more time, as `--limit 60`, choose a longer step, or simulate a shorter time"
+            }
         }
     }
 }
@@ -56,9 +58,9 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite { name, at } => write!(f, "`{name}` is no finite number at t = {at} s"),
+            Self::NotFinite { name, at } => write!(f, "`{name}` is not a finite number at t = {at} s"),
             Self::Stuck { at, steps } => {
-                write!(f, "the integration got stuck at t = {at} s, after {steps} steps there")
+                write!(f, "the integration made no progress at t = {at} s in {steps} steps")
             }
             Self::Refused { at, fault } => write!(f, "the observer refused the sample at t = {at} s: {fault}"),
             Self::Stopped { at } => write!(f, "the run reached its limit at t = {at} s"),

@@ -72,7 +72,7 @@ impl Layout {
 pub(super) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
     lower(arena, inputs, outputs).map_err(|undeclared| {
         let message = format!("`{}` has no value in the simulation", arena.name(undeclared.0));
-        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its course under `signals`")
+        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its values over time under `signals`")
     })
 }
 

@@ -209,7 +209,7 @@ fn rates(
         if output.rate.is_none() {
             let name = plant.arena.name(output.symbol);
             let missing = Diagnostic::error(Code::SimulationIncomplete, output.span, format!("`{name}` has no rate"))
-                .also(span, "which this needs")
+                .also(span, "the simulation needs it")
                 .help(format!("give the rate of `{name}` under `f_y`"));
             problems.push(match &output.value {
                 None => missing,
@@ -263,5 +263,5 @@ fn admit_table(timing: &Timing, columns: usize) -> Result<(), Diagnostic> {
         return Ok(());
     }
     let message = format!("the table would have {} rows of {columns} values", timing.rows());
-    Err(Diagnostic::error(Code::SimulationTooLong, Span::NOWHERE, message).help("choose a larger `every` for the call"))
+    Err(Diagnostic::error(Code::SimulationTooLong, Span::NOWHERE, message).help("choose a larger `--every`"))
 }

@@ -90,10 +90,10 @@ impl<'a> Names<'a> {
         show(
             plant.x.iter().map(|state| state.symbol).collect(),
             Sight::Everything,
-            "not measured: only hat(..) of it is",
+            "an unmeasured state: use its estimate hat(..)",
         );
         show(plant.y.iter().map(|output| output.symbol).collect(), Sight::Outputs, "an output, which varies in time");
-        show(plant.u.clone(), Sight::Inputs, "an input, which is not known here");
+        show(plant.u.clone(), Sight::Inputs, "an input, whose value is not known here");
         // After the signals, which give w its course.
         show(plant.w.clone(), Sight::Everything, "not measured");
         if let Some(baseline) = view.own {
@@ -110,7 +110,7 @@ impl<'a> Names<'a> {
                 let name = &definition.name.value;
                 match lower(arena, &scope, &definition.value) {
                     Ok(meaning) => scope.define(name, meaning),
-                    Err(_) => scope.bar(name, "defined by what is not known here"),
+                    Err(_) => scope.bar(name, "its definition uses names that are not known here"),
                 }
             }
         }
@@ -137,7 +137,7 @@ impl<'a> Names<'a> {
                     self.section(),
                     format!("`{section}` has no entry for `{name}`"),
                 )
-                .help(format!("add `{name}: 0`, or what it is, under `{section}`"))),
+                .help(format!("add `{name}: 0`, or its formula, under `{section}`"))),
             };
             found.extend(problems.keep(lowered));
         }
@@ -165,17 +165,17 @@ impl<'a> Names<'a> {
                     parameter.span,
                     format!("the parameter `{name}` has no value"),
                 )
-                .also(self.section(), "which this needs")
+                .also(self.section(), "the simulation needs it")
                 .help(format!("write its value: `{name}: 1`")),
             );
         }
         for unmeasured in &self.plant.w {
             let name = arena.name(*unmeasured);
             if !self.simulation.signals.iter().any(|signal| signal.name.value == name) {
-                let message = format!("the unmeasured signal `{name}` has no course");
+                let message = format!("the simulation does not say what the unmeasured signal `{name}` is");
                 problems.push(
                     Diagnostic::error(Code::SimulationIncomplete, self.section(), message)
-                        .help(format!("give it under `signals`, as `{name}: 0`")),
+                        .help(format!("give its values over time under `signals`, as `{name}: 0`")),
                 );
             }
         }

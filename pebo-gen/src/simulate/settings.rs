@@ -175,11 +175,11 @@ impl Section<'_> {
         let (lower, upper) = (lower?, upper?);
         if let Some(crossed) = (0..self.unknowns).find(|&unknown| lower[unknown] > upper[unknown]) {
             let (below, above) = (&written.lower, &written.upper);
-            let message = format!("the bounds of unknown {} admit nothing", crossed + 1);
+            let message = format!("no value lies within the bounds of unknown {}", crossed + 1);
             let (below, above) = (below.get(crossed).or(below.first())?, above.get(crossed).or(above.first())?);
             self.problems.push(
                 Diagnostic::error(Code::NumberOutOfRange, below.span, message)
-                    .also(above.span, "which is lower")
+                    .also(above.span, "this upper bound is below the lower one")
                     .help("exchange them, or leave one of them out"),
             );
             return None;
@@ -199,7 +199,7 @@ impl Section<'_> {
             [one] => Some(vec![one.value.to_f64(); count]),
             all if all.len() == count => Some(all.iter().map(|value| value.value.to_f64()).collect()),
             all => {
-                let message = format!("{} values where {what} is expected, {count} in all", all.len());
+                let message = format!("{} values are given, and {count} are expected: {what}", all.len());
                 self.problems.push(
                     Diagnostic::error(Code::WrongShape, all[0].span.to(all[all.len() - 1].span), message)
                         .help(format!("write {count} values, or one for all")),

@@ -22,7 +22,7 @@ impl Signal {
             let message = format!("`{}` has no value before {} s", entry.name.value, first.from.value.text());
             problems.push(
                 Diagnostic::error(Code::SimulationIncomplete, first.from.span, message)
-                    .help("let its first piece begin at 0"),
+                    .help("let its first piece start at 0"),
             );
         }
         let pieces = entry.value.iter().filter_map(|piece| {

@@ -52,7 +52,7 @@ impl Timing {
         let intervals = duration.seconds.checked_div(&step.seconds)?.to_f64();
         if intervals > MOST_SAMPLES {
             let message = format!(
-                "the simulation has {intervals:.3e} samples: {} goes so often into {} s",
+                "the simulation has {intervals:.3e} samples: {} is too short for a duration of {} s",
                 step.said("step"),
                 duration.to_f64()
             );
@@ -132,7 +132,7 @@ impl Setting {
             return Ok(Self { seconds, span });
         }
         let whose = if span == Span::NOWHERE { " of the call" } else { "" };
-        let message = format!("`{name}`{whose} is {text}, and must be positive");
+        let message = format!("`{name}`{whose} is {text}, but must be positive");
         Err(Diagnostic::error(Code::NumberOutOfRange, span, message)
             .help("give a number of seconds above zero, as 1e-5"))
     }

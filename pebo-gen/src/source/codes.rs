@@ -60,10 +60,11 @@ codes! {
     // The command.
 
     LimitReached "limit-reached" "the limit on time or memory was reached"
-        "A command has 10 seconds for each model, or what `--limit` says, and 512 MB (in proportion where the limit is \
-         longer). The message names the phase in which they ended; what was open then is undecided. Time is counted in \
-         steps of work first, so that the verdict is the same on any machine that is not very slow. Formulas with \
-         fewer functions, parameters with values, and named parts that are shared take less."
+        "A command has 10 seconds for each model, or what `--limit` says, and 512 MB (in proportion where the limit \
+         is longer). The message names the phase in which the limit was reached; what was not decided by then is \
+         undecided. Time is counted in steps of work first, so that the verdict is the same on any machine that is \
+         not very slow. Formulas with fewer functions, parameters with values, and shared parts with names under \
+         define take less time."
 
     // Files.
 
@@ -82,8 +83,8 @@ codes! {
     // Commands.
 
     NotYet "not-yet" "a command that this version does not have"
-        "The command belongs to the interface of pebo-gen, and is not written yet. `pebo-gen --help` lists those that \
-         are."
+        "The command belongs to the interface of pebo-gen, and is not written yet. `pebo-gen --help` lists the \
+         commands that are."
 
     // YAML.
 
@@ -93,9 +94,9 @@ codes! {
         "The YAML parser stopped here. Frequent causes: a tab in the indentation; a missing space after a colon; a \
          formula that begins with a character that means something to YAML (* & ! { [ % @ ` | >) and needs quotes; a \
          bracket or quote that is never closed; a formula with a comma inside { } or [ ], which needs quotes too."
-    YamlFeature "yaml-feature" "a feature of YAML that model files do without"
+    YamlFeature "yaml-feature" "a feature of YAML that model files cannot use"
         "Anchors (&name), aliases (*name), tags (!name), merge keys, directives (%) and several documents in one file \
-         are refused: a model says what it means where it means it. A formula that begins with * & or ! needs quotes."
+         are refused, so that every value stands where it is used. A formula that begins with * & or ! needs quotes."
     NestedTooDeep "nested-too-deep" "lists or maps are nested too deep"
         "No part of a model file nests more than a handful of levels."
     TooManyValues "too-many-values" "the file has too many values"
@@ -115,18 +116,18 @@ codes! {
         "The key accepts only the words that the help lists."
     SettingConflict "setting-conflict" "settings of the observer that do not go together"
         "Each estimator has settings of its own: gain for gradient; gain, normalisation for normalised-gradient; \
-         covariance, forgetting for least-squares; gain, regressor_gain, forgetting for drem, and clip, period besides \
-         for finite-time-drem; gain, regressor_gain for gradient-drem; gain, covariance, forgetting for \
+         covariance, forgetting for least-squares; gain, regressor_gain, forgetting for drem, and clip, period \
+         besides for finite-time-drem; gain, regressor_gain for gradient-drem; gain, covariance, forgetting for \
          least-squares-drem. All have bounds. The regression goes through a filter or through a window, not both."
     EmptyList "empty-list" "a list must not be empty"
         "A model has at least one unmeasured state, one output and one component of phi."
-    ClassConflict "class-conflict" "a class beside what it gives"
+    ClassConflict "class-conflict" "a class beside keys that the class gives"
         "A model written by class (lti, mechanical or electromechanical) has its equations f_x and f_y and its transform \
-         phi from the class. They cannot be given besides, nor can a second class."
+         phi from the class. These keys, or a second class, cannot be given as well."
         => "Sections 4, 5.1 and 5.2"
     ClassUnresolved "class-unresolved" "the matrices of a class could not be worked out"
-        "Expanding a class inverts matrices exactly. Here the algebra met an obstacle, which the message names; simpler \
-         formulas, or parameters with values, may avoid it."
+        "Expanding a class inverts matrices exactly. Here that was not possible; the message names the obstacle. \
+         Simpler formulas, or parameters with values, may avoid it."
         => "Sections 4, 5.1 and 5.2"
     NotSymmetric "not-symmetric" "a matrix that must be symmetric is not"
         "The inertia matrix M and the inductance matrix L are those of an energy, hence symmetric. The message names a \
@@ -140,14 +141,15 @@ codes! {
     // Models in plain Rust.
 
     MissingItem "missing-item" "a struct or a function of the model is absent"
-        "A module under #[pebo_model] has at least the structs X and Y, whose fields are the unmeasured states and the \
-         measured outputs, and the functions f_x and phi. Besides, it may have the structs U (inputs) and W (unmeasured \
-         signals that are not estimated), the functions f_y, g_y, phi_left and identities, and constants, which are the \
-         parameters."
+        "A module under #[pebo_model] has at least the structs X and Y, whose fields are the unmeasured states and \
+         the measured outputs, and the functions f_x and phi. It may also have the structs U (inputs) and W \
+         (unmeasured signals that are not estimated), the functions f_y, g_y, phi_left and identities, and \
+         constants, which are the parameters."
     UnsupportedRust "unsupported-rust" "Rust that has no meaning in a model"
-        "The functions of a model are read as formulas: + - * /, the functions of floating-point numbers, let, fields, \
-         indices, and calls of other functions of the module. Branches, loops, closures, macros and assignments are not \
-         formulas. The reader accepts nothing that would mean something else than what the compiled function computes."
+        "The functions of a model are read as formulas: + - * /, the functions of floating-point numbers, let, \
+         fields, indices, and calls of other functions of the module. Branches, loops, closures, macros and \
+         assignments are not formulas. The reader accepts nothing that would mean something else than what the \
+         compiled function computes."
 
     // Names.
 
@@ -155,17 +157,18 @@ codes! {
         "A name has ASCII letters, digits and underscores, and does not begin with a digit. Greek letters are spelled \
          out, as lambda_m."
     ReservedName "reserved-name" "a name that the generator needs itself"
-        "z1, z2, .. are the coordinates, chi1, .. the dynamic extension, theta1, .. the unknown parameters, xi1, .. and \
-         Psi11, .. those of the generalised cascade (Psi1_1, .. of more than nine components); t is time where a simulation is given. A declared quantity of \
-         that name would make formulas ambiguous. All other names are free, also E, I, S, e, pi and sin."
+        "z1, z2, .. are the coordinates, chi1, .. the dynamic extension, theta1, .. the unknown parameters, xi1, .. \
+         and Psi11, .. those of the generalised cascade (Psi1_1, .. of more than nine components); t is time where \
+         a simulation is given. A declared quantity of that name would make formulas ambiguous. All other names are \
+         free, also E, I, S, e, pi and sin."
     DuplicateName "duplicate-name" "a name is declared twice"
         "Parameters, states, outputs, inputs, unmeasured signals and definitions share one space of names."
-    CircularDefinition "circular-definition" "definitions that need one another"
-        "The definitions under define may stand in any order, but one of them must come first: a definition that uses \
-         itself, perhaps through others, has no meaning. The message names those of the circle; define one of them by \
-         declared quantities."
+    CircularDefinition "circular-definition" "definitions that depend on one another in a circle"
+        "The definitions under define may stand in any order, but one of them must come first: a definition that \
+         uses itself, perhaps through others, has no meaning. The message names those of the circle; define one of \
+         them by declared quantities."
     UnknownName "unknown-name" "a name that is not declared"
-        "A formula uses a name that is neither declared in the model nor known in this place. Names are declared under \
+        "A formula uses a name that is not declared in the model, or not known in this place. Names are declared under \
          parameters, x, y, u, w or define; case matters."
     MissingEntry "missing-entry" "a map lacks an entry for a declared name"
         "Every unmeasured state needs its rate, its time derivative, under f_x."
@@ -189,7 +192,7 @@ codes! {
         "A formula was expected and nothing is there. Write 0 for zero."
     UnexpectedCharacter "unexpected-character" "a character that formulas do not have"
         "Formulas have names, numbers, + - * / ^ (or **), parentheses and commas between arguments."
-    UnexpectedToken "unexpected-token" "a formula goes on in an unexpected way"
+    UnexpectedToken "unexpected-token" "a formula continues in an unexpected way"
         "The parser read a formula up to here and cannot make sense of what follows."
     UnclosedParenthesis "unclosed-parenthesis" "a parenthesis is not closed"
         "In a model file, a comma inside { } or [ ] ends a formula that is not quoted: write \"atan2(a, b)\" there."
@@ -225,46 +228,47 @@ codes! {
     DivisionByZero "division-by-zero" "a formula divides by zero"
         "A denominator is zero whatever the values of the names in it are, so the formula has no value anywhere."
     NoRealValue "no-real-value" "a formula has no real value"
-        "A constant is outside of the domain of the function it is put into: the logarithm of a number that is not \
-         positive, the root of a negative number, the inverse sine of a number beyond 1."
+        "The argument of a function is a constant outside of the domain of the function: the logarithm of a number \
+         that is not positive, the root of a negative number, the inverse sine of a number beyond 1."
     PeriodNotPositive "period-not-positive" "a period that is not known to be positive"
-        "The period of an angle is a positive constant, as 2*pi or 2*pi/n_p. Of a period that is made of parameters, \
-         the signs of their values, or an assumption, must show that it is positive: what is known of the state up to \
-         the period is proved for all parameters with these signs."
+        "The period of an angle is a positive constant, as 2*pi or 2*pi/n_p. If the period is made of parameters, \
+         the signs of their values or an assumption must show that it is positive, because the left inverse is \
+         proved for all parameters with these signs."
     ContradictoryAssumptions "contradictory-assumptions" "assumptions that cannot hold together"
-        "No values satisfy the assumptions shown, or the model's own parameters violate one: there is nothing that a \
-         claim could be made of. Where this is not certain, but no values were found at which all assumptions hold and \
-         all formulas have values, the claims are undecided."
+        "No values satisfy the assumptions shown, or the model's own parameters violate one of them, so that a \
+         claim would say nothing. Where this is not certain, but no values were found at which all assumptions hold \
+         and all formulas have values, the claims are undecided."
     MissingRate "missing-rate" "a rate is needed that the model does not give"
-        "The transform phi uses an output whose derivative stands nowhere. Its own derivative along the plant, which \
-         must be h(y, u), then cannot be formed. Give the output's rate under f_y. The entries of f_x and f_y are time \
-         derivatives; an equation for the value of an output, as V = E - R*i, stands under g_y, and its rate follows \
-         from it where it holds no input."
+        "The transform phi uses an output whose rate the model does not give. The rate of phi along the plant, \
+         which must be h(y, u), then cannot be computed. Give the output's rate under f_y. The entries of f_x and \
+         f_y are time derivatives; an equation for the value of an output, as V = E - R*i, stands under g_y, and \
+         its rate follows from it where it holds no input."
         => "Section 2.2, Assumption 1 (ii)"
 
     // Claims.
 
-    IdentityRefuted "identity-refuted" "an identity holds nowhere, or the plant does not keep it"
-        "The claims are made where the identities hold, and of trajectories that stay there. This one has no real \
-         solution, or its derivative along the plant is not zero where the identities hold; the witness is such a point. \
-         Then either the identity or a rate is mistaken."
-    IdentityUndecided "identity-undecided" "an identity is neither proved to be kept by the plant nor refuted"
-        "The claims are made where the identities hold. No values were found at which they do, or it could not be decided \
-         whether the plant keeps this one. An identity is understood that can be solved for one of its names, \
-         which stands in it to the first or second power, or in one power alone, with a factor that is never zero."
+    IdentityRefuted "identity-refuted" "an identity holds nowhere, or is not invariant along the plant"
+        "The claims are about trajectories on which the identities hold. This identity has no real solution, or its \
+         derivative along the plant is not zero at a point where the identities hold; the witness is such a point. \
+         Either the identity or a rate is wrong."
+    IdentityUndecided "identity-undecided" "the invariance of an identity is neither proved nor refuted"
+        "The claims are about trajectories on which the identities hold. No values were found at which they hold, \
+         or it could not be decided whether this identity is invariant along the plant. An identity can be used if \
+         it can be solved for one of its names: the name occurs to the first or second power, or in one power \
+         alone, with a factor that is never zero."
     CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
         "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone, or for the \
-         generalised cascade an affine function of phi with such coefficients; `class: pebo` in a model asks for the \
-         first. The residual shown remains for any choice, and the witness is a \
-         point where it is certainly not constant in x. Change phi, or let `pebo-gen solve` propose one."
+         generalised cascade an affine function of phi with such coefficients; `class: pebo` in a model asks for \
+         the first. The message shows the residual that remains, and points at which its value differs for the same \
+         y, u and parameters. Change phi; the help proposes a phi where one was found."
         => "Section 2.2, Assumption 1 (ii)"
     CascadeUndecided "cascade-undecided" "the cascade claim is neither proved nor refuted"
         "Claim C1 could not be decided; the obstacle names the expression that the algebra does not cover. Nothing is \
          emitted without a proof."
         => "Section 2.2, Assumption 1 (ii)"
     LeftInverseRefuted "left-inverse-refuted" "phi_left does not invert phi"
-        "Claim C2: phi_left(phi(x, y), y) = x. The witness is a state that phi_left does not return. If it holds only \
-         up to a period, say so under angles; if only in a part of the state space, under assume."
+        "Claim C2: phi_left(phi(x, y), y) = x. The witness is a point whose state phi_left does not return. If the \
+         claim holds only up to a period, say so under angles; if only in a part of the state space, under assume."
         => "Section 2.2, Assumption 1 (i)"
     LeftInverseUndecided "left-inverse-undecided" "the left inverse is neither proved nor refuted"
         "Claim C2 could not be decided; the obstacle names what the algebra does not cover. An assumption on signs \
@@ -275,19 +279,19 @@ codes! {
          no left inverse exists."
         => "Section 2.2, Assumption 1 (i)"
     RegressionNonlinear "regression-nonlinear" "the outputs do not give a linear regression"
-        "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them that \
-         can be listed. Another phi, or an identity for a static regression, may help. The entries of f_x and f_y are \
-         time derivatives: an equation for the value of an output, as V = E - R*i, stands under g_y."
+        "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them \
+         that can be listed. Another phi, or an identity for a static regression, may help. The entries of f_x and \
+         f_y are time derivatives: an equation for the value of an output, as V = E - R*i, stands under g_y."
         => "Section 2.2, Proposition 1, and Section 2.3"
     UnknownUpToTurns "unknown-up-to-turns" "theta is determined only up to whole turns"
         "The rates of the outputs depend on theta through its sine and cosine, from which atan2 gives it up to whole \
-         turns. For a state that is an angle this is all there is to know; for another it is an ambiguity."
+         turns. A state that is an angle needs no more; any other state is ambiguous."
         => "Section 5.2"
     RegressionUndecided "regression-undecided" "the regression is neither proved nor refuted"
         "Claim C3 could not be decided; the obstacle names what the algebra does not cover."
         => "Section 2.2, Proposition 1, and Section 2.3"
     NeverIdentifiable "never-identifiable" "the regressor never determines theta"
-        "Claim C4: there is a direction of theta, shown in the message, that no input makes visible in the outputs. \
+        "Claim C4: the outputs do not depend on a direction of theta, shown in the message, whatever the input is. \
          Measure another signal, or choose a phi with fewer components."
         => "Section 2.3, Assumption 2"
     IdentifiabilityUndecided "identifiability-undecided" "identifiability is neither proved nor refuted"
@@ -301,13 +305,13 @@ codes! {
          control law for each input, and a section `observer` with the estimator's gains and the filter."
     SimulationIncomplete "simulation-incomplete" "a simulation lacks something that it needs"
         "Every parameter needs a value, every state and output a start and a rate, every input a control law, every \
-         unmeasured signal w a course under signals, and the observer its gains and its filter."
+         unmeasured signal w its values over time under signals, and the observer its gains and its filter."
     SimulationTooLong "simulation-too-long" "a simulation has too many samples"
         "The number of samples, duration over step, and the size of the table that is written are limited, so that a \
-         slip in a power of ten does not run for days."
+         wrong power of ten does not make a run of days."
     SimulationUnsupported "simulation-unsupported" "a simulation that this version cannot run"
         "The simulator runs the observer in one of a few fixed sizes, and the estimators of the runtime library. The \
-         message says what is beyond them. The emitted code has no such limit."
+         message says what the simulator does not have. The emitted code has no such limit."
     SimulationFailed "simulation-failed" "a simulation stopped before its end"
         "The closed loop left the domain of a formula, grew beyond all bounds, or is too stiff for the explicit \
          integrator. The message says when and where. A shorter step, other gains or another start may help."

@@ -93,7 +93,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
             let contradiction = arena.symbols_of(&[stuck]).is_empty();
             let reason = doubtful.unwrap_or_else(|| {
                 if contradiction {
-                    return "the ways of solving for it that were tried end in contradictions".to_owned();
+                    return "every way of solving for it that was tried ends in a contradiction".to_owned();
                 }
                 format!("no rule solves `{}` = 0", arena.print(stuck))
             });

@@ -251,10 +251,12 @@ impl Motion {
     /// What has to move, in a line, and where the regression is blind, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let first = match (self.by_itself, self.at_rest) {
-            (Some(true), true) => "by itself, even at rest",
-            (Some(true), false) => "by itself, while the plant moves: no input has to",
-            (Some(false), _) => "with excitation: keep the inputs moving",
-            (None, _) => "on almost every motion: whether inputs have to move was not decided",
+            (Some(true), true) => "the unknowns are identified without excitation by the inputs, even at rest",
+            (Some(true), false) => "the unknowns are identified while the plant moves, also with constant inputs",
+            (Some(false), _) => "the unknowns are identified under excitation: keep the inputs varying",
+            (None, _) => {
+                "the unknowns are identified on almost every motion; it was not decided whether the inputs have to vary"
+            }
         };
         let blind = self.blind.iter().map(|blind| blind.line(plant));
         std::iter::once(first.to_owned()).chain(blind).collect()
@@ -285,8 +287,8 @@ impl Blind {
 
     fn line(&self, plant: &Plant) -> String {
         let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
-        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("no more than {}", seen.join(", ")) };
-        format!("while {}, {seen} is seen", self.worded(plant))
+        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
+        format!("while {}, {seen} is identified", self.worded(plant))
     }
 }
 
@@ -315,11 +317,11 @@ mod tests {
                       f_y: {v: d*a + e*b}\nphi: [a, b]\nassume: [r > 0";
         let anywhere = format!("{phases}]");
         let expected = [
-            "with excitation: keep the inputs moving",
-            "while all inputs are constant, no more than `z1 + e*z2/d` is seen",
-            "while `d = e`, no more than `z1 + z2` is seen",
-            "while `d = 0`, no more than `z2` is seen",
-            "while `e = 0`, no more than `z1` is seen",
+            "the unknowns are identified under excitation: keep the inputs varying",
+            "while all inputs are constant, only `z1 + e*z2/d` is identified",
+            "while `d = e`, only `z1 + z2` is identified",
+            "while `d = 0`, only `z2` is identified",
+            "while `e = 0`, only `z1` is identified",
         ];
         assert_eq!(of(&anywhere), expected);
         // Assumptions exclude the rest.
@@ -330,18 +332,27 @@ mod tests {
     fn different_time_constants_tell_unknowns_apart() {
         let cells = "parameters: [r, s]\nassume: [r > 0, s > 0]\nx: [a, b]\ny: [v]\nu: [i]\n\
                      f_x: {a: i - r*a, b: i - s*b}\nf_y: {v: a + b}\nphi: [a, b]";
-        assert_eq!(of(cells), ["by itself, even at rest", "r - s != 0"]);
+        assert_eq!(
+            of(cells),
+            ["the unknowns are identified without excitation by the inputs, even at rest", "r - s != 0"]
+        );
     }
 
     #[test]
     fn a_plant_that_moves_may_need_no_input() {
         let square = "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]";
         let lines = of(square);
-        assert_eq!(lines[0], "by itself, while the plant moves: no input has to");
-        assert!(lines[1].starts_with("while the plant rests, no more than `"), "{lines:?}");
-        assert!(lines[2].starts_with("while `u = 0`, no more than `"), "{lines:?}");
+        assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+        assert!(lines[1].starts_with("while the plant rests, only `"), "{lines:?}");
+        assert!(lines[2].starts_with("while `u = 0`, only `"), "{lines:?}");
         assert_eq!(lines.len(), 3);
         let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
-        assert_eq!(of(frame), ["by itself, even at rest", "while `w = 0`, no more than `z1` is seen"]);
+        assert_eq!(
+            of(frame),
+            [
+                "the unknowns are identified without excitation by the inputs, even at rest",
+                "while `w = 0`, only `z1` is identified"
+            ]
+        );
     }
 }

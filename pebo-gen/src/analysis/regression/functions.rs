@@ -125,11 +125,11 @@ fn lost_by_turns(plant: &Plant, index: usize, state: Symbol, shift: Expr) -> Dia
         plant.phi[index].span,
         format!("{name} is not determined: theta{} is known only up to whole turns", index + 1),
     )
-    .label(format!("a turn of this component moves {name} by `{}`", arena.print(shift)))
-    .note("the outputs see this component through its sine and cosine alone");
+    .label(format!("a whole turn of this component changes {name} by `{}`", arena.print(shift)))
+    .note("the outputs depend on this component only through its sine and cosine");
     match plant.period(state) {
         Some(period) => diagnostic.help(format!(
-            "declare a period under `angles` that divides this, instead of `{}`, or measure another output",
+            "declare a period under `angles` that divides this change, instead of `{}`, or measure another output",
             arena.print(period)
         )),
         None => diagnostic
@@ -141,6 +141,6 @@ fn lost_by_turns(plant: &Plant, index: usize, state: Symbol, shift: Expr) -> Dia
 fn up_to_turns(plant: &Plant) -> Diagnostic {
     let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
     Diagnostic::warning(Code::UnknownUpToTurns, span, "theta is determined only up to whole turns")
-        .label("the outputs see this transform through its sine and cosine")
-        .help("read what is recovered from it as an angle: declare the state under `angles`")
+        .label("the outputs depend on this transform only through its sine and cosine")
+        .help("if the recovered state is an angle, declare it under `angles`")
 }

@@ -49,8 +49,8 @@ pub(super) fn hidden_by_signals(
                 places.first().map_or(*span, |place| place.span),
                 format!("the rate of {output} depends on the unmeasured signal {signal}"),
             )
-            .label(format!("nothing can be learnt from {output} while {signal} is unknown"))
-            .note(format!("its derivative in {signal}: {}", witness.sentence(arena)))
+            .label(format!("{output} gives no information while {signal} is unknown"))
+            .note(format!("the derivative of this rate with respect to {signal}: {}", witness.sentence(arena)))
             .help(format!(
                 "declare {signal} under `u` if it is measured, give `f_y` for an output whose rate is free of it, or an \
                  identity under `identities`"
@@ -66,10 +66,10 @@ fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
     Diagnostic::error(
         Code::RegressionUndecided,
         span,
-        "it could not be decided whether the outputs tell of the unknowns while unmeasured signals move them",
+        "it could not be decided whether the outputs determine the unknowns while unmeasured signals act on them",
     )
     .note(format!(
-        "combinations of {} with constant coefficients, free of these signals, make no regression that was found",
+        "no regression was found among the combinations of {} with constant coefficients that are free of these signals",
         listed(names.iter().map(String::as_str))
     ))
     .help("give `f_y` for an output whose rate is free of the unmeasured signals, or an identity under `identities`")
@@ -84,7 +84,7 @@ pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic 
         format!("it could not be decided whether the rate of {output} is linear in functions of theta"),
     )
     .label("not an affine function of phi with coefficients in y and u")
-    .note("obstacle: functions of theta are not sought for a generalised cascade, z = xi + Psi theta")
+    .note("obstacle: for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for")
     .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
 }
 
@@ -101,11 +101,14 @@ pub(super) fn nonlinear(
 ) -> Option<String> {
     let arena = &plant.arena;
     if let Some(witness) = left_inverse.and_then(|inverse| curvature(plant, domain, rate, inverse)) {
-        return Some(format!("as a function of z it bends: {}", witness.sentence(arena)));
+        return Some(format!(
+            "as a function of z, this rate has a second derivative that is not zero: {}",
+            witness.sentence(arena)
+        ));
     }
     let points = affine::refuted(plant, domain, rate)?;
     let compared = Comparison::of(rate, &points, &plant.hidden());
-    Some(format!("no affine function of phi takes its values: {}", compared.sentence(arena, "it")))
+    Some(format!("no affine function of phi has the values of this rate: {}", compared.sentence(arena, "the rate")))
 }
 
 /// A point of the domain at which the rate, as a function of z, has a second derivative.
@@ -147,7 +150,9 @@ pub(super) fn refuted(
         first,
         format!("the rate of {output} is not linear in the unknowns"),
     );
-    let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "nor is this"));
+    let diagnostic = others
+        .iter()
+        .fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "this term is not affine in phi either"));
     diagnostic
     .label("not an affine function of phi with coefficients in y and u")
     .note(shown)

@@ -31,9 +31,13 @@ pub(in crate::analysis) fn from_identities(
             return claim;
         }
         found.push(
-            Diagnostic::error(Code::RegressionNonlinear, span, "there is nothing to estimate the unknowns from")
-                .label("no output has a rate under `f_y`, and there are no `identities`")
-                .help("give `f_y` for an output, or an expression in x and y that is zero under `identities`"),
+            Diagnostic::error(
+                Code::RegressionNonlinear,
+                span,
+                "the model gives no equation from which the unknowns could be estimated",
+            )
+            .label("no output has a rate under `f_y`, and there are no `identities`")
+            .help("give `f_y` for an output, or an expression in x and y that is zero under `identities`"),
         );
         return Claim { verdict: Verdict::Refuted, result: None };
     }
@@ -115,10 +119,12 @@ fn under_lambda(
             None => Diagnostic::error(
                 Code::RegressionUndecided,
                 span,
-                "under a generalised cascade no regression was found in this identity",
+                "for a generalised cascade, no regression was found in this identity",
             )
             .label("not an affine function of phi with coefficients in y and u")
-            .note("functions of theta are not sought for a generalised cascade, z = xi + Psi theta")
+            .note(
+                "for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for",
+            )
             .help("choose a phi in which it is affine, or one whose derivative is free of x"),
         });
         return Claim { verdict: Verdict::Undecided, result: None };

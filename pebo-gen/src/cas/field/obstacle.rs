@@ -28,7 +28,7 @@ pub enum Obstacle {
 impl fmt::Display for Obstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooLarge => f.write_str("the expressions grow past the work limit"),
+            Self::TooLarge => f.write_str("the expressions grow beyond the work limit"),
             Self::OutOfBudget => f.write_str("the limit on time or memory is reached"),
             Self::DivisionByZero => f.write_str("a denominator is zero everywhere"),
             Self::Kernel(what) => write!(f, "no rule decides {what}"),
@@ -36,9 +36,9 @@ impl fmt::Display for Obstacle {
             Self::Unsolved(equation) => {
                 write!(f, "the identity `{equation}` could not be solved for a symbol without losing solutions")
             }
-            Self::NoWitness => {
-                f.write_str("the normal form is not zero, yet no point was found where it provably differs")
-            }
+            Self::NoWitness => f.write_str(
+                "the expression does not simplify to zero, but no point was found where it is provably not zero",
+            ),
             Self::Related(a, b) => write!(f, "no rule shows whether {a} and {b} are independent"),
         }
     }

@@ -56,7 +56,7 @@ impl Parser<'_> {
             }
             Kind::Close => self.unexpected("this parenthesis closes nothing").help("remove it, or open one before"),
             Kind::Comma => self
-                .unexpected("a comma separates arguments, and there is no call here")
+                .unexpected("a comma separates the arguments of a call, and there is no call here")
                 .help("write decimals with a point"),
             Kind::Equals => self
                 .unexpected("a formula is not an equation")
@@ -72,7 +72,7 @@ impl Parser<'_> {
 
 /// An estimate where there is none.
 pub(super) fn no_estimate(hat: Span) -> Diagnostic {
-    Diagnostic::error(Code::MisplacedEstimate, hat, "there is no estimate in this place")
+    Diagnostic::error(Code::MisplacedEstimate, hat, "hat() has no meaning in this place")
         .help("use hat() in the control law and panels of a simulation only")
 }
 

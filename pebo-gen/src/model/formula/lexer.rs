@@ -88,7 +88,7 @@ impl<'a> Lexer<'a> {
     fn stranger(&self, start: usize) -> Diagnostic {
         let character = self.text[start..].chars().next().unwrap_or_default();
         let span = self.places.span(start, start + character.len_utf8());
-        let message = format!("formulas do not have the character `{}`", character.escape_debug());
+        let message = format!("formulas cannot contain the character `{}`", character.escape_debug());
         let diagnostic = Diagnostic::error(Code::UnexpectedCharacter, span, message);
         match substitute(character) {
             Some(help) => diagnostic.help(help),

@@ -22,7 +22,7 @@ pub fn parse_formula(text: &str, places: &Places, estimates: Estimates) -> Resul
     match parser.next.kind {
         Kind::End => Ok(formula),
         Kind::Relation(_) => {
-            Err(parser.unexpected("a formula does not compare").help("comparisons belong under `assume`"))
+            Err(parser.unexpected("a formula cannot contain a comparison").help("comparisons belong under `assume`"))
         }
         _ => Err(parser.trailing()),
     }
@@ -42,7 +42,7 @@ pub fn parse_comparison(text: &str, places: &Places) -> Result<Comparison, Diagn
     }
     let span = rest.last().map_or(first.span, |(_, last)| first.span.to(last.span));
     if rest.is_empty() {
-        let message = "an assumption compares, and this does not".to_owned();
+        let message = "an assumption needs a comparison, and this has none".to_owned();
         return Err(Diagnostic::error(Code::ComparisonExpected, span, message)
             .help(format!("write for example `{} > 0`", text.trim())));
     }

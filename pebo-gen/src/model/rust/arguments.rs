@@ -42,7 +42,7 @@ impl Arguments {
             Ok(metas) => metas,
             Err(error) => {
                 let place = places.at(error.span());
-                let message = format!("the attribute is not understood: {error}");
+                let message = format!("the attribute could not be read: {error}");
                 diagnostics.push(
                     unsupported(place, message)
                         .help("write for example #[pebo_model(reference = \"..\", assume(L > 0, 0 < d < 1))]"),
@@ -73,18 +73,18 @@ impl Arguments {
             ("angles", Meta::List(list)) => {
                 let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
                 let pairs = pairs.map_err(|error| {
-                    unsupported(places.at(error.span()), "an angle has a period")
+                    unsupported(places.at(error.span()), "an angle needs a period")
                         .help("write for example `angles(q = 2.0 * PI)`")
                 })?;
                 self.angles.extend(pairs);
             }
             ("title" | "reference" | "class", _) => {
-                return Err(unsupported(places.of(meta), format!("`{name}` is a text"))
+                return Err(unsupported(places.of(meta), format!("`{name}` takes a text"))
                     .help(format!("write `{name} = \"..\"`")));
             }
             ("assume" | "angles", _) => {
                 let example = if name == "assume" { "assume(L > 0)" } else { "angles(q = 2.0 * PI)" };
-                return Err(unsupported(places.of(meta), format!("`{name}` has a list in parentheses"))
+                return Err(unsupported(places.of(meta), format!("`{name}` takes a list in parentheses"))
                     .help(format!("write for example `{example}`")));
             }
             _ => {
@@ -108,7 +108,7 @@ fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Di
         Expr::Lit(syn::ExprLit { lit: Lit::Str(text), .. }) => {
             Ok(Spanned { value: text.value(), span: places.of(text) })
         }
-        other => Err(unsupported(places.of(other), "this is no text").help("write it in quotes")),
+        other => Err(unsupported(places.of(other), "this is not a text").help("write it in quotes")),
     }
 }
 
@@ -173,7 +173,7 @@ fn chain(tokens: TokenStream, places: &mut Places) -> Result<Chain, Diagnostic> 
 }
 
 fn no_comparison(whole: Span, places: &Places) -> Diagnostic {
-    Diagnostic::error(Code::ComparisonExpected, whole, "an assumption compares, and this does not")
+    Diagnostic::error(Code::ComparisonExpected, whole, "an assumption needs a comparison, and this has none")
         .help(format!("write for example `{} > 0`", places.text(whole)))
 }
 
@@ -183,7 +183,7 @@ fn operand(tokens: TokenStream, whole: Span, places: &mut Places) -> Result<Expr
             .help("write for example `0 < d < 1`"));
     }
     syn::parse2(tokens).map_err(|error| {
-        unsupported(places.at(error.span()), format!("this is no expression: {error}"))
+        unsupported(places.at(error.span()), format!("this is not an expression: {error}"))
             .help("write the sides of an assumption as in Rust")
     })
 }

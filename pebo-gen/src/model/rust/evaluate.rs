@@ -235,7 +235,7 @@ impl<'a> Reader<'a> {
             {
                 return self.constant_list(item, path);
             }
-            return Err(unsupported(place, format!("the constant `{name}` is no floating-point number"))
+            return Err(unsupported(place, format!("the constant `{name}` is not a floating-point number"))
                 .help(format!("declare it as `const {}: f64`", item.ident)));
         }
         let mut known: Vec<&str> =

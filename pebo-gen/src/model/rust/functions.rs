@@ -11,16 +11,16 @@ use crate::source::{Code, Diagnostic, Span, listed, nearest};
 
 /// Functions that Rust calls otherwise than formulas do, or that are not analytic, with what to do instead.
 const REFUSED: &[(&str, &str)] = &[
-    ("max", "a maximum has a corner: write the case that occurs, and say so under `assume`"),
-    ("min", "a minimum has a corner: write the case that occurs, and say so under `assume`"),
-    ("clamp", "limits belong into the control law; the plant is described where it is not saturated"),
-    ("signum", "write the sign that occurs, and say so under `assume`; `a.abs() / a` is the sign of `a`"),
-    ("floor", "a formula is continuous: leave out what rounds"),
-    ("ceil", "a formula is continuous: leave out what rounds"),
-    ("round", "a formula is continuous: leave out what rounds"),
-    ("trunc", "a formula is continuous: leave out what rounds"),
+    ("max", "a maximum is not smooth: write the case that occurs, and state its condition under `assume`"),
+    ("min", "a minimum is not smooth: write the case that occurs, and state its condition under `assume`"),
+    ("clamp", "limits belong to the control law; describe the plant where it is not saturated"),
+    ("signum", "write the sign that occurs, and state its condition under `assume`; `a.abs() / a` is the sign of `a`"),
+    ("floor", "rounding is not continuous: leave it out of the formula"),
+    ("ceil", "rounding is not continuous: leave it out of the formula"),
+    ("round", "rounding is not continuous: leave it out of the formula"),
+    ("trunc", "rounding is not continuous: leave it out of the formula"),
     ("rem_euclid", "declare a state that is an angle in the attribute: `angles(q = 2.0 * PI)`"),
-    ("cbrt", "write `.powf(1.0 / 3.0)`, and say under `assume` that what is under the root is positive"),
+    ("cbrt", "write `.powf(1.0 / 3.0)`, and state under `assume` that its base is positive"),
     ("exp_m1", "write `a.exp() - 1.0`"),
     ("ln_1p", "write `(1.0 + a).ln()`"),
     ("asinh", "write `(a + (a * a + 1.0).sqrt()).ln()`"),
@@ -76,11 +76,11 @@ pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals
         if matches!(function, Expr::Closure(_)) {
             return Err(refusal::expression(function, reader.places));
         }
-        return Err(unsupported(reader.places.of(&call.func), "this is no function that is known here")
+        return Err(unsupported(reader.places.of(&call.func), "this function is not known here")
             .help("call a function of the module by its name"));
     };
     let Some(last) = path.path.segments.last() else {
-        return Err(unsupported(reader.places.of(path), "this is no function"));
+        return Err(unsupported(reader.places.of(path), "this is not a function"));
     };
     let name = last.ident.to_string();
     let first = path.path.segments.first().map(|segment| segment.ident.to_string()).unwrap_or_default();
@@ -200,7 +200,7 @@ fn applied_method(
         }
         _ => {
             if let Some((_, help)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
-                return Err(unsupported(place, format!("`{name}` is not a function of formulas")).help(*help));
+                return Err(unsupported(place, format!("formulas do not have the function `{name}`")).help(*help));
             }
             let Some(function) = Function::named(name) else { return Err(no_such_method(name, place)) };
             expected(function.arguments - 1)?;
@@ -251,7 +251,8 @@ fn no_such_method(name: &str, place: Span) -> Diagnostic {
     let known =
         ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "ln", "sqrt", "abs"];
     let known = || known.into_iter().chain(OWN.iter().copied());
-    let diagnostic = Diagnostic::error(Code::UnknownFunction, place, format!("`{name}` is not a function of formulas"));
+    let diagnostic =
+        Diagnostic::error(Code::UnknownFunction, place, format!("formulas do not have the function `{name}`"));
     match nearest(name, known()) {
         Some(near) => diagnostic.suggest(Some(near)),
         None => diagnostic.help(format!("the functions are {}", listed(known()))),

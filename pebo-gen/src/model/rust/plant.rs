@@ -46,7 +46,7 @@ pub(super) fn read(
     let name = Spanned { span: places.of(&module.ident), value: module.ident.unraw().to_string() };
     if module.content.is_none() {
         diagnostics.push(
-            unsupported(name.span, "the module stands in another file, which the attribute does not see")
+            unsupported(name.span, "the module is in another file, which the attribute cannot read")
                 .help("write its items here in braces, or put the model into a file and name that"),
         );
         return None;
@@ -190,17 +190,18 @@ impl<'a> Pass<'a> {
                 let name = path.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
                 match self.signals.of(&name) {
                     Some(fields) => Ok(Value::record(fields)),
-                    None => {
-                        Err(unsupported(self.reader.places.of(ty), format!("`{name}` is none of the plant's signals"))
-                            .help("take X, Y, U or W, by value or by reference"))
-                    }
+                    None => Err(unsupported(
+                        self.reader.places.of(ty),
+                        format!("`{name}` is not one of the plant's signals"),
+                    )
+                    .help("take X, Y, U or W, by value or by reference")),
                 }
             }
             Type::Array(_) if components > 0 => {
                 let place = self.reader.places.of(ty);
                 Ok(Value::List((1..=components).map(|number| Value::name(&format!("z{number}"), place)).collect()))
             }
-            _ => Err(unsupported(self.reader.places.of(ty), "this is none of the plant's signals")
+            _ => Err(unsupported(self.reader.places.of(ty), "this is not one of the plant's signals")
                 .help("take X, Y, U or W, by value or by reference; phi_left takes `z: [f64; N]` as well")),
         }
     }

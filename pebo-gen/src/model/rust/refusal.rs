@@ -19,20 +19,20 @@ pub(super) fn expression(expr: &Expr, places: &mut Places) -> Diagnostic {
         Expr::Loop(e) => repetition(&e.loop_token, "loop", places),
         Expr::Closure(e) => {
             let place = places.of(e);
-            unsupported(place, "a formula has no closures").help("write a function in the module, and call it")
+            unsupported(place, "a formula cannot contain a closure").help("write a function in the module, and call it")
         }
         Expr::Try(e) => control_flow(&e.question_token, "?", places),
         Expr::Return(e) => unsupported(places.of(&e.return_token), "`return` stands in the middle of a function")
             .help("end the function with the expression that it returns"),
         Expr::Macro(e) => macro_call(&e.mac, places),
         Expr::Assign(e) => assignment(&e.eq_token, places),
-        Expr::Unsafe(e) => unsupported(places.of(&e.unsafe_token), "a formula has nothing unsafe")
+        Expr::Unsafe(e) => unsupported(places.of(&e.unsafe_token), "a formula cannot contain unsafe code")
             .help("compute it with safe operations"),
-        Expr::Range(e) => unsupported(places.of(e), "a range is no number").help("write each component by itself"),
+        Expr::Range(e) => unsupported(places.of(e), "a range is not a number").help("write each component by itself"),
         Expr::Lit(e) => {
-            unsupported(places.of(e), "this literal is no number").help("write a decimal, as 12.0 or 22e-6")
+            unsupported(places.of(e), "this literal is not a decimal number").help("write a decimal, as 12.0 or 22e-6")
         }
-        other => unsupported(places.of(other), "a formula has no such expression")
+        other => unsupported(places.of(other), "a formula cannot contain this expression")
             .help("use + - * /, calls, fields and `let`"),
     }
 }
@@ -41,14 +41,14 @@ pub(super) fn expression(expr: &Expr, places: &mut Places) -> Diagnostic {
 pub(super) fn operator(op: &BinOp, places: &mut Places) -> Diagnostic {
     let place = places.of(op);
     match op {
-        BinOp::BitXor(_) => unsupported(place, "`^` is no power in Rust")
-            .label("in Rust this is the exclusive or of bits")
+        BinOp::BitXor(_) => unsupported(place, "`^` is not a power in Rust")
+            .label("in Rust it is the exclusive or of the bits")
             .help("write `a.powi(2)` for a square, `a.powf(0.5)` for a root"),
         BinOp::Rem(_) => unsupported(place, "a remainder is not analytic")
             .help("declare a state that is an angle by `angles(q = 2.0 * PI)` in the attribute"),
         BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) | BinOp::Eq(_) | BinOp::Ne(_) => {
-            unsupported(place, "a formula does not compare")
-                .help("what holds wherever the plant operates stands in the attribute: `assume(L > 0)`")
+            unsupported(place, "a formula cannot contain a comparison")
+                .help("state what holds wherever the plant operates in the attribute: `assume(L > 0)`")
         }
         BinOp::AddAssign(_) | BinOp::SubAssign(_) | BinOp::MulAssign(_) | BinOp::DivAssign(_) => assignment(op, places),
         _ => unsupported(place, format!("`{}` is not an operator of formulas", op.to_token_stream()))
@@ -77,22 +77,24 @@ pub(super) fn statement(expr: &Expr, places: &mut Places) -> Diagnostic {
 }
 
 pub(super) fn control_flow(token: &impl ToTokens, what: &str, places: &mut Places) -> Diagnostic {
-    unsupported(places.of(token), format!("a formula has no `{what}`"))
+    unsupported(places.of(token), format!("a formula cannot contain `{what}`"))
         .label("f_x, f_y and phi must be one formula for all states")
         .help("write one smooth formula; where only one case occurs, say which in the attribute: `assume(i > 0)`")
 }
 
 fn repetition(token: &impl ToTokens, what: &str, places: &mut Places) -> Diagnostic {
-    unsupported(places.of(token), format!("a formula has no `{what}` loop")).help("write the terms out one by one")
+    unsupported(places.of(token), format!("a formula cannot contain `{what}` loop"))
+        .help("write the terms out one by one")
 }
 
 pub(super) fn mutable(token: &impl ToTokens, places: &mut Places) -> Diagnostic {
-    unsupported(places.of(token), "names in formulas do not change")
+    unsupported(places.of(token), "names in formulas cannot change their values")
         .help("remove `mut`, and bind new values to new names")
 }
 
 fn assignment(token: &impl ToTokens, places: &mut Places) -> Diagnostic {
-    unsupported(places.of(token), "names in formulas do not change").help("bind the new value: `let a = a + b;`")
+    unsupported(places.of(token), "names in formulas cannot change their values")
+        .help("bind the new value: `let a = a + b;`")
 }
 
 pub(super) fn macro_call(call: &Macro, places: &mut Places) -> Diagnostic {

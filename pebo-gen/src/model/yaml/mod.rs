@@ -19,6 +19,7 @@
 
 mod document;
 mod formulas;
+mod json_schema;
 mod refusal;
 mod schema;
 mod shape;
@@ -28,6 +29,11 @@ use crate::source::{Code, Diagnostic, Diagnostics, Source, Span};
 
 use super::Model;
 use document::Document;
+
+/// The JSON schema of model files.
+pub(super) fn json_schema() -> String {
+    json_schema::text()
+}
 
 /// Reads the model in `source`; nothing where its outline is not recognisable.
 pub(super) fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Model> {

@@ -20,7 +20,7 @@ pub(super) fn syntax(error: &ScanError) -> Diagnostic {
         | ErrorKind::MismatchedFlowCollectionEnd { .. }
         | ErrorKind::ExpectedFlowMappingSeparator
         | ErrorKind::ExpectedFlowSequenceSeparator => {
-            (Code::YamlSyntax, "see that every bracket is closed and entries have commas between them")
+            (Code::YamlSyntax, "check that every bracket is closed and that entries have commas between them")
         }
         ErrorKind::UnclosedQuotedScalar => (Code::YamlSyntax, "close the quote"),
         ErrorKind::TabNotAllowed
@@ -29,7 +29,7 @@ pub(super) fn syntax(error: &ScanError) -> Diagnostic {
         | ErrorKind::TabInPlainScalar
         | ErrorKind::TabAtBlockScalarStart => (Code::YamlSyntax, "indent with spaces, not with tabs"),
         ErrorKind::MappingValueNotAllowed => {
-            (Code::YamlSyntax, "put a text that holds a colon in quotes; see that indentation agrees")
+            (Code::YamlSyntax, "put a text that contains a colon in quotes; check that the indentation is consistent")
         }
         ErrorKind::BlockSequenceEntryNotAllowed
         | ErrorKind::UnexpectedCharacter { .. }
@@ -37,7 +37,7 @@ pub(super) fn syntax(error: &ScanError) -> Diagnostic {
         | ErrorKind::MissingAnchorOrAliasName => {
             (Code::YamlSyntax, "put a formula in quotes if it begins with `- ` or a special character")
         }
-        _ => (Code::YamlSyntax, "see that indentation, brackets and quotes agree"),
+        _ => (Code::YamlSyntax, "check the indentation, the brackets and the quotes"),
     };
     Diagnostic::error(code, span, format!("this is not YAML: {}", error.info())).help(help)
 }
@@ -51,18 +51,18 @@ pub(super) fn empty() -> Diagnostic {
 /// The text has too many values.
 pub(super) fn too_many(span: Span, limit: usize) -> Diagnostic {
     Diagnostic::error(Code::TooManyValues, span, format!("the file has more than {limit} values"))
-        .label("one too many")
-        .help("give a model file; a model needs a few hundred values")
+        .label("this value is beyond the limit")
+        .help("give a model file; a model has a few hundred values")
 }
 
 /// YAML has this, model files have not.
 pub(super) fn feature(span: Span, what: &str, help: &str) -> Diagnostic {
-    Diagnostic::error(Code::YamlFeature, span, format!("model files do without {what}")).help(help)
+    Diagnostic::error(Code::YamlFeature, span, format!("model files cannot contain {what}")).help(help)
 }
 
 /// An alias, or a formula that begins like one.
 pub(super) fn alias(span: Span, text: &str) -> Diagnostic {
-    let message = format!("model files do without aliases, and {} reads as one", quoted(text));
+    let message = format!("model files cannot contain aliases, and YAML reads {} as one", quoted(text));
     Diagnostic::error(Code::YamlFeature, span, message)
         .help("write the value out; put a formula in quotes if it begins with `*`")
 }

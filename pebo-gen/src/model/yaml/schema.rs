@@ -1,4 +1,6 @@
-//! The keys of a model file, and the shape of the value behind each.
+//! The keys of a model file, and the shape of the value behind each: the one place that describes them.
+//!
+//! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
 use crate::model::CascadeClass;
 use crate::model::observer::Estimator;
@@ -54,18 +56,20 @@ pub(super) struct Key {
     pub(super) shape: Shape,
     /// How to write it.
     pub(super) example: &'static str,
+    /// What it is, in a line that editors show.
+    pub(super) about: &'static str,
 }
 
-const fn key(role: Role, name: &'static str, shape: Shape, example: &'static str) -> Key {
-    Key { name, role, shape, example }
+const fn key(role: Role, name: &'static str, shape: Shape, (example, about): (&'static str, &'static str)) -> Key {
+    Key { name, role, shape, example, about }
 }
 
-const fn required(name: &'static str, shape: Shape, example: &'static str) -> Key {
-    key(Role::Required, name, shape, example)
+const fn required(name: &'static str, shape: Shape, example: &'static str, about: &'static str) -> Key {
+    key(Role::Required, name, shape, (example, about))
 }
 
-const fn optional(name: &'static str, shape: Shape, example: &'static str) -> Key {
-    key(Role::Optional, name, shape, example)
+const fn optional(name: &'static str, shape: Shape, example: &'static str, about: &'static str) -> Key {
+    key(Role::Optional, name, shape, (example, about))
 }
 
 const TEXTS: Shape = Shape::List(&Shape::Text);
@@ -77,113 +81,274 @@ const RATES: Shape = Shape::Map(&Shape::Formula);
 
 /// The file.
 pub(super) const MODEL: &[Key] = &[
-    required("model", Shape::Text, "model: cuk"),
-    optional("title", Shape::Text, "title: DC-DC Cuk converter"),
-    optional("reference", Shape::Text, "reference: Ortega et al. 2015, Section 5.3"),
-    optional("parameters", Shape::Parameters, "parameters: {L1: 10e-3, E: 12}"),
-    required("x", TEXTS, "x: [i1, i3]"),
-    required("y", TEXTS, "y: [v2, v4]"),
-    optional("u", TEXTS, "u: [d]"),
-    optional("w", TEXTS, "w: [omega]"),
-    optional("class", Shape::Choice(CascadeClass::NAMES), "class: pebo"),
-    optional("define", RATES, "define: {p: v2*i1}"),
-    optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]"),
-    key(Role::RequiredOrByClass, "f_x", RATES, "f_x: {i1: (E - (1 - d)*v2)/L1}"),
-    key(Role::OptionalOrByClass, "f_y", RATES, "f_y: {v2: i1/C2}"),
-    key(Role::OptionalOrByClass, "g_y", RATES, "g_y: {V: E - R*i1}"),
-    key(Role::RequiredOrByClass, "phi", FORMULAS, "phi: [i1, i3]"),
-    optional("phi_left", RATES, "phi_left: {i1: z1}"),
-    optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]"),
-    optional("angles", RATES, "angles: {q: 2*pi}"),
-    optional("observer", Shape::Record(OBSERVER), "observer: {gain: 1e7}"),
-    optional("simulation", Shape::Record(SIMULATION), "simulation: {duration: 0.1, step: 1e-6}"),
-    key(Role::Class, "lti", Shape::Record(LTI), "lti: {A11: [[-1]], A21: [[2]]}"),
-    key(Role::Class, "mechanical", Shape::Record(MECHANICAL), "mechanical: {M: [[m]], V: m*g*q, T: [[1]]}"),
+    required(
+        "model",
+        Shape::Text,
+        "model: cuk",
+        "The name of the model: an identifier, which also names the emitted module",
+    ),
+    optional("title", Shape::Text, "title: DC-DC Cuk converter", "One line that says what the plant is"),
+    optional("reference", Shape::Text, "reference: Ortega et al. 2015, Section 5.3", "Where the model is from"),
+    optional(
+        "parameters",
+        Shape::Parameters,
+        "parameters: {L1: 10e-3, E: 12}",
+        "The constants of the plant with their values, or a list of names whose values are given later",
+    ),
+    required("x", TEXTS, "x: [i1, i3]", "The unmeasured states"),
+    required("y", TEXTS, "y: [v2, v4]", "The measured outputs"),
+    optional("u", TEXTS, "u: [d]", "The inputs"),
+    optional("w", TEXTS, "w: [omega]", "Unmeasured signals that are not estimated: no result depends on them"),
+    optional(
+        "class",
+        Shape::Choice(CascadeClass::NAMES),
+        "class: pebo",
+        "The cascade that is asked for; if left out, a plain cascade (pebo) is preferred to a generalised one (gpebo)",
+    ),
+    optional("define", RATES, "define: {p: v2*i1}", "Names for parts of formulas, in any order"),
+    optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]", "Inequalities that hold wherever the plant operates"),
+    key(
+        Role::RequiredOrByClass,
+        "f_x",
+        RATES,
+        ("f_x: {i1: (E - (1 - d)*v2)/L1}", "The time derivative of each unmeasured state"),
+    ),
+    key(
+        Role::OptionalOrByClass,
+        "f_y",
+        RATES,
+        (
+            "f_y: {v2: i1/C2}",
+            "The time derivatives of outputs; an output whose derivative nothing needs may be left out",
+        ),
+    ),
+    key(
+        Role::OptionalOrByClass,
+        "g_y",
+        RATES,
+        ("g_y: {V: E - R*i1}", "The values of outputs, in the states, the inputs and the other outputs"),
+    ),
+    key(Role::RequiredOrByClass, "phi", FORMULAS, ("phi: [i1, i3]", "The components of the transform z = phi(x, y)")),
+    optional(
+        "phi_left",
+        RATES,
+        "phi_left: {i1: z1}",
+        "The states in z1, z2, .. and the outputs; derived if left out; some states only make a partial observer",
+    ),
+    optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]", "Expressions that are zero by physics"),
+    optional("angles", RATES, "angles: {q: 2*pi}", "States that are angles, with their periods"),
+    optional(
+        "observer",
+        Shape::Record(OBSERVER),
+        "observer: {gain: 1e7}",
+        "The estimator and its settings, for the simulation",
+    ),
+    optional(
+        "simulation",
+        Shape::Record(SIMULATION),
+        "simulation: {duration: 0.1, step: 1e-6}",
+        "The closed loop to simulate",
+    ),
+    key(
+        Role::Class,
+        "lti",
+        Shape::Record(LTI),
+        (
+            "lti: {A11: [[-1]], A21: [[2]]}",
+            "A linear time-invariant plant: x' = A11 x + A12 y + B1 u, y' = A21 x + A22 y + B2 u",
+        ),
+    ),
+    key(
+        Role::Class,
+        "mechanical",
+        Shape::Record(MECHANICAL),
+        (
+            "mechanical: {M: [[m]], V: m*g*q, T: [[1]]}",
+            "A mechanical plant in Hamiltonian form: x lists the momenta, y the positions",
+        ),
+    ),
     key(
         Role::Class,
         "electromechanical",
         Shape::Record(ELECTROMECHANICAL),
-        "electromechanical: {L: [[L]], mu: [c*q], R: [r], speed: omega}",
+        (
+            "electromechanical: {L: [[L]], mu: [c*q], R: [r], speed: omega}",
+            "Coils that move a mass: x lists the position, y the currents and perhaps the speed",
+        ),
     ),
 ];
 
 /// Blocks of a linear plant; those left out are zero. With T1 and T2 the author chooses the transform.
 const LTI: &[Key] = &[
-    required("A11", Shape::Matrix, "A11: [[0, 1], [-1, 0]]"),
-    optional("A12", Shape::Matrix, "A12: [[0], [1]]"),
-    required("A21", Shape::Matrix, "A21: [[1, 0]]"),
-    optional("A22", Shape::Matrix, "A22: [[-1]]"),
-    optional("B1", Shape::Matrix, "B1: [[0], [1]]"),
-    optional("B2", Shape::Matrix, "B2: [[1]]"),
-    optional("T1", Shape::Matrix, "T1: [[1, 0], [0, 1]]"),
-    optional("T2", Shape::Matrix, "T2: [[0], [0]]"),
+    required("A11", Shape::Matrix, "A11: [[0, 1], [-1, 0]]", "From x to the rate of x"),
+    optional("A12", Shape::Matrix, "A12: [[0], [1]]", "From y to the rate of x; zero if left out"),
+    required("A21", Shape::Matrix, "A21: [[1, 0]]", "From x to the rate of y"),
+    optional("A22", Shape::Matrix, "A22: [[-1]]", "From y to the rate of y; zero if left out"),
+    optional("B1", Shape::Matrix, "B1: [[0], [1]]", "From the inputs to the rate of x; zero if left out"),
+    optional("B2", Shape::Matrix, "B2: [[1]]", "From the inputs to the rate of y; zero if left out"),
+    optional(
+        "T1",
+        Shape::Matrix,
+        "T1: [[1, 0], [0, 1]]",
+        "The factor of x in the transform T1 x + T2 y; derived if left out",
+    ),
+    optional("T2", Shape::Matrix, "T2: [[0], [0]]", "The factor of y in the transform T1 x + T2 y; derived with T1"),
 ];
 
 /// Inertia, potential energy, input matrix and the frame T of a mechanical plant, in positions and parameters.
 const MECHANICAL: &[Key] = &[
-    required("M", Shape::Matrix, "M: [[m, 0], [0, m*r^2]]"),
-    optional("V", Shape::Formula, "V: m*g*r*cos(q)"),
-    optional("G", Shape::Matrix, "G: [[1], [0]]"),
-    required("T", Shape::Matrix, "T: [[1, 0], [0, 1]]"),
+    required("M", Shape::Matrix, "M: [[m, 0], [0, m*r^2]]", "The inertia matrix, a function of the positions"),
+    optional(
+        "V",
+        Shape::Formula,
+        "V: m*g*r*cos(q)",
+        "The potential energy, a function of the positions; zero if left out",
+    ),
+    optional(
+        "G",
+        Shape::Matrix,
+        "G: [[1], [0]]",
+        "The input matrix, from the inputs to the rates of the momenta; zero if left out",
+    ),
+    required("T", Shape::Matrix, "T: [[1, 0], [0, 1]]", "The frame T(q) of the transform z = T(q)' p"),
 ];
 
 /// Inductances, magnets, resistances, and the mass that the coils move.
 const ELECTROMECHANICAL: &[Key] = &[
-    optional("coils", Shape::Number, "coils: 2"),
-    required("L", Shape::Matrix, "L: [[L, 0], [0, L]]"),
-    optional("mu", Shape::Matrix, "mu: [lambda_m*cos(q), lambda_m*sin(q)]"),
-    required("R", Shape::Matrix, "R: [R, R]"),
-    optional("B", Shape::Matrix, "B: [[1, 0], [0, 1]]"),
-    required("speed", Shape::Text, "speed: omega"),
-    optional("inertia", Shape::Formula, "inertia: j"),
-    optional("friction", Shape::Formula, "friction: f"),
-    optional("load", Shape::Formula, "load: m*g"),
+    optional("coils", Shape::Number, "coils: 2", "The number of coils"),
+    required("L", Shape::Matrix, "L: [[L, 0], [0, L]]", "The inductance matrix, a function of the position"),
+    optional(
+        "mu",
+        Shape::Matrix,
+        "mu: [lambda_m*cos(q), lambda_m*sin(q)]",
+        "The flux of permanent magnets in each coil, a function of the position; zero if left out",
+    ),
+    required("R", Shape::Matrix, "R: [R, R]", "The resistance matrix"),
+    optional("B", Shape::Matrix, "B: [[1, 0], [0, 1]]", "From the voltages to the coils; the identity if left out"),
+    required(
+        "speed",
+        Shape::Text,
+        "speed: omega",
+        "The declared name of the speed: an output, an input, or a signal of w",
+    ),
+    optional("inertia", Shape::Formula, "inertia: j", "The inertia of the mass"),
+    optional("friction", Shape::Formula, "friction: f", "The friction coefficient"),
+    optional("load", Shape::Formula, "load: m*g", "The constant external force"),
 ];
 
 /// Settings of the estimators belong to some of them: [`Estimator`] has which.
 const OBSERVER: &[Key] = &[
-    optional("estimator", Shape::Choice(Estimator::NAMES), "estimator: gradient"),
-    optional("gain", ONE_OR_EACH, "gain: [1e7, 1e7]"),
-    optional("covariance", ONE_OR_EACH, "covariance: 1e6"),
-    optional("regressor_gain", ONE_OR_EACH, "regressor_gain: [1, 1]"),
-    optional("forgetting", Shape::Number, "forgetting: 100"),
-    optional("normalisation", Shape::Number, "normalisation: 1"),
-    optional("clip", Shape::Number, "clip: 0.1"),
-    optional("period", Shape::Number, "period: 0.01"),
-    optional("bounds", Shape::Record(BOUNDS), "bounds: {lower: [-1, 0], upper: 5}"),
-    optional("filter", Shape::Number, "filter: 500"),
-    optional("window", Shape::Number, "window: 100"),
-    optional("hold", Shape::Choice(&["zero-order", "first-order"]), "hold: zero-order"),
-    optional("extension", NUMBERS, "extension: [0, 0]"),
+    optional(
+        "estimator",
+        Shape::Choice(Estimator::NAMES),
+        "estimator: gradient",
+        "The estimator; gradient if left out",
+    ),
+    optional(
+        "gain",
+        ONE_OR_EACH,
+        "gain: [1e7, 1e7]",
+        "The gain of a gradient, or of DREM in 1/s: one for each unknown, or one for all",
+    ),
+    optional(
+        "covariance",
+        ONE_OR_EACH,
+        "covariance: 1e6",
+        "The diagonal of the covariance of least squares at the start, which is also its bound",
+    ),
+    optional(
+        "regressor_gain",
+        ONE_OR_EACH,
+        "regressor_gain: [1, 1]",
+        "The diagonal of the gain of the regressor extension of DREM",
+    ),
+    optional("forgetting", Shape::Number, "forgetting: 100", "The rate of forgetting in 1/s; 0 if left out"),
+    optional(
+        "normalisation",
+        Shape::Number,
+        "normalisation: 1",
+        "mu of the normalised gradient, which is divided by 1 + mu |Phi_1|^2",
+    ),
+    optional("clip", Shape::Number, "clip: 0.1", "mu of finite-time DREM, above 0 and below 1"),
+    optional(
+        "period",
+        Shape::Number,
+        "period: 0.01",
+        "Seconds after which finite-time DREM starts again, so that it tracks jumps; never if left out",
+    ),
+    optional("bounds", Shape::Record(BOUNDS), "bounds: {lower: [-1, 0], upper: 5}", "Bounds of the unknowns"),
+    optional("filter", Shape::Number, "filter: 500", "The corner frequency of the filter of the regression, in rad/s"),
+    optional(
+        "window",
+        Shape::Number,
+        "window: 100",
+        "The number of samples of a moving window, in place of the filter",
+    ),
+    optional(
+        "hold",
+        Shape::Choice(&["zero-order", "first-order"]),
+        "hold: zero-order",
+        "What the samples stand for between two instants",
+    ),
+    optional(
+        "extension",
+        NUMBERS,
+        "extension: [0, 0]",
+        "The dynamic extension at the start: one number for each component; zeros if left out",
+    ),
 ];
 
-const BOUNDS: &[Key] = &[optional("lower", ONE_OR_EACH, "lower: [-1, 0]"), optional("upper", ONE_OR_EACH, "upper: 5")];
+const BOUNDS: &[Key] = &[
+    optional("lower", ONE_OR_EACH, "lower: [-1, 0]", "The lower bound: one for each unknown, or one for all"),
+    optional("upper", ONE_OR_EACH, "upper: 5", "The upper bound: one for each unknown, or one for all"),
+];
 
 const SIMULATION: &[Key] = &[
-    optional("duration", Shape::Number, "duration: 0.1"),
-    optional("step", Shape::Number, "step: 1e-6"),
-    optional("initial", RATES, "initial: {i1: 0, v2: E}"),
-    optional("signals", Shape::Map(&Shape::Signal), "signals: {V_d: {0: 25, 0.2: 30}}"),
-    optional("define", RATES, "define: {p: V_d*hat(i1)}"),
-    optional("control", RATES, "control: {d: V_d/(V_d + E)}"),
-    optional("feedback", Shape::Text, "feedback: observer"),
+    optional("duration", Shape::Number, "duration: 0.1", "How long to simulate, in seconds"),
+    optional("step", Shape::Number, "step: 1e-6", "The sampling period of observer and control law, in seconds"),
+    optional("initial", RATES, "initial: {i1: 0, v2: E}", "The states and outputs at the start, in parameters"),
+    optional(
+        "signals",
+        Shape::Map(&Shape::Signal),
+        "signals: {V_d: {0: 25, 0.2: 30}}",
+        "Signals in time: a formula in t and parameters, or a map from start times to formulas",
+    ),
+    optional("define", RATES, "define: {p: V_d*hat(i1)}", "Names for parts of the formulas of the simulation"),
+    optional(
+        "control",
+        RATES,
+        "control: {d: V_d/(V_d + E)}",
+        "The control law: each input in outputs, estimates hat(x), signals, parameters and t",
+    ),
+    optional(
+        "feedback",
+        Shape::Text,
+        "feedback: observer",
+        "Whose estimates the control law uses: observer, truth, or the name of a baseline",
+    ),
     optional(
         "baselines",
         Shape::Map(&Shape::Record(BASELINE)),
         "baselines: {copy: {state: {a: -a}, estimate: {i1: a}}}",
+        "Other observers to compare with",
     ),
-    optional("panels", Shape::List(&Shape::Record(PANEL)), "panels: [{title: error, unit: A, curves: [hat(i1) - i1]}]"),
+    optional(
+        "panels",
+        Shape::List(&Shape::Record(PANEL)),
+        "panels: [{title: error, unit: A, curves: [hat(i1) - i1]}]",
+        "The panels of the figure",
+    ),
 ];
 
 const BASELINE: &[Key] = &[
-    required("state", RATES, "state: {a: -a + v2}"),
-    optional("initial", RATES, "initial: {a: 0}"),
-    required("estimate", RATES, "estimate: {i1: a}"),
+    required("state", RATES, "state: {a: -a + v2}", "The states of the baseline observer with their rates"),
+    optional("initial", RATES, "initial: {a: 0}", "Its states at the start; zero if left out"),
+    required("estimate", RATES, "estimate: {i1: a}", "Its estimates of the unmeasured states"),
 ];
 
 const PANEL: &[Key] = &[
-    required("title", Shape::Text, "title: error"),
-    optional("unit", Shape::Text, "unit: A"),
-    required("curves", FORMULAS, "curves: [hat(i1) - i1]"),
-    optional("scale", Shape::Choice(&["linear", "log"]), "scale: log"),
+    required("title", Shape::Text, "title: error", "The heading of the panel"),
+    optional("unit", Shape::Text, "unit: A", "The unit of its axis"),
+    required("curves", FORMULAS, "curves: [hat(i1) - i1]", "What to draw, as formulas"),
+    optional("scale", Shape::Choice(&["linear", "log"]), "scale: log", "The scale of its axis; linear if left out"),
 ];

@@ -255,9 +255,9 @@ impl Key {
 
 /// A key that the class gives, or a second class.
 fn in_class(name: &tree::Key, class: &tree::Key) -> Diagnostic {
-    let message = format!("`{}` beside the class `{}`", name.text, class.text);
+    let message = format!("`{}` cannot stand beside the class `{}`", name.text, class.text);
     Diagnostic::error(Code::ClassConflict, name.span, message)
-        .also(class.span, "which gives the equations of the plant and its transform")
+        .also(class.span, "this class gives the equations of the plant and its transform")
         .help(format!("remove `{}`, or `{}` and write f_x, f_y and phi", name.text, class.text))
 }
 

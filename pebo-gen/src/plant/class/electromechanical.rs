@@ -51,7 +51,7 @@ pub(super) fn expand(
     let [position] = names.x else {
         let span = place.model.x[1].span;
         return Err(Diagnostic::error(Code::WrongShape, span, "an electromechanical plant has one position")
-            .help("x has the position alone: the fluxes are the transform, which the class gives")
+            .help("list the position alone in x; the class takes the fluxes as the transform")
             .into());
     };
     let currents: Vec<Symbol> = names.y.iter().copied().filter(|s| *s != speed).collect();

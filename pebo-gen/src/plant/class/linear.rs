@@ -47,8 +47,8 @@ pub(super) fn expand(
 ) -> Result<Expansion, Stop> {
     let arena = place.arena;
     if let (None, Some(alone)) = (&written.t1, &written.t2) {
-        return Err(Diagnostic::error(Code::MissingKey, alone.span, "T2 without T1")
-            .help("give T1 as well, or neither to have both derived")
+        return Err(Diagnostic::error(Code::MissingKey, alone.span, "T2 is given without T1")
+            .help("give T1 as well, or leave both out to have them derived")
             .into());
     }
     let (nx, ny, nu) = (names.x.len(), names.y.len(), names.u.len());

@@ -162,5 +162,5 @@ fn unresolved(what: &str, span: Span, obstacle: &Obstacle) -> Diagnostic {
 fn singular(what: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::SingularMatrix, span, format!("{what} has no inverse"))
         .label("its determinant is zero everywhere")
-        .help("see that no row is a combination of the others")
+        .help("check that no row is a combination of the others")
 }
