@@ -195,7 +195,7 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
                 proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
             // Of several the one that has a value wherever the plant has, then the shortest.
             if candidates.len() > 1 {
-                candidates.iter_mut().for_each(|formula| *formula = shortest(arena, domain, *formula));
+                candidates = candidates.into_iter().map(|formula| shortest(arena, domain, formula)).collect();
                 let merit = |formula: &Expr| (unshown(plant, domain, *formula).len(), operations(arena, *formula));
                 candidates.sort_by_cached_key(merit);
             }
