@@ -706,6 +706,10 @@ const MATRICES: &[(&str, &str, Fundamental)] = &[
     ("0, v, -p; -v, 0, u; p, -u, 0", "turns", Fundamental::Bounded { fades: false }),
     ("-k, v, 0; -v, -m, 0; 0, 0, 0", "dies out in part", Fundamental::Bounded { fades: true }),
     ("-k, v, 0; -k*v, -m, 0; 0, 0, -v^4", "turns with weights", Fundamental::Bounded { fades: true }),
+    // Flows.
+    ("-k - m, 1, 0; k, -2, m; 0, 1, -m", "flows with a loss", Fundamental::Bounded { fades: true }),
+    ("-k, 1, 0; k, -2, m; 0, 1, -m", "flows without a loss", Fundamental::Bounded { fades: false }),
+    ("-k, 1, 0; k, -1, m; 0, 1, -m", "flows with a source", Fundamental::Grows),
     // Hurwitz.
     ("0, k, 0; -k, -m, k; 0, 0, 0", "a damped spring with a load", Fundamental::Bounded { fades: true }),
     ("0, 1, 0; 0, 0, 1; -1, -2, -1", "all roots to the left", Fundamental::Bounded { fades: true }),

@@ -21,7 +21,6 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::{self, Formula, Plant};
 use crate::source::{Code, Diagnostic, listed};
 
-use self::killing::Column;
 use crate::analysis::affine;
 use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
@@ -124,10 +123,10 @@ impl Component {
 /// One component, by what the class knows of it where it knows.
 fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Component {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
-    match killing::column(&plant.arena, domain, mechanical, index) {
-        Column::Killing => Component::Free(proved_shortest(&plant.arena, domain, mechanical.h[index])),
-        Column::Other(_) => component(plant, domain, rate),
-        Column::Open(obstacle) => Component::Open(obstacle),
+    match killing::is_killing(&plant.arena, domain, mechanical, index) {
+        Ok(true) => Component::Free(proved_shortest(&plant.arena, domain, mechanical.h[index])),
+        Ok(false) => component(plant, domain, rate),
+        Err(obstacle) => Component::Open(obstacle),
     }
 }
 
@@ -280,7 +279,7 @@ fn refuted(
 fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) -> Diagnostic {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return refusal };
     let arena = &plant.arena;
-    let Column::Other(entries) = killing::column(arena, domain, mechanical, index) else { return refusal };
+    let Ok(entries) = killing::offending(arena, domain, mechanical, index) else { return refusal };
     let name = index + 1;
     let noted = entries.into_iter().fold(refusal, |refusal, (row, column, entry)| {
         let entry = arena.print(shortest(arena, domain, entry));

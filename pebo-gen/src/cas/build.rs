@@ -6,6 +6,8 @@
 
 use std::rc::Rc;
 
+use smallvec::SmallVec;
+
 use super::arena::Arena;
 use super::expr::{Expr, Node, Product, Sum};
 use super::function::{Function, Parity};
@@ -75,14 +77,16 @@ impl Arena {
 
     /// `constant + sum of coefficient * term`.
     pub fn combine(&self, constant: &Rational, terms: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
-        let mut constant = constant.clone();
+        let mut constants: SmallVec<[Rational; 4]> = SmallVec::from_elem(constant.clone(), 1);
         let mut open: Vec<(Expr, Rational)> = terms.into_iter().collect();
         let mut flat: Vec<(Expr, Rational)> = Vec::with_capacity(open.len());
         while let Some((term, coefficient)) = open.pop() {
             match self.node(term) {
-                Node::Number(value) => constant = &constant + &(&value * &coefficient),
+                Node::Number(value) => constants.push(&value * &coefficient),
                 Node::Sum(sum) => {
-                    constant = &constant + &(&sum.constant * &coefficient);
+                    if !sum.constant.is_zero() {
+                        constants.push(&sum.constant * &coefficient);
+                    }
                     // Terms of a sum are neither sums nor scaled, so they need no second look.
                     flat.extend(sum.terms.iter().map(|(t, c)| (*t, c * &coefficient)));
                 }
@@ -94,13 +98,15 @@ impl Arena {
                 _ => flat.push((term, coefficient)),
             }
         }
+        let constant = Rational::total(&constants);
         flat.sort_by_key(|entry| entry.0);
         let mut terms: Vec<(Expr, Rational)> = Vec::with_capacity(flat.len());
-        for (term, coefficient) in flat {
-            match terms.last_mut() {
-                Some(last) if last.0 == term => last.1 = &last.1 + &coefficient,
-                _ => terms.push((term, coefficient)),
-            }
+        for run in flat.chunk_by(|a, b| a.0 == b.0) {
+            let coefficient = match run {
+                [(_, alone)] => alone.clone(),
+                _ => Rational::total(&run.iter().map(|(_, c)| c.clone()).collect::<SmallVec<[Rational; 8]>>()),
+            };
+            terms.push((run[0].0, coefficient));
         }
         terms.retain(|entry| !entry.1.is_zero());
         match terms.as_slice() {

@@ -17,6 +17,9 @@ use super::rational::Rational;
 /// How many points are looked at before a search gives up.
 const MOST_TRIALS: u64 = 400;
 
+/// How many are looked at where a point is good to have and no more.
+const FEW_TRIALS: u64 = 4;
+
 /// Trials with small integers and random signs.
 const PLAIN_TRIALS: u64 = 8;
 
@@ -46,11 +49,20 @@ struct Range {
 impl Domain {
     /// Points of the domain over the given symbols and those of the facts and equations that involve them.
     pub fn points<'a>(&'a self, arena: &'a Arena, exprs: &[Expr]) -> impl Iterator<Item = Point> + 'a {
+        self.points_within(arena, exprs, MOST_TRIALS)
+    }
+
+    /// As [`Self::points`], those that come up in a few trials: to learn something cheaply, or nothing.
+    pub(super) fn glimpses<'a>(&'a self, arena: &'a Arena, exprs: &[Expr]) -> impl Iterator<Item = Point> + 'a {
+        self.points_within(arena, exprs, FEW_TRIALS)
+    }
+
+    fn points_within<'a>(&'a self, arena: &'a Arena, exprs: &[Expr], most: u64) -> impl Iterator<Item = Point> + 'a {
         let mut symbols = arena.symbols_of(exprs);
         let (facts, equations) = self.relevant(arena, &mut symbols);
         let ranges = ranges(arena, &facts);
         let plan = self.manifold.plan(arena, &equations, &self.fixed);
-        let trials = if plan.is_some() { MOST_TRIALS } else { 0 };
+        let trials = if plan.is_some() { most } else { 0 };
         let plan = plan.unwrap_or_default();
         let solved = plan.symbols();
         (0..trials).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {

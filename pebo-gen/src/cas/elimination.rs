@@ -3,9 +3,12 @@
 //! In: formulas that are to vanish, states and inputs to determine, and a check of what comes out. Out: the first values
 //! that the check accepts, in symbols that stay free, or a formula that no rule makes vanish.
 //!
-//! An equation is taken for a symbol in which one of its factors is linear, which is then replaced in all others; where
-//! none is, a factor may be quadratic, or inverse functions may help. Division by what vanishes somewhere can lose solutions, never add one,
-//! and where a product vanishes, each factor in turn is tried.
+//! What is linear is solved together first ([`joint`]). Then an equation is taken for a symbol in which one of its factors
+//! is linear, which is replaced in all others; where none is, a factor may be quadratic, or inverse functions may help.
+//! Division by what vanishes somewhere can lose solutions, never add one, and where a product vanishes, each factor in
+//! turn is tried.
+
+mod joint;
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -71,6 +74,22 @@ const MOST_VISITS: usize = 100;
 /// what would come out nobody reads.
 const MOST_PARTS: usize = 600;
 
+/// How far the search from one start has come.
+struct Progress {
+    visits: Cell<usize>,
+    /// Whether linear equations are solved together: until what follows from that fails.
+    together: Cell<bool>,
+}
+
+/// The kernels of what is not determined.
+struct Unknown {
+    symbols: BTreeSet<Symbol>,
+    /// Those that depend on each symbol.
+    of_each: BTreeMap<Symbol, BTreeSet<u32>>,
+    of_states: BTreeSet<u32>,
+    of_inputs: BTreeSet<u32>,
+}
+
 impl Elimination<'_> {
     /// The first solution that the check accepts, by the first of the starts that has one; else a formula that was not
     /// made to vanish. A start is values to begin with.
@@ -83,7 +102,8 @@ impl Elimination<'_> {
         let mut stuck = None;
         let mut obstacle = None;
         for start in starts {
-            match self.search(equations, start, accept, &Cell::new(0), &mut stuck) {
+            let progress = Progress { visits: Cell::new(0), together: Cell::new(true) };
+            match self.search(equations, start, accept, &progress, &mut stuck) {
                 Ok(Some(found)) => return Ok(Ok(found)),
                 Ok(None) => {}
                 Err(other) => obstacle = obstacle.or(Some(other)),
@@ -101,11 +121,11 @@ impl Elimination<'_> {
         equations: &[Expr],
         values: &Values,
         accept: &mut impl FnMut(&Values) -> Option<T>,
-        visits: &Cell<usize>,
+        progress: &Progress,
         stuck: &mut Option<Expr>,
     ) -> Result<Option<T>, Obstacle> {
-        visits.set(visits.get() + 1);
-        if visits.get() > MOST_VISITS {
+        progress.visits.set(progress.visits.get() + 1);
+        if progress.visits.get() > MOST_VISITS {
             return Ok(None);
         }
         let arena = self.arena;
@@ -122,9 +142,19 @@ impl Elimination<'_> {
             }
         }
         let Some((first, _)) = open.first() else { return Ok(accept(values)) };
-        let unknown = self.unknown(values);
+        let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+        let unknown = self.unknown(&field, values);
+        if progress.together.get() {
+            // What cannot be solved together may be found one at a time.
+            let found = self.states_together(&field, &open, &unknown).unwrap_or_default();
+            if found.len() > 1
+                && let Ok(Some(accepted)) = self.advance(&formulas, values, &found, accept, (progress, &mut *stuck))
+            {
+                return Ok(Some(accepted));
+            }
+        }
         let mut factors = Vec::new();
-        let kernels: Vec<u32> = field.kernels_of(&unknown).into_iter().collect();
+        let kernels: Vec<u32> = unknown.of_states.union(&unknown.of_inputs).copied().collect();
         for (equation, (_, fraction)) in open.iter().enumerate() {
             let polys = fraction.numerator().factors_in(&kernels, field.limit())?;
             // No choice of the unknowns makes this one vanish.
@@ -134,14 +164,10 @@ impl Elimination<'_> {
             }
             factors.extend(polys.into_iter().map(|poly| Factor { equation, poly }));
         }
-        let alternatives = self.alternatives(&field, &open, &factors, &unknown)?;
-        let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
-        for (symbol, value) in alternatives {
-            let replaced = BTreeMap::from([(symbol, value)]);
-            let known = values.iter().map(|(symbol, known)| (*symbol, arena.substitute(*known, &replaced)));
-            let values = known.chain([(symbol, value)]).collect();
+        let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.together.get())?;
+        for found in alternatives {
             // Where another equation has no value, or none that is understood, there may be a better one.
-            match self.search(&formulas, &values, accept, visits, stuck) {
+            match self.advance(&formulas, values, &found, accept, (progress, &mut *stuck)) {
                 Ok(None) | Err(Obstacle::DivisionByZero | Obstacle::Kernel(_)) => {}
                 found => return found,
             }
@@ -150,19 +176,59 @@ impl Elimination<'_> {
         Ok(None)
     }
 
-    /// The symbols that are not determined: states and inputs.
-    fn unknown(&self, values: &Values) -> BTreeSet<Symbol> {
-        self.states.union(&self.inputs).copied().filter(|s| !values.contains_key(s)).collect()
+    /// Goes on with what was found. Where several at once lead nowhere, from then on it is one at a time, as if they had
+    /// not been tried.
+    fn advance<T>(
+        &self,
+        formulas: &[Expr],
+        values: &Values,
+        found: &Values,
+        accept: &mut impl FnMut(&Values) -> Option<T>,
+        (progress, stuck): (&Progress, &mut Option<Expr>),
+    ) -> Result<Option<T>, Obstacle> {
+        let (visits, before) = (progress.visits.get(), *stuck);
+        let result = self.search(formulas, &extended(self.arena, values, found), accept, progress, stuck);
+        if found.len() > 1 && !matches!(result, Ok(Some(_))) {
+            progress.together.set(false);
+            progress.visits.set(visits);
+            *stuck = before;
+            return Ok(None);
+        }
+        result
     }
 
-    /// The ways to make one equation vanish, the one that assumes least first.
+    /// The states that linear equations determine together, with inputs in their coefficients.
+    fn states_together(
+        &self,
+        field: &Field<'_>,
+        open: &[(Expr, Fraction)],
+        unknown: &Unknown,
+    ) -> Result<Values, Obstacle> {
+        let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
+        joint::solved(self.arena, field, equations, &unknown.of_states, [&BTreeSet::new(), &unknown.of_inputs])
+    }
+
+    /// The symbols that are not determined, states and inputs, and where they stand.
+    fn unknown(&self, field: &Field<'_>, values: &Values) -> Unknown {
+        let open = |symbols: &BTreeSet<Symbol>| -> BTreeSet<Symbol> {
+            symbols.iter().copied().filter(|s| !values.contains_key(s)).collect()
+        };
+        let (states, inputs) = (open(&self.states), open(&self.inputs));
+        let symbols: BTreeSet<Symbol> = states.union(&inputs).copied().collect();
+        let of_each = symbols.iter().map(|symbol| (*symbol, field.kernels_of(&BTreeSet::from([*symbol])))).collect();
+        Unknown { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
+    }
+
+    /// The ways to make one equation vanish, the one that assumes least first; before them several at once, if inputs are
+    /// to be found.
     fn alternatives(
         &self,
         field: &Field<'_>,
         open: &[(Expr, Fraction)],
         factors: &[Factor],
-        unknown: &BTreeSet<Symbol>,
-    ) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
+        unknown: &Unknown,
+        together: bool,
+    ) -> Result<Vec<Values>, Obstacle> {
         let mut steps = Vec::new();
         for factor in factors {
             self.steps(field, factor, unknown, &mut steps)?;
@@ -170,22 +236,30 @@ impl Elimination<'_> {
         steps.sort_by_key(|step| step.cost);
         let chosen = steps.first().map(|step| step.equation);
         let mut found = Vec::new();
+        let mut several = Values::new();
+        if together && steps.first().is_some_and(|step| step.cost.input && step.cost.degree == 1 && !step.cost.bends) {
+            let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
+            let solved =
+                joint::solved(self.arena, field, equations, &unknown.of_inputs, [&unknown.of_states, &BTreeSet::new()]);
+            several = solved.unwrap_or_default();
+        }
         for step in steps.iter().filter(|step| Some(step.equation) == chosen) {
             found.extend(self.values(field, step)?.into_iter().map(|value| (step.symbol, value)));
         }
         if chosen.is_none() {
             let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
-            found.extend(self.inverted(&together, unknown)?);
+            found.extend(self.inverted(&together, &unknown.symbols)?);
         }
         for factor in factors.iter().filter(|factor| chosen.is_none_or(|chosen| factor.equation == chosen)) {
             let formula = field.show(&field.of_polynomial(&factor.poly)?);
-            found.extend(self.inverted(&[formula], unknown)?);
+            found.extend(self.inverted(&[formula], &unknown.symbols)?);
             // For each state by itself too, as if the others were given.
-            for symbol in unknown {
+            for symbol in &unknown.symbols {
                 found.extend(self.inverted(&[formula], &BTreeSet::from([*symbol]))?);
             }
         }
-        Ok(found)
+        let several = Some(several).filter(|several| several.len() > 1);
+        Ok(several.into_iter().chain(found.into_iter().map(|one| Values::from([one]))).collect())
     }
 
     /// The symbols that stand to the first or second power in a factor, in no kernel but themselves.
@@ -193,12 +267,11 @@ impl Elimination<'_> {
         &self,
         field: &Field<'_>,
         factor: &Factor,
-        unknown: &BTreeSet<Symbol>,
+        unknown: &Unknown,
         steps: &mut Vec<Step>,
     ) -> Result<(), Obstacle> {
         let arena = self.arena;
-        for symbol in unknown {
-            let kernels = field.kernels_of(&BTreeSet::from([*symbol]));
+        for (symbol, kernels) in &unknown.of_each {
             let mut kernels = factor.poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
             let (Some(kernel), None) = (kernels.next(), kernels.next()) else { continue };
             let degree = factor.poly.degree(kernel);
@@ -215,15 +288,12 @@ impl Elimination<'_> {
                 continue;
             }
             let slope = &coefficients[degree as usize];
-            let holds = |symbols: &BTreeSet<Symbol>| {
-                let kernels = field.kernels_of(&symbols.intersection(unknown).copied().collect());
-                slope.variables().any(|kernel| kernels.contains(&kernel))
-            };
+            let holds = |kernels: &BTreeSet<u32>| slope.variables().any(|kernel| kernels.contains(&kernel));
             let cost = Cost {
                 degree,
-                bends: holds(&self.states),
+                bends: holds(&unknown.of_states),
                 input: self.inputs.contains(symbol),
-                driven: holds(&self.inputs),
+                driven: holds(&unknown.of_inputs),
                 terms: coefficients.iter().map(|c| c.numerator().term_count()).sum(),
             };
             steps.push(Step { cost, equation: factor.equation, symbol: *symbol, coefficients });
@@ -258,4 +328,10 @@ impl Elimination<'_> {
         };
         Ok(candidates.into_iter().flat_map(free).collect())
     }
+}
+
+/// Values with more of them, which replace their symbols in the others.
+fn extended(arena: &Arena, values: &Values, more: &Values) -> Values {
+    let known = values.iter().map(|(symbol, known)| (*symbol, arena.substitute(*known, more)));
+    known.chain(more.iter().map(|(symbol, value)| (*symbol, *value))).collect()
 }

@@ -9,24 +9,52 @@ use super::expr::Expr;
 use super::facts::Relation;
 use super::field::{Field, Obstacle};
 
+/// Signs that a value has somewhere.
+#[derive(Default)]
+struct Signs {
+    positive: bool,
+    negative: bool,
+}
+
 impl Domain {
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
     pub(crate) fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        if self.facts.iter().any(|fact| fact == (expr, relation)) {
+            return true;
+        }
+        // A proof of a sign takes algebra; that there is none, often one point tells.
+        let seen = self.signs_seen(arena, expr);
+        let signed = match relation {
+            Relation::Positive | Relation::NonNegative => !seen.negative,
+            Relation::NonZero => !(seen.negative && seen.positive),
+        };
         let shown = |field: Result<Field<'_>, Obstacle>| {
             let field = field?;
             let fraction = field.fraction(expr)?;
             match relation {
                 Relation::Positive => field.is_positive(&fraction),
                 Relation::NonNegative => field.is_not_negative(&fraction),
-                Relation::NonZero => Ok(field.is_positive(&fraction)? || field.is_positive(&fraction.opposite())?),
+                Relation::NonZero => Ok((!seen.negative && field.is_positive(&fraction)?)
+                    || (!seen.positive && field.is_positive(&fraction.opposite())?)),
             }
         };
         let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
-        self.facts.iter().any(|fact| fact == (expr, relation))
-            || shown(Field::over(arena, &self.facts, &[expr])).unwrap_or(false)
-            || (!self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
+        (signed && shown(Field::over(arena, &self.facts, &[expr])).unwrap_or(false))
+            || (signed && !self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
             || divides()
-            || self.sign_over_box(arena, expr).is_some_and(|positive| positive || relation == Relation::NonZero)
+            || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
+    }
+
+    /// The signs that the expression provably has at some points of the domain.
+    fn signs_seen(&self, arena: &Arena, expr: Expr) -> Signs {
+        let mut seen = Signs::default();
+        for value in self.glimpses(arena, &[expr]).filter_map(|point| arena.separated_from_zero(expr, &point)) {
+            *(if value.is_positive() { &mut seen.positive } else { &mut seen.negative }) = true;
+            if seen.positive && seen.negative {
+                break;
+            }
+        }
+        seen
     }
 
     /// Whether the expression vanishes only where something does that is assumed not to: its factors are among those

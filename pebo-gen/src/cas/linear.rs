@@ -1,8 +1,11 @@
 //! Exact linear algebra over the field of fractions.
 //!
-//! Elimination picks the lightest pivot, so that entries stay short; what is free is set to zero.
+//! Elimination picks the lightest pivot, so that entries stay short; what is free is set to zero. A matrix of numbers is
+//! left to [`rational_matrix`].
 
 use super::field::{Field, Fraction, Obstacle};
+use super::rational::Rational;
+use super::rational_matrix::{self, Reduced};
 
 /// What elimination leaves: pivot columns and reduced rows.
 #[derive(Debug)]
@@ -22,6 +25,12 @@ impl Echelon {
         rows: Vec<Vec<Fraction>>,
         columns: usize,
     ) -> Result<(Self, Vec<Vec<Fraction>>), Obstacle> {
+        if let Some(numbers) = numbers_of(&rows) {
+            let Reduced { rows, rest } = rational_matrix::reduced(&numbers, columns, field.limit())?;
+            let fractions = |row: Vec<Rational>| row.iter().map(Fraction::constant).collect::<Vec<_>>();
+            let rows = rows.into_iter().map(|(column, row)| (column, fractions(row))).collect();
+            return Ok((Self { rows, columns }, rest.into_iter().map(fractions).collect()));
+        }
         let mut rest = rows;
         let mut done: Vec<(usize, Vec<Fraction>)> = Vec::new();
         loop {
@@ -80,6 +89,11 @@ impl Echelon {
             })
             .collect()
     }
+}
+
+/// The entries, if all are rational numbers.
+pub(super) fn numbers_of(rows: &[Vec<Fraction>]) -> Option<Vec<Vec<Rational>>> {
+    rows.iter().map(|row| row.iter().map(Fraction::to_constant).collect()).collect()
 }
 
 /// Solves `matrix * unknowns = right` for rows `[matrix | right]` with the right side in the last

@@ -4,6 +4,9 @@
 //! squared, where it is known that `d < 1`. Turning a factor round is exact; that it is known to be positive lets it
 //! meet its own root, as in `sqrt(r)/r`.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
 use super::domain::Domain;
 use super::facts::Relation;
 use super::rational::Rational;
@@ -11,54 +14,88 @@ use super::{Arena, Expr, Node, Product};
 
 /// The expression with known negative denominators turned round, in sums term by term.
 pub fn oriented(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
-    match arena.node(expr) {
-        Node::Sum(sum) => {
-            let terms = sum.terms.iter().map(|(term, coefficient)| {
-                let term = match arena.node(*term) {
-                    Node::Product(product) => turned(arena, domain, &product),
-                    _ => *term,
-                };
-                arena.scale(term, coefficient)
-            });
-            arena.sum(terms.chain([arena.number(sum.constant.clone())]))
-        }
-        Node::Product(product) => turned(arena, domain, &product),
-        _ => expr,
-    }
+    Orientation::new(arena, domain).of(expr)
 }
 
-fn turned(arena: &Arena, domain: &Domain, product: &Product) -> Expr {
-    let two = Rational::from(2);
-    let is_even = |exponent: &Rational| exponent.checked_div(&two).is_some_and(|half| half.is_integer());
-    let mut coefficient = product.coefficient.clone();
-    let mut factors = product.factors.clone();
-    let mut changed = false;
-    for (base, exponent) in &mut factors {
-        let below = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
-        if !below || !matches!(arena.node(*base), Node::Sum(_)) {
-            continue;
+/// As [`oriented`], for several expressions: what is below one bar is often below others too.
+pub(crate) struct Orientation<'a> {
+    arena: &'a Arena,
+    domain: &'a Domain,
+    /// The sums that were asked about, and whether the domain shows them to be negative.
+    negative: RefCell<BTreeMap<Expr, bool>>,
+}
+
+impl<'a> Orientation<'a> {
+    pub(crate) fn new(arena: &'a Arena, domain: &'a Domain) -> Self {
+        Self { arena, domain, negative: RefCell::default() }
+    }
+
+    /// The expression turned round.
+    pub(crate) fn of(&self, expr: Expr) -> Expr {
+        let arena = self.arena;
+        match arena.node(expr) {
+            Node::Sum(sum) => {
+                let terms = sum.terms.iter().map(|(term, coefficient)| {
+                    let term = match arena.node(*term) {
+                        Node::Product(product) => self.turned(&product),
+                        _ => *term,
+                    };
+                    arena.scale(term, coefficient)
+                });
+                arena.sum(terms.chain([arena.number(sum.constant.clone())]))
+            }
+            Node::Product(product) => self.turned(&product),
+            _ => expr,
         }
-        let opposite = arena.neg(*base);
-        if domain.implies(arena, opposite, Relation::Positive) {
-            *base = opposite;
-            changed = true;
-            if !is_even(exponent) {
-                coefficient = -&coefficient;
+    }
+
+    /// Where it is asked.
+    pub(crate) fn domain(&self) -> &'a Domain {
+        self.domain
+    }
+
+    fn is_negative(&self, sum: Expr) -> bool {
+        if let Some(known) = self.negative.borrow().get(&sum) {
+            return *known;
+        }
+        let negative = self.domain.implies(self.arena, self.arena.neg(sum), Relation::Positive);
+        self.negative.borrow_mut().insert(sum, negative);
+        negative
+    }
+
+    fn turned(&self, product: &Product) -> Expr {
+        let arena = self.arena;
+        let two = Rational::from(2);
+        let is_even = |exponent: &Rational| exponent.checked_div(&two).is_some_and(|half| half.is_integer());
+        let mut coefficient = product.coefficient.clone();
+        let mut factors = product.factors.clone();
+        let mut changed = false;
+        for (base, exponent) in &mut factors {
+            let below = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
+            if !below || !matches!(arena.node(*base), Node::Sum(_)) {
+                continue;
+            }
+            if self.is_negative(*base) {
+                *base = arena.neg(*base);
+                changed = true;
+                if !is_even(exponent) {
+                    coefficient = -&coefficient;
+                }
             }
         }
+        if !changed {
+            return arena.multiply(&coefficient, factors);
+        }
+        // A sum above the bar takes a sign that is left.
+        if coefficient.is_negative()
+            && let Some((base, _)) =
+                factors.iter_mut().find(|(base, power)| power.is_one() && matches!(arena.node(*base), Node::Sum(_)))
+        {
+            *base = arena.neg(*base);
+            coefficient = -&coefficient;
+        }
+        arena.multiply(&coefficient, factors)
     }
-    if !changed {
-        return arena.multiply(&coefficient, factors);
-    }
-    // A sum above the bar takes a sign that is left.
-    if coefficient.is_negative()
-        && let Some((base, _)) =
-            factors.iter_mut().find(|(base, power)| power.is_one() && matches!(arena.node(*base), Node::Sum(_)))
-    {
-        *base = arena.neg(*base);
-        coefficient = -&coefficient;
-    }
-    arena.multiply(&coefficient, factors)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 mod convert;
 mod ops;
+mod total;
 
 use std::cmp::Ordering;
 use std::fmt;

@@ -8,18 +8,24 @@ use std::collections::BTreeSet;
 use super::asks::Want;
 use super::domain::Domain;
 use super::field::Field;
-use super::oriented::oriented;
+use super::oriented::Orientation;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
 /// The shortest of an expression and the ways to write its normal form.
 pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+    shortest_turned(arena, &Orientation::new(arena, domain), expr)
+}
+
+/// As [`shortest`], of one of several expressions that are turned alike.
+pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
+    let domain = orientation.domain();
     let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
         let fraction = field.fraction(expr)?;
         Ok([Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction)])
     });
     let forms = normal.into_iter().flatten().flatten();
-    let turned = |form: Expr| [form, oriented(arena, domain, form)];
+    let turned = |form: Expr| [form, orientation.of(form)];
     let forms = [expr].into_iter().chain(forms).flat_map(turned);
     let own = functions(arena, &[expr]);
     forms.fold(expr, |best, form| {

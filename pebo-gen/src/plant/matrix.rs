@@ -3,6 +3,7 @@
 //! Entries are kept as the shortest exact form that is at hand: the author's own, or the normal form of
 //! what was computed from it.
 
+use crate::cas::determinant::determinant;
 use crate::cas::facts::Facts;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::linear::Echelon;
@@ -165,28 +166,4 @@ impl Matrix {
 /// The sum of the products of the entries.
 pub fn dot(arena: &Arena, left: &[Expr], right: &[Expr]) -> Expr {
     arena.sum(left.iter().zip(right).map(|(a, b)| arena.mul(*a, *b)))
-}
-
-/// The determinant by elimination.
-pub fn determinant(field: &Field<'_>, mut rows: Vec<Vec<Fraction>>) -> Result<Fraction, Obstacle> {
-    let mut total = Fraction::one();
-    for column in 0..rows.len() {
-        let Some(pivot) = (column..rows.len()).find(|row| !rows[*row][column].is_zero()) else {
-            return Ok(Fraction::zero());
-        };
-        if pivot != column {
-            rows.swap(pivot, column);
-            total = total.opposite();
-        }
-        total = field.mul(&total, &rows[column][column])?;
-        let (above, below) = rows.split_at_mut(column + 1);
-        let pivot_row = &above[column];
-        for row in below {
-            let factor = field.div(&row[column], &pivot_row[column])?;
-            for (entry, own) in row.iter_mut().zip(pivot_row).skip(column) {
-                *entry = field.sub(entry, &field.mul(&factor, own)?)?;
-            }
-        }
-    }
-    Ok(total)
 }

@@ -10,14 +10,14 @@ use std::collections::BTreeMap;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
-use crate::cas::oriented::oriented;
+use crate::cas::oriented::Orientation;
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
 use crate::analysis::design::{Cascade, Derivation, Verdict};
 use crate::cas::elimination::Elimination;
-use crate::cas::tidy::shortest;
+use crate::cas::tidy::shortest_turned;
 
 /// The search for an operating point may take one part in so many of what the command has left.
 const SHARE: u64 = 4;
@@ -103,7 +103,8 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let still = flow(plant, cascade).into_iter().all(|rate| vanishes(arena, rate, &values, &there));
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
-    let shown = |value: Expr| oriented(arena, &there, shortest(arena, &there, value));
+    let orientation = Orientation::new(arena, &there);
+    let shown = |value: Expr| orientation.of(shortest_turned(arena, &orientation, value));
     let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
 }

@@ -4,17 +4,20 @@
 //! neither. Lambda is taken apart into blocks of components that feed one another. Each block is judged by itself,
 //! - by a quadratic form with a constant positive diagonal P that never grows: `P Lambda + Lambda' P` is diagonal
 //!   without a positive entry (for circuits and mechanisms P is the stored energy);
-//! - where it is constant, by the criterion of Hurwitz;
+//! - where it is constant, as flows between compartments that lose no less than they feed ([`flows`]);
+//! - else by the criterion of Hurwitz;
 //! - by its trace, which is the rate of `log det Psi` (Liouville).
 //!
 //! Then in the order in which the blocks feed one another: what is fed through constants by something bounded stays
 //! bounded if by itself it dies out at a constant rate; what does not, only if all that feeds it dies out so.
 
+mod flows;
+
 use crate::cas::Expr;
+use crate::cas::determinant::by_elimination;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::plant::Plant;
-use crate::plant::matrix::determinant;
 
 use crate::analysis::design::Fundamental;
 
@@ -94,11 +97,19 @@ impl System<'_> {
         }
         let by_energy = self.by_energy(block)?;
         let constant = block.iter().all(|&i| block.iter().all(|&j| self.is_constant(&self.entries[i][j])));
-        if by_energy == Fate::Fades || !constant || block.len() > MOST_COMPONENTS {
+        if by_energy == Fate::Fades || !constant {
             return Ok(by_energy);
         }
+        let by_flows = flows::fate(&self.field, &self.entries, block)?;
+        if by_flows == Fate::Fades {
+            return Ok(Fate::Fades);
+        }
+        let known = if by_energy == Fate::Open { by_flows } else { by_energy };
+        if block.len() > MOST_COMPONENTS {
+            return Ok(known);
+        }
         let by_polynomial = self.by_polynomial(block)?;
-        Ok(if by_polynomial == Fate::Open { by_energy } else { by_polynomial })
+        Ok(if by_polynomial == Fate::Open { known } else { by_polynomial })
     }
 
     /// By a quadratic form with a constant positive diagonal.
@@ -262,7 +273,7 @@ fn hurwitz(field: &Field<'_>, polynomial: &[Fraction], size: usize) -> Result<Fr
         let index = (2 * (column + 1)).checked_sub(row + 1);
         index.and_then(|index| polynomial.get(index)).cloned().unwrap_or_else(Fraction::zero)
     };
-    determinant(field, (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect())
+    by_elimination(field, (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect())
 }
 
 fn product(field: &Field<'_>, a: &[Vec<Fraction>], b: &[Vec<Fraction>]) -> Result<Vec<Vec<Fraction>>, Obstacle> {

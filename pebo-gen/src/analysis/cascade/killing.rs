@@ -6,14 +6,14 @@
 //! z_i' = h_i + v' (L_{T_i} M) v / 2
 //! ```
 //!
-//! so the terms vanish exactly if each column of T is a Killing field of M. Ortega et al. 2015 state the
-//! same as Assumption 3: `B_(i) + B_(i)' = 0` with
+//! so the terms vanish exactly if each column of T is a Killing field of M. That is decided directly, without an inverse.
+//! Ortega et al. 2015 state the same as Assumption 3: `B_(i) + B_(i)' = 0` with
 //!
 //! ```text
 //! B_(i) = sum over j of [T_i, T_j] T_j' (M T T')^-1 + T_ji T d/dq_j (T' M T)^-1 T' / 2
 //! ```
 //!
-//! Both are decided, and the answer is theirs only if they agree.
+//! whose entries tell the reader of a refused column where it fails.
 
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
@@ -23,35 +23,24 @@ use crate::cas::{Arena, Expr};
 use crate::plant::Matrix;
 use crate::plant::class::Mechanical;
 
-/// The answer for one column of T.
-#[derive(Debug)]
-pub(super) enum Column {
-    /// It is a Killing field: `z_i' = h_i`.
-    Killing,
-    /// It is none; with the entries of `B_(i) + B_(i)'` on and above the diagonal that are not zero.
-    Other(Vec<(usize, usize, Expr)>),
-    /// It could not be decided.
-    Open(Obstacle),
+/// Whether a column of T is a Killing field: `z_i' = h_i`.
+pub(super) fn is_killing(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -> Result<bool, Obstacle> {
+    Ok(nonzero(arena, domain, &lie_derivative(arena, plant, index))?.is_empty())
 }
 
-/// Decides a column of T, directly and by Assumption 3.
-pub(super) fn column(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -> Column {
-    let directly = vanishes(arena, domain, &lie_derivative(arena, plant, index));
-    let offending = structure(arena, domain, plant, index).and_then(|b| {
-        let b = b.add(arena, &b.transpose());
-        nonzero(arena, domain, &b)
-    });
-    match (directly, offending) {
-        (Ok(true), Ok(offending)) if offending.is_empty() => Column::Killing,
-        (Ok(false), Ok(offending)) if !offending.is_empty() => Column::Other(offending),
-        // Two forms of one condition that differ: nothing may be concluded.
-        (Ok(_), Ok(_)) => Column::Open(Obstacle::Kernel("the two forms of Assumption 3".to_owned())),
-        (Err(obstacle), _) | (_, Err(obstacle)) => Column::Open(obstacle),
-    }
+/// The entries of `B_(i) + B_(i)'` on and above the diagonal that are not zero, with their rows and columns.
+pub(super) fn offending(
+    arena: &Arena,
+    domain: &Domain,
+    plant: &Mechanical,
+    index: usize,
+) -> Result<Vec<(usize, usize, Expr)>, Obstacle> {
+    let b = structure(arena, domain, plant, index)?;
+    nonzero(arena, domain, &b.add(arena, &b.transpose()))
 }
 
 /// `L_{T_i} M = sum over k of T_ki dM/dq_k + (dT_i)' M + M dT_i`.
-pub(super) fn lie_derivative(arena: &Arena, plant: &Mechanical, index: usize) -> Matrix {
+fn lie_derivative(arena: &Arena, plant: &Mechanical, index: usize) -> Matrix {
     let (m, field) = (&plant.inertia, plant.frame.column(index));
     let n = field.len();
     let jacobian = Matrix::build(n, n, |j, k| arena.derivative(field[j], plant.q[k]));
@@ -66,7 +55,7 @@ pub(super) fn lie_derivative(arena: &Arena, plant: &Mechanical, index: usize) ->
 }
 
 /// `B_(i)` of Assumption 3, with the sum to the number of positions and derivatives by these.
-pub(super) fn structure(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -> Result<Matrix, Obstacle> {
+fn structure(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -> Result<Matrix, Obstacle> {
     let facts = &domain.facts;
     let Mechanical { q, frame, inverse_frame, inverse_metric, .. } = plant;
     let n = q.len();
@@ -97,10 +86,6 @@ fn bracket(arena: &Arena, plant: &Mechanical, i: usize, j: usize) -> Matrix {
         arena.sum(plant.q.iter().zip(field).map(|(q, c)| arena.mul(*c, arena.derivative(of, *q))))
     };
     Matrix::build(first.len(), 1, |row, _| arena.sub(along(&first, second[row]), along(&second, first[row])))
-}
-
-fn vanishes(arena: &Arena, domain: &Domain, symmetric: &Matrix) -> Result<bool, Obstacle> {
-    Ok(nonzero(arena, domain, symmetric)?.is_empty())
 }
 
 /// The entries on and above the diagonal that provably are not zero, all others being proved zero.

@@ -10,6 +10,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::cas::determinant::determinant;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
@@ -17,7 +18,6 @@ use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::plant::Plant;
-use crate::plant::matrix::determinant;
 
 /// Where a determinant vanishes.
 #[derive(Default)]

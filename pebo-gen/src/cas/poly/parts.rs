@@ -1,5 +1,9 @@
 //! Looking at a polynomial as one in some of its variables: contents and coefficients.
 
+use std::cmp::Ordering;
+
+use smallvec::SmallVec;
+
 use super::super::integer::Integer;
 use super::work::{TooLarge, Work};
 use super::{Monomial, Poly};
@@ -37,6 +41,30 @@ impl Poly {
             least
         });
         Monomial::new(self.variables().iter().copied().zip(least))
+    }
+
+    /// The coefficient of a power product, if it is among the terms: found by bisection.
+    pub fn coefficient(&self, monomial: &Monomial) -> Option<&Integer> {
+        let words = self.layout.words();
+        let mut key = SmallVec::<[u64; 8]>::from_elem(0, words);
+        for (variable, exponent) in monomial.powers() {
+            let index = self.layout.position(*variable)?;
+            if u64::from(*exponent) > self.layout.mask() {
+                return None;
+            }
+            self.layout.add(&mut key, index, *exponent);
+        }
+        let (mut low, mut high) = (0, self.coefficients.len());
+        while low < high {
+            let middle = low.midpoint(high);
+            match self.key(middle).cmp(&key) {
+                Ordering::Equal => return self.coefficients.get(middle),
+                // Terms descend.
+                Ordering::Greater => low = middle + 1,
+                Ordering::Less => high = middle,
+            }
+        }
+        None
     }
 
     /// The quotient by a power product that divides every term.

@@ -53,6 +53,17 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
+    fn a_coefficient_is_that_of_its_term(a in poly(8, 4), b in poly(8, 4)) {
+        for (monomial, coefficient) in a.terms() {
+            prop_assert_eq!(a.coefficient(&monomial), Some(coefficient));
+        }
+        for (monomial, _) in b.terms() {
+            let term = a.terms().find(|(own, _)| *own == monomial);
+            prop_assert_eq!(a.coefficient(&monomial), term.map(|(_, coefficient)| coefficient));
+        }
+    }
+
+    #[test]
     fn ring_axioms(a in poly(12, 4), b in poly(12, 4), c in poly(12, 4)) {
         prop_assert_eq!(&a + &b, &b + &a);
         prop_assert_eq!(&(&a + &b) + &c, &a + &(&b + &c));

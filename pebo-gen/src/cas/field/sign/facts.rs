@@ -127,12 +127,16 @@ impl Field<'_> {
     fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
         let mut found = None;
         for (fact, compared) in facts {
+            // Most facts are about something else, which their variables tell before any term is looked at.
+            if *compared == Compared::NonZero || !shares_a_variable(poly, fact) {
+                continue;
+            }
             let effort = poly.term_count() * fact.term_count();
-            if *compared == Compared::NonZero || self.limit().spend(effort as u64).is_err() {
+            if self.limit().spend(effort as u64).is_err() {
                 continue;
             }
             for (monomial, wanted) in fact.terms() {
-                let Some((_, present)) = poly.terms().find(|(candidate, _)| *candidate == monomial) else { continue };
+                let Some(present) = poly.coefficient(&monomial) else { continue };
                 if monomial.is_one() || wanted.is_negative() != present.is_negative() {
                     continue;
                 }
@@ -154,4 +158,10 @@ impl Field<'_> {
         }
         found
     }
+}
+
+/// Whether a variable occurs in both: without one they have no term in common but a constant.
+fn shares_a_variable(a: &Poly, b: &Poly) -> bool {
+    let (few, many) = if a.variables().len() < b.variables().len() { (a, b) } else { (b, a) };
+    few.variables().iter().any(|variable| many.variables().binary_search(variable).is_ok())
 }

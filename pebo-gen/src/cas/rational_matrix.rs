@@ -1,0 +1,119 @@
+//! Elimination of matrices of numbers.
+//!
+//! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every entry
+//! is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is looked for
+//! and numbers grow no longer than the answer.
+
+use super::integer::Integer;
+use super::poly::{TooLarge, Work};
+use super::rational::Rational;
+
+/// What elimination leaves of a matrix.
+pub(super) struct Reduced {
+    /// Rows with their pivot columns, ascending; each is one in its pivot column, and all others are zero there.
+    pub(super) rows: Vec<(usize, Vec<Rational>)>,
+    /// A multiple of each of the rows that are zero on the columns of the matrix, and may not be beyond.
+    pub(super) rest: Vec<Vec<Rational>>,
+}
+
+/// Eliminates on the first `columns` columns; a row may have more, which are carried along.
+pub(super) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Result<Reduced, TooLarge> {
+    let mut rest: Vec<Vec<Integer>> = rows.iter().map(|row| integers(row).0).collect();
+    let mut done: Vec<(usize, Vec<Integer>)> = Vec::new();
+    let mut last = Integer::ONE;
+    for column in 0..columns {
+        let Some(index) = rest.iter().position(|row| !row[column].is_zero()) else { continue };
+        let row = rest.swap_remove(index);
+        for other in rest.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
+            clear(other, &row, column, &last, work)?;
+        }
+        last = row[column].clone();
+        done.push((column, row));
+    }
+    let number = |n: &Integer| Rational::from(n.clone());
+    let over = |n: &Integer, pivot: &Integer| Rational::new(n.clone(), pivot.clone()).unwrap_or(Rational::ZERO);
+    let rows = done.iter().map(|(column, row)| (*column, row.iter().map(|n| over(n, &row[*column])).collect()));
+    Ok(Reduced { rows: rows.collect(), rest: rest.iter().map(|row| row.iter().map(number).collect()).collect() })
+}
+
+/// The determinant of a square matrix.
+pub(super) fn determinant(rows: &[Vec<Rational>], work: &Work) -> Result<Rational, TooLarge> {
+    let (mut rest, scales): (Vec<Vec<Integer>>, Vec<Integer>) = rows.iter().map(|row| integers(row)).unzip();
+    let mut last = Integer::ONE;
+    for column in 0..rows.len() {
+        let Some(index) = rest.iter().position(|row| !row[column].is_zero()) else { return Ok(Rational::ZERO) };
+        // A row that comes first past an odd number of others turns the sign.
+        let mut row = rest.remove(index);
+        if index % 2 == 1 {
+            for entry in &mut row {
+                *entry = -&*entry;
+            }
+        }
+        for other in &mut rest {
+            clear(other, &row, column, &last, work)?;
+        }
+        last = row[column].clone();
+    }
+    let below = scales.iter().fold(Integer::ONE, |product, scale| &product * scale);
+    Rational::new(last, below).ok_or(TooLarge)
+}
+
+/// `(pivot * other - factor * row) / last`, which is zero in the column of the pivot.
+fn clear(other: &mut [Integer], row: &[Integer], column: usize, last: &Integer, work: &Work) -> Result<(), TooLarge> {
+    let (pivot, factor) = (&row[column], other[column].clone());
+    // A step is about one product of words.
+    let words = pivot.bits().div_ceil(64) + 1;
+    work.spend(words.saturating_mul(other.len() as u64))?;
+    for (entry, own) in other.iter_mut().zip(row) {
+        if entry.is_zero() && (factor.is_zero() || own.is_zero()) {
+            continue;
+        }
+        let mut value = pivot * &*entry;
+        value.sub_product(&factor, own);
+        *entry = value.div_exact(last).ok_or(TooLarge)?;
+    }
+    Ok(())
+}
+
+/// A row times the least common denominator of its entries, and that.
+fn integers(row: &[Rational]) -> (Vec<Integer>, Integer) {
+    let common = row.iter().fold(Integer::ONE, |common, entry| common.lcm(&entry.denominator()));
+    let scale = Rational::from(common.clone());
+    (row.iter().map(|entry| (entry * &scale).numerator()).collect(), common)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix(rows: &[&[i64]], below: i64) -> Vec<Vec<Rational>> {
+        let entry = |n: &i64| Rational::new(*n, below).unwrap();
+        rows.iter().map(|row| row.iter().map(entry).collect()).collect()
+    }
+
+    #[test]
+    fn rows_are_reduced_and_the_rest_tells_contradictions() {
+        let rows = matrix(&[&[0, 2, 4, 1], &[1, 1, 1, 0], &[1, 3, 5, 2], &[2, 4, 6, 1]], 10);
+        let Reduced { rows, rest } = reduced(&rows, 3, &Work::new(1_000_000)).unwrap();
+        let pivots: Vec<usize> = rows.iter().map(|(column, _)| *column).collect();
+        assert_eq!(pivots, [0, 1]);
+        let ratio = |n: i64, d: i64| Rational::new(n, d).unwrap();
+        assert_eq!(rows[0].1, [ratio(1, 1), ratio(0, 1), ratio(-1, 1), ratio(-1, 2)]);
+        assert_eq!(rows[1].1, [ratio(0, 1), ratio(1, 1), ratio(2, 1), ratio(1, 2)]);
+        // The third row is the second and the first, but for its right side; the fourth is consistent.
+        let wrong: Vec<bool> = rest.iter().map(|row| !row[3].is_zero()).collect();
+        assert_eq!(wrong.iter().filter(|wrong| **wrong).count(), 1, "{rest:?}");
+        assert!(rest.iter().all(|row| row[..3].iter().all(Rational::is_zero)));
+    }
+
+    #[test]
+    fn determinants_have_their_sign_and_scale() {
+        let work = Work::new(1_000_000);
+        let value = |rows: &[&[i64]], below| determinant(&matrix(rows, below), &work).unwrap();
+        assert_eq!(value(&[&[0, 1], &[1, 0]], 1), Rational::from(-1));
+        assert_eq!(value(&[&[0, 0, 1], &[1, 0, 0], &[0, 1, 0]], 1), Rational::ONE);
+        assert_eq!(value(&[&[0, 0, 1], &[0, 1, 0], &[1, 0, 0]], 1), Rational::from(-1));
+        assert_eq!(value(&[&[2, 7, 1], &[3, 5, 4], &[6, 9, 8]], 10), Rational::new(5, 1000).unwrap());
+        assert_eq!(value(&[&[1, 2], &[2, 4]], 3), Rational::ZERO);
+    }
+}

@@ -1,0 +1,163 @@
+"""Models that grow: the text of a model file for a family and a size, on the standard output.
+
+    python3 tests/bench/models.py cuk 4 > cuk4.yaml
+
+Every family keeps its structure as it grows, so that the time of `pebo-gen check` over n shows the growth of the algebra and not of
+another question. Decimals are drawn from a fixed seed.
+"""
+
+import random
+import sys
+
+
+def cuk(n):
+    """n Cuk converters in a row, each one fed by the one before."""
+    stages = range(1, n + 1)
+    parts = [f"{part}_{k}" for k in stages for part in ("L1", "C2", "L3", "C4")] + [f"G{k}" for k in stages]
+    f_x = {}
+    f_y = {}
+    for k in stages:
+        # The output voltage is negative, and what the next stage draws flows into its node.
+        source, drawn = ("E" if k == 1 else f"-v4_{k - 1}"), (f" + i1_{k + 1}" if k < n else "")
+        f_x[f"i1_{k}"] = f"({source} - (1 - d{k})*v2_{k})/L1_{k}"
+        f_x[f"i3_{k}"] = f"-(d{k}*v2_{k} + v4_{k})/L3_{k}"
+        f_y[f"v2_{k}"] = f"((1 - d{k})*i1_{k} + d{k}*i3_{k})/C2_{k}"
+        f_y[f"v4_{k}"] = f"(i3_{k} - G{k}*v4_{k}{drawn})/C4_{k}"
+    return _model(
+        f"cuk{n}",
+        parameters=_list(parts + ["E"]),
+        x=_list(f_x),
+        y=_list(f_y),
+        u=_list(f"d{k}" for k in stages),
+        assume=_list([f"{part} > 0" for part in parts] + [f"0 < d{k} < 1" for k in stages]),
+        f_x=_map(f_x),
+        f_y=_map(f_y),
+        phi=_list(f_x),
+    )
+
+
+def lti(n):
+    """A linear plant with n unmeasured states, as many measured ones, and decimals for entries."""
+    draw = random.Random(n)
+
+    def block(width):
+        return _list(_list(f"{draw.randint(-999, 999) / 100}" for _ in range(width)) for _ in range(n))
+
+    blocks = {name: block(n) for name in ("A11", "A12", "A21", "A22")} | {name: block(1) for name in ("B1", "B2")}
+    x, y = ([f"{letter}{i}" for i in range(1, n + 1)] for letter in "xy")
+    return _model(f"lti{n}", x=_list(x), y=_list(y), u="[u]", lti=_map(blocks))
+
+
+def symbolic(n):
+    """A linear plant with n unmeasured states and as many measured ones, in symbols."""
+    indices = range(1, n + 1)
+    blocks = {name: [[f"{letter}{i}{j}" for j in indices] for i in indices] for name, letter in (("A11", "a"), ("A21", "c"))}
+    parameters = [entry for rows in blocks.values() for row in rows for entry in row]
+    x, y = ([f"{letter}{i}" for i in indices] for letter in "xy")
+    matrices = {name: _list(map(_list, rows)) for name, rows in blocks.items()}
+    return _model(f"symbolic{n}", parameters=_list(parameters), x=_list(x), y=_list(y), lti=_map(matrices))
+
+
+def arm(n):
+    """A planar arm of n links with masses at the joints, relative angles: the momentum of the base alone is of use."""
+    joints = range(1, n + 1)
+
+    def inertia(i, j):
+        # Between links a and b stand the angles a + 1 to b; link a moves what is at its end and beyond.
+        terms = []
+        for a in range(i, n + 1):
+            for b in range(j, n + 1):
+                low, high = sorted((a, b))
+                angle = " + ".join(f"q{k}" for k in range(low + 1, high + 1))
+                terms.append(f"m{high}*l{a}*l{b}*cos({angle})" if angle else f"m{high}*l{a}^2")
+        return " + ".join(terms)
+
+    # m_k is the mass at the end of link k and all beyond it.
+    parts = [f"{letter}{k}" for letter in "ml" for k in joints]
+    matrix = {"M": _list(_list(inertia(i, j) for j in joints) for i in joints)}
+    matrix |= {"T": _list(_list(str(int(i == j)) for j in joints) for i in joints)}
+    matrix |= {"G": _list(_list(str(int(i == j)) for j in joints) for i in joints)}
+    return _model(
+        f"arm{n}",
+        parameters=_list(parts),
+        x=_list(f"p{k}" for k in joints),
+        y=_list(f"q{k}" for k in joints),
+        u=_list(f"t{k}" for k in joints),
+        assume=_list(f"{part} > 0" for part in parts),
+        mechanical=_map(matrix),
+    )
+
+
+def compartments(n):
+    """A chain of n compartments with linear flows both ways and losses, the last one measured."""
+    rates = {}
+    for k in range(1, n + 1):
+        flows = ["u"] * (k == 1) + [f"-e{k}*c{k}"]
+        flows += [f"f{k - 1}*c{k - 1} - b{k - 1}*c{k}"] * (k > 1) + [f"b{k}*c{k + 1} - f{k}*c{k}"] * (k < n)
+        rates[f"c{k}"] = " + ".join(flows)
+    last = {f"c{n}": rates.pop(f"c{n}")}
+    parameters = [f"{letter}{k}" for letter in "fb" for k in range(1, n)] + [f"e{k}" for k in range(1, n + 1)]
+    return _model(
+        f"compartments{n}",
+        parameters=_list(parameters),
+        x=_list(rates),
+        y=_list(last),
+        u="[u]",
+        assume=_list(f"{parameter} > 0" for parameter in parameters),
+        f_x=_map(rates),
+        f_y=_map(last),
+        phi=_list(rates),
+    )
+
+
+def grid(n):
+    """n machines on one net: swing equations with angles measured."""
+    machines = range(1, n + 1)
+
+    def line(i, j):
+        return f"k{min(i, j)}_{max(i, j)}*sin(a{i} - a{j})"
+
+    lines = [f"k{i}_{j}" for i in machines for j in range(i + 1, n + 1)]
+    parts = [f"{letter}{i}" for letter in "MD" for i in machines]
+    swing = {
+        f"w{i}": f"(P{i} - D{i}*w{i} - {' - '.join(line(i, j) for j in machines if j != i)})/M{i}" for i in machines
+    }
+    return _model(
+        f"grid{n}",
+        parameters=_list(parts + lines),
+        x=_list(swing),
+        y=_list(f"a{i}" for i in machines),
+        u=_list(f"P{i}" for i in machines),
+        assume=_list(f"{part} > 0" for part in parts),
+        f_x=_map(swing),
+        f_y=_map({f"a{i}": f"w{i}" for i in machines}),
+        phi=_list(f"w{i} + D{i}/M{i}*a{i}" for i in machines),
+    )
+
+
+def terms(n):
+    """A sum of n terms in one rate."""
+    total = " + ".join(f"a{k}*y^{1 + k % 5}" for k in range(1, n + 1))
+    names = _list(f"a{k}" for k in range(1, n + 1))
+    return _model(f"terms{n}", parameters=names, x="[x]", y="[y]", f_x=_map({"x": total}), f_y="{y: x}", phi="[x]")
+
+
+FAMILIES = {family.__name__: family for family in (cuk, lti, symbolic, arm, compartments, grid, terms)}
+
+
+def _model(name, **keys):
+    return "".join(f"{key}: {value}\n" for key, value in {"model": name, **keys}.items())
+
+
+def _list(items):
+    return f"[{', '.join(items)}]"
+
+
+def _map(items):
+    return "".join(f"\n  {key}: {value}" for key, value in items.items())
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3 or sys.argv[1] not in FAMILIES or not sys.argv[2].isdigit():
+        sys.exit(f"models.py {'|'.join(FAMILIES)} SIZE")
+    sys.stdout.write(FAMILIES[sys.argv[1]](int(sys.argv[2])))
