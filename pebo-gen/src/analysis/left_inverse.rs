@@ -191,13 +191,13 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
         .filter_map(|state| {
             let proposed =
                 plant.proposal.phi_left.iter().filter(|(s, _)| *s == state.symbol).map(|(_, formula)| *formula);
-            let mut candidates: Vec<Expr> =
-                proposed.chain(solved.get(&state.symbol).into_iter().flatten().copied()).collect();
-            // Of several the one that has a value wherever the plant has, then the shortest.
+            // Of proposals for the same state the shortest; what is solved for comes with the likelier first.
+            let mut candidates: Vec<Expr> = proposed.map(|formula| shortest(arena, domain, formula)).collect();
+            candidates.sort_by_cached_key(|formula| operations(arena, *formula));
+            candidates.extend(solved.get(&state.symbol).into_iter().flatten());
+            // Of several the one that has a value wherever the plant has.
             if candidates.len() > 1 {
-                candidates = candidates.into_iter().map(|formula| shortest(arena, domain, formula)).collect();
-                let merit = |formula: &Expr| (unshown(plant, domain, *formula).len(), operations(arena, *formula));
-                candidates.sort_by_cached_key(merit);
+                candidates.sort_by_cached_key(|formula| unshown(plant, domain, *formula).len());
             }
             let right = |formula: &&Expr| check(plant, domain, state.symbol, **formula).1.is_zero();
             // A candidate that is wrong may still show that the transform is not one-to-one.
