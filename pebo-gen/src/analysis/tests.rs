@@ -144,3 +144,42 @@ fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
         "what follows from the signs is not asked again, and nothing of signals"
     );
 }
+
+/// Where the normal form would overflow, lose its digits or divide by zero, and the author's own formula does not.
+#[test]
+fn results_are_in_the_functions_and_divisors_that_the_author_wrote() {
+    let shown = |lines: &str| -> (Vec<String>, Vec<String>) {
+        let (plant, derivation) = derive(lines);
+        assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}");
+        let print = |e: &Expr| plant.arena.print(*e);
+        let h = derivation.cascade.result.unwrap().h.iter().map(print).collect();
+        (h, derivation.left_inverse.result.unwrap().x.iter().map(|(_, formula)| print(formula)).collect())
+    };
+    let (h, _) = shown(
+        "parameters: {J: 2, k: 1, F: 1}\nx: [p]\ny: [q, w]\nu: [v]\nf_x: {p: (v - F*tanh(100*w) - k*p)/J}\n\
+         f_y: {q: p, w: v}\nphi: [J*p + k*q]",
+    );
+    assert_eq!(h, ["v - F*tanh(100*w)"], "no quotient of exponentials, which overflow");
+    let (h, _) = shown(
+        "parameters: {J: 2, k: 1, T: 1}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: (v - T*sin(24*q) - k*p)/J}\nf_y: {q: p}\n\
+         phi: [J*p + k*q]",
+    );
+    assert_eq!(h, ["v - T*sin(24*q)"], "no polynomial of degree 24");
+    let (_, left) = shown(
+        "x: [p]\ny: [q, s]\nu: [v]\nassume: [q >= 0]\nf_x: {p: v}\nf_y: {q: 0, s: p + p*sqrt(q)}\nphi: [p*(1 + sqrt(q))]",
+    );
+    assert_eq!(left, ["z1/(sqrt(q) + 1)"], "regular at q = 1");
+    // A two-link arm with its mass at the tip: z are the tip's velocities, the momenta J' z.
+    let (h, left) = shown(
+        "parameters: {m: 0.8, a: 0.5, b: 0.35}\nx: [x1, x2]\ny: [p, q]\nu: [u, v]\n\
+         assume: [m > 0, a > 0, b > 0, sin(q) > 0]\n\
+         mechanical:\n  M: [[m*(a^2 + b^2 + 2*a*b*cos(q)), m*(b^2 + a*b*cos(q))], [m*(b^2 + a*b*cos(q)), m*b^2]]\n  \
+         V: 0\n  G: [[1, 0], [0, 1]]\n  T: [[cos(p + q)/(a*sin(q)), sin(p + q)/(a*sin(q))], \
+         [-(a*cos(p) + b*cos(p + q))/(a*b*sin(q)), -(a*sin(p) + b*sin(p + q))/(a*b*sin(q))]]",
+    );
+    assert_eq!(
+        left,
+        ["a*(z2*cos(p) - z1*sin(p)) + b*(z2*cos(p + q) - z1*sin(p + q))", "b*(z2*cos(p + q) - z1*sin(p + q))"]
+    );
+    assert!(h.iter().all(|h| !h.contains("cos(q)") && h.contains("/(a*sin(q))")), "1 - cos(q)^2 loses digits: {h:?}");
+}
