@@ -1,7 +1,7 @@
 //! Exact linear algebra over the field of fractions.
 //!
 //! Elimination picks the lightest pivot, so that entries stay short; what is free is set to zero. A matrix of numbers is
-//! left to [`rational_matrix`].
+//! left to `rational_matrix`.
 
 use super::field::{Field, Fraction, Obstacle};
 use super::rational::Rational;

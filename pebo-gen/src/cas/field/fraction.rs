@@ -276,3 +276,26 @@ pub(in crate::cas::field) fn primitive(poly: &Poly) -> (Integer, Poly) {
         _ => (Integer::ONE, poly.clone()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+    use crate::cas::facts::Facts;
+
+    #[test]
+    fn polynomials_vanish_together_where_they_have_a_factor_in_common() {
+        let arena = Arena::new();
+        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+        let root = arena.sqrt(x);
+        let exprs = [x, y, arena.mul(x, y), arena.add(x, y), arena.add(root, y), arena.one()];
+        let field = Field::over(&arena, &Facts::new(), &exprs).unwrap();
+        let together = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|index| field.fraction(exprs[index]).unwrap().num);
+            field.may_vanish_together(&a, &b).unwrap()
+        };
+        assert!(!together(0, 1) && !together(0, 3) && !together(3, 5));
+        assert!(together(0, 2) && together(2, 1) && together(3, 3));
+        assert!(!together(4, 5), "a number vanishes nowhere");
+    }
+}

@@ -181,6 +181,28 @@ mod tests {
     }
 
     #[test]
+    fn multiples_of_fifteen_degrees_are_radicals() {
+        let arena = Arena::new();
+        let sine = |n: i64| {
+            let call = arena.call(Function::Sin, &[arena.scale(arena.pi(), &Rational::new(n, 12).unwrap())]);
+            let field = Field::over(&arena, &Facts::new(), &[call]).unwrap();
+            let shown = field.show(&field.fraction(call).unwrap());
+            (
+                arena.print(shown),
+                field.round.kernels.borrow().iter().any(|(_, kernel)| {
+                    matches!(arena.node(kernel.expr), crate::cas::Node::Call(Function::Cos | Function::Sin, _))
+                }),
+            )
+        };
+        for (n, expected) in
+            [(0, "0"), (2, "1/2"), (3, "sqrt(2)/2"), (4, "sqrt(3)/2"), (6, "1"), (8, "sqrt(3)/2"), (14, "-1/2")]
+        {
+            assert_eq!(sine(n), (expected.to_owned(), false), "{n}");
+        }
+        assert!((1..24).all(|n| !sine(n).1), "no sine or cosine is left");
+    }
+
+    #[test]
     fn quadratic_residues_are_squares() {
         let residues = |p: u32| (1..p).filter(|k| is_residue(*k, p)).collect::<Vec<u32>>();
         assert_eq!(residues(5), [1, 4]);

@@ -216,3 +216,26 @@ fn ratio(n: i32, d: i32) -> Rational {
 pub(in crate::cas::field) fn domain_of(facts: &Facts) -> Domain {
     Domain { facts: facts.clone(), ..Domain::default() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+
+    #[test]
+    fn half_an_angle_is_told_within_a_half_turn_alone() {
+        let arena = Arena::new();
+        let q = arena.variable("q");
+        let [sin, cos] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
+        let field = Field::over(&arena, &Facts::new(), &[sin, cos]).unwrap();
+        let pair = (field.fraction(sin).unwrap(), field.fraction(cos).unwrap());
+        let half = |range: &Range| field.half_of(&pair, range).unwrap();
+        let right = Range::right_half();
+        assert!(half(&right).is_some());
+        assert!(half(&right.times(2)).is_none(), "at half a turn the sine of the half is no quotient by its cosine");
+        // From 0 to a half turn the half has a sine of its own.
+        let (half_sin, half_cos) = half(&right.plus(&Range::point(ratio(1, 2)))).unwrap();
+        let squares = field.add(&field.pow(&half_sin, 2).unwrap(), &field.pow(&half_cos, 2).unwrap()).unwrap();
+        assert!(squares.is_one());
+    }
+}

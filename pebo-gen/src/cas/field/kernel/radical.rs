@@ -302,3 +302,45 @@ impl Field<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+    use crate::cas::facts::Facts;
+
+    #[test]
+    fn zero_has_positive_powers_alone() {
+        let arena = Arena::new();
+        let field = Field::over(&arena, &Facts::new(), &[]).unwrap();
+        let power = |exponent: &Rational| field.root(&Fraction::zero(), exponent);
+        assert_eq!(power(&half()), Ok(Fraction::zero()));
+        assert_eq!(power(&-&half()), Err(Obstacle::DivisionByZero));
+    }
+
+    #[test]
+    fn the_root_of_a_product_of_unknown_signs_has_the_product_as_its_square() {
+        let arena = Arena::new();
+        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+        for product in [arena.mul(x, y), arena.neg(arena.mul(x, y)), arena.scale(arena.mul(x, y), &Rational::from(-3))]
+        {
+            let root = arena.sqrt(product);
+            let field = Field::over(&arena, &Facts::new(), &[root, product]).unwrap();
+            let square = field.pow(&field.fraction(root).unwrap(), 2).unwrap();
+            assert_eq!(square, field.fraction(product).unwrap(), "{}", arena.print(product));
+        }
+    }
+
+    #[test]
+    fn a_negative_number_has_no_root() {
+        let arena = Arena::new();
+        let x = arena.variable("x");
+        for negative in
+            [arena.number(-2), arena.neg(arena.mul(x, x)), arena.sub(arena.neg(arena.mul(x, x)), arena.one())]
+        {
+            let field = Field::over(&arena, &Facts::new(), &[negative]).unwrap();
+            let root = field.root(&field.fraction(negative).unwrap(), &half());
+            assert!(matches!(root, Err(Obstacle::Kernel(_))), "{}: {root:?}", arena.print(negative));
+        }
+    }
+}
