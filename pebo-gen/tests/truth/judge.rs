@@ -143,6 +143,8 @@ struct At<'a> {
     place: String,
     z: Vec<Evaluated>,
     h: Vec<Evaluated>,
+    /// The largest magnitude met in the rates.
+    moving: f64,
     lambda: Option<Vec<Vec<Evaluated>>>,
     found: Vec<String>,
 }
@@ -153,6 +155,7 @@ impl<'a> At<'a> {
         Self {
             z: all(&plant.phi, &values),
             h: all(&claims.h, &values),
+            moving: plant.rates.values().map(|rate| rate.at(&values).size).fold(0.0, f64::max),
             lambda: claims.lambda.as_ref().map(|rows| rows.iter().map(|row| all(row, &values)).collect()),
             plant,
             claims,
@@ -175,7 +178,8 @@ impl<'a> At<'a> {
     fn cascade(&mut self) {
         for i in 0..self.z.len() {
             let component = self.z[i];
-            let along = Evaluated { value: component.slope, ..component };
+            // What the rates themselves are rounded to: large terms may stand beside an identity that is zero.
+            let along = Evaluated { value: component.slope, slope: 0.0, size: component.size.max(self.moving) };
             let claimed = match &self.lambda {
                 None => self.h[i],
                 Some(lambda) => sum(lambda[i].iter().zip(&self.z).map(|(l, z)| (*l, still(z.value))), self.h[i]),
