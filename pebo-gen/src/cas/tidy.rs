@@ -35,8 +35,8 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     })
 }
 
-/// The calls of expressions, and what their roots are taken of. A form with others is not the author's: `tanh(100*w)` as a quotient of
-/// exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
+/// The calls of expressions, and what their roots are taken of. A form with others is not the author's: `tanh(100*w)`
+/// as a quotient of exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
 pub(crate) fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
     let mut found = BTreeSet::new();
     for e in arena.postorder(exprs) {

@@ -205,4 +205,18 @@ mod tests {
             assert_eq!(arena.print(field.show(&fraction)), expected);
         }
     }
+    #[test]
+    fn factors_are_shown_with_their_powers() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let below = |e| arena.sub(arena.one(), e);
+        let above = arena.product([below(a), below(a), below(b), arena.number(6)]);
+        let fraction = arena.div(above, arena.product([c, c, arena.add(a, b)]));
+        let expanded = arena.sub(arena.add(fraction, c), c);
+        let field = Field::over(&arena, &Facts::default(), &[expanded]).expect("rational");
+        let shown = field.show_factored(&field.fraction(expanded).expect("rational"));
+        let difference = field.fraction(arena.sub(shown, fraction)).expect("rational");
+        assert!(difference.is_zero(), "{}", arena.print(shown));
+        assert!(arena.print(shown).contains("^2"), "{}", arena.print(shown));
+    }
 }

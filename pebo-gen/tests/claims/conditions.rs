@@ -1,0 +1,182 @@
+//! Where the claims hold: conditions that are listed, discharged, or met.
+
+use pebo_gen::analysis::{Equilibrium, Outcome, Verdict};
+use pebo_gen::cas::asks::Want;
+use pebo_gen::cas::facts::Relation;
+use pebo_gen::derive;
+use pebo_gen::source::{Code, Source};
+
+use super::derived;
+
+#[test]
+fn conditions_are_listed_unless_the_assumptions_discharge_them() {
+    let remaining = |assume: &str| {
+        let plant = derived(&format!(
+            "x: [x]\ny: [y, r]\nu: [u]\nparameters: {{m: 2, k: null}}\nassume: [{assume}]\n\
+             f_x: {{x: u/(m*k*r^2)}}\nf_y: {{y: x*sqrt(r) + r/r, r: u}}\nphi: [x]"
+        ));
+        let arena = &plant.plant.arena;
+        let shown = |(e, relation): &(_, Relation)| format!("{} {relation:?}", arena.print(*e));
+        plant.derivation.conditions.iter().map(shown).collect::<Vec<_>>()
+    };
+    // m has a value, so its sign is known; the cancelled r of r/r is remembered.
+    assert_eq!(remaining("k > 0"), ["r Positive"]);
+    assert_eq!(remaining("k != 0, r >= 0"), ["r NonZero"]);
+    assert_eq!(remaining("k < 0, r > 0"), Vec::<String>::new());
+}
+
+/// No rule of algebra knows the sign of `u^3 - u + exp(-u)`; enclosures over the assumed box do.
+#[test]
+fn conditions_are_discharged_by_enclosures_over_the_assumed_box() {
+    let remaining = |assume: &str| {
+        let plant = derived(&format!(
+            "x: [x]\ny: [y]\nu: [u]\nassume: [{assume}]\n\
+             f_x: {{x: sqrt(u^3 - u + exp(-u))}}\nf_y: {{y: x*(2 + sin(3*u))}}\nphi: [x]"
+        ));
+        plant.derivation.conditions.len()
+    };
+    assert_eq!(remaining("0 < u < 1"), 0);
+    // At u = -2 the radicand is 1.4, at u = -3 it is -3.9.
+    assert_eq!(remaining("-3 < u < 1"), 1);
+    assert_eq!(remaining("u > 0"), 1);
+}
+
+/// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
+#[test]
+fn points_without_a_value_refute_nothing() {
+    let plant = derived("x: [p]\ny: [x]\nu: [u]\nf_x: {p: u + p*(sqrt(x)^2 - abs(x))}\nf_y: {x: p}\nphi: [p]");
+    assert_eq!(plant.derivation.outcome, Outcome::Accepted);
+    let conditions: Vec<String> =
+        plant.derivation.conditions.iter().map(|(e, r)| format!("{} {r:?}", plant.plant.arena.print(*e))).collect();
+    assert_eq!(conditions, ["x NonNegative"]);
+}
+
+/// A root can vanish: what is divided by it stays a condition.
+#[test]
+fn a_root_below_a_fraction_bar_is_a_condition() {
+    let plant = derived("x: [p]\ny: [r]\nu: [u]\nassume: [r >= 0]\nf_x: {p: u/sqrt(r)}\nf_y: {r: p}\nphi: [p]");
+    let conditions: Vec<String> =
+        plant.derivation.conditions.iter().map(|(e, r)| format!("{} {r:?}", plant.plant.arena.print(*e))).collect();
+    assert_eq!(conditions, ["r NonZero"]);
+}
+
+/// Where the claims hold: what is listed, for plants whose formulas have no value, or no derivative, somewhere.
+const LISTED: &[(&str, &str, Outcome, &[&str])] = &[
+    (
+        "a root is not differentiated at zero",
+        "x: [p]\ny: [q]\nassume: [p >= 0]\nf_x: {p: -sqrt(p)}\nf_y: {q: sqrt(p)}\nphi: [sqrt(p)]",
+        Outcome::Accepted,
+        &["p > 0"],
+    ),
+    (
+        "nor is one behind a definition",
+        "define: {level: sqrt(p), twice: 2*level}\nx: [p]\ny: [q]\nassume: [p >= 0]\nf_x: {p: -sqrt(p)}\n\
+         f_y: {q: sqrt(p)}\nphi: [twice]",
+        Outcome::Accepted,
+        &["p > 0"],
+    ),
+    (
+        "a power above one is",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [q >= 0]\nf_x: {p: v - 3/2*sqrt(q)*p}\nf_y: {q: p}\nphi: [p + q^(3/2)]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "what a derived left inverse divides by",
+        "x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]",
+        Outcome::Accepted,
+        &["q != 0"],
+    ),
+    (
+        "and what a given one divides by, each factor once",
+        "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v}\nf_y: {q: p*r, r: 0}\nphi: [p]\n\
+         phi_left: {p: z1*(q*r - q + 1)/(q*r - q) - z1/(q*r - q)}",
+        Outcome::Accepted,
+        &["q != 0", "r - 1 != 0"],
+    ),
+    (
+        "an excluded denominator is not listed",
+        "x: [p]\ny: [q, r]\nu: [v, w]\nassume: [q < 0]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "nor one that is never zero",
+        "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v/(1 + r^2) + v/cosh(q)}\nf_y: {q: p/(2 + sin(q)), r: p}\nphi: [p]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "a tangent is asked for its cosine",
+        "x: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nf_y: {q: p}\nphi: [p]\nphi_left: {p: z1 + tan(q) - sin(q)/cos(q)}",
+        Outcome::Accepted,
+        &["cos(q) != 0"],
+    ),
+    (
+        "a normal form does not divide by what the author does not",
+        "x: [p]\ny: [q, s]\nu: [v]\nassume: [q > 0]\nf_x: {p: v}\nf_y: {q: 0, s: p*q}\nphi: [p*(1 + sqrt(q))]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "nor does it in h",
+        "x: [p]\ny: [q, w]\nu: [v]\nf_x: {p: v - w*sqrt(1 + w^2)/(1 + sqrt(1 + w^2)) - p}\nf_y: {q: p, w: v}\n\
+         phi: [p + q]",
+        Outcome::Accepted,
+        &[],
+    ),
+    (
+        "the extension may be anywhere, whatever the range of phi",
+        "x: [p]\ny: [q]\nu: [v]\nassume: [0.1 < p, p < 3]\nf_x: {p: v/sin(p)}\nf_y: {q: cos(p)}\nphi: [cos(p)]",
+        Outcome::Accepted,
+        &[],
+    ),
+];
+
+#[test]
+fn conditions_are_those_of_every_formula() {
+    for (what, lines, outcome, expected) in LISTED {
+        let found = derived(lines);
+        assert_eq!(found.derivation.outcome, *outcome, "{what}: {:?}", found.derivation.diagnostics);
+        let arena = &found.plant.arena;
+        let listed: Vec<String> =
+            found.derivation.conditions.iter().map(|(e, r)| format!("{} {}", arena.print(*e), r.sign())).collect();
+        assert_eq!(listed, *expected, "{what}");
+        if let (Outcome::Accepted, Some(regression)) = (outcome, &found.derivation.regression.result) {
+            let rows = regression.phi_1.iter().flatten().chain(&regression.phi_0).copied();
+            let rows: Vec<_> = rows.collect();
+            for (part, _) in arena.asks(&rows, Want::Value) {
+                let used = arena.symbols_of(&[part]);
+                assert!(!used.iter().any(|s| found.plant.is_of_extension(*s)), "{what}: {}", arena.print(part));
+            }
+        }
+    }
+}
+
+/// A plant does not rest where a formula of its observer has no value.
+#[test]
+fn an_operating_point_meets_the_conditions() {
+    let found = derived("x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]");
+    let Some(Equilibrium::At(point)) = found.derivation.operating_point(&found.plant) else {
+        panic!("no operating point: {:?}", found.derivation.operating_point(&found.plant));
+    };
+    let arena = &found.plant.arena;
+    assert!(!point.values.iter().any(|(s, value)| arena.name(*s) == "q" && arena.is_zero(*value)));
+}
+
+/// A parameter that is given as zero is zero: it multiplies to nothing, and nothing is divided by it.
+#[test]
+fn a_parameter_given_as_zero_is_zero() {
+    let plant = |value: &str| {
+        format!("parameters: {{a: {value}}}\nx: [p]\ny: [q]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: a*p}}\nphi: [a*p]")
+    };
+    assert_eq!(derived(&plant("0")).derivation.left_inverse.verdict, Verdict::Refuted);
+    assert_eq!(derived(&plant("2")).derivation.outcome, Outcome::Accepted);
+    let free = derived(&plant("null"));
+    let arena = &free.plant.arena;
+    let listed: Vec<String> = free.derivation.conditions.iter().map(|(e, _)| arena.print(*e)).collect();
+    assert_eq!((free.derivation.outcome, listed), (Outcome::Accepted, vec!["a".to_owned()]));
+    let divided = "model: m\nparameters: {a: 0}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v/a}\nf_y: {q: p}\nphi: [p]\n";
+    let refused = derive(&Source::new("m", divided).expect("a text")).expect_err("a refusal");
+    assert_eq!(refused[0].code, Code::DivisionByZero);
+}
