@@ -25,7 +25,7 @@ fn main() -> Result<(), BuildError> {
                 .expect("a string");
             writeln!(
                 table,
-                "    ({model:?}, {name:?}, |point| crate::evaluate(&{model}_{name}::{type_name}::new(&{model}_{name}::Parameters::default()), point)),"
+                "    ({model:?}, {name:?}, |point| crate::evaluate(&{model}_{name}::{type_name}::new(&crate::defaults()), point)),"
             )
             .expect("a string");
         }

@@ -6,6 +6,7 @@ use std::fmt::{self, Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use crate::cas::budget::Budget;
+use crate::derived::derive_within;
 use crate::emit::Scalar;
 use crate::source::{Colour, Source, render};
 
@@ -35,6 +36,7 @@ pub struct Builder {
 
 /// A model that was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Built {
     /// The model's name, which is the module's.
     pub model: String,
@@ -168,12 +170,9 @@ impl Builder {
         })?;
         let source = Source::from_bytes(&name, bytes)
             .map_err(|diagnostic| BuildError(render(&[diagnostic], &Source::unread(&name), Colour::Never)))?;
-        let refused = |diagnostics: &[_]| BuildError(render(diagnostics, &source, Colour::Never));
-        let derived = crate::derive_within(&source, Budget::of_seconds(self.limit))
-            .map_err(|diagnostics| refused(&diagnostics))?;
-        derived.derivation.admit().map_err(refused)?;
-        let emitted =
-            derived.emit(self.scalar).map_err(|error| BuildError(format!("{name} cannot be emitted: {error}\n")))?;
+        let refused = |diagnostics: Vec<_>| BuildError(render(&diagnostics, &source, Colour::Never));
+        let derived = derive_within(&source, Budget::of_seconds(self.limit)).map_err(refused)?;
+        let emitted = derived.admitted(self.scalar).map_err(refused)?;
         let text = if self.format { emitted.text } else { emitted.tokens.to_string() };
         Ok((derived.plant.name.clone(), emitted.type_name, text))
     }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use pebo_gen::cas::Arena;
 use pebo_gen::cas::facts::{Facts, Relation};
 use pebo_gen::cas::field::Field;
-use pebo_gen::cas::function::{Function, Value};
+use pebo_gen::cas::function::Value;
 use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
@@ -88,6 +88,7 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
     ("x - z", &[">= x - y", ">= y - z"], NotNegative),
     ("x - z", &[">= x - y", "y - z"], Positive),
     ("x - z", &["x - y", "z - y"], Nothing),
+    ("x*y - a*b", &["x*y - y*z", "y*z - z*a", "z*a - a*b"], Positive),
     ("a*b - c^2/2", &["a*b - c^2"], Positive),
     ("a*b - 2*c^2", &["a*b - c^2"], Nothing),
     ("1 - x", &["1 - x", "x"], Positive),
@@ -113,6 +114,7 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
     ("a*x^2 + b*x + c", &["a", "4*a*c - b^2"], Positive),
     ("a*x^2 + b*x + c", &["-a", "4*a*c - b^2"], Negative),
     ("a*x^2 + b*x + c", &["a"], Nothing),
+    ("y*x^2 + 2*x*y + y + z", &[">= y", ">= z"], NotNegative),
     // Functions.
     ("exp(x)", &[], Positive),
     ("exp(x) - 1", &[], Nothing),
@@ -175,12 +177,12 @@ fn shown(text: &str, assumptions: &[&str]) -> Shown {
     let fraction = field.fraction(expr).expect(text);
     let opposite = fraction.opposite();
     let is = |answer: Result<bool, _>| answer.expect(text);
-    match (is(field.is_positive(&fraction)), is(field.is_positive(&opposite))) {
+    match (is(field.signs().is_positive(&fraction)), is(field.signs().is_positive(&opposite))) {
         (true, true) => panic!("{text} is said to be positive and negative"),
         (true, false) => Positive,
         (false, true) => Negative,
-        (false, false) if is(field.is_not_negative(&fraction)) => NotNegative,
-        (false, false) if is(field.is_not_negative(&opposite)) => NotPositive,
+        (false, false) if is(field.signs().is_not_negative(&fraction)) => NotNegative,
+        (false, false) if is(field.signs().is_not_negative(&opposite)) => NotPositive,
         (false, false) => Nothing,
     }
 }
@@ -202,7 +204,7 @@ fn value(formula: &Formula, point: &BTreeMap<&str, f64>) -> f64 {
                 Operator::Power => a.powf(b),
             }
         }
-        Term::Call(function, arguments) => match Function::named(function.name).expect("of the table").row().value {
+        Term::Call(function, arguments) => match function.row().value {
             Value::Unary(f) => f(at(&arguments[0])),
             Value::Binary(f) => f(at(&arguments[0]), at(&arguments[1])),
         },

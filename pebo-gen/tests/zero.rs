@@ -11,7 +11,7 @@ use pebo_gen::cas::field::Obstacle;
 use pebo_gen::cas::function::{Function, Value};
 use pebo_gen::cas::zero::{Answer, decide};
 use pebo_gen::cas::{Arena, Expr};
-use pebo_gen::model::formula::{Estimates, FUNCTIONS, Formula, Operator, Places, Term, parse_formula};
+use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
 const NAMES: [&str; 12] = ["a", "b", "c", "x", "y", "z", "p", "q", "u", "v", "n", "E"];
@@ -55,7 +55,7 @@ fn value(formula: &Formula, point: &BTreeMap<String, f64>) -> f64 {
             }
         }
         Term::Call(function, arguments) => {
-            let row = Function::named(function.name).expect("a function of the table").row();
+            let row = function.row();
             match row.value {
                 Value::Unary(f) => f(at(&arguments[0])),
                 Value::Binary(f) => f(at(&arguments[0]), at(&arguments[1])),
@@ -144,10 +144,39 @@ const ZERO: &[(&str, &[&str])] = &[
     ("abs(2*x*y) - 2*abs(x)*abs(y)", &[]),
     ("abs(abs(x)) - abs(x)", &[]),
     ("abs(x^3) - abs(x)^3", &[]),
+    ("sign(x)*abs(x) - x", &[]),
+    ("sign(x*y) - sign(x)*sign(y)", &[]),
+    ("sign(x^3) - 1", &["x"]),
+    ("sign(-2*x) + sign(x)", &[]),
+    ("min(x, y) + max(x, y) - x - y", &[]),
+    ("min(x, y)*max(x, y) - x*y", &[]),
+    ("max(x, y) - max(y, x)", &[]),
+    ("max(x, -x) - abs(x)", &[]),
+    ("max(x, 1 + x^2) - 1 - x^2", &[]),
+    ("max(x, x) - x", &[]),
+    ("min(z*x, z*y) - z*min(x, y)", &["z"]),
+    ("min(2*x, 2*y) - 2*min(x, y)", &[]),
+    ("sat(x) + sat(-x)", &[]),
+    ("sat(2 + x^2) - 1", &[]),
+    ("sat(x) - x", &["1 - x", "1 + x"]),
     ("log(x*sqrt(y)) - log(x) - log(y)/2", &["x", "y"]),
     ("log((x + y)^2) - 2*log(x + y)", &["x", "y"]),
+    ("log(x*exp(y)) - log(x) - y", &["x"]),
+    ("log(-x*y) - log(-x) - log(y)", &["-x", "y"]),
+    ("log(x^2*y) - 2*log(-x) - log(y)", &["-x", "y"]),
+    ("sqrt(y*sqrt(x)) - sqrt(y)*x^(1/4)", &["x", "y"]),
+    ("sqrt(x*exp(y)) - sqrt(x)*exp(y/2)", &["x"]),
+    ("(sqrt(exp(x) + 1) - 1)*(sqrt(exp(x) + 1) + 1) - exp(x)", &[]),
+    ("(x^2 + 2*x + 1)^(1/4) - sqrt(abs(x + 1))", &[]),
+    // Squares that the relation of sine and cosine hides, one of them up to a factor.
+    ("sqrt(4 + 4*sin(x)*cos(x)^2 + sin(x)^2*cos(x)^4) - 2 - sin(x)*cos(x)^2", &["2 + sin(x)*cos(x)^2"]),
+    ("sqrt(1 + 2*sin(x)*cos(x)) - abs(sin(x) + cos(x))", &[]),
+    ("sqrt(2 + 2*sin(x) + 2*cos(x) + 2*sin(x)*cos(x)) - abs(1 + sin(x) + cos(x))", &[]),
+    ("log(1 + sin(x) + cos(x) + sin(x)*cos(x)) - 2*log(abs(1 + sin(x) + cos(x))) + log(2)", &[]),
+    ("(2 + cos(x)^3)^(3/2) - (2 + cos(x)^3)*sqrt(2 + cos(x)^3)", &[]),
     // Multiples of pi, and the roots among them.
     ("cos(pi/5) - (1 + sqrt(5))/4", &[]),
+    ("(5^(1/4) + 1)*(5^(1/4) - 1) - 4*cos(pi/5) + 2", &[]),
     ("sin(2*pi/5)^2 - (5 + sqrt(5))/8", &[]),
     ("cos(2*pi/7)*cos(4*pi/7)*cos(6*pi/7) - 1/8", &[]),
     ("sin(pi/7) + sin(2*pi/7) - sin(3*pi/7) - sqrt(7)/2 + 2*sin(3*pi/7) - 2*sin(pi/7)", &[]),
@@ -159,6 +188,8 @@ const ZERO: &[(&str, &[&str])] = &[
     ("sin(x/(1 + y) + x*y/(1 + y)) - sin(x)", &[]),
     ("exp(1/(x*(x + 1))) - exp(1/x)/exp(1/(x + 1))", &[]),
     ("cos(x^2/(x + y) - y^2/(x + y)) - cos(x - y)", &[]),
+    ("sin((pi*(1 + 2*y) + 1)/(1 + 2*y)) + sin(1/(1 + 2*y))", &[]),
+    ("exp(2/(x^2 - 1)) - exp(1/(x - 1))/exp(1/(x + 1))", &[]),
     // Roots, magnitudes and logarithms of products.
     ("sqrt(x)*sqrt(y) - sqrt(x*y)", &[]),
     ("sqrt(x*y)*sqrt(y*z) - abs(y)*sqrt(x*z)", &[]),
@@ -181,6 +212,8 @@ const ZERO: &[(&str, &[&str])] = &[
     ("2*atan(x/(1 + sqrt(1 + x^2))) - atan(x)", &[]),
     ("atan(x) - atan(y) - atan((x - y)/(1 + x*y))", &["x", "y"]),
     ("4*atan(1/5) - atan(1/239) - pi/4", &[]),
+    ("4*atan(1/5) + atan(239) - 3*pi/4", &[]),
+    ("atan(x) + atan(y) + atan((1 - x*y)/(x + y)) - pi/2", &["x", "y"]),
     ("asin(2*x*sqrt(1 - x^2)) - 2*asin(x)", &["x", "1/2 - x"]),
     ("atan(1) - pi/4", &[]),
     ("acos(-x) + acos(x) - pi", &[]),
@@ -214,6 +247,12 @@ const NON_ZERO: &[(&str, &[&str])] = &[
     ("atan(x) + atan(1/x) - pi/2", &["-x"]),
     ("atan(x) + atan(1/x) - pi/2", &[]),
     ("abs(x*y) - x*abs(y)", &[]),
+    ("sign(x*y) - sign(x)", &[]),
+    ("min(x, y) - max(x, y)", &[]),
+    ("min(x, y) + max(x, y) - x", &[]),
+    ("max(x, y) - x", &["x"]),
+    ("sat(x) - x", &[]),
+    ("sat(2*x) - 2*sat(x)", &[]),
     ("asin(sin(x)) - x", &[]),
     ("sqrt(2) - 1.414213562373095048801688724209698", &[]),
     ("pi - 3.14159265358979323846264338327950288", &[]),
@@ -313,15 +352,4 @@ fn every_function_takes_part_in_an_identity() {
         let call = format!("{}(", row.name);
         assert!(ZERO.iter().any(|(text, _)| text.contains(&call)), "no identity with {}", row.name);
     }
-}
-
-/// The parser, which knows no algebra, and the algebra list the same functions.
-#[test]
-fn the_language_and_the_algebra_agree_on_functions() {
-    let written: Vec<(&str, usize)> = FUNCTIONS.iter().map(|f| (f.name, f.arguments)).collect();
-    for (name, arguments) in &written {
-        let row = Function::named(name).expect(name).row();
-        assert_eq!((row.name, row.arity), (*name, *arguments));
-    }
-    assert_eq!(written.len(), Function::table().len());
 }

@@ -34,14 +34,10 @@ impl Parse for Arguments {
             }
             input.parse::<Token![=]>()?;
             let name: Ident = input.parse()?;
-            scalar = match name.to_string().as_str() {
-                "f64" => Scalar::F64,
-                "f32" => Scalar::F32,
-                other => {
-                    let message = format!("code is written for f64 or f32, not for `{other}`");
-                    return Err(Error::new(name.span(), format!("{message}\nhelp: write `scalar = f32`")));
-                }
-            };
+            scalar = Scalar::from_name(&name.to_string()).ok_or_else(|| {
+                let message = format!("code is written for f64 or f32, not for `{name}`");
+                Error::new(name.span(), format!("{message}\nhelp: write `scalar = f32`"))
+            })?;
         }
         Ok(Self { path, scalar })
     }
@@ -109,9 +105,8 @@ fn read(arguments: TokenStream) -> Result<Read, Error> {
     let refused = |text: String| Error::new(path.span(), format!("{} is refused\n{text}", path.value()));
     let source = Source::from_bytes(path.value(), bytes)
         .map_err(|d| refused(render(&[d], &Source::unread(path.value()), Colour::Never)))?;
-    let derived = pebo_gen::derive(&source).map_err(|d| refused(render(&d, &source, Colour::Never)))?;
-    derived.derivation.admit().map_err(|d| refused(render(d, &source, Colour::Never)))?;
-    let emitted = derived.emit(scalar).map_err(|error| refused(error.to_string()))?;
+    let emitted = pebo_gen::derive(&source).and_then(|derived| derived.admitted(scalar));
+    let emitted = emitted.map_err(|d| refused(render(&d, &source, Colour::Never)))?;
     let tracked = file.display().to_string();
     Ok(Read {
         emitted,

@@ -29,12 +29,55 @@ impl Functions<'_> {
             .filter(|name| self.function(name).is_some());
         let used = own.chain(added.iter().map(|(name, _)| *name)).map(|name| format_ident!("{name}"));
         let added = added.iter().map(|(_, body)| body);
+        let conversions = self.conversions();
         quote! {
+            #conversions
             #(#added)*
             const _: () = {
                 #(let _ = #used;)*
             };
         }
+    }
+
+    /// From the author's samples to the observer's, and from its estimates to the author's. The structures themselves
+    /// may be less visible than the model.
+    fn conversions(&self) -> TokenStream {
+        let samples = ["Y", "U"].into_iter().filter_map(|letter| {
+            let (structure, argument) = (format_ident!("{letter}"), format_ident!("{}", letter.to_lowercase()));
+            let vector = self.vector(letter, &argument)?;
+            Some(quote! {
+                impl From<&#structure> for observer::#structure {
+                    fn from(#argument: &#structure) -> Self { #vector.into() }
+                }
+                impl From<#structure> for observer::#structure {
+                    fn from(#argument: #structure) -> Self { Self::from(&#argument) }
+                }
+            })
+        });
+        let samples: TokenStream = samples.collect();
+        let estimate = self.recovered().map(|entries| {
+            let scalar = self.scalar();
+            quote! {
+                impl From<observer::X> for X {
+                    fn from(x: observer::X) -> Self {
+                        let x: [#scalar; NX] = pebo_runtime::nalgebra::SVector::from(x).into();
+                        X { #entries }
+                    }
+                }
+            }
+        });
+        quote!(#samples #estimate)
+    }
+
+    /// The fields of the author's states, from the array `x` of those recovered; none unless all are.
+    fn recovered(&self) -> Option<TokenStream> {
+        let recovered = &self.derived.derivation.left_inverse.result.as_ref()?.x;
+        let arena = &self.derived.plant.arena;
+        let names: Vec<String> = recovered.iter().map(|(state, _)| arena.name(*state)).collect();
+        let fields = fields(self.structure("X")?);
+        let place = |field: &&Ident| names.iter().position(|name| field.unraw() == name);
+        let places: Vec<usize> = fields.iter().map(place).collect::<Option<_>>()?;
+        Some(quote!(#(#fields: x[#places]),*))
     }
 
     fn h(&self) -> Option<TokenStream> {
@@ -75,20 +118,14 @@ impl Functions<'_> {
     /// The left inverse, if it is of all states.
     fn phi_left(&self) -> Option<TokenStream> {
         let (visibility, scalar, model) = (self.visibility(), self.scalar(), self.model());
-        let recovered = &self.derived.derivation.left_inverse.result.as_ref()?.x;
-        let arena = &self.derived.plant.arena;
-        let names: Vec<String> = recovered.iter().map(|(state, _)| arena.name(*state)).collect();
-        let fields = fields(self.structure("X")?);
-        let places: Option<Vec<usize>> =
-            fields.iter().map(|field| names.iter().position(|name| field.unraw() == name)).collect();
-        let places = places?;
+        let entries = self.recovered()?;
         let outputs = self.vector("Y", &format_ident!("y"))?;
         Some(quote! {
             /// The left inverse: the states for which `phi(x, y) = z`.
             #visibility fn phi_left(z: [#scalar; NZ], y: &Y) -> X {
                 let z = pebo_runtime::nalgebra::SVector::from(z);
                 let x: [#scalar; NX] = pebo_runtime::Model::phi_left(&#model, &z, &#outputs).into();
-                X { #(#fields: x[#places]),* }
+                X { #entries }
             }
         })
     }
@@ -139,7 +176,7 @@ impl Functions<'_> {
 
     /// As visible as the author's transform.
     fn visibility(&self) -> &Visibility {
-        self.function("phi").map_or(&Visibility::Inherited, |item| &item.vis)
+        self.function("phi").or_else(|| self.function("f_x")).map_or(&Visibility::Inherited, |item| &item.vis)
     }
 
     fn function(&self, name: &str) -> Option<&ItemFn> {

@@ -23,7 +23,8 @@ use syn::{Error, Item, LitStr};
 ///
 /// - the module `observer`, which `pebo-gen` would emit for the model, and its items: the model's type, named like
 ///   the module in camel case, `Parameters`, `Observer` and the sizes;
-/// - `h`, `phi_0`, `phi_1` and, unless it is given, `phi_left` as functions of the module's structs.
+/// - `h`, `phi_0`, `phi_1` and, unless it is given, `phi_left` as functions of the module's structs;
+/// - conversions by which `Observer::step` takes the module's `Y` and `U` as they are, and its estimate becomes an `X`.
 ///
 /// ```
 /// #[pebo_macros::pebo_model(assume(M > 0, L > 0))]
@@ -52,7 +53,8 @@ use syn::{Error, Item, LitStr};
 /// ```
 ///
 /// The attribute takes `title = ".."` (else the module's documentation is the title), `reference = ".."`,
-/// `class = "pebo"` or `class = "gpebo"` (else either will do), `assume(L > 0, 0 < d < 1)` and `angles(q = 2.0 * PI)`.
+/// `class = "pebo"` or `class = "gpebo"` (else either will do), `assume(L > 0, 0 < d < 1)`,
+/// `angles(q = 2.0 * PI)` and `units(L = "H", i = "A")`.
 ///
 /// With the path of a model file, relative to the crate's own folder, it stands on a unit struct, which becomes the
 /// model's type beside a module of the same name in snake case, or on an empty module, which it fills. The crate is

@@ -7,7 +7,7 @@ use pebo_gen::model::rust::Places;
 use pebo_gen::source::Diagnostic;
 use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
-use syn::{Error, Item, ItemMod, Type};
+use syn::{Item, ItemMod, Type};
 
 use crate::functions::Functions;
 use crate::refusal;
@@ -16,8 +16,8 @@ use crate::refusal;
 pub(crate) fn module(arguments: TokenStream, module: &ItemMod) -> TokenStream {
     let ItemMod { attrs, vis, ident, content, .. } = module;
     let mut places = Places::new();
-    let added = match derive(arguments, module, &mut places) {
-        Ok(derived) => additions(&derived, module),
+    let added = match additions(arguments, module, &mut places) {
+        Ok(added) => added,
         Err(diagnostics) => refusal::errors(&diagnostics, &places),
     };
     // Also where the model is refused: what else is wrong with the module, the compiler says.
@@ -32,28 +32,19 @@ pub(crate) fn module(arguments: TokenStream, module: &ItemMod) -> TokenStream {
     }
 }
 
-fn derive(arguments: TokenStream, module: &ItemMod, places: &mut Places) -> Result<Derived, Vec<Diagnostic>> {
-    let model = Model::read_rust(arguments, module, places)?;
-    let derived = Derived::of(model)?;
-    derived.derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
-    Ok(derived)
-}
-
-fn additions(derived: &Derived, module: &ItemMod) -> TokenStream {
+fn additions(arguments: TokenStream, module: &ItemMod, places: &mut Places) -> Result<TokenStream, Vec<Diagnostic>> {
     let scalar = scalar(module);
-    let emitted = match derived.emit(scalar) {
-        Ok(emitted) => emitted,
-        Err(refused) => return Error::new_spanned(&module.ident, refused.to_string()).into_compile_error(),
-    };
+    let derived = Derived::of(Model::read_rust(arguments, module, places)?)?;
+    let emitted = derived.admitted(scalar)?;
     let tokens = &emitted.tokens;
     let type_name = Ident::new(&emitted.type_name, Span::call_site());
-    let functions = Functions { derived, module, type_name: &type_name, scalar }.tokens();
+    let functions = Functions { derived: &derived, module, type_name: &type_name, scalar }.tokens();
     let added = quote! {
         pub mod observer { #tokens }
         pub use observer::*;
         #functions
     };
-    at(added, Span::call_site().located_at(module.ident.span()))
+    Ok(at(added, Span::call_site().located_at(module.ident.span())))
 }
 
 /// The tokens, all in one place. An attribute of several lines is a place that makes lints see line breaks inside

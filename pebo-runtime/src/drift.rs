@@ -1,14 +1,18 @@
-//! What becomes of the open integrator `chi' = h(y, u)`, which any offset of a sensor makes run away.
+//! What becomes of the extension, which any offset of a sensor makes run away.
 
 use nalgebra::SVector;
 
-use crate::{Fault, Integrator, Real};
+use crate::{Fault, Real};
 
-/// How an observer that can be re-based keeps its extension from running away (the paper, remark R5).
+/// How an observer that can be re-based keeps `chi` or `xi` from running away (the paper, remark R5).
 ///
 /// Each form moves a shift `c` from `chi` into the estimated `theta` and into all memory of past regressands. That is
 /// exact: all forms give the same estimates of the state, up to rounding, and so does the plain one as long as its
 /// `chi` keeps its digits.
+///
+/// Of a [`Fundamental`](crate::Fundamental) extension `chi` is `xi`, and `Psi` starts again from the identity with each
+/// shift, as in [re-basing](crate::Observer::rebasing): what is carried over and what is not is said there. A `Psi` that dies
+/// out calls for [`Free`](Self::Free), [`Leak`](Self::Leak) or re-basing.
 ///
 /// | form | `chi` | cost beside [`Observer::step`](crate::Observer::step) |
 /// |---|---|---|
@@ -49,23 +53,24 @@ pub enum Drift<S: Real> {
 }
 
 impl<S: Real> Drift<S> {
-    /// What to move after a step of `dt` seconds.
+    /// Whether something is to be moved from the extension as it is.
     ///
     /// # Errors
     /// [`Fault::Gain`] if the bound is not positive or the rate negative or either NaN.
-    pub(crate) fn shift<const NZ: usize>(
-        self,
-        extension: &Integrator<S, NZ>,
-        dt: S,
-    ) -> Result<Option<SVector<S, NZ>>, Fault> {
-        let chi = extension.chi();
+    pub(crate) fn is_due<const NZ: usize>(self, offset: &SVector<S, NZ>) -> Result<bool, Fault> {
         match self {
-            Self::Above(bound) if bound > S::zero() => {
-                Ok(chi.iter().any(|&component| Real::abs(component) > bound).then_some(*chi))
-            }
-            Self::Leak(rate) if rate >= S::zero() => Ok(Some(chi * -Real::exp_m1(-rate * dt))),
-            Self::Free => Ok(Some(*chi)),
+            Self::Above(bound) if bound > S::zero() => Ok(offset.iter().any(|&component| Real::abs(component) > bound)),
+            Self::Leak(rate) if rate >= S::zero() => Ok(true),
+            Self::Free => Ok(true),
             Self::Above(_) | Self::Leak(_) => Err(Fault::Gain),
+        }
+    }
+
+    /// What to move after a step of `dt` seconds.
+    pub(crate) fn shift<const NZ: usize>(self, offset: &SVector<S, NZ>, dt: S) -> SVector<S, NZ> {
+        match self {
+            Self::Above(_) | Self::Free => *offset,
+            Self::Leak(rate) => offset * -Real::exp_m1(-rate * dt),
         }
     }
 }

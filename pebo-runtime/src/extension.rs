@@ -7,9 +7,9 @@ use core::fmt::Debug;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::linear::solve;
+use crate::exponential::Propagator;
 use crate::sum::as_blemish;
-use crate::{Fault, Real, Sum};
+use crate::{Fault, Real, Sum, Turn};
 
 /// The flow `z' = lambda z + h` of the transformed coordinates at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,14 @@ pub struct Flow<S: Real, const NZ: usize> {
     pub lambda: SMatrix<S, NZ, NZ>,
     /// `h(y, u)`, in units of z per second.
     pub h: SVector<S, NZ>,
+}
+
+impl<S: Real, const NZ: usize> Flow<S, NZ> {
+    /// The flow `z' = h` of a plain cascade.
+    #[inline]
+    pub fn plain(h: SVector<S, NZ>) -> Self {
+        Self { lambda: SMatrix::zeros(), h }
+    }
 }
 
 /// What a [`Model`](crate::Model) integrates: a solution of the flow with a known start.
@@ -31,12 +39,22 @@ pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
     /// Advances by `dt` seconds with the flow known at both ends.
     ///
     /// # Errors
-    /// [`Fault::Singular`] if the scheme's linear system has no solution; the extension is then unspecified.
+    /// [`Fault::Singular`] if the step is too long for `Lambda`; the extension is then unspecified.
     fn advance(&mut self, start: &Flow<S, NZ>, end: &Flow<S, NZ>, dt: S) -> Result<(), Fault>;
 
     /// Moves `shift` from the extension into `theta`: `coordinates(theta + shift)` is now what
     /// `coordinates(theta)` was.
     fn rebase(&mut self, shift: &SVector<S, NZ>);
+
+    /// What is integrated with the known start: `chi` or `xi`.
+    fn offset(&self) -> &SVector<S, NZ>;
+
+    /// Makes the fundamental matrix the identity and says how `theta` turns with it: `coordinates(Psi theta)` is now what
+    /// `coordinates(theta)` was. None if it is the identity always.
+    ///
+    /// # Errors
+    /// [`Fault::Singular`] if the matrix has no inverse, to rounding; the extension is then unspecified.
+    fn take_turn(&mut self) -> Result<Option<Turn<S, NZ>>, Fault>;
 
     /// Whether every number of the state is finite.
     fn is_finite(&self) -> bool;
@@ -82,6 +100,14 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
         self.chi.add(&-shift);
     }
 
+    fn offset(&self) -> &SVector<S, NZ> {
+        self.chi.value()
+    }
+
+    fn take_turn(&mut self) -> Result<Option<Turn<S, NZ>>, Fault> {
+        Ok(None)
+    }
+
     fn is_finite(&self) -> bool {
         self.chi.is_finite()
     }
@@ -94,9 +120,9 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
 /// `xi' = Lambda xi + h`, `Psi' = Lambda Psi` with `Psi(0) = I`, so that `z = xi + Psi theta` (generalised PEBO: Ortega,
 /// Bobtsov, Nikolaev, Schiffer, Dochain, *Generalized parameter estimation-based observers*, Automatica, 2021).
 ///
-/// Implicit midpoint rule on the mean of the flow at both ends: `Psi` advances by the Cayley map
-/// `(I - Q)^-1 (I + Q)`, `Q = dt (Lambda_0 + Lambda_1) / 4`, of second order and bounded for every step where `Lambda` is stable. As both
-/// parts advance by the same map, moving a shift between `xi` and `theta` commutes with it.
+/// Both advance by the exponential of the mean of `Lambda` at both ends, with the mean of `h`: exact to rounding where
+/// both are constant over the step and `|Lambda| dt` is below 0.02, within 1e-5 of a rate at any step, and of second order
+/// where they vary. As both parts advance by the same map, moving a shift between `xi` and `theta` commutes with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fundamental<S: Real, const NZ: usize> {
@@ -126,21 +152,30 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Fundamental<S, NZ> {
     }
 
     fn advance(&mut self, start: &Flow<S, NZ>, end: &Flow<S, NZ>, dt: S) -> Result<(), Fault> {
-        let quarter: S = Real::from_f64(0.25);
-        let two: S = Real::from_f64(2.0);
-        let q = (start.lambda + end.lambda) * (quarter * dt);
-        let drive = (start.h + end.h) * (quarter * dt);
-        let left = SMatrix::identity() - q;
-        // Solved for the increments: small steps then lose nothing to the identity.
-        let increment = solve(left, (q * self.xi.value() + drive) * two)?;
-        self.xi.add(&increment);
-        let increment = solve(left, (q * self.psi.value()) * two)?;
-        self.psi.add(&increment);
+        let half: S = Real::from_f64(0.5);
+        let step = half * dt;
+        let propagator = Propagator::new((start.lambda + end.lambda) * step, (start.h + end.h) * step)?;
+        // As increments: small steps then lose nothing to the identity.
+        self.xi.add(&(propagator.gained * self.xi.value() + propagator.driven));
+        match propagator.whole {
+            None => self.psi.add(&(propagator.gained * self.psi.value())),
+            Some(whole) => self.psi = Sum::new(whole * self.psi.value()),
+        }
         Ok(())
     }
 
     fn rebase(&mut self, shift: &SVector<S, NZ>) {
         self.xi.add(&-(self.psi.value() * shift));
+    }
+
+    fn offset(&self) -> &SVector<S, NZ> {
+        self.xi.value()
+    }
+
+    fn take_turn(&mut self) -> Result<Option<Turn<S, NZ>>, Fault> {
+        let turn = Turn::new(&self.psi)?;
+        self.psi = Sum::new(SMatrix::identity());
+        Ok(Some(turn))
     }
 
     fn is_finite(&self) -> bool {

@@ -4,6 +4,8 @@ use core::fmt;
 
 /// The reason for which a call was refused. What was called is then exactly as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Fault {
     /// An output sample is infinite or NaN.

@@ -68,6 +68,11 @@ impl<S: Real> Filter<S> {
 }
 
 impl<S: Real> Weights<S> {
+    /// The weights on what the input is away from the filter at the start of the step, and on what it changes during it.
+    pub(crate) fn level_and_slope(&self) -> (S, S) {
+        (self.level, self.slope)
+    }
+
     /// Values in and out, and a call: what a step of the usual length computes stays in registers.
     #[cold]
     #[inline(never)]

@@ -15,7 +15,7 @@ use crate::{Real, Sum};
 /// let mut gap = Gap::new();
 /// gap.add(&SVector::from([1.0]), 0.1);        // the sample at the end of this interval is missing
 /// gap.add(&SVector::from([4.0]), 0.2);        // the one at the end of this is there
-/// let (u, dt) = gap.take();                   // observer.step(&y, &u, dt)
+/// let (u, dt) = gap.take();                   // observer.step(y, u, dt)
 /// assert!((u[0] - 3.0_f64).abs() < 1e-15 && (dt - 0.3_f64).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

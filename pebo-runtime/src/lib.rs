@@ -13,10 +13,18 @@
 //! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step; or [`WindowedRegression`], the integral form;
 //! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
 //! - [`Monitor`]: whether the data so far determine the unknown, and how well;
+//! - [`OutputForm`] and [`SampledRegression`]: the outputs themselves as the regressand, nothing differentiated;
 //! - [`Limits`], [`Gap`], [`Drift`], [`State`]: what samples may be, intervals without one, forms without drift, saving;
+//! - [`Within`]: bounds of the state;
 //! - [`Observer`]: one [`step`](Observer::step) a sample, which never panics and answers a bad sample with a [`Fault`].
 //!
 //! No heap, no `std`, no `unsafe`; `f32` and `f64`; every size is a constant.
+//!
+//! Features: `serde` writes and reads states and faults, `defmt` prints faults over a debug probe.
+//!
+//! Vectors and matrices are those of [`nalgebra`], which is part of this interface and exported again: write
+//! `pebo_runtime::nalgebra`, and the versions agree. A release with another major or zero-major version of it is a breaking
+//! release of this crate. Nothing else of it is in the interface: not its solvers, which may panic or allocate.
 //!
 //! Source of the method: Ortega, Bobtsov, Pyrkin, Aranovskiy, *A parameter estimation approach to state observation of
 //! nonlinear systems*, Systems & Control Letters, 2015, named "the paper" throughout.
@@ -28,7 +36,7 @@
 //!
 //! ```
 //! use pebo_runtime::nalgebra::{SMatrix, SVector};
-//! use pebo_runtime::{Filter, Gradient, Hold, Integrator, Model, Observer, Regression};
+//! use pebo_runtime::{Filter, Flow, Gradient, Hold, Integrator, Model, Observer, Regression, Sides};
 //!
 //! type Scalar = SVector<f64, 1>;
 //! struct Mass;
@@ -36,24 +44,29 @@
 //! impl Model<1, 1, 1, 1, 1, 1> for Mass {
 //!     type Scalar = f64;
 //!     type Extension = Integrator<f64, 1>;
+//!     // Emitted code has structures here, with a name for each signal.
+//!     type X = Scalar;
+//!     type Y = Scalar;
+//!     type U = Scalar;
+//!     type Terms = Scalar;
 //!     const REGRESSION: Regression = Regression::Dynamic;
 //!
-//!     fn h(&self, _y: &Scalar, u: &Scalar) -> Scalar {
-//!         *u
-//!     }
-//!     fn phi_0(&self, extension: &Self::Extension, _y: &Scalar, _u: &Scalar) -> Scalar {
-//!         *extension.chi()
-//!     }
-//!     fn phi_1(&self, _: &Self::Extension, _y: &Scalar, _u: &Scalar) -> SMatrix<f64, 1, 1> {
-//!         SMatrix::identity()
-//!     }
-//!     fn primitive_0(&self, _: &Self::Extension, y: &Scalar) -> Scalar {
+//!     fn terms(&self, y: &Scalar) -> Scalar {
 //!         *y
+//!     }
+//!     fn flow(&self, _y: &Scalar, u: &Scalar) -> Flow<f64, 1> {
+//!         Flow::plain(*u)
+//!     }
+//!     fn regression(&self, extension: &Self::Extension, _y: &Scalar, _u: &Scalar) -> Sides<f64, 1, 1> {
+//!         Sides { known: *extension.chi(), factor: SMatrix::identity() }
+//!     }
+//!     fn primitive(&self, _: &Self::Extension, y: &Scalar) -> Sides<f64, 1, 1> {
+//!         Sides { known: *y, factor: SMatrix::zeros() }
 //!     }
 //!     fn theta(&self, eta: &Scalar) -> Scalar {
 //!         *eta
 //!     }
-//!     fn phi_left(&self, z: &Scalar, _y: &Scalar) -> Scalar {
+//!     fn recover(&self, z: &Scalar, _y: &Scalar) -> Scalar {
 //!         *z
 //!     }
 //! }
@@ -68,7 +81,7 @@
 //! let mut estimate = Scalar::zeros();
 //! for k in 0..200 {
 //!     let position = Scalar::new(2.0 * dt * f64::from(k));
-//!     estimate = observer.step(&position, &Scalar::zeros(), dt)?;
+//!     estimate = observer.step(position, Scalar::zeros(), dt)?;
 //! }
 //! assert!((estimate[0] - 2.0).abs() < 1e-6);
 //! # Ok(())
@@ -85,20 +98,26 @@ mod decay;
 mod drift;
 mod eigenvalue;
 pub mod estimator;
+mod exponential;
 mod extension;
 mod fault;
 mod filter;
 mod gap;
+mod interface;
 mod limits;
 mod linear;
 mod model;
 mod monitor;
 mod observer;
+mod output_form;
 mod real;
 mod regression;
+mod sampled;
 mod single;
 mod sum;
+mod turn;
 mod window;
+mod within;
 
 pub use drift::Drift;
 pub use estimator::{
@@ -109,11 +128,16 @@ pub use extension::{Extension, Flow, Fundamental, Integrator};
 pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};
 pub use gap::Gap;
+pub use interface::{INTERFACE, emitted_for};
 pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
 pub use observer::{Observer, State};
+pub use output_form::OutputForm;
 pub use real::Real;
-pub use regression::{FilteredRegression, RegressionOperator, Sides};
+pub use regression::{FilteredRegression, Outcome, RegressionOperator, Sides};
+pub use sampled::SampledRegression;
 pub use sum::Sum;
-pub use window::WindowedRegression;
+pub use turn::Turn;
+pub use window::{Moved, WindowedRegression};
+pub use within::Within;

@@ -6,33 +6,39 @@ use crate::{Fault, Real};
 
 /// Solves `matrix * X = right` by elimination with row pivoting.
 ///
+/// Each entry carries the size of the terms that it is the sum of, so whether a pivot is but rounding does not depend on
+/// the units of rows and columns.
+///
 /// # Errors
-/// [`Fault::Singular`] if a pivot vanishes against the matrix: `|pivot| <= EPSILON * max |matrix|`.
+/// [`Fault::Singular`] if a pivot vanishes against its terms: `|pivot| <= 4 EPSILON * sum |terms|`.
 pub(crate) fn solve<S: Real, const N: usize, const C: usize>(
     mut matrix: SMatrix<S, N, N>,
     mut right: SMatrix<S, N, C>,
 ) -> Result<SMatrix<S, N, C>, Fault> {
-    let largest = matrix.iter().fold(S::zero(), |largest, &element| largest.max(Real::abs(element)));
-    let negligible = S::EPSILON * largest;
+    let mut size = matrix.map(Real::abs);
+    let four: S = Real::from_f64(4.0);
+    let rounding = four * S::EPSILON;
     for column in 0..N {
         // The largest entry rises to the diagonal.
         for row in column + 1..N {
             if Real::abs(matrix[(row, column)]) > Real::abs(matrix[(column, column)]) {
                 exchange(&mut matrix, column, row);
+                exchange(&mut size, column, row);
                 exchange(&mut right, column, row);
             }
         }
         let divisor = matrix[(column, column)];
         // False for a NaN too.
-        let regular = Real::abs(divisor) > negligible;
+        let regular = Real::abs(divisor) > rounding * size[(column, column)];
         if !regular {
             return Err(Fault::Singular);
         }
         for row in column + 1..N {
             let factor = matrix[(row, column)] / divisor;
             for k in column + 1..N {
-                let above = matrix[(column, k)];
+                let (above, terms) = (matrix[(column, k)], size[(column, k)]);
                 matrix[(row, k)] -= factor * above;
+                size[(row, k)] += Real::abs(factor) * terms;
             }
             for k in 0..C {
                 let above = right[(column, k)];

@@ -1,8 +1,10 @@
 //! The functions of one plant: what emitted code provides and an [`Observer`](crate::Observer) runs.
 
+use core::fmt::Debug;
+
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Extension, Real};
+use crate::{Extension, Flow, Real, Sides};
 
 /// The kind of equation that the unknown is estimated from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,61 +24,114 @@ pub enum Regression {
 /// Sizes: `NX` recovered states, `NY` outputs, `NU` inputs, `NZ` coordinates, `NR` equations of the regression, `NE`
 /// unknowns in them. Units are the plant's own, time is in seconds. A function that leaves its domain returns NaN or
 /// infinity; the observer refuses that sample.
+///
+/// Samples and estimates may have names: where [`Y`](Self::Y), [`U`](Self::U) and [`X`](Self::X) are structures, two
+/// signals in the wrong order do not compile. The functions below compute with vectors.
+///
+/// An observer calls the functions in groups that share their work:
+///
+/// | call | values | when |
+/// |---|---|---|
+/// | [`terms`](Self::terms) | what the others need of the output | once for each sample |
+/// | [`flow`](Self::flow) | `h`, `lambda` | at both ends of an interval |
+/// | [`regression`](Self::regression) | `phi_0`, `phi_1` | at both ends |
+/// | [`primitive`](Self::primitive) | `primitive_0`, `primitive_1` | at both ends, unless the regression is static |
+/// | [`recover`](Self::recover) | `phi_left` | once for each sample |
+///
+/// [`h`](Self::h), [`phi_0`](Self::phi_0), [`phi_1`](Self::phi_1), [`phi_left`](Self::phi_left) and the others give one
+/// of these values from the output itself.
 pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize> {
     /// `f32` or `f64`.
     type Scalar: Real;
     /// What is integrated: [`Integrator`](crate::Integrator) (`z = chi + theta`) or
     /// [`Fundamental`](crate::Fundamental) (`z = xi + Psi theta`).
     type Extension: Extension<Self::Scalar, NZ>;
+    /// The recovered states as an estimate gives them: `SVector<Self::Scalar, NX>`, or a structure that names them.
+    type X: From<SVector<Self::Scalar, NX>> + Into<SVector<Self::Scalar, NX>>;
+    /// The outputs as a sample gives them, likewise.
+    type Y: From<SVector<Self::Scalar, NY>> + Into<SVector<Self::Scalar, NY>>;
+    /// The inputs as a sample gives them, likewise.
+    type U: From<SVector<Self::Scalar, NU>> + Into<SVector<Self::Scalar, NU>>;
+    /// What the functions need of an output: `SVector<Self::Scalar, NY>`, or more that is computed from it once.
+    type Terms: Copy + Debug;
     /// Which equation `phi_0` and `phi_1` are the sides of.
     const REGRESSION: Regression;
 
-    /// `h` of the cascade `z' = Lambda z + h(y, u)`.
-    fn h(&self, y: &SVector<Self::Scalar, NY>, u: &SVector<Self::Scalar, NU>) -> SVector<Self::Scalar, NZ>;
+    /// What the functions need of the output `y`.
+    fn terms(&self, y: &SVector<Self::Scalar, NY>) -> Self::Terms;
 
-    /// `Lambda` of the cascade; zero unless the extension is [`Fundamental`](crate::Fundamental).
-    fn lambda(&self, _y: &SVector<Self::Scalar, NY>, _u: &SVector<Self::Scalar, NU>) -> SMatrix<Self::Scalar, NZ, NZ> {
-        SMatrix::zeros()
-    }
+    /// `h` and `Lambda` of the cascade `z' = Lambda z + h(y, u)`; `Lambda` is zero unless the extension is
+    /// [`Fundamental`](crate::Fundamental).
+    fn flow(&self, terms: &Self::Terms, u: &SVector<Self::Scalar, NU>) -> Flow<Self::Scalar, NZ>;
 
-    /// What is known in the regression, see [`Regression`].
-    fn phi_0(
+    /// Both sides of the regression, see [`Regression`]: `phi_0`, which is known, and `phi_1`, the factor of the
+    /// unknown `eta`.
+    fn regression(
         &self,
         extension: &Self::Extension,
-        y: &SVector<Self::Scalar, NY>,
+        terms: &Self::Terms,
         u: &SVector<Self::Scalar, NU>,
-    ) -> SVector<Self::Scalar, NR>;
+    ) -> Sides<Self::Scalar, NR, NE>;
 
-    /// The factor of the unknown `eta`, see [`Regression`].
-    fn phi_1(
-        &self,
-        extension: &Self::Extension,
-        y: &SVector<Self::Scalar, NY>,
-        u: &SVector<Self::Scalar, NU>,
-    ) -> SMatrix<Self::Scalar, NR, NE>;
-
-    /// What is known under the derivative of a dynamic regression: as a rule the outputs whose equations are used.
-    /// Not read if the regression is static.
-    fn primitive_0(&self, _extension: &Self::Extension, _y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NR> {
-        SVector::zeros()
-    }
-
-    /// The factor of the unknown under the derivative of a dynamic regression. Not read if the regression is static.
-    fn primitive_1(
-        &self,
-        _extension: &Self::Extension,
-        _y: &SVector<Self::Scalar, NY>,
-    ) -> SMatrix<Self::Scalar, NR, NE> {
-        SMatrix::zeros()
+    /// What stands under the derivative of a dynamic regression: `primitive_0`, as a rule the outputs whose equations
+    /// are used, and `primitive_1`, the factor of the unknown. Not read if the regression is static.
+    fn primitive(&self, _extension: &Self::Extension, _terms: &Self::Terms) -> Sides<Self::Scalar, NR, NE> {
+        Sides { known: SVector::zeros(), factor: SMatrix::zeros() }
     }
 
     /// `theta` from the estimated unknown: `eta` itself in a linear parameterisation, a part of it in an
     /// over-parameterised one.
     fn theta(&self, eta: &SVector<Self::Scalar, NE>) -> SVector<Self::Scalar, NZ>;
 
-    /// The left inverse: `x` such that `z = phi(x, y)`. Of an estimate of `z` beyond the range of `phi` it may have no
-    /// value: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and changes nothing.
-    fn phi_left(&self, z: &SVector<Self::Scalar, NZ>, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NX>;
+    /// The left inverse `phi_left`: `x` such that `z = phi(x, y)`. Of an estimate of `z` beyond the range of `phi` it
+    /// may have no value: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and changes
+    /// nothing.
+    fn recover(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NX>;
+
+    /// `h` of the cascade `z' = Lambda z + h(y, u)`.
+    fn h(&self, y: &SVector<Self::Scalar, NY>, u: &SVector<Self::Scalar, NU>) -> SVector<Self::Scalar, NZ> {
+        self.flow(&self.terms(y), u).h
+    }
+
+    /// `Lambda` of the cascade.
+    fn lambda(&self, y: &SVector<Self::Scalar, NY>, u: &SVector<Self::Scalar, NU>) -> SMatrix<Self::Scalar, NZ, NZ> {
+        self.flow(&self.terms(y), u).lambda
+    }
+
+    /// What is known in the regression.
+    fn phi_0(
+        &self,
+        extension: &Self::Extension,
+        y: &SVector<Self::Scalar, NY>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SVector<Self::Scalar, NR> {
+        self.regression(extension, &self.terms(y), u).known
+    }
+
+    /// The factor of the unknown in the regression.
+    fn phi_1(
+        &self,
+        extension: &Self::Extension,
+        y: &SVector<Self::Scalar, NY>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> SMatrix<Self::Scalar, NR, NE> {
+        self.regression(extension, &self.terms(y), u).factor
+    }
+
+    /// What is known under the derivative of the regression.
+    fn primitive_0(&self, extension: &Self::Extension, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NR> {
+        self.primitive(extension, &self.terms(y)).known
+    }
+
+    /// The factor of the unknown under the derivative of the regression.
+    fn primitive_1(&self, extension: &Self::Extension, y: &SVector<Self::Scalar, NY>) -> SMatrix<Self::Scalar, NR, NE> {
+        self.primitive(extension, &self.terms(y)).factor
+    }
+
+    /// The left inverse, from the output itself.
+    fn phi_left(&self, z: &SVector<Self::Scalar, NZ>, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NX> {
+        self.recover(z, &self.terms(y))
+    }
 }
 
 /// A promise: this model can be re-based exactly.

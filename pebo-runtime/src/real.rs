@@ -27,6 +27,8 @@ pub trait Real: RealField + Copy {
     fn sin(self) -> Self;
     /// Cosine of an angle in radians.
     fn cos(self) -> Self;
+    /// Sine and cosine of an angle in radians, for less than both by themselves.
+    fn sin_cos(self) -> (Self, Self);
     /// Tangent of an angle in radians.
     fn tan(self) -> Self;
     /// Inverse sine, in [-pi/2, pi/2].
@@ -53,6 +55,22 @@ pub trait Real: RealField + Copy {
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
+    /// -1, 0 or 1 as the number is negative, zero or positive.
+    fn sign(self) -> Self {
+        if self == Self::zero() { self } else { self.signum() }
+    }
+    /// The smaller of two numbers.
+    fn smaller(self, other: Self) -> Self {
+        RealField::min(self, other)
+    }
+    /// The larger of two numbers.
+    fn larger(self, other: Self) -> Self {
+        RealField::max(self, other)
+    }
+    /// The nearest number in [-1, 1].
+    fn sat(self) -> Self {
+        RealField::clamp(self, -Self::one(), Self::one())
+    }
     /// `self` to a real power.
     fn powf(self, exponent: Self) -> Self;
     /// `self` to an integer power.
@@ -60,7 +78,7 @@ pub trait Real: RealField + Copy {
 }
 
 macro_rules! real {
-    ($scalar:ident: $($function:ident),+; atan2 = $atan2:path $(, $own:ident = $path:path)*) => {
+    ($scalar:ident: $($function:ident),+; atan2 = $atan2:path, sin_cos = $sin_cos:path $(, $own:ident = $path:path)*) => {
         impl Real for $scalar {
             const EPSILON: Self = $scalar::EPSILON;
 
@@ -76,6 +94,10 @@ macro_rules! real {
             #[inline]
             fn is_finite(self) -> bool {
                 Self::is_finite(self)
+            }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                $sin_cos(self)
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
@@ -107,9 +129,9 @@ macro_rules! real {
 
 real!(
     f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs;
-    atan2 = RealField::atan2
+    atan2 = RealField::atan2, sin_cos = ComplexField::sin_cos
 );
 real!(
     f32: tan, asin, acos, sinh, cosh, tanh, exp_m1, ln, sqrt, abs;
-    atan2 = single::atan2, sin = single::sin, cos = single::cos, atan = single::atan, exp = single::exp
+    atan2 = single::atan2, sin_cos = single::sin_cos, sin = single::sin, cos = single::cos, atan = single::atan, exp = single::exp
 );

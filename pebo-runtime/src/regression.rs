@@ -5,14 +5,15 @@
 //! so its derivative is the difference quotient; no signal is differentiated otherwise.
 //!
 //! - [`FilteredRegression`]: the operator is a [`Filter`];
-//! - [`WindowedRegression`](crate::WindowedRegression): the mean over a window, the integral form.
+//! - [`WindowedRegression`](crate::WindowedRegression): the mean over a window, the integral form;
+//! - [`SampledRegression`](crate::SampledRegression): each sample by itself, for sensors of known standard deviation.
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::sum::as_blemish;
-use crate::{Filter, Filtered, Real};
+use crate::{Filter, Filtered, Real, Turn};
 
-/// Both sides of `known = factor * eta` at one instant.
+/// Both sides of `known = factor * eta` at one instant; of a model, `phi_0` and `phi_1`, or what stands under their
+/// derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sides<S: Real, const NR: usize, const NE: usize> {
     /// What is known, in units of the regression's equations.
@@ -22,9 +23,18 @@ pub struct Sides<S: Real, const NR: usize, const NE: usize> {
 }
 
 /// A linear operator in time, applied to both sides of a regression: what holds at every instant holds for its outcome.
+///
+/// A step is first worked out and then taken, so that an [`Observer`](crate::Observer) can refuse it without a copy of
+/// the whole memory.
 pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
-    /// Advances by `dt` seconds over which both sides run straight from the first to the second.
-    fn advance(&mut self, sides: [&Sides<S, NR, NE>; 2], dt: S);
+    /// A step that is worked out: its outcome, and what it takes to take it.
+    type Step: Outcome<S, NR, NE>;
+
+    /// The step over `dt` seconds in which both sides run straight from the first to the second.
+    fn step(&self, sides: [&Sides<S, NR, NE>; 2], dt: S) -> Self::Step;
+
+    /// Takes a step that was worked out from the state as it is.
+    fn take(&mut self, step: Self::Step);
 
     /// The known side of the outcome.
     fn regressand(&self) -> SVector<S, NR>;
@@ -35,16 +45,27 @@ pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Moves `shift` into the unknown: the outcome now holds for `eta + shift`, also what is still to come of the past.
     fn shift(&mut self, shift: &SVector<S, NE>);
 
+    /// Follows a change of the unknown from `eta` to `T eta`: all regressors, also those still to come of the past, are
+    /// multiplied by `T^-1`.
+    fn turn(&mut self, turn: &Turn<S, NE>);
+
     /// Starts again with nothing: `0 = 0 eta`.
     fn reset(&mut self);
 
     /// Whether every number of the state is finite.
     fn is_finite(&self) -> bool;
+}
 
-    /// The same as a number, 0 or NaN, see [`Estimator::blemish`](crate::Estimator::blemish).
-    fn blemish(&self) -> S {
-        as_blemish(self.is_finite())
-    }
+/// What a step of a [`RegressionOperator`] leads to: `regressand = regressor eta`.
+pub trait Outcome<S: Real, const NR: usize, const NE: usize> {
+    /// The known side.
+    fn regressand(&self) -> SVector<S, NR>;
+
+    /// The factor of the unknown.
+    fn regressor(&self) -> SMatrix<S, NR, NE>;
+
+    /// 0 if every number of the step is finite, else NaN, see [`Estimator::blemish`](crate::Estimator::blemish).
+    fn blemish(&self) -> S;
 }
 
 /// The filtered regression.
@@ -78,10 +99,20 @@ impl<S: Real, const NR: usize, const NE: usize> FilteredRegression<S, NR, NE> {
 }
 
 impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> for FilteredRegression<S, NR, NE> {
-    fn advance(&mut self, [start, end]: [&Sides<S, NR, NE>; 2], dt: S) {
-        let weights = self.filter.weights(dt);
-        self.regressand.advance(&weights, &start.known, &end.known);
-        self.regressor.advance(&weights, &start.factor, &end.factor);
+    type Step = Self;
+
+    #[inline]
+    fn step(&self, [start, end]: [&Sides<S, NR, NE>; 2], dt: S) -> Self {
+        let mut next = *self;
+        let weights = next.filter.weights(dt);
+        next.regressand.advance(&weights, &start.known, &end.known);
+        next.regressor.advance(&weights, &start.factor, &end.factor);
+        next
+    }
+
+    #[inline]
+    fn take(&mut self, step: Self) {
+        *self = step;
     }
 
     fn regressand(&self) -> SVector<S, NR> {
@@ -97,6 +128,11 @@ impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> fo
         self.regressand.shift(&offset);
     }
 
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        let step = turn.of_factor(self.regressor.value());
+        self.regressor.shift(&step);
+    }
+
     fn reset(&mut self) {
         *self = Self::new(self.filter);
     }
@@ -104,7 +140,20 @@ impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> fo
     fn is_finite(&self) -> bool {
         self.blemish() == S::zero()
     }
+}
 
+impl<S: Real, const NR: usize, const NE: usize> Outcome<S, NR, NE> for FilteredRegression<S, NR, NE> {
+    #[inline]
+    fn regressand(&self) -> SVector<S, NR> {
+        *self.regressand.value()
+    }
+
+    #[inline]
+    fn regressor(&self) -> SMatrix<S, NR, NE> {
+        *self.regressor.value()
+    }
+
+    #[inline]
     fn blemish(&self) -> S {
         self.regressand.blemish() + self.regressor.blemish()
     }

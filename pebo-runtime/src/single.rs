@@ -67,6 +67,19 @@ pub(crate) fn cos(x: f32) -> f32 {
     if quadrant == 1 || quadrant == 2 { -value } else { value }
 }
 
+/// Sine and cosine of an angle in radians: to the last bit what [`sin`] and [`cos`] give.
+#[inline]
+pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
+    if x.abs() > LARGEST_ANGLE {
+        return ComplexField::sin_cos(x);
+    }
+    let (r, quadrant) = reduce(x);
+    let (near, far) = (sin_near_zero(r), cos_near_zero(r));
+    let (sine, cosine) = if quadrant & 1 == 0 { (near, far) } else { (far, near) };
+    let sine = if quadrant & 2 == 0 { sine } else { -sine };
+    (sine, if quadrant == 1 || quadrant == 2 { -cosine } else { cosine })
+}
+
 /// The inverse tangent of `small/large`, `0 <= small <= large`, without a quotient above tan(pi/8).
 #[inline]
 fn atan_of_quotient(small: f32, large: f32) -> f32 {
@@ -94,9 +107,9 @@ pub(crate) fn atan(x: f32) -> f32 {
 #[inline]
 pub(crate) fn atan2(y: f32, x: f32) -> f32 {
     let (mut rise, mut run) = (y.abs(), x.abs());
-    if rise.is_infinite() || run.is_infinite() {
-        // Only which of them is infinite counts.
-        (rise, run) = (f32::from(u8::from(rise.is_infinite())), f32::from(u8::from(run.is_infinite())));
+    if rise.is_infinite() && run.is_infinite() {
+        // Their quotient is no number; one alone makes it zero.
+        (rise, run) = (1.0, 1.0);
     } else if rise > f32::MAX / 4.0 || run > f32::MAX / 4.0 {
         // Their sum must not overflow.
         (rise, run) = (rise * 0.25, run * 0.25);

@@ -41,6 +41,11 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
         }
     }
 
+    /// By how much the sum is more than `base`, with what it carries.
+    pub(crate) fn beyond(&self, base: &SMatrix<S, R, C>) -> SMatrix<S, R, C> {
+        (self.value - base) + self.carry
+    }
+
     /// Whether every number of the state is finite.
     pub fn is_finite(&self) -> bool {
         self.blemish() == S::zero()

@@ -2,9 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::regression::{RegressionOperator, Sides};
-use crate::sum::{Sum, all_finite};
-use crate::{Hold, Real};
+use crate::regression::{Outcome, RegressionOperator, Sides};
+use crate::sum::{Sum, all_finite, as_blemish};
+use crate::{Hold, Real, Turn};
 
 /// The mean of both sides over the last `NW` steps.
 ///
@@ -16,7 +16,7 @@ use crate::{Hold, Real};
 ///
 /// It forgets completely after `NW` steps, and needs no bandwidth to be chosen. Until then the window grows from the
 /// first sample on. Steps of different length are weighted by their length. The cost is memory: `NW` numbers for each
-/// entry of both sides, which an [`Observer`](crate::Observer) copies at each step.
+/// entry of both sides.
 ///
 /// Source: integral regressors: Middleton and Goodwin, *Adaptive computed torque control for rigid link manipulators*,
 /// Systems & Control Letters, 1988; over a window: Pan and Yu, *Composite learning robot control with guaranteed
@@ -67,6 +67,20 @@ impl<S: Real, const NR: usize, const NE: usize> Total<S, NR, NE> {
         self.duration.add(&SVector::repeat(-step.dt));
     }
 
+    /// `1/T`, or 0 for the empty window.
+    fn inverse_duration(&self) -> S {
+        let duration = self.duration.value().x;
+        if duration > S::zero() { S::one() / duration } else { S::zero() }
+    }
+
+    fn mean_known(&self) -> SVector<S, NR> {
+        self.known.value() * self.inverse_duration()
+    }
+
+    fn mean_factor(&self) -> SMatrix<S, NR, NE> {
+        self.factor.value() * self.inverse_duration()
+    }
+
     fn is_finite(&self) -> bool {
         self.known.is_finite() && self.factor.is_finite() && self.duration.is_finite()
     }
@@ -98,17 +112,37 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> WindowedRegress
     pub fn duration(&self) -> S {
         self.total.duration.value().x
     }
+}
 
-    /// `1/T`, or 0 for the empty window.
-    fn inverse_duration(&self) -> S {
-        if self.duration() > S::zero() { S::one() / self.duration() } else { S::zero() }
+/// A window with one more step in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved<S: Real, const NR: usize, const NE: usize> {
+    step: Integral<S, NR, NE>,
+    total: Total<S, NR, NE>,
+    front: Total<S, NR, NE>,
+}
+
+impl<S: Real, const NR: usize, const NE: usize> Outcome<S, NR, NE> for Moved<S, NR, NE> {
+    fn regressand(&self) -> SVector<S, NR> {
+        self.total.mean_known()
+    }
+
+    fn regressor(&self) -> SMatrix<S, NR, NE> {
+        self.total.mean_factor()
+    }
+
+    fn blemish(&self) -> S {
+        // What is not finite in the step makes the total so.
+        as_blemish(self.total.is_finite() && self.front.is_finite())
     }
 }
 
 impl<S: Real, const NR: usize, const NE: usize, const NW: usize> RegressionOperator<S, NR, NE>
     for WindowedRegression<S, NR, NE, NW>
 {
-    fn advance(&mut self, [start, end]: [&Sides<S, NR, NE>; 2], dt: S) {
+    type Step = Moved<S, NR, NE>;
+
+    fn step(&self, [start, end]: [&Sides<S, NR, NE>; 2], dt: S) -> Self::Step {
         let half: S = Real::from_f64(0.5);
         let step = match self.hold {
             Hold::Zero => Integral { known: start.known * dt, factor: start.factor * dt, dt },
@@ -118,27 +152,34 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> RegressionOpera
                 dt,
             },
         };
+        let (mut total, mut front) = (self.total, self.front);
+        if let Some(leaving) = self.steps.get(self.oldest) {
+            total.remove(leaving);
+        }
+        total.add(&step);
+        front.add(&step);
+        if self.oldest + 1 < NW {
+            Moved { step, total, front }
+        } else {
+            Moved { step, total: front, front: Total::nothing() }
+        }
+    }
+
+    fn take(&mut self, Moved { step, total, front }: Self::Step) {
         if let Some(slot) = self.steps.get_mut(self.oldest) {
-            self.total.remove(slot);
             *slot = step;
         }
-        self.total.add(&step);
-        self.front.add(&step);
-        if self.oldest + 1 < NW {
-            self.oldest += 1;
-        } else {
-            self.oldest = 0;
-            self.total = self.front;
-            self.front = Total::nothing();
-        }
+        self.oldest = if self.oldest + 1 < NW { self.oldest + 1 } else { 0 };
+        self.total = total;
+        self.front = front;
     }
 
     fn regressand(&self) -> SVector<S, NR> {
-        self.total.known.value() * self.inverse_duration()
+        self.total.mean_known()
     }
 
     fn regressor(&self) -> SMatrix<S, NR, NE> {
-        self.total.factor.value() * self.inverse_duration()
+        self.total.mean_factor()
     }
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
@@ -153,6 +194,19 @@ impl<S: Real, const NR: usize, const NE: usize, const NW: usize> RegressionOpera
             self.total.known.add(&step.known);
             if place < self.oldest {
                 self.front.known.add(&step.known);
+            }
+        }
+    }
+
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.total.factor = Sum::new(SMatrix::zeros());
+        self.front.factor = Sum::new(SMatrix::zeros());
+        for (place, step) in self.steps.iter_mut().enumerate() {
+            let turned = turn.of_factor(&step.factor);
+            step.factor += turned;
+            self.total.factor.add(&step.factor);
+            if place < self.oldest {
+                self.front.factor.add(&step.factor);
             }
         }
     }

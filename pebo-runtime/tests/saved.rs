@@ -1,10 +1,10 @@
 //! A saved state restored elsewhere: the observers go on together, bit for bit. Run with `--features serde`.
 
-use pebo_runtime::nalgebra::{Matrix1, Vector1};
+use pebo_runtime::nalgebra::{Matrix1, SMatrix, SVector, Vector1};
 use pebo_runtime::{
-    Bounded, Drem, Estimator, Fault, Filter, FilteredRegression, FiniteTime, Gradient, Hold, Integrator, Kreisselmeier,
-    LeastSquares, Model, NormalisedGradient, Observer, Regression, RegressionOperator, Response, State,
-    WindowedRegression,
+    Bounded, Drem, Estimator, Fault, Filter, FilteredRegression, FiniteTime, Flow, Gradient, Hold, Integrator,
+    Kreisselmeier, LeastSquares, Model, NormalisedGradient, Observer, Regression, RegressionOperator, Response,
+    SampledRegression, Sides, State, WindowedRegression,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -16,24 +16,28 @@ struct Mass;
 impl Model<1, 1, 1, 1, 1, 1> for Mass {
     type Scalar = f64;
     type Extension = Integrator<f64, 1>;
+    type X = SVector<Self::Scalar, 1>;
+    type Y = SVector<Self::Scalar, 1>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector1<f64>;
     const REGRESSION: Regression = Regression::Dynamic;
 
-    fn h(&self, _: &Vector1<f64>, u: &Vector1<f64>) -> Vector1<f64> {
-        *u
-    }
-    fn phi_0(&self, extension: &Self::Extension, _: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
-        *extension.chi()
-    }
-    fn phi_1(&self, _: &Self::Extension, _: &Vector1<f64>, _: &Vector1<f64>) -> Matrix1<f64> {
-        Matrix1::identity()
-    }
-    fn primitive_0(&self, _: &Self::Extension, y: &Vector1<f64>) -> Vector1<f64> {
+    fn terms(&self, y: &Vector1<f64>) -> Vector1<f64> {
         *y
+    }
+    fn flow(&self, _: &Vector1<f64>, u: &Vector1<f64>) -> Flow<f64, 1> {
+        Flow::plain(*u)
+    }
+    fn regression(&self, extension: &Self::Extension, _: &Vector1<f64>, _: &Vector1<f64>) -> Sides<f64, 1, 1> {
+        Sides { known: *extension.chi(), factor: Matrix1::identity() }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector1<f64>) -> Sides<f64, 1, 1> {
+        Sides { known: *y, factor: SMatrix::zeros() }
     }
     fn theta(&self, eta: &Vector1<f64>) -> Vector1<f64> {
         *eta
     }
-    fn phi_left(&self, z: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
+    fn recover(&self, z: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
         *z
     }
 }
@@ -46,7 +50,7 @@ fn feed<E: Estimator<f64, 1, 1>, R: RegressionOperator<f64, 1, 1>>(
     k: u32,
 ) -> Result<Vector1<f64>, Fault> {
     let t = f64::from(k) * 0.01;
-    observer.step(&Vector1::new((1.3 * t).sin() + t / 3.0), &Vector1::new(t.sin()), 0.01)
+    observer.step(Vector1::new((1.3 * t).sin() + t / 3.0), Vector1::new(t.sin()), 0.01)
 }
 
 /// What is read back.
@@ -95,8 +99,17 @@ fn every_estimator_and_regression_continues() {
     continues(&gradient, &WindowedRegression::<f64, 1, 1, 9>::new(Hold::First));
     continues(&NormalisedGradient::new(gradient, 2.0).unwrap(), &filtered);
     continues(&squares, &filtered);
+    continues(&squares.with_process_noise(&one).unwrap(), &SampledRegression::new(&one).unwrap());
     continues(&drem, &filtered);
     continues(&Drem::new(Response::<_, _, 1, 1>::new(squares).unwrap(), &one).unwrap(), &filtered);
     continues(&FiniteTime::tracking(drem, 0.1, 0.3).unwrap(), &filtered);
     continues(&Bounded::new(gradient, &Vector1::new(-9.0), &Vector1::new(9.0)).unwrap(), &filtered);
+}
+
+#[test]
+fn a_fault_is_read_as_it_was_written() {
+    for fault in [Fault::Step, Fault::Output { index: 3 }, Fault::Parameter { index: 0 }, Fault::Singular] {
+        let bytes = postcard::to_allocvec(&fault).unwrap();
+        assert_eq!(postcard::from_bytes(&bytes), Ok(fault));
+    }
 }

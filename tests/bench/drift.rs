@@ -3,8 +3,10 @@
 //!
 //! Run with `cargo run --release -p tests --example drift [STEPS]`; a billion steps take some minutes.
 
-use pebo_runtime::nalgebra::{Matrix1, Vector1};
-use pebo_runtime::{Drift, Fault, Filter, Hold, Integrator, LeastSquares, Model, Observer, Real, Rebase, Regression};
+use pebo_runtime::nalgebra::{Matrix1, SMatrix, SVector, Vector1};
+use pebo_runtime::{
+    Drift, Fault, Filter, Flow, Hold, Integrator, LeastSquares, Model, Observer, Real, Rebase, Regression, Sides,
+};
 
 const L: f64 = 1e-3;
 const C: f64 = 1e-4;
@@ -23,25 +25,37 @@ struct Boost<S>(core::marker::PhantomData<S>);
 impl<S: Real> Model<1, 1, 2, 1, 1, 1> for Boost<S> {
     type Scalar = S;
     type Extension = Integrator<S, 1>;
+    type X = SVector<Self::Scalar, 1>;
+    type Y = SVector<Self::Scalar, 1>;
+    type U = SVector<Self::Scalar, 2>;
+    type Terms = Vector1<S>;
     const REGRESSION: Regression = Regression::Dynamic;
 
-    fn h(&self, y: &Vector1<S>, u: &pebo_runtime::nalgebra::Vector2<S>) -> Vector1<S> {
-        Vector1::new((u.y - (S::one() - u.x) * y.x) * Real::from_f64(1.0 / L))
-    }
-    fn phi_0(&self, x: &Self::Extension, y: &Vector1<S>, u: &pebo_runtime::nalgebra::Vector2<S>) -> Vector1<S> {
-        let r: S = Real::from_f64(1.0 / R);
-        Vector1::new(((S::one() - u.x) * x.chi().x - y.x * r) * Real::from_f64(1.0 / C))
-    }
-    fn phi_1(&self, _: &Self::Extension, _: &Vector1<S>, u: &pebo_runtime::nalgebra::Vector2<S>) -> Matrix1<S> {
-        Matrix1::new((S::one() - u.x) * Real::from_f64(1.0 / C))
-    }
-    fn primitive_0(&self, _: &Self::Extension, y: &Vector1<S>) -> Vector1<S> {
+    fn terms(&self, y: &Vector1<S>) -> Vector1<S> {
         *y
+    }
+    fn flow(&self, y: &Vector1<S>, u: &pebo_runtime::nalgebra::Vector2<S>) -> Flow<S, 1> {
+        Flow::plain(Vector1::new((u.y - (S::one() - u.x) * y.x) * Real::from_f64(1.0 / L)))
+    }
+    fn regression(
+        &self,
+        x: &Self::Extension,
+        y: &Vector1<S>,
+        u: &pebo_runtime::nalgebra::Vector2<S>,
+    ) -> Sides<S, 1, 1> {
+        let r: S = Real::from_f64(1.0 / R);
+        Sides {
+            known: Vector1::new(((S::one() - u.x) * x.chi().x - y.x * r) * Real::from_f64(1.0 / C)),
+            factor: Matrix1::new((S::one() - u.x) * Real::from_f64(1.0 / C)),
+        }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector1<S>) -> Sides<S, 1, 1> {
+        Sides { known: *y, factor: SMatrix::zeros() }
     }
     fn theta(&self, eta: &Vector1<S>) -> Vector1<S> {
         *eta
     }
-    fn phi_left(&self, z: &Vector1<S>, _: &Vector1<S>) -> Vector1<S> {
+    fn recover(&self, z: &Vector1<S>, _: &Vector1<S>) -> Vector1<S> {
         *z
     }
 }
@@ -74,8 +88,8 @@ fn run<S: Real>(steps: u64) -> Result<(), Fault> {
         let y = Vector1::new(real(v));
         let u = pebo_runtime::nalgebra::Vector2::new(real(d), real(E));
         let error = |estimate: Vector1<S>| (Real::to_f64(estimate.x) - i).abs();
-        plain_error = f64::max(plain_error, error(plain.step(&y, &u, real(DT))?));
-        free_error = f64::max(free_error, error(free.step_without_drift(&y, &u, real(DT), Drift::Free)?));
+        plain_error = f64::max(plain_error, error(plain.step(y, u, real(DT))?));
+        free_error = f64::max(free_error, error(free.step_without_drift(y, u, real(DT), Drift::Free)?));
         if k == next_print {
             println!(
                 "{k:>12} {:>12.4e} {plain_error:>12.4e} {:>12.4e} {free_error:>12.4e}",

@@ -18,7 +18,7 @@ use pebo_runtime::{
     Drem, Estimator, Fault, Filter, FiniteTime, Gradient, Hold, Kreisselmeier, LeastSquares, NormalisedGradient,
     Response, WindowedRegression,
 };
-use tests::emitted::cuk_case2_f64::{CukCase2, Observer, Parameters};
+use tests::emitted::cuk_case2_f64::{CukCase2, Observer, Parameters, U};
 
 const DURATION: f64 = 0.6;
 
@@ -33,14 +33,14 @@ fn model() -> CukCase2 {
 fn filtered<T: Estimator<f64, 2, 2> + 'static>(alpha: f64, estimator: T) -> Result<Step, Fault> {
     let filter = Filter::new(alpha, Hold::First)?;
     let mut observer: Observer<T> = Observer::new(model(), estimator, filter, SVector::zeros())?;
-    Ok(Box::new(move |y, d, dt| observer.step(y, &[d].into(), dt)))
+    Ok(Box::new(move |y, d, dt| observer.step(*y, U { d }, dt).map(Into::into)))
 }
 
 /// An observer with the integral form over `NW` samples.
 fn windowed<T: Estimator<f64, 2, 2> + 'static, const NW: usize>(estimator: T) -> Result<Step, Fault> {
     let window = WindowedRegression::<f64, 2, 2, NW>::new(Hold::First);
     let mut observer = pebo_runtime::Observer::with_regression(model(), estimator, window, SVector::zeros())?;
-    Ok(Box::new(move |y, d, dt| observer.step(y, &[d].into(), dt)))
+    Ok(Box::new(move |y, d, dt| observer.step(*y, U { d }, dt).map(Into::into)))
 }
 
 /// The immersion and invariance observer of the paper with the sign of `gamma_2` that its own dynamics need;

@@ -69,3 +69,8 @@ fn vector<S: Real, const N: usize>(values: &[f64]) -> SVector<S, N> {
 pub mod emitted {
     include!(concat!(env!("OUT_DIR"), "/emitted.rs"));
 }
+
+/// The values of a model's parameters, of which a model may have none.
+pub(crate) fn defaults<P: Default>() -> P {
+    P::default()
+}

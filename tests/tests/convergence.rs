@@ -58,8 +58,12 @@ fn text(model: &str) -> String {
 }
 
 fn run(text: &str) -> Trace {
+    run_with(text, &Overrides::default())
+}
+
+fn run_with(text: &str, overrides: &Overrides) -> Trace {
     let derived = derive(&Source::new("model", text).expect("a text")).expect("a model");
-    let scenario = derived.scenario(&Overrides::default()).expect("a closed loop");
+    let scenario = derived.scenario(overrides).expect("a closed loop");
     scenario.run().expect("a run to the end")
 }
 
@@ -91,6 +95,47 @@ fn estimates_become_the_states() {
     }
 }
 
+/// Of the models whose plant steps half way, what the model does not say: the time within which the errors fall for good
+/// below 1 % of the states' largest magnitudes, after the start and after the step, in s. What was seen, and a quarter.
+const STEPS: &[(&str, f64, f64)] = &[
+    ("battery", 440.0, 1.0),
+    ("bearing_only", 95.0, 920.0),
+    ("bicycle", 0.025, 1e-3),
+    ("boost_load", 0.0045, 0.3),
+    ("boost_resistive", 2e-5, 1e-5),
+    ("dc_motor", 0.0055, 0.052),
+    ("hydraulic_cylinder", 7e-4, 0.027),
+    ("induction_motor", 0.003, 0.044),
+    ("induction_motor_stator", 0.003, 0.044),
+    ("reactor", 22.0, 47.0),
+];
+
+/// The step of the plant is there: without the observer's correction its error would stay or grow.
+#[test]
+fn estimates_recover_from_a_step_of_the_plant() {
+    for &(model, after_start, after_step) in STEPS {
+        let text = text(model);
+        assert!(text.contains("\n  plant:\n"), "{model} has no step");
+        let every_sample = Overrides { every: Some(f64::MIN_POSITIVE), ..Overrides::default() };
+        let trace = run_with(&text, &every_sample);
+        let time = trace.column("t").expect("time");
+        let half = time.iter().position(|t| *t >= time[time.len() - 1] / 2.0).expect("a half");
+        let mut shares = vec![0.0_f64; time.len()];
+        for state in trace.columns().iter().filter_map(|name| name.strip_suffix(Trace::ERROR)) {
+            let scale = trace.column(state).expect(state).into_iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let errors = trace.column(&format!("{state}{}", Trace::ERROR)).expect(state);
+            shares.iter_mut().zip(errors).for_each(|(share, error)| *share = share.max(error.abs() / scale));
+        }
+        assert!(shares[0] > 0.1, "{model} starts with the right estimate");
+        for (from, to, within) in [(0, half, after_start), (half, time.len(), after_step)] {
+            let last = (from..to).rev().find(|row| shares[*row] >= 0.01);
+            let settled = last.map_or(0.0, |row| time[row + 1] - time[from]);
+            println!("{model}: below 1 % after {settled} s, {:.1e} in the end", shares[to - 1]);
+            assert!(last.is_none_or(|row| row + 1 < to) && settled < within, "{model}: {settled} s");
+        }
+    }
+}
+
 #[test]
 fn no_model_is_left_out() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
@@ -98,7 +143,8 @@ fn no_model_is_left_out() {
     let models = files.filter(|path| path.extension().is_some_and(|e| e == "yaml"));
     let stems: BTreeSet<String> =
         models.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect();
-    assert_eq!(stems, CASES.iter().map(|case| case.model.to_owned()).collect());
+    let known = CASES.iter().map(|case| case.model).chain(STEPS.iter().map(|(model, ..)| *model));
+    assert_eq!(stems, known.map(str::to_owned).collect());
 }
 
 /// The unknown speed's course in the model file, and the voltages there.

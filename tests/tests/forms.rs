@@ -44,7 +44,8 @@ mod forms {
         let scale: Real = M.recip();
         let scale = { scale * TWICE };
         let [first, second] = GAINS;
-        let base = X { p: tau * scale + torque(y), r: 0.0 };
+        let friction = y.q.signum().max(first) - tau.clamp(-second, second).min(y.q);
+        let base = X { p: tau * scale + torque(y) + friction, r: 0.0 };
         let turns = (y.q / PI).powi(POLES) + (y.q * consts::TAU).cos() - QUARTER;
         X { r: doubled(turns) + first.hypot(second) + 30.0_f32.to_radians() + f32::from(2_u8), ..base }
     }

@@ -1,13 +1,14 @@
-//! A plant in plain Rust is the plant in a model file: the same tokens, and functions that can be called.
+//! A plant in plain Rust is the plant in a model file: the same tokens, and functions that can be called. That the command
+//! line gives them too is a test beside its program (`pebo-gen/tests/front/answer.rs`).
 
 use std::path::Path;
 
 use pebo_gen::analysis::Outcome;
-use pebo_gen::emit::Scalar;
+use pebo_gen::emit::{Emitted, Scalar};
 use pebo_gen::model::Model;
 use pebo_gen::model::rust::Places;
 use pebo_gen::source::{Code, Source};
-use pebo_gen::{Builder, Derived, derive};
+use pebo_gen::{Ask, Builder, Derived, Standing, answer};
 use pebo_runtime::nalgebra::SVector;
 use pebo_runtime::{Extension as _, Integrator, Model as _};
 
@@ -35,8 +36,8 @@ plants! {
     "rotating_frame" in "models/",
 }
 
-/// From the text of a module, as the attribute reads it.
-fn from_rust(text: &str) -> Derived {
+/// From the text of a module, as the attribute reads and writes it.
+fn from_rust(text: &str, scalar: Scalar) -> Emitted {
     let module: syn::ItemMod = syn::parse_str(text).expect("a module");
     let attribute = module.attrs.iter().find(|a| a.path().segments.last().is_some_and(|s| s.ident == "pebo_model"));
     let arguments = match &attribute.expect("the attribute").meta {
@@ -44,12 +45,23 @@ fn from_rust(text: &str) -> Derived {
         _ => proc_macro2::TokenStream::new(),
     };
     let model = Model::read_rust(arguments, &module, &mut Places::new()).expect("a model");
-    Derived::of(model).expect("a plant")
+    Derived::of(model).and_then(|derived| derived.admitted(scalar)).expect("accepted")
 }
 
-fn from_file(path: &str) -> Derived {
+/// The text of a model file without its section `observer`: a module of plain Rust has none.
+fn unsettled(path: &str) -> String {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a model file");
-    derive(&Source::new(path, text).expect("a text")).expect("a model")
+    match text.split_once("\nobserver:") {
+        Some((before, section)) => format!("{before}\n{}", section.split_once("\n\n").map_or("", |(_, rest)| rest)),
+        None => text,
+    }
+}
+
+/// From the text of a model file, in one call.
+fn from_file(path: &str, text: &str, scalar: Scalar) -> Emitted {
+    let answer = answer(&Source::new(path, text).expect("a text"), &Ask::new().emit(scalar));
+    assert_eq!(answer.standing, Standing::Accepted, "{}", answer.summary);
+    answer.emitted.expect("accepted")
 }
 
 /// The attribute asks for a cascade as a model file does.
@@ -70,11 +82,13 @@ fn the_class_that_is_asked_for_is_read() {
 fn three_ways_give_the_same_code() {
     let out = tempfile::tempdir().expect("a folder");
     for (name, text, file) in PLANTS {
+        let unsettled = unsettled(file);
+        let path = out.path().join(format!("{name}.yaml"));
+        std::fs::write(&path, &unsettled).expect("a file");
         for scalar in [Scalar::F64, Scalar::F32] {
-            let rust = from_rust(text).emit(scalar).expect("accepted");
-            let yaml = from_file(file).emit(scalar).expect("accepted");
+            let (rust, yaml) = (from_rust(text, scalar), from_file(file, &unsettled, scalar));
             assert_eq!(rust.tokens.to_string(), yaml.tokens.to_string(), "{name}");
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+            assert_eq!((&rust.text, &rust.type_name), (&yaml.text, &yaml.type_name), "{name}");
             for (format, expected) in [(true, rust.text), (false, rust.tokens.to_string())] {
                 let builder = Builder::new().out_dir(out.path()).emit_rerun_if_changed(false);
                 let built = builder.scalar(scalar).format(format).compile(&[&path]).expect("accepted");

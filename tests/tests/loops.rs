@@ -115,7 +115,7 @@ fn shorter_steps_approach_continuous_time() {
     // The error of i3 at 0.02 s, to all digits of the reference.
     let exact = 0.226_270_996;
     let difference = |step: f64| {
-        let overrides = Overrides { step: Some(step), duration: Some(0.02), every: Some(1e-3), feedback: None };
+        let overrides = Overrides { step: Some(step), duration: Some(0.02), every: Some(1e-3), ..Overrides::default() };
         let error = run(CASE_1, &overrides).column("i3_error").expect("an error");
         (error[20] - exact).abs()
     };

@@ -3,15 +3,15 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use pebo_gen::analysis::{Class, Excitation, Outcome, RegressionKind};
+use pebo_gen::analysis::Excitation;
 use pebo_gen::source::Source;
 use pebo_gen::{Derived, derive};
 
 const HEAD: &str = "\
 # Models
 
-Plants of the paper (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015), each checked, emitted, compiled and simulated by the
-tests. This table is written by the tool: `UPDATE_TABLE=1 cargo test -p tests --test table`.
+Plants of the paper (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015) and others, each checked, emitted, compiled and simulated
+by the tests. This table is written by the tool: `UPDATE_TABLE=1 cargo test -p tests --test table`.
 
 | model | paper | phi | class | regression | excitation | verdict |
 |---|---|---|---|---|---|---|
@@ -25,35 +25,20 @@ fn row(derived: &Derived) -> String {
     let Derived { plant, derivation, .. } = derived;
     let arena = &plant.arena;
     let phi: Vec<String> = plant.phi.iter().map(|f| format!("`{}`", arena.print(f.expr))).collect();
-    let class = match (derivation.class, &plant.class) {
-        (Class::Pebo, None) => "pebo".to_owned(),
-        (Class::Pebo, Some(class)) => format!("pebo, {}", class.name()),
-        (Class::Gpebo, None) => "gpebo".to_owned(),
-        (Class::Gpebo, Some(class)) => format!("gpebo, {}", class.name()),
-    };
+    let written = plant.class.as_ref().map_or_else(String::new, |class| format!(", {}", class.name()));
+    let class = format!("{}{written}", derivation.class.name());
     let regression = derivation.regression.result.as_ref().map_or_else(String::new, |regression| {
-        let kind = match regression.kind {
-            RegressionKind::Dynamic => "dynamic",
-            RegressionKind::Static => "static",
-            RegressionKind::Implicit => "implicit",
-        };
-        let parameterisation = if regression.is_linear(plant) { "linear" } else { "over-parameterised" };
-        format!("{kind}, {parameterisation}")
+        format!("{}, {}", regression.kind.word(), regression.parameterisation(plant))
     });
     let excitation = derivation.identifiability.result.as_ref().map_or_else(String::new, |identifiability| {
         let kind = match identifiability.kind {
-            Excitation::Instant => "instant",
             Excitation::Excitation => "over time",
-            Excitation::Never => "never",
+            kind => kind.word(),
         };
         let singular: Vec<String> = identifiability.singular_where.iter().map(|c| format!("`{c}`")).collect();
         if singular.is_empty() { kind.to_owned() } else { format!("{kind}, except where {}", singular.join(", ")) }
     });
-    let verdict = match derivation.outcome {
-        Outcome::Accepted => "accepted",
-        Outcome::Rejected => "rejected",
-        Outcome::Undecided => "undecided",
-    };
+    let verdict = derivation.outcome.word();
     // Of the reference, what comes after the year.
     let reference = plant.reference.as_deref().unwrap_or("-");
     let paper = reference.strip_prefix("Ortega et al. 2015, ").unwrap_or(reference);
@@ -63,6 +48,9 @@ fn row(derived: &Derived) -> String {
         name = plant.name
     )
 }
+
+/// What stands behind the table: figures of runs, which `cargo run --release -p tests --example models` prints.
+const FIGURES: &str = "\n## Settling";
 
 #[test]
 fn the_table_is_what_the_tool_says() {
@@ -77,9 +65,12 @@ fn the_table_is_what_the_tool_says() {
         writeln!(table, "{}", row(&derived)).expect("a string");
     }
     let file = folder().join("README.md");
+    let shown = std::fs::read_to_string(&file).expect("models/README.md");
+    let figures = &shown[shown.find(FIGURES).unwrap_or(shown.len())..];
+    table.push_str(figures);
     if std::env::var_os("UPDATE_TABLE").is_some() {
         std::fs::write(&file, &table).expect("the table can be written");
+        return;
     }
-    let shown = std::fs::read_to_string(&file).expect("models/README.md");
     assert!(shown == table, "models/README.md is stale: UPDATE_TABLE=1 cargo test -p tests --test table\n{table}");
 }

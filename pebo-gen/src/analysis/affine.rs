@@ -54,3 +54,24 @@ fn independent(plant: &Plant, domain: &Domain) -> Vec<Expr> {
     }
     basis.split_off(1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::source::Source;
+
+    #[test]
+    fn a_redundant_component_neither_hides_nor_makes_a_bend() {
+        for phi in ["a, b", "a, 2*a, b", "a, b, a - y*b"] {
+            let text =
+                format!("model: m\nx: [a, b]\ny: [y]\nu: [u]\nf_x: {{a: 0, b: 0}}\nf_y: {{y: a}}\nphi: [{phi}]\n");
+            let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+            let (arena, domain) = (&plant.arena, plant.domain());
+            let [a, b, u] = ["a", "b", "u"].map(|name| arena.of_symbol(arena.symbol(name)));
+            let straight = arena.add(arena.mul(u, a), b);
+            assert!(refuted(&plant, &domain, straight).is_none() && of(&plant, &domain, straight).unwrap().is_some());
+            assert!(refuted(&plant, &domain, arena.mul(a, b)).is_some(), "{phi}");
+        }
+    }
+}

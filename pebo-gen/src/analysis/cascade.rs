@@ -49,6 +49,10 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let row = |(rate, component): (&Expr, &Component)| match component {
         Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
         Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
+        // Quadratic in momenta: points show that it is not affine.
+        Component::Bound { .. } if is_implicit(plant) => {
+            affine::refuted(plant, domain, *rate).map_or(Err(Obstacle::NoWitness), |_| Ok(None))
+        }
         Component::Bound { .. } | Component::Open(_) => gpebo::row(plant, domain, *rate),
     };
     let rows: Vec<Result<Option<affine::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
@@ -125,7 +129,15 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
     match killing::is_killing(&plant.arena, domain, mechanical, index) {
         Ok(true) => Component::Free(proved_shortest(&plant.arena, domain, mechanical.h[index])),
-        Ok(false) => component(plant, domain, rate),
+        Ok(false) => match &mechanical.in_velocities {
+            // The rate has no normal form that could be looked at; that it varies, points show.
+            Some(shown) => {
+                let varying = killing::quadratic(&plant.arena, mechanical, index, &shown.velocities);
+                let rate = Seen { rate, shown: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
+                bound(plant, domain, rate).unwrap_or(Component::Open(Obstacle::NoWitness))
+            }
+            None => component(plant, domain, rate),
+        },
         Err(obstacle) => Component::Open(obstacle),
     }
 }
@@ -155,7 +167,10 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
     let tidied = match tidied {
         Ok(tidied) => tidied,
         // What no normal form reaches may differ at points all the same.
-        Err(obstacle) => return bound(plant, domain, rate, rate).unwrap_or(Component::Open(obstacle)),
+        Err(obstacle) => {
+            return bound(plant, domain, Seen { rate, shown: rate, varying: None })
+                .unwrap_or(Component::Open(obstacle));
+        }
     };
     if !arena.depends_on(tidied, &hidden) {
         // The normal form is free of x; that it equals the rate is what the zero test confirms.
@@ -176,22 +191,32 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };
     }
-    bound(plant, domain, rate, tidied).unwrap_or(Component::Open(Obstacle::NoWitness))
+    bound(plant, domain, Seen { rate, shown: tidied, varying: None }).unwrap_or(Component::Open(Obstacle::NoWitness))
+}
+
+/// A rate and how it is shown.
+struct Seen {
+    rate: Expr,
+    shown: Expr,
+    /// The part of what is shown that varies with x, if that is known.
+    varying: Option<Expr>,
 }
 
 /// What varies with x, with two points of the domain that show it: the same y, u and parameters, another value.
 ///
-/// The rate is shown as `shown`, and the part of it that varies as its difference to what it is at the second point.
-fn bound(plant: &Plant, domain: &Domain, rate: Expr, shown: Expr) -> Option<Component> {
+/// The part of what is shown that varies is its difference to what it is at the second point, if it is not known.
+fn bound(plant: &Plant, domain: &Domain, Seen { rate, shown, varying }: Seen) -> Option<Component> {
     let arena = &plant.arena;
     let hidden = plant.hidden();
     let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
     let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
-    let through: Vec<Symbol> = arena.symbols_of(&[shown]).intersection(&hidden).copied().collect();
+    let read = if varying.is_some() { rate } else { shown };
+    let through: Vec<Symbol> = arena.symbols_of(&[read]).intersection(&hidden).copied().collect();
     let fixed: BTreeMap<Symbol, Expr> = through.iter().filter_map(|s| Some((*s, *reference.get(s)?))).collect();
-    let residual = shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed)));
+    let residual =
+        varying.unwrap_or_else(|| shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed))));
     let difference = here.sub(there, Precision::new(256))?;
-    let compared = Comparison::of(shown, &points, &hidden);
+    let compared = Comparison::of([shown, read], &points, &hidden);
     let witness = Witness {
         expr: residual,
         point: points.points[0].iter().map(|(symbol, value)| (*symbol, *value)).collect(),
@@ -215,6 +240,10 @@ fn mends(plant: &Plant, domain: &Domain, lie: &[Expr], components: &[Component])
 fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
     let arena = &plant.arena;
     let measured: Vec<(Symbol, Expr)> = plant.y.iter().filter_map(|o| o.rate.map(|r| (o.symbol, r.expr))).collect();
+    if is_implicit(plant) {
+        // Quadratic in momenta that no multiple of a velocity cancels.
+        return None;
+    }
     let mut roots = vec![rate];
     roots.extend(measured.iter().map(|m| m.1));
     let field = Field::over(arena, &domain.facts, &roots).ok()?;
@@ -275,12 +304,20 @@ fn refuted(
     }
 }
 
+/// Whether the plant is a mechanical one whose inverse of M is not written out.
+fn is_implicit(plant: &Plant) -> bool {
+    matches!(&plant.class, Some(plant::Class::Mechanical(mechanical)) if mechanical.in_velocities.is_some())
+}
+
 /// For a mechanical plant, the entries of Assumption 3 that do not vanish.
 fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) -> Diagnostic {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return refusal };
     let arena = &plant.arena;
-    let Ok(entries) = killing::offending(arena, domain, mechanical, index) else { return refusal };
     let name = index + 1;
+    if mechanical.in_velocities.is_some() {
+        return refusal.help(killing_help(name));
+    }
+    let Ok(entries) = killing::offending(arena, domain, mechanical, index) else { return refusal };
     let noted = entries.into_iter().fold(refusal, |refusal, (row, column, entry)| {
         let entry = arena.print(shortest(arena, domain, entry));
         refusal.note(format!(
@@ -289,7 +326,11 @@ fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) 
             column + 1
         ))
     });
-    noted.help(format!("choose for column {name} of T a Killing field of M: one along which M does not change"))
+    noted.help(killing_help(name))
+}
+
+fn killing_help(name: usize) -> String {
+    format!("choose for column {name} of T a Killing field of M: one along which M does not change")
 }
 
 fn undecided(plant: &Plant, index: usize, obstacle: &Obstacle) -> Diagnostic {

@@ -115,6 +115,11 @@ impl Derivation {
         }
     }
 
+    /// What is derived of a plant without a transform: nothing.
+    pub(crate) fn without_transform(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::without_claims(Verdict::Undecided, diagnostics)
+    }
+
     /// What is derived where the identities do not stand: nothing.
     fn without_claims(standing: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
@@ -133,6 +138,14 @@ impl Derivation {
     /// The derivation, if every claim is proved; else what to tell the author.
     pub fn admit(&self) -> Result<&Self, &[Diagnostic]> {
         if self.outcome == Outcome::Accepted { Ok(self) } else { Err(&self.diagnostics) }
+    }
+}
+
+impl Outcome {
+    /// The verdict on a model of which no plant was made: undecided where all that is said is that something could not
+    /// be worked out.
+    pub fn of_unread(diagnostics: &[Diagnostic]) -> Self {
+        if diagnostics.iter().all(|diagnostic| diagnostic.code.is_open()) { Self::Undecided } else { Self::Rejected }
     }
 }
 

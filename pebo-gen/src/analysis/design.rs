@@ -3,8 +3,9 @@
 use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
+use crate::cas::parts::Side;
 use crate::cas::{Expr, Symbol};
-pub use crate::model::CascadeClass as Class;
+pub use crate::plant::CascadeClass as Class;
 use crate::plant::Plant;
 use crate::source::Diagnostic;
 
@@ -12,6 +13,7 @@ use crate::analysis::advice::remarks::Remarks;
 
 /// The verdict on one claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Verdict {
     /// Exact algebra showed it.
     Proved,
@@ -25,6 +27,7 @@ pub enum Verdict {
 
 /// The verdict on the model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Outcome {
     /// Every claim is proved.
     Accepted,
@@ -45,6 +48,7 @@ pub struct Claim<T> {
 
 /// Claim 1: the transform moves by known signals.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Cascade {
     /// The known part of z', free of x, a component each.
     pub h: Vec<Expr>,
@@ -62,6 +66,7 @@ pub struct Cascade {
 
 /// What becomes of `Psi' = Lambda(y, u) Psi`, `Psi(0) = I`, along every trajectory.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Fundamental {
     /// It stays bounded.
     Bounded {
@@ -76,6 +81,7 @@ pub enum Fundamental {
 
 /// A point at which an expression provably is not zero.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Witness {
     /// The expression.
     pub expr: Expr,
@@ -89,9 +95,12 @@ pub struct Witness {
 
 /// Points of the domain with the same y, u and parameters, and the values that an expression has there.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Comparison {
-    /// The expression.
+    /// The expression as it is shown.
     pub expr: Expr,
+    /// The expression whose values were compared: it may read more than is shown of it.
+    pub read: Expr,
     /// The unmeasured states and signals at each point.
     pub points: Vec<Vec<(Symbol, Expr)>>,
     /// What all points share.
@@ -102,6 +111,7 @@ pub struct Comparison {
 
 /// Claim 2: the states are recovered from z and y.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LeftInverse {
     /// The states with their formulas in z1.. and y.
     pub x: Vec<(Symbol, Expr)>,
@@ -115,6 +125,7 @@ pub struct LeftInverse {
 
 /// Where a left inverse is from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Origin {
     /// The model file gives it.
     Given,
@@ -124,6 +135,7 @@ pub enum Origin {
 
 /// What the regression's left side is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum RegressionKind {
     /// y' = `Phi_0` + `Phi_1` eta.
     Dynamic,
@@ -135,6 +147,7 @@ pub enum RegressionKind {
 
 /// Claim 3: the unknowns enter linearly.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Regression {
     /// What stands on the left.
     pub kind: RegressionKind,
@@ -166,6 +179,7 @@ impl Regression {
 
 /// Claim 4: the unknowns can be told apart.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Identifiability {
     /// How.
     pub kind: Excitation,
@@ -185,6 +199,7 @@ pub struct Identifiability {
 
 /// What has to move for unknowns to be seen that one moment does not show.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Motion {
     /// Whether no input has to: with all of them constant the rank over time is full on almost every motion. None where
     /// that was not decided.
@@ -197,6 +212,7 @@ pub struct Motion {
 
 /// Motions on which the regression does not show all unknowns: proved.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Blind {
     /// Which motions.
     pub place: Place,
@@ -208,6 +224,7 @@ pub struct Blind {
 
 /// What holds at all times.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Place {
     /// All inputs and outputs are constant.
     Rest,
@@ -215,10 +232,13 @@ pub enum Place {
     Constant(Vec<Symbol>),
     /// The input has this value.
     Value(Symbol, Expr),
+    /// These keep their signs: the regressor bends where one changes.
+    Part(Vec<(Expr, Side)>),
 }
 
 /// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Gram {
     /// By rows.
     pub matrix: Vec<Vec<Expr>>,
@@ -230,6 +250,7 @@ pub struct Gram {
 
 /// What shows that a determinant is positive.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Positive {
     /// Its factors have signs by the assumptions.
     Assumed,
@@ -239,6 +260,7 @@ pub enum Positive {
 
 /// What identifying the unknowns takes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Excitation {
     /// `Phi_1` has full column rank at almost every point.
     Instant,
@@ -278,6 +300,7 @@ impl Derivation {
 
 /// What was derived of a plant.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Derivation {
     /// The verdict on the model.
     pub outcome: Outcome,

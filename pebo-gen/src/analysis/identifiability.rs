@@ -7,6 +7,7 @@
 //! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
 //! et al. 2015, remark R3).
 
+mod divided;
 mod excitation;
 mod flow;
 mod motion;
@@ -20,9 +21,11 @@ use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
+use self::divided::{Decided, Formulas};
 use self::flow::{Flow, effective, without_psi};
 use self::singular::Places;
 use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
+use crate::analysis::left_inverse::at_phi;
 use crate::analysis::pencil;
 
 /// Decides how the unknowns are identified.
@@ -34,6 +37,27 @@ pub(super) fn prove(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Identifiability> {
+    let rates = plant.rates().into_values().chain(cascade.h.iter().copied());
+    let formulas = Formulas {
+        regressor: regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect(),
+        rates: rates.chain(cascade.lambda.iter().flatten().flatten().copied()).collect(),
+    };
+    let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
+        where_analytic(plant, domain, cascade, regression, left_inverse, found)
+    };
+    divided::decide(plant, domain, regression, formulas, found, on)
+        .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
+}
+
+/// Decides it where the formulas are analytic, so that what is seen at a point holds almost everywhere.
+fn where_analytic(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Decided {
     let arena = &plant.arena;
     let unknowns = regression.eta.len();
     // Of an implicit regression the rates are part of what multiplies the unknowns.
@@ -42,7 +66,7 @@ pub(super) fn prove(
     let mut stack = match &flow {
         Ok(flow) => effective(arena, flow, &regression.phi_1, &regression.primitive_1),
         Err(_) if !by_rates => regression.phi_1.clone(),
-        Err(obstacle) => return open(plant, obstacle, found),
+        Err(obstacle) => return open(plant, obstacle, found).into(),
     };
     let answer = |kind, direction, verdict| Claim {
         verdict,
@@ -69,11 +93,11 @@ pub(super) fn prove(
             motion: None,
             gram,
         };
-        return Claim { verdict: Verdict::Proved, result: Some(result) };
+        return Claim { verdict: Verdict::Proved, result: Some(result) }.into();
     }
     let mut flow = match flow {
         Ok(flow) => flow,
-        Err(obstacle) => return open(plant, &obstacle, found),
+        Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     let excited = || {
         let (motion, constants) = motion::of(plant, domain, cascade, regression);
@@ -85,23 +109,23 @@ pub(super) fn prove(
         claim
     };
     if excited_in_motion(plant, domain, cascade, &stack, unknowns) {
-        return excited();
+        return excited().into();
     }
     let mut latest = stack.clone();
     let mut unseen = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
         Ok(unseen) => unseen,
-        Err(obstacle) => return open(plant, &obstacle, found),
+        Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     for _ in 1..unknowns {
         latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
         stack.extend(latest.iter().cloned());
         if full_rank(arena, domain, &stack, unknowns) {
-            return excited();
+            return excited().into();
         }
         flow.advance(plant);
         let next = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
             Ok(next) => next,
-            Err(obstacle) => return open(plant, &obstacle, found),
+            Err(obstacle) => return open(plant, &obstacle, found).into(),
         };
         // No derivative adds to a rank that one derivative did not raise.
         let settled = next.directions.len() == unseen.directions.len();
@@ -110,15 +134,15 @@ pub(super) fn prove(
             break;
         }
     }
-    let Some(direction) = unseen.directions.into_iter().next() else {
-        return open(plant, &Obstacle::NoWitness, found);
+    let Some(direction) = unseen.directions.first().cloned() else {
+        return open(plant, &Obstacle::NoWitness, found).into();
     };
     // What does not identify functions of theta may identify theta.
     if !regression.is_linear(plant)
         && let Some(doubt) = of_theta(plant, domain, &stack, regression, &direction)
     {
         found.push(doubt);
-        return Claim { verdict: Verdict::Undecided, result: None };
+        return Claim { verdict: Verdict::Undecided, result: None }.into();
     }
     let refusal = never(plant, domain, &direction, regression, left_inverse);
     found.push(if unseen.special_values {
@@ -126,7 +150,11 @@ pub(super) fn prove(
     } else {
         refusal
     });
-    answer(Excitation::Never, Some(direction), Verdict::Refuted)
+    Decided {
+        claim: answer(Excitation::Never, Some(direction), Verdict::Refuted),
+        hidden: unseen.directions,
+        rows: stack,
+    }
 }
 
 /// Why theta itself may be identified although its functions are not; none where a direction of theta is provably
@@ -276,12 +304,5 @@ fn never(
             .note("the cascade exists, but theta needs an observable plant (Proposition 2, claims C2 and C3)")
             .help("measure another output"),
         None => diagnostic.help("measure another output, or choose another phi"),
-    }
-}
-
-fn at_phi(plant: &Plant) -> Span {
-    match (plant.phi.first(), plant.phi.last()) {
-        (Some(first), Some(last)) => first.span.to(last.span),
-        _ => Span::point(0),
     }
 }

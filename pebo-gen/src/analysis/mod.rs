@@ -34,10 +34,12 @@ mod pencil;
 mod permitted;
 mod regression;
 mod witness;
+mod words;
 
 #[cfg(test)]
 mod tests;
 
+pub use crate::cas::parts::Side;
 pub use advice::drift::Drift;
 pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 #[cfg(test)]

@@ -34,7 +34,7 @@ impl Witness {
 
 impl Comparison {
     /// Points that agree in all but x, with the values of an expression there.
-    pub(super) fn of(expr: Expr, contrast: &Contrast, x: &BTreeSet<Symbol>) -> Self {
+    pub(super) fn of([expr, read]: [Expr; 2], contrast: &Contrast, x: &BTreeSet<Symbol>) -> Self {
         let (mut points, mut known) = (Vec::new(), Vec::new());
         for point in &contrast.points {
             let (own, shared) = coordinates(point).into_iter().partition(|(symbol, _)| x.contains(symbol));
@@ -42,7 +42,7 @@ impl Comparison {
             known = shared;
         }
         let values = contrast.values.iter().map(|value| (value.lo(), value.hi())).collect();
-        Self { expr, points, known, values }
+        Self { expr, read, points, known, values }
     }
 
     /// z1' is about 2 at p = 1, 0 at p = 0, with the same u = 1; what is compared is called as given.
@@ -58,7 +58,7 @@ impl Comparison {
 
     /// What the points share of what the expression reads.
     fn with_the_same(&self, arena: &Arena) -> String {
-        let read = arena.symbols_of(&[self.expr]);
+        let read = arena.symbols_of(&[self.read]);
         let shared: Vec<_> = self.known.iter().filter(|(symbol, _)| read.contains(symbol)).copied().collect();
         if shared.is_empty() { String::new() } else { format!(", with the same {}", values(arena, &shared)) }
     }
@@ -88,5 +88,38 @@ fn about((low, high): (f64, f64)) -> String {
 /// A few significant digits.
 fn short(value: f64) -> String {
     let magnitude = value.abs();
-    if (1e-3..1e6).contains(&magnitude) { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.4e}") }
+    if magnitude == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&magnitude) {
+        format!("{}", (value * 1e6).round() / 1e6)
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_told_as_a_reader_would_write_them() {
+        assert_eq!(about((0.0, 0.0)), "0");
+        assert_eq!(about((9.0, 9.0)), "about 9");
+        assert_eq!(about((-1.0, 0.0)), "between -1 and 0");
+        assert_eq!(about((0.0, 2e-4)), "between 0 and 2.0000e-4");
+        assert_eq!([1.0 / 3.0, 1234.5, 1e-3].map(short), ["0.333333", "1234.5", "0.001"]);
+        assert_eq!([1_234_567.0, -5e-4].map(short), ["1.2346e6", "-5.0000e-4"]);
+    }
+
+    #[test]
+    fn only_a_long_formula_is_cut() {
+        let arena = Arena::new();
+        let said = |name: &str| {
+            let expr = arena.variable(name);
+            Witness { expr, point: Vec::new(), bounds: (9.0, 9.0), compared: None }.sentence(&arena)
+        };
+        assert!(said("x").starts_with("`x` "), "{}", said("x"));
+        let long = "x".repeat(MOST_CHARACTERS + 1);
+        assert!(said(&long).starts_with(&format!("`{} ..` ", "x".repeat(MOST_CHARACTERS))), "{}", said(&long));
+    }
 }

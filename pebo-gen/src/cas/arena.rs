@@ -1,6 +1,9 @@
 //! The expression graph: every expression once.
 //!
 //! In: nodes. Out: handles. After a node is entered, an equal node yields the same handle.
+//!
+//! One thing with `expr`, `function` and `facts`: a node may apply a function, and the table of functions builds derivatives
+//! and conditions, which are expressions again.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -16,6 +19,25 @@ use super::rational::Rational;
 /// Steps that looking at a node takes, with its operands.
 const STEPS_OF_A_NODE: u64 = 8;
 
+/// Which walk through the graph came to each node last: a set of nodes that takes no time to empty.
+#[derive(Default, Debug)]
+struct Visits {
+    last: Vec<u32>,
+    walk: u32,
+}
+
+impl Visits {
+    /// Begins a walk through so many nodes.
+    fn begin(&mut self, nodes: usize) -> u32 {
+        if self.walk == u32::MAX {
+            *self = Self::default();
+        }
+        self.walk += 1;
+        self.last.resize(nodes, 0);
+        self.walk
+    }
+}
+
 /// Owns the nodes of all expressions of one question.
 ///
 /// Constructors take `&self`, so that they nest as the formula does.
@@ -24,6 +46,7 @@ pub struct Arena {
     budget: Budget,
     nodes: RefCell<Vec<Node>>,
     table: RefCell<HashTable<Expr>>,
+    visits: RefCell<Visits>,
     names: RefCell<Vec<String>>,
     /// The authors' symbols by their names.
     symbols: RefCell<FxHashMap<String, Symbol>>,
@@ -43,6 +66,7 @@ impl Arena {
             budget,
             nodes: RefCell::default(),
             table: RefCell::default(),
+            visits: RefCell::default(),
             names: RefCell::default(),
             symbols: RefCell::default(),
             generated: RefCell::default(),
@@ -132,15 +156,15 @@ impl Arena {
 
     /// The value, if the expression is a number.
     pub fn as_number(&self, expr: Expr) -> Option<Rational> {
-        match self.node(expr) {
-            Node::Number(value) => Some(value),
+        match &self.nodes.borrow()[expr.0 as usize] {
+            Node::Number(value) => Some(value.clone()),
             _ => None,
         }
     }
 
     /// The symbol, if the expression is one.
     pub fn as_symbol(&self, expr: Expr) -> Option<Symbol> {
-        match self.node(expr) {
+        match self.nodes.borrow()[expr.0 as usize] {
             Node::Symbol(symbol) => Some(symbol),
             _ => None,
         }
@@ -148,31 +172,35 @@ impl Arena {
 
     /// Whether the expression is the number zero.
     pub fn is_zero(&self, expr: Expr) -> bool {
-        self.as_number(expr).is_some_and(|n| n.is_zero())
+        matches!(&self.nodes.borrow()[expr.0 as usize], Node::Number(value) if value.is_zero())
     }
 
     /// The operands of an expression, in order.
     pub fn operands(&self, expr: Expr) -> Vec<Expr> {
-        match self.node(expr) {
-            Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
-            Node::Sum(sum) => sum.terms.iter().map(|t| t.0).collect(),
-            Node::Product(product) => product.factors.iter().map(|f| f.0).collect(),
-            Node::Call(_, arguments) => arguments.to_vec(),
-        }
+        let mut operands = Vec::new();
+        push_operands(&self.nodes.borrow()[expr.0 as usize], &mut operands);
+        operands
     }
 
     /// Every expression that the roots consist of, operands before what uses them.
     pub fn postorder(&self, roots: &[Expr]) -> Vec<Expr> {
-        let mut seen = BTreeSet::new();
+        let nodes = self.nodes.borrow();
+        let mut visits = self.visits.borrow_mut();
+        let visit = visits.begin(nodes.len());
+        let mut found = Vec::new();
         let mut open: Vec<Expr> = roots.to_vec();
         while let Some(expr) = open.pop() {
-            if seen.insert(expr) {
-                open.extend(self.operands(expr));
+            let last = &mut visits.last[expr.0 as usize];
+            if *last != visit {
+                *last = visit;
+                found.push(expr);
+                push_operands(&nodes[expr.0 as usize], &mut open);
             }
         }
-        self.budget.take(STEPS_OF_A_NODE.saturating_mul(seen.len() as u64));
+        self.budget.take(STEPS_OF_A_NODE.saturating_mul(found.len() as u64));
         // Operands are entered before what uses them, so ascending handles are a topological order.
-        seen.into_iter().collect()
+        found.sort_unstable();
+        found
     }
 
     /// The symbols that the roots depend on.
@@ -189,6 +217,15 @@ impl Arena {
 impl Default for Arena {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+fn push_operands(node: &Node, to: &mut Vec<Expr>) {
+    match node {
+        Node::Number(_) | Node::Pi | Node::Symbol(_) => {}
+        Node::Sum(sum) => to.extend(sum.terms.iter().map(|term| term.0)),
+        Node::Product(product) => to.extend(product.factors.iter().map(|factor| factor.0)),
+        Node::Call(_, arguments) => to.extend(arguments.iter()),
     }
 }
 

@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn functions_ask_of_their_arguments() {
-        let cases: [(Function, Shown, Shown); 9] = [
+        let cases: [(Function, Shown, Shown); 13] = [
             (Function::Sin, &[], &[]),
             (Function::Tanh, &[], &[]),
             (Function::Tan, &["cos(a) != 0"], &["cos(a) != 0"]),
@@ -159,6 +159,10 @@ mod tests {
             (Function::Acos, &["1 - a^2 >= 0"], &["1 - a^2 > 0"]),
             (Function::Sqrt, &["a >= 0"], &["a > 0"]),
             (Function::Abs, &[], &["a != 0"]),
+            (Function::Sign, &["a != 0"], &["a != 0"]),
+            (Function::Min, &[], &["a - b != 0"]),
+            (Function::Max, &[], &["a - b != 0"]),
+            (Function::Sat, &[], &["1 - a^2 != 0"]),
             (
                 Function::Atan2,
                 &["a^2 + b^2 != 0"],

@@ -47,6 +47,17 @@ impl Arena {
         self.combine(&Rational::ZERO, operands.into_iter().map(|e| (e, Rational::ONE)))
     }
 
+    /// The sum of the products of the operands in pairs.
+    pub fn dot(&self, left: &[Expr], right: &[Expr]) -> Expr {
+        let scaled = |number: &Rational| !number.is_zero();
+        let pairs = left.iter().zip(right).map(|(a, b)| match (self.as_number(*a), self.as_number(*b)) {
+            (Some(number), _) if scaled(&number) => (*b, number),
+            (_, Some(number)) if scaled(&number) => (*a, number),
+            _ => (self.mul(*a, *b), Rational::ONE),
+        });
+        self.combine(&Rational::ZERO, pairs)
+    }
+
     /// The product of the operands.
     pub fn product(&self, operands: impl IntoIterator<Item = Expr>) -> Expr {
         self.multiply(&Rational::ONE, operands.into_iter().map(|e| (e, Rational::ONE)))
@@ -77,36 +88,39 @@ impl Arena {
 
     /// `constant + sum of coefficient * term`.
     pub fn combine(&self, constant: &Rational, terms: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
-        let mut constants: SmallVec<[Rational; 4]> = SmallVec::from_elem(constant.clone(), 1);
         let mut open: Vec<(Expr, Rational)> = terms.into_iter().collect();
-        let mut flat: Vec<(Expr, Rational)> = Vec::with_capacity(open.len());
+        // Numbers as two factors, the second by its place among the scales: they are multiplied where they are added.
+        let mut scales = vec![Rational::ONE];
+        let mut constants: SmallVec<[(Rational, usize); 4]> = SmallVec::from_elem((constant.clone(), 0), 1);
+        let mut flat: Vec<(Expr, Rational, usize)> = Vec::with_capacity(open.len());
         while let Some((term, coefficient)) = open.pop() {
             match self.node(term) {
-                Node::Number(value) => constants.push(&value * &coefficient),
+                Node::Number(value) => {
+                    constants.push((value, scales.len()));
+                    scales.push(coefficient);
+                }
                 Node::Sum(sum) => {
                     if !sum.constant.is_zero() {
-                        constants.push(&sum.constant * &coefficient);
+                        constants.push((sum.constant.clone(), scales.len()));
                     }
                     // Terms of a sum are neither sums nor scaled, so they need no second look.
-                    flat.extend(sum.terms.iter().map(|(t, c)| (*t, c * &coefficient)));
+                    flat.extend(sum.terms.iter().map(|(t, c)| (*t, c.clone(), scales.len())));
+                    scales.push(coefficient);
                 }
                 Node::Product(product) if !product.coefficient.is_one() => {
                     let bare = self.multiply(&Rational::ONE, product.factors.iter().cloned());
                     // A bare factor can be a sum again, as in 2 * (a + b).
                     open.push((bare, &coefficient * &product.coefficient));
                 }
-                _ => flat.push((term, coefficient)),
+                _ => flat.push((term, coefficient, 0)),
             }
         }
-        let constant = Rational::total(&constants);
+        let constant = Rational::total_of_products(constants.iter().map(|(value, scale)| (value, &scales[*scale])));
         flat.sort_by_key(|entry| entry.0);
         let mut terms: Vec<(Expr, Rational)> = Vec::with_capacity(flat.len());
         for run in flat.chunk_by(|a, b| a.0 == b.0) {
-            let coefficient = match run {
-                [(_, alone)] => alone.clone(),
-                _ => Rational::total(&run.iter().map(|(_, c)| c.clone()).collect::<SmallVec<[Rational; 8]>>()),
-            };
-            terms.push((run[0].0, coefficient));
+            let products = run.iter().map(|(_, factor, scale)| (factor, &scales[*scale]));
+            terms.push((run[0].0, Rational::total_of_products(products)));
         }
         terms.retain(|entry| !entry.1.is_zero());
         match terms.as_slice() {
@@ -227,23 +241,21 @@ impl Arena {
         if function == Function::Sqrt {
             return self.sqrt(first);
         }
-        if let Some(value) = self.as_number(first)
-            && arguments.len() == 1
-        {
-            if value.is_zero()
-                && let Some(at_zero) = function.row().at_zero
-            {
-                return self.number(at_zero);
+        let row = function.row();
+        let numbers: Option<Vec<Rational>> = arguments.iter().map(|argument| self.as_number(*argument)).collect();
+        match (numbers.as_deref(), row.rational, row.at_zero) {
+            (Some(numbers), Some(rational), _) => {
+                if let Some(value) = rational(numbers) {
+                    return self.number(value);
+                }
             }
-            match function {
-                Function::Log if value.is_one() => return self.zero(),
-                Function::Abs => return self.number(value.abs()),
-                _ => {}
-            }
+            (Some([zero]), _, Some(at_zero)) if zero.is_zero() => return self.number(at_zero),
+            (Some([one]), ..) if function == Function::Log && one.is_one() => return self.zero(),
+            _ => {}
         }
         if let Node::Product(product) = self.node(first)
             && product.coefficient.is_negative()
-            && let Some(parity) = function.row().parity
+            && let Some(parity) = row.parity
         {
             let sign = Rational::from(if parity == Parity::Odd { -1 } else { 1 });
             let positive = self.call(function, &[self.neg(first)]);

@@ -70,6 +70,32 @@ pub fn cancelling(
     Ok(echelon.null_space())
 }
 
+/// The equations that say of coefficients free of the symbols that the combination of each row of expressions vanishes, an
+/// expression for each coefficient.
+///
+/// If the kernels are independent it vanishes nowhere else.
+pub(crate) fn equations(
+    field: &Field<'_>,
+    rows: &[Vec<Expr>],
+    symbols: &BTreeSet<Symbol>,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+    let moving: Vec<u32> = field.kernels_of(symbols).into_iter().collect();
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut matrix = Vec::new();
+    for row in rows {
+        let fractions = row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
+        let mut equations: BTreeMap<Monomial, Vec<Fraction>> = BTreeMap::new();
+        for (column, numerator) in over_common_denominator(field, &fractions)?.iter().enumerate() {
+            for (monomial, coefficient) in numerator.collect(&moving) {
+                let equation = equations.entry(monomial).or_insert_with(|| vec![Fraction::zero(); columns]);
+                equation[column] = field.of_polynomial(&coefficient)?;
+            }
+        }
+        matrix.extend(equations.into_values());
+    }
+    Ok(matrix)
+}
+
 /// As [`combine`], of the domain: coefficients as expressions, with which the combination holds everywhere, else on the
 /// manifold of the domain.
 pub fn combine_on(

@@ -11,6 +11,12 @@ use super::rational::Rational;
 impl Arena {
     /// The partial derivative by one symbol, all others held.
     pub fn derivative(&self, expr: Expr, symbol: Symbol) -> Expr {
+        if let Node::Sum(sum) = self.node(expr)
+            && sum.terms.iter().all(|(term, _)| self.as_symbol(*term).is_some())
+        {
+            let own = sum.terms.iter().find(|(term, _)| self.as_symbol(*term) == Some(symbol));
+            return own.map_or_else(|| self.zero(), |(_, factor)| self.number(factor.clone()));
+        }
         self.directional(expr, &BTreeMap::from([(symbol, self.one())]))
     }
 
@@ -66,6 +72,16 @@ impl Arena {
             known.insert(e, replaced);
         }
         exprs.iter().map(|e| known[e]).collect()
+    }
+
+    /// Replaces sub-expressions, the outermost first.
+    pub fn replace(&self, expr: Expr, values: &FxHashMap<Expr, Expr>) -> Expr {
+        let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for e in self.postorder(&[expr]) {
+            let replaced = values.get(&e).copied().unwrap_or_else(|| self.rebuild(e, &known));
+            known.insert(e, replaced);
+        }
+        known[&expr]
     }
 
     /// The expression over new operands; `known` has an entry for each of its operands.

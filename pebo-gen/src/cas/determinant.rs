@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use super::field::{Field, Fraction, Obstacle};
-use super::linear::numbers_of;
+use super::linear::{numbers_of, subtract};
+use super::minors::larger_minors;
 use super::poly::Poly;
 use super::rational_matrix;
 
@@ -41,19 +42,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
         }
         below = field.mul(&below, &field.of_polynomial(&common)?)?;
         let entries = row.iter().map(|entry| field.over_denominator(entry, &common)).collect::<Result<Vec<_>, _>>()?;
-        let mut larger: BTreeMap<u64, Poly> = BTreeMap::new();
-        for (columns, minor) in &minors {
-            for (column, entry) in entries.iter().enumerate() {
-                let bit = 1 << column;
-                if entry.is_zero() || columns & bit != 0 {
-                    continue;
-                }
-                let product = entry.mul(minor, work)?;
-                let odd = (columns >> column).count_ones() % 2 == 1;
-                let sum = larger.entry(columns | bit).or_default();
-                *sum = if odd { &*sum - &product } else { &*sum + &product };
-            }
-        }
+        let larger = larger_minors(&minors, &entries.iter().collect::<Vec<_>>(), work)?;
         if larger.len() > MOST_MINORS {
             return Ok(None);
         }
@@ -85,9 +74,7 @@ pub(crate) fn by_elimination(field: &Field<'_>, mut rows: Vec<Vec<Fraction>>) ->
         let pivot_row = &above[column];
         for row in below {
             let factor = field.div(&row[column], &pivot_row[column])?;
-            for (entry, own) in row.iter_mut().zip(pivot_row).skip(column) {
-                *entry = field.sub(entry, &field.mul(&factor, own)?)?;
-            }
+            subtract(field, &mut row[column..], &factor, &pivot_row[column..])?;
         }
     }
     Ok(total)

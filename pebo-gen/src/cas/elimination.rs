@@ -6,9 +6,10 @@
 //! What is linear is solved together first ([`joint`]). Then an equation is taken for a symbol in which one of its factors
 //! is linear, which is replaced in all others; where none is, a factor may be quadratic, or inverse functions may help.
 //! Division by what vanishes somewhere can lose solutions, never add one, and where a product vanishes, each factor in
-//! turn is tried.
+//! turn is tried. So this is a search, and no elimination of a matrix: what a pivot would be may vanish.
 
 mod joint;
+mod values;
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,6 +22,7 @@ use super::rational::Rational;
 use super::{Arena, Expr, Symbol};
 
 use super::solve::{Equation, solve};
+use values::Values;
 
 /// What is to be determined.
 pub(crate) struct Elimination<'a> {
@@ -32,9 +34,6 @@ pub(crate) struct Elimination<'a> {
     /// Symbols to determine where the states leave equations: the author would rather choose them.
     pub inputs: BTreeSet<Symbol>,
 }
-
-/// Values of symbols, in those that are free.
-type Values = BTreeMap<Symbol, Expr>;
 
 /// A factor of an equation.
 struct Factor {

@@ -9,7 +9,7 @@ use super::arena::Arena;
 use super::expr::Expr;
 use super::facts::Relation;
 use super::interval::{Interval, Precision};
-use super::rational::Rational;
+use super::rational::{Rational, half};
 
 /// A function of the expression language.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -42,6 +42,14 @@ pub enum Function {
     Sqrt,
     /// Absolute value.
     Abs,
+    /// 1 of a positive argument, -1 of a negative one.
+    Sign,
+    /// The smaller of two.
+    Min,
+    /// The larger of two.
+    Max,
+    /// Saturation at -1 and 1.
+    Sat,
 }
 
 /// What happens to the value when the argument changes sign.
@@ -75,6 +83,8 @@ pub struct Row {
     pub arity: usize,
     /// The value at zero, where it is rational.
     pub at_zero: Option<i64>,
+    /// The value at rational arguments, of a function whose values there are rational.
+    pub rational: Option<Exact>,
     /// Even, odd, or neither.
     pub parity: Option<Parity>,
     /// The method of the runtime's `Real`.
@@ -91,12 +101,25 @@ pub struct Row {
     pub smooth: Option<fn(&Arena, &[Expr]) -> Asks>,
     /// The partial derivatives at the arguments.
     pub derivative: fn(&Arena, &[Expr]) -> Vec<Expr>,
+    /// The same in terms of functions whose relations the normal form knows, wherever this one has a value.
+    pub in_terms: Option<fn(&Arena, &[Expr]) -> Expr>,
     /// The function that undoes this one on its principal branch.
     pub inverse: Option<Function>,
 }
 
+/// A value at rational arguments, where there is one.
+pub type Exact = fn(&[Rational]) -> Option<Rational>;
+
 /// Comparisons with zero.
 pub type Asks = Vec<(Expr, Relation)>;
+
+impl Row {
+    /// The name as it is typeset, upright: that of the LaTeX command.
+    pub fn typeset(&self) -> &'static str {
+        let command = self.latex.trim_start_matches('\\');
+        command.strip_prefix("operatorname{").map_or(command, |name| name.trim_end_matches('}'))
+    }
+}
 
 impl Function {
     /// The row of this function.
@@ -107,6 +130,16 @@ impl Function {
     /// The function of this name or alias.
     pub fn named(name: &str) -> Option<Self> {
         TABLE.iter().find(|row| row.name == name || row.aliases.contains(&name)).map(|row| row.function)
+    }
+
+    /// The function that Rust's numbers have as this method.
+    pub fn of_method(name: &str) -> Option<Self> {
+        TABLE.iter().find(|row| row.rust == name).map(|row| row.function)
+    }
+
+    /// Every name that formulas can call a function by.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        TABLE.iter().flat_map(|row| std::iter::once(row.name).chain(row.aliases.iter().copied()))
     }
 
     /// All rows, in the order of the enumeration.
@@ -155,13 +188,40 @@ fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Asks {
     vec![(beyond(arena, a[0]), Relation::Positive)]
 }
 
-static TABLE: [Row; 14] = [
+/// Of the larger and the smaller of two: that they differ.
+fn apart(arena: &Arena, a: &[Expr]) -> Asks {
+    vec![(arena.sub(a[0], a[1]), Relation::NonZero)]
+}
+
+/// `|a - b|`
+fn distance(arena: &Arena, a: &[Expr]) -> Expr {
+    arena.call(Function::Abs, &[arena.sub(a[0], a[1])])
+}
+
+/// `a + 1` and `a - 1`
+fn edges(arena: &Arena, a: Expr) -> [Expr; 2] {
+    [arena.add(a, arena.one()), arena.sub(a, arena.one())]
+}
+
+/// `a/2`
+fn half_of(arena: &Arena, a: Expr) -> Expr {
+    arena.scale(a, &half())
+}
+
+/// One for the argument that is taken and zero for the other, where the first is taken if `lead` is positive.
+fn shares(arena: &Arena, lead: Expr) -> Vec<Expr> {
+    let sign = arena.call(Function::Sign, &[lead]);
+    vec![half_of(arena, arena.add(arena.one(), sign)), half_of(arena, arena.sub(arena.one(), sign))]
+}
+
+static TABLE: [Row; 18] = [
     Row {
         function: Function::Sin,
         name: "sin",
         aliases: &[],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: Some(Parity::Odd),
         rust: "sin",
         latex: r"\sin",
@@ -170,6 +230,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Cos, a)],
+        in_terms: None,
         inverse: Some(Function::Asin),
     },
     Row {
@@ -178,6 +239,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(1),
+        rational: None,
         parity: Some(Parity::Even),
         rust: "cos",
         latex: r"\cos",
@@ -186,6 +248,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.neg(arena.call(Function::Sin, a))],
+        in_terms: None,
         inverse: Some(Function::Acos),
     },
     Row {
@@ -194,6 +257,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: Some(Parity::Odd),
         rust: "tan",
         latex: r"\tan",
@@ -202,6 +266,7 @@ static TABLE: [Row; 14] = [
         asks: |arena, a| vec![(arena.call(Function::Cos, a), Relation::NonZero)],
         smooth: None,
         derivative: |arena, a| vec![arena.add(arena.one(), square(arena, arena.call(Function::Tan, a)))],
+        in_terms: None,
         inverse: Some(Function::Atan),
     },
     Row {
@@ -210,6 +275,7 @@ static TABLE: [Row; 14] = [
         aliases: &["arcsin"],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: Some(Parity::Odd),
         rust: "asin",
         latex: r"\arcsin",
@@ -218,6 +284,7 @@ static TABLE: [Row; 14] = [
         asks: within_one,
         smooth: Some(strictly_within_one),
         derivative: |arena, a| vec![inverse_circle(arena, a[0])],
+        in_terms: None,
         inverse: Some(Function::Sin),
     },
     Row {
@@ -226,6 +293,7 @@ static TABLE: [Row; 14] = [
         aliases: &["arccos"],
         arity: 1,
         at_zero: None,
+        rational: None,
         parity: None,
         rust: "acos",
         latex: r"\arccos",
@@ -234,6 +302,7 @@ static TABLE: [Row; 14] = [
         asks: within_one,
         smooth: Some(strictly_within_one),
         derivative: |arena, a| vec![arena.neg(inverse_circle(arena, a[0]))],
+        in_terms: None,
         inverse: Some(Function::Cos),
     },
     Row {
@@ -242,6 +311,7 @@ static TABLE: [Row; 14] = [
         aliases: &["arctan"],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: Some(Parity::Odd),
         rust: "atan",
         latex: r"\arctan",
@@ -250,6 +320,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![recip(arena, arena.add(arena.one(), square(arena, a[0])))],
+        in_terms: None,
         inverse: Some(Function::Tan),
     },
     Row {
@@ -258,6 +329,7 @@ static TABLE: [Row; 14] = [
         aliases: &["arctan2"],
         arity: 2,
         at_zero: None,
+        rational: None,
         parity: None,
         rust: "atan2",
         latex: r"\operatorname{atan2}",
@@ -270,6 +342,7 @@ static TABLE: [Row; 14] = [
             let squared = recip(arena, radius(arena, a));
             vec![arena.mul(a[1], squared), arena.neg(arena.mul(a[0], squared))]
         },
+        in_terms: None,
         inverse: None,
     },
     Row {
@@ -278,6 +351,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: Some(Parity::Odd),
         rust: "sinh",
         latex: r"\sinh",
@@ -286,6 +360,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Cosh, a)],
+        in_terms: None,
         inverse: None,
     },
     Row {
@@ -294,6 +369,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(1),
+        rational: None,
         parity: Some(Parity::Even),
         rust: "cosh",
         latex: r"\cosh",
@@ -302,6 +378,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Sinh, a)],
+        in_terms: None,
         inverse: None,
     },
     Row {
@@ -310,6 +387,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: Some(Parity::Odd),
         rust: "tanh",
         latex: r"\tanh",
@@ -318,6 +396,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.sub(arena.one(), square(arena, arena.call(Function::Tanh, a)))],
+        in_terms: None,
         inverse: None,
     },
     Row {
@@ -326,6 +405,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(1),
+        rational: None,
         parity: None,
         rust: "exp",
         latex: r"\exp",
@@ -334,6 +414,7 @@ static TABLE: [Row; 14] = [
         asks: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Exp, a)],
+        in_terms: None,
         inverse: Some(Function::Log),
     },
     Row {
@@ -342,6 +423,7 @@ static TABLE: [Row; 14] = [
         aliases: &["ln"],
         arity: 1,
         at_zero: None,
+        rational: None,
         parity: None,
         rust: "ln",
         latex: r"\ln",
@@ -350,6 +432,7 @@ static TABLE: [Row; 14] = [
         asks: |_, a| vec![(a[0], Relation::Positive)],
         smooth: None,
         derivative: |arena, a| vec![recip(arena, a[0])],
+        in_terms: None,
         inverse: Some(Function::Exp),
     },
     Row {
@@ -358,6 +441,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(0),
+        rational: None,
         parity: None,
         rust: "sqrt",
         latex: r"\sqrt",
@@ -366,6 +450,7 @@ static TABLE: [Row; 14] = [
         asks: |_, a| vec![(a[0], Relation::NonNegative)],
         smooth: Some(|_, a| vec![(a[0], Relation::Positive)]),
         derivative: |arena, a| vec![recip(arena, arena.scale(arena.sqrt(a[0]), &Rational::from(2)))],
+        in_terms: None,
         inverse: None,
     },
     Row {
@@ -374,6 +459,7 @@ static TABLE: [Row; 14] = [
         aliases: &[],
         arity: 1,
         at_zero: Some(0),
+        rational: Some(|a| Some(a[0].abs())),
         parity: Some(Parity::Even),
         rust: "abs",
         latex: r"\operatorname{abs}",
@@ -383,6 +469,86 @@ static TABLE: [Row; 14] = [
         smooth: Some(|_, a| vec![(a[0], Relation::NonZero)]),
         // The sign, where the argument is not zero.
         derivative: |arena, a| vec![arena.div(a[0], arena.call(Function::Abs, a))],
+        in_terms: None,
+        inverse: None,
+    },
+    Row {
+        function: Function::Sign,
+        name: "sign",
+        aliases: &["sgn"],
+        arity: 1,
+        at_zero: None,
+        rational: Some(|a| (!a[0].is_zero()).then(|| a[0].signum().into())),
+        parity: Some(Parity::Odd),
+        rust: "sign",
+        latex: r"\operatorname{sign}",
+        value: Value::Unary(|a| if a == 0.0 { a } else { a.signum() }),
+        // It computes 0 at 0, and proofs leave that point out: the sign is a quotient to them.
+        enclosure: |a, _| a[0].sign(),
+        asks: |_, a| vec![(a[0], Relation::NonZero)],
+        smooth: None,
+        derivative: |arena, _| vec![arena.zero()],
+        in_terms: Some(|arena, a| arena.div(a[0], arena.call(Function::Abs, a))),
+        inverse: None,
+    },
+    Row {
+        function: Function::Min,
+        name: "min",
+        aliases: &[],
+        arity: 2,
+        at_zero: None,
+        rational: Some(|a| Some(a[0].clone().min(a[1].clone()))),
+        parity: None,
+        rust: "smaller",
+        latex: r"\min",
+        value: Value::Binary(f64::min),
+        enclosure: |a, _| Some(a[0].min(&a[1])),
+        asks: nothing,
+        smooth: Some(apart),
+        derivative: |arena, a| shares(arena, arena.sub(a[1], a[0])),
+        in_terms: Some(|arena, a| half_of(arena, arena.sub(arena.add(a[0], a[1]), distance(arena, a)))),
+        inverse: None,
+    },
+    Row {
+        function: Function::Max,
+        name: "max",
+        aliases: &[],
+        arity: 2,
+        at_zero: None,
+        rational: Some(|a| Some(a[0].clone().max(a[1].clone()))),
+        parity: None,
+        rust: "larger",
+        latex: r"\max",
+        value: Value::Binary(f64::max),
+        enclosure: |a, _| Some(a[0].max(&a[1])),
+        asks: nothing,
+        smooth: Some(apart),
+        derivative: |arena, a| shares(arena, arena.sub(a[0], a[1])),
+        in_terms: Some(|arena, a| half_of(arena, arena.sum([a[0], a[1], distance(arena, a)]))),
+        inverse: None,
+    },
+    Row {
+        function: Function::Sat,
+        name: "sat",
+        aliases: &[],
+        arity: 1,
+        at_zero: Some(0),
+        rational: Some(|a| Some(a[0].clone().max(Rational::from(-1)).min(Rational::ONE))),
+        parity: Some(Parity::Odd),
+        rust: "sat",
+        latex: r"\operatorname{sat}",
+        value: Value::Unary(|a| a.clamp(-1.0, 1.0)),
+        enclosure: |a, _| Some(a[0].sat()),
+        asks: nothing,
+        smooth: Some(|arena, a| vec![(beyond(arena, a[0]), Relation::NonZero)]),
+        derivative: |arena, a| {
+            let [above, below] = edges(arena, a[0]).map(|edge| arena.call(Function::Sign, &[edge]));
+            vec![half_of(arena, arena.sub(above, below))]
+        },
+        in_terms: Some(|arena, a| {
+            let [above, below] = edges(arena, a[0]).map(|edge| arena.call(Function::Abs, &[edge]));
+            half_of(arena, arena.sub(above, below))
+        }),
         inverse: None,
     },
 ];

@@ -32,10 +32,10 @@ impl Domain {
             let field = field?;
             let fraction = field.fraction(expr)?;
             match relation {
-                Relation::Positive => field.is_positive(&fraction),
-                Relation::NonNegative => field.is_not_negative(&fraction),
-                Relation::NonZero => Ok((!seen.negative && field.is_positive(&fraction)?)
-                    || (!seen.positive && field.is_positive(&fraction.opposite())?)),
+                Relation::Positive => field.signs().is_positive(&fraction),
+                Relation::NonNegative => field.signs().is_not_negative(&fraction),
+                Relation::NonZero => Ok((!seen.negative && field.signs().is_positive(&fraction)?)
+                    || (!seen.positive && field.signs().is_positive(&fraction.opposite())?)),
             }
         };
         let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
@@ -74,7 +74,10 @@ impl Domain {
             let fact = field.fraction(fact)?;
             // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
             let below = field.of_polynomial(fact.denominator())?;
-            if below.to_constant().is_none() && !field.is_positive(&below)? && !field.is_positive(&below.opposite())? {
+            if below.to_constant().is_none()
+                && !field.signs().is_positive(&below)?
+                && !field.signs().is_positive(&below.opposite())?
+            {
                 continue;
             }
             loop {
@@ -90,6 +93,8 @@ impl Domain {
             return Ok(false);
         }
         let rest = field.of_polynomial(&rest)?;
-        Ok(rest.to_constant().is_some() || field.is_positive(&rest)? || field.is_positive(&rest.opposite())?)
+        Ok(rest.to_constant().is_some()
+            || field.signs().is_positive(&rest)?
+            || field.signs().is_positive(&rest.opposite())?)
     }
 }

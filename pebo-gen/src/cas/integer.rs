@@ -5,6 +5,7 @@
 //! stored small, hence equality, order and hash are those of the stored form.
 
 mod ops;
+mod slots;
 
 use std::borrow::Cow;
 use std::cmp::Ordering;

@@ -1,9 +1,13 @@
 //! Exact linear algebra over the field of fractions.
 //!
 //! Elimination picks the lightest pivot, so that entries stay short; what is free is set to zero. A matrix of numbers is
-//! left to `rational_matrix`.
+//! left to `rational_matrix`, which has no use for weights and divides exactly; `determinant` takes the same steps
+//! without clearing what is above a pivot.
 
+use super::budget::Budget;
+use super::cofactors;
 use super::field::{Field, Fraction, Obstacle};
+use super::poly::Work;
 use super::rational::Rational;
 use super::rational_matrix::{self, Reduced};
 
@@ -51,12 +55,7 @@ impl Echelon {
             let row = row.iter().map(|entry| field.div(entry, &row[column])).collect::<Result<Vec<_>, _>>()?;
             for other in rest.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
                 let factor = other[column].clone();
-                if factor.is_zero() {
-                    continue;
-                }
-                for (entry, own) in other.iter_mut().zip(&row) {
-                    *entry = field.sub(entry, &field.mul(&factor, own)?)?;
-                }
+                subtract(field, other, &factor, &row)?;
             }
             done.push((column, row));
         }
@@ -91,6 +90,41 @@ impl Echelon {
     }
 }
 
+/// A basis of the vectors that rows of numbers annihilate; none if that takes more than the budget has.
+pub(crate) fn null_space_of_numbers(
+    rows: &[Vec<Rational>],
+    columns: usize,
+    budget: &Budget,
+) -> Option<Vec<Vec<Rational>>> {
+    let Reduced { rows, .. } = rational_matrix::reduced(rows, columns, &Work::within(u64::MAX, budget)).ok()?;
+    let is_pivot = |column: &usize| rows.iter().any(|(pivot, _)| pivot == column);
+    let vector = |free: usize| {
+        let mut vector = vec![Rational::ZERO; columns];
+        vector[free] = Rational::ONE;
+        for (pivot, row) in &rows {
+            vector[*pivot] = -&row[free];
+        }
+        vector
+    };
+    Some((0..columns).filter(|column| !is_pivot(column)).map(vector).collect())
+}
+
+/// `row - factor * other`, the step of every elimination over fractions.
+pub(super) fn subtract(
+    field: &Field<'_>,
+    row: &mut [Fraction],
+    factor: &Fraction,
+    other: &[Fraction],
+) -> Result<(), Obstacle> {
+    if factor.is_zero() {
+        return Ok(());
+    }
+    for (entry, other) in row.iter_mut().zip(other) {
+        *entry = field.sub(entry, &field.mul(factor, other)?)?;
+    }
+    Ok(())
+}
+
 /// The entries, if all are rational numbers.
 pub(super) fn numbers_of(rows: &[Vec<Fraction>]) -> Option<Vec<Vec<Rational>>> {
     rows.iter().map(|row| row.iter().map(Fraction::to_constant).collect()).collect()
@@ -110,6 +144,11 @@ pub fn solve_each(
     unknowns: usize,
 ) -> Result<Vec<Option<Vec<Fraction>>>, Obstacle> {
     let width = rows.first().map_or(unknowns, Vec::len);
+    if numbers_of(&rows).is_none()
+        && let Some(solutions) = cofactors::solutions(field, &rows, unknowns)?
+    {
+        return Ok(solutions.into_iter().map(Some).collect());
+    }
     let (echelon, rest) = Echelon::of(field, rows, unknowns)?;
     let solution = |right: usize| {
         if rest.iter().any(|row| !row[right].is_zero()) {

@@ -228,7 +228,11 @@ impl Solver<'_> {
         let at = |power: u32| powers.get(&power).cloned().unwrap_or_else(Fraction::zero);
         let leading = at(degree);
         let number = leading.to_constant().is_some();
-        if self.exact && !number && !field.is_positive(&leading)? && !field.is_positive(&leading.opposite())? {
+        if self.exact
+            && !number
+            && !field.signs().is_positive(&leading)?
+            && !field.signs().is_positive(&leading.opposite())?
+        {
             return Ok(None);
         }
         let constant = field.div(&at(0), &leading)?.opposite();

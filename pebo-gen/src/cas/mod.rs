@@ -3,10 +3,12 @@
 //! Knows neither plants nor spans. An [`Arena`] owns expressions; [`Expr`] is a copyable handle.
 
 mod arena;
+mod arranged;
 pub mod asks;
 pub mod bounds;
 pub mod budget;
 mod build;
+mod cofactors;
 pub mod combination;
 pub mod contrast;
 mod derivative;
@@ -22,15 +24,20 @@ pub mod function;
 mod implied;
 pub mod integer;
 pub mod interval;
+pub(crate) mod letter;
 pub mod linear;
 pub mod manifold;
+pub(crate) mod mathml;
+mod minors;
 pub mod oriented;
+pub mod parts;
 pub mod pivots;
 pub mod poly;
 mod print;
 pub(crate) mod rank;
 pub mod rational;
 mod rational_matrix;
+pub(crate) mod residues;
 pub(crate) mod solve;
 pub(crate) mod tidy;
 pub mod zero;

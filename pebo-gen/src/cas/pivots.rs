@@ -1,4 +1,7 @@
 //! Ranks that enclosures prove: elimination whose pivots exclude zero.
+//!
+//! Apart from exact elimination, since nothing is ever known to be zero here: an entry that may be is passed over, the largest
+//! is the pivot because its quotients widen least, and each step may fail.
 
 use super::interval::{Interval, Precision};
 

@@ -6,6 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::arena::Arena;
+use super::arranged::{Factor, Summand, as_fraction, decimal, is_root, quotient, summands};
 use super::expr::{Expr, Node, Product, Sum};
 use super::rational::Rational;
 
@@ -45,6 +46,14 @@ impl Arena {
     ///
     /// What is shared is printed wherever it is used, so that a short model can have a result that no page holds: of
     /// that, the text says no more than how long it is.
+    ///
+    /// ```
+    /// use pebo_gen::cas::Arena;
+    ///
+    /// let arena = Arena::new();
+    /// let [theta, c] = ["theta1", "C"].map(|name| arena.of_symbol(arena.symbol(name)));
+    /// assert_eq!(arena.print(arena.div(arena.add(theta, arena.one()), c)), "(theta1 + 1)/C");
+    /// ```
     pub fn print(&self, expr: Expr) -> String {
         let mut known: FxHashMap<Expr, Text> = FxHashMap::default();
         let mut written = 0;
@@ -70,65 +79,33 @@ impl Arena {
     }
 
     fn print_sum(&self, sum: &Sum, known: &FxHashMap<Expr, Text>) -> Text {
-        // (negative, text) for each summand
-        let mut summands: Vec<(bool, String)> = Vec::with_capacity(sum.terms.len() + 1);
-        for (term, coefficient) in &sum.terms {
-            let scaled = match self.node(*term) {
-                Node::Product(product) => {
-                    let scaled = Product { coefficient: coefficient.abs(), factors: product.factors.clone() };
-                    print_product(&scaled, known)
-                }
-                _ if coefficient.abs().is_one() => known[term].clone(),
-                _ => {
-                    let scaled = Product { coefficient: coefficient.abs(), factors: vec![(*term, Rational::ONE)] };
-                    print_product(&scaled, known)
-                }
-            };
-            summands.push((coefficient.is_negative(), scaled.within(Binding::Product)));
-        }
-        if !sum.constant.is_zero() {
-            let constant = (sum.constant.is_negative(), number(&sum.constant.abs()).text);
-            // `1 - d`, but `x + 1`.
-            let leads = !constant.0 && summands.first().is_some_and(|s| s.0);
-            let at = if leads { 0 } else { summands.len() };
-            summands.insert(at, constant);
-        }
-        if let Some(positive) = summands.iter().position(|s| !s.0) {
-            summands[..=positive].rotate_right(1);
-        }
         let mut text = String::new();
-        for (index, (negative, summand)) in summands.iter().enumerate() {
+        for (index, (negative, summand)) in summands(self, sum).into_iter().enumerate() {
             text.push_str(match (index, negative) {
                 (0, true) => "-",
                 (0, false) => "",
                 (_, true) => " - ",
                 (_, false) => " + ",
             });
-            text.push_str(summand);
+            let summand = match summand {
+                Summand::Number(value) => number(&value),
+                Summand::Expr(term) => known[&term].clone(),
+                Summand::Product(product) => print_product(&product, known),
+            };
+            text.push_str(&summand.within(Binding::Product));
         }
         Text::new(text, Binding::Sum)
     }
 }
 
 fn print_product(product: &Product, known: &FxHashMap<Expr, Text>) -> Text {
-    let coefficient = product.coefficient.abs();
-    let mut above: Vec<String> = Vec::new();
-    let mut below: Vec<String> = Vec::new();
-    if as_fraction(&coefficient) {
-        let (n, d) = (coefficient.numerator(), coefficient.denominator());
-        if !n.is_one() {
-            above.push(n.to_string());
-        }
-        if !d.is_one() {
-            below.push(d.to_string());
-        }
-    } else {
-        above.push(number(&coefficient).text);
-    }
-    for (base, exponent) in &product.factors {
-        let text = power(&known[base], &exponent.abs());
-        if exponent.is_negative() { below.push(text) } else { above.push(text) }
-    }
+    let factor = |factor: Factor<'_>| match factor {
+        Factor::Number(value) => number(&value).text,
+        Factor::Power(base, exponent) => power(&known[&base], &exponent.abs()),
+    };
+    let (above, below) = quotient(product);
+    let above: Vec<String> = above.into_iter().map(factor).collect();
+    let below: Vec<String> = below.into_iter().map(factor).collect();
     let single = above.len() + below.len() == 1 && below.is_empty();
     let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
     match below.as_slice() {
@@ -150,17 +127,11 @@ fn power(base: &Text, exponent: &Rational) -> String {
     if exponent.is_one() {
         return base.within(Binding::Power);
     }
-    if Rational::new(1, 2).as_ref() == Some(exponent) {
+    if is_root(exponent) {
         return format!("sqrt({})", base.text);
     }
     let base = base.within(Binding::Atom);
     if exponent.is_integer() { format!("{base}^{exponent}") } else { format!("{base}^({exponent})") }
-}
-
-/// Whether the number reads better as a fraction than as a decimal.
-fn as_fraction(value: &Rational) -> bool {
-    const LARGEST_DENOMINATOR: i64 = 12;
-    value.denominator().to_i64().is_some_and(|d| d <= LARGEST_DENOMINATOR) || decimal(value).is_none()
 }
 
 fn number(value: &Rational) -> Text {
@@ -175,26 +146,4 @@ fn number(value: &Rational) -> Text {
         }
         _ => Text::new(value.to_string(), if sign.is_empty() { Binding::Product } else { Binding::Negation }),
     }
-}
-
-/// The exact decimal of a non-negative number, if it is short.
-fn decimal(value: &Rational) -> Option<String> {
-    const MOST_PLACES: u32 = 12;
-    let places = (0..=MOST_PLACES).find(|places| {
-        Rational::from(10).pow(i32::try_from(*places).unwrap_or(0)).is_some_and(|scale| (value * &scale).is_integer())
-    })?;
-    let scale = Rational::from(10).pow(i32::try_from(places).ok()?)?;
-    let digits = (value * &scale).to_string();
-    // Leading zeros beyond a few read better as an exponent: 2.2e-5.
-    let significant = digits.trim_end_matches('0');
-    let width = usize::try_from(places).ok()?;
-    if digits.len() + 3 <= width {
-        let exponent = width - digits.len() + 1;
-        let (head, tail) = significant.split_at(1);
-        let point = if tail.is_empty() { "" } else { "." };
-        return Some(format!("{head}{point}{tail}e-{exponent}"));
-    }
-    let padded = format!("{digits:0>width$}", width = width + 1);
-    let (whole, fraction) = padded.split_at(padded.len() - width);
-    Some(if fraction.is_empty() { whole.to_owned() } else { format!("{whole}.{fraction}") })
 }

@@ -1,7 +1,7 @@
 //! The rank of matrices over a domain, and what their rows annihilate.
 //!
 //! In: rows of formulas. Out: a rank that is seen at exact points of the domain by a rigorous elimination, hence the least
-//! that there is almost everywhere; and by exact algebra the vectors that every row provably annihilates.
+//! that there is almost everywhere, if the formulas are analytic there (`parts`); and by exact algebra the vectors that every row provably annihilates.
 
 use super::domain::Domain;
 use super::enclosure::Point;
@@ -15,7 +15,8 @@ use super::{Arena, Expr};
 /// Points that are tried before a rank counts as deficient.
 const MOST_POINTS: usize = 6;
 
-/// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere.
+/// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere in the part of it on
+/// which the entries are analytic and that the point is of.
 pub(crate) fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
     rows.len() >= columns && rank_seen(arena, domain, rows, columns) == columns
 }
@@ -33,10 +34,28 @@ pub(crate) fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], colu
     most
 }
 
+/// Whether the matrix at a point of each domain, one below the other, provably has full column rank.
+pub(crate) fn full_rank_together(arena: &Arena, domains: &[Domain], rows: &[Vec<Expr>], columns: usize) -> bool {
+    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
+    let mut points: Vec<_> = domains.iter().map(|domain| domain.points(arena, &entries)).collect();
+    (0..MOST_POINTS).any(|_| {
+        let seen = points.iter_mut().filter_map(|points| values_at(arena, &entries, columns, &points.next()?));
+        rank_of(seen.flatten().collect(), columns) == columns
+    })
+}
+
+const PRECISION: Precision = Precision::new(256);
+
 fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> usize {
-    const PRECISION: Precision = Precision::new(256);
-    let Some(values) = arena.enclose_all(entries, point, PRECISION) else { return 0 };
-    let rows: Vec<Vec<Interval>> = values.chunks(columns).map(<[Interval]>::to_vec).collect();
+    values_at(arena, entries, columns, point).map_or(0, |rows| rank_of(rows, columns))
+}
+
+fn values_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> Option<Vec<Vec<Interval>>> {
+    let values = arena.enclose_all(entries, point, PRECISION)?;
+    Some(values.chunks(columns).map(<[Interval]>::to_vec).collect())
+}
+
+fn rank_of(rows: Vec<Vec<Interval>>, columns: usize) -> usize {
     pivots(rows, columns, PRECISION).map_or(0, |chosen| chosen.len())
 }
 

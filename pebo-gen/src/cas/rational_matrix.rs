@@ -2,7 +2,8 @@
 //!
 //! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every entry
 //! is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is looked for
-//! and numbers grow no longer than the answer.
+//! and numbers grow no longer than the answer. Over fractions of polynomials (`linear`) those determinants would be the
+//! longest entries there are, so that the two share no step.
 
 use super::integer::Integer;
 use super::poly::{TooLarge, Work};

@@ -218,7 +218,7 @@ fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, valu
     let fraction = field.fraction(base).ok()?;
     let root = arena.power(value, &inverse);
     let even = exponent.numerator().trailing_zeros() > 0;
-    let negative = even && field.is_positive(&fraction.opposite()).ok()?;
+    let negative = even && field.signs().is_positive(&fraction.opposite()).ok()?;
     Some(Equation { formula: base, value: if negative { arena.neg(root) } else { root } })
 }
 
@@ -229,7 +229,7 @@ fn angle_of(arena: &Arena, domain: &Domain, sin: Expr, cos: Expr) -> Expr {
         let (y, x) = (field.fraction(sin)?, field.fraction(cos)?);
         let common = y.denominator().lcm(x.denominator(), field.limit())?;
         let common = field.of_polynomial(&common)?;
-        if !field.is_positive(&common)? {
+        if !field.signs().is_positive(&common)? {
             return Ok(None);
         }
         Ok(Some([field.show(&field.mul(&y, &common)?), field.show(&field.mul(&x, &common)?)]))

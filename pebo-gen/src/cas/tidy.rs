@@ -3,12 +3,15 @@
 //! A form counts only if it has a value wherever the result has: `sqrt(q) - 1` over `q - 1` does not stand for
 //! `1/(1 + sqrt(q))`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+use rustc_hash::FxHashMap;
 
 use super::asks::Want;
 use super::domain::Domain;
 use super::field::Field;
 use super::oriented::Orientation;
+use super::rational::Rational;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
@@ -19,6 +22,9 @@ pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
 
 /// As [`shortest`], of one of several expressions that are turned alike.
 pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
+    if is_shortest(arena, expr) {
+        return expr;
+    }
     let domain = orientation.domain();
     let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
         let fraction = field.fraction(expr)?;
@@ -33,6 +39,22 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
         let shorter = operations(arena, form) < operations(arena, best) && kept() && divides_as(arena, expr, form);
         if shorter && asks_no_more(arena, domain, expr, form) { form } else { best }
     })
+}
+
+/// Whether no way to write the normal form is shorter: of a number, of a symbol, and of a sum of symbols with numbers for
+/// factors unless one of these divides all others, so that it becomes one where it is taken out.
+fn is_shortest(arena: &Arena, expr: Expr) -> bool {
+    match arena.node(expr) {
+        Node::Number(_) | Node::Symbol(_) => true,
+        Node::Sum(sum) if sum.terms.iter().all(|(term, _)| arena.as_symbol(*term).is_some()) => {
+            let least = sum.terms.iter().map(|(_, factor)| factor.abs()).min();
+            least.is_some_and(|least| {
+                !least.is_one()
+                    && sum.terms.iter().any(|(_, f)| f.checked_div(&least).is_some_and(|ratio| !ratio.is_integer()))
+            })
+        }
+        _ => false,
+    }
 }
 
 /// The calls of expressions, and what their roots are taken of. A form with others is not the author's: `tanh(100*w)`
@@ -55,23 +77,48 @@ pub(crate) fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
     found
 }
 
-/// Whether a form divides by no sum by which the expression does not divide: `cos(q)^2 - 1` in place of `sin(q)^2`
-/// has lost its digits where it is small.
+/// Whether a form divides by nothing by which the expression does not divide, and by nothing more often: `cos(q)^2 - 1`
+/// in place of `sin(q)^2` has lost its digits where it is small, and what is over `sin(q)^2` and not over `sin(q)` has
+/// a numerator that cancels there.
 fn divides_as(arena: &Arena, expr: Expr, form: Expr) -> bool {
     let own = divisors(arena, expr);
-    divisors(arena, form).iter().all(|sum| own.contains(sum) || own.contains(&arena.neg(*sum)))
+    let within = |(base, times): (&Expr, &Rational)| {
+        let allowed = own.get(base).or_else(|| own.get(&arena.neg(*base)));
+        allowed.is_some_and(|allowed| times <= allowed)
+    };
+    divisors(arena, form).iter().all(within)
 }
 
-/// The sums by which an expression divides.
-fn divisors(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
-    let mut found = BTreeSet::new();
+/// The sums and functions by which an expression divides, and how often along one path at most.
+fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
+    let mut known: FxHashMap<Expr, BTreeMap<Expr, Rational>> = FxHashMap::default();
     for e in arena.postorder(&[expr]) {
-        if let Node::Product(product) = arena.node(e) {
-            let below = product.factors.iter().filter(|(_, exponent)| exponent.is_negative()).map(|(base, _)| *base);
-            found.extend(below.filter(|base| matches!(arena.node(*base), Node::Sum(_))));
+        let mut found: BTreeMap<Expr, Rational> = BTreeMap::new();
+        match arena.node(e) {
+            Node::Product(product) => {
+                for (base, exponent) in &product.factors {
+                    let magnitude = exponent.abs();
+                    for (inner, times) in &known[base] {
+                        let times = times * &magnitude;
+                        found.entry(*inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
+                    }
+                    if exponent.is_negative() && matches!(arena.node(*base), Node::Sum(_) | Node::Call(..)) {
+                        found.entry(*base).and_modify(|sum| *sum = &*sum + &magnitude).or_insert(magnitude);
+                    }
+                }
+            }
+            _ => {
+                for (inner, times) in arena.operands(e).iter().flat_map(|operand| &known[operand]) {
+                    let most = found.entry(*inner).or_insert_with(|| times.clone());
+                    if times > most {
+                        *most = times.clone();
+                    }
+                }
+            }
         }
+        known.insert(e, found);
     }
-    found
+    known.remove(&expr).unwrap_or_default()
 }
 
 /// Of equal forms the shortest in the functions of the author's formula; the first where none keeps to them.

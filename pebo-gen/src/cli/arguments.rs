@@ -3,8 +3,12 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
+use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, ValueEnum};
 use pebo_gen::cas::budget::Budget;
+use pebo_gen::emit::Scalar;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -12,6 +16,8 @@ Examples:
   pebo-gen models/*.yaml -o src/observers/        the same for several models, a file each
   pebo-gen check models/*.yaml --format json      verdicts for programs, a line each
   pebo-gen simulate models/cuk.yaml --plot cuk.svg
+  pebo-gen report models/cuk.yaml -o cuk.html     a page that explains the proof
+  pebo-gen certificate models/cuk.yaml -o cuk.py  a script that proves the claims again
   pebo-gen explain cascade-refuted                what a diagnostic means, with an example
   generate_model | pebo-gen -                     a model from standard input
 
@@ -21,7 +27,7 @@ Exit status: 0 accepted, 1 a claim is refuted or undecided, 2 the input or the c
 #[derive(Parser)]
 #[command(
     version,
-    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
     arg_required_else_help = true,
     after_help = EXAMPLES
 )]
@@ -34,6 +40,23 @@ pub(super) struct Arguments {
     /// 512 MB, in proportion more beyond 10 seconds. If given, `simulate` also stops a run that takes longer
     #[arg(long, global = true, value_name = "SECONDS")]
     pub(super) limit: Option<Limit>,
+}
+
+impl Arguments {
+    /// The arguments of the process, or what clap has to say instead.
+    ///
+    /// `--limit` may stand before a command and behind it; what belongs to the writing of code may not.
+    pub(super) fn of_process() -> Result<Self, clap::Error> {
+        let matches = Self::command().try_get_matches()?;
+        if let Some(command) = matches.subcommand_name() {
+            let given = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+            if let Some(id) = ["output", "scalar"].into_iter().find(given) {
+                let message = format!("`--{id}` belongs to `pebo-gen MODEL`, and cannot stand before `{command}`");
+                return Err(Self::command().error(ErrorKind::ArgumentConflict, message));
+            }
+        }
+        Self::from_arg_matches(&matches)
+    }
 }
 
 /// Seconds: a positive number.
@@ -70,12 +93,12 @@ pub(super) enum Command {
     Man,
     /// Print the JSON schema of `check --format json`, or of model files
     Schema(SchemaOptions),
-    /// Propose a transform (not yet)
-    Solve(LaterOptions),
-    /// Write the derivation as a page (not yet)
-    Report(LaterOptions),
-    /// Write the proofs as a script (not yet)
-    Certificate(LaterOptions),
+    /// Search for the transform phi, whether or not the model has one
+    Solve(SolveOptions),
+    /// Write a page that explains the proof: typeset derivation, code, and the figure of the closed loop
+    Report(ReportOptions),
+    /// Write a Python script that proves every claim again, with sympy
+    Certificate(CertificateOptions),
 }
 
 #[derive(Args)]
@@ -101,10 +124,21 @@ pub(super) enum SchemaName {
 }
 
 #[derive(Args)]
-pub(super) struct LaterOptions {
-    /// What the command will take
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    pub(super) arguments: Vec<String>,
+pub(super) struct CertificateOptions {
+    /// The model file; `-` reads standard input
+    pub(super) model: PathBuf,
+    /// Write the script to this file instead of standard output
+    #[arg(short, long, value_name = "FILE.py")]
+    pub(super) output: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(super) struct ReportOptions {
+    /// The model file; `-` reads standard input
+    pub(super) model: PathBuf,
+    /// Write the page to this file instead of standard output
+    #[arg(short, long, value_name = "FILE.html")]
+    pub(super) output: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -116,14 +150,14 @@ pub(super) struct GenerateOptions {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// The floating-point type of the emitted code
-    #[arg(long, value_enum, default_value_t = ScalarName::F64)]
-    pub(super) scalar: ScalarName,
+    #[arg(long, value_parser = scalars(), default_value = Scalar::default().name())]
+    pub(super) scalar: Scalar,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub(super) enum ScalarName {
-    F64,
-    F32,
+/// The floating-point types, by name.
+fn scalars() -> impl TypedValueParser<Value = Scalar> {
+    let names = PossibleValuesParser::new(Scalar::ALL.map(Scalar::name));
+    names.map(|name| Scalar::from_name(&name).unwrap_or_default())
 }
 
 #[derive(Args)]
@@ -143,6 +177,42 @@ pub(super) enum Format {
 }
 
 #[derive(Args)]
+pub(super) struct SolveOptions {
+    /// The model file; `-` reads standard input
+    pub(super) model: PathBuf,
+    /// Search for transforms with this cascade; `any` is what the model asks for, or either
+    #[arg(long, value_enum, default_value_t = ClassName::Any)]
+    pub(super) class: ClassName,
+    /// As text for people, or as one line of JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(super) format: Format,
+    /// Write the model with the best transform that was found to this file; `-` is standard output
+    #[arg(short, long, value_name = "NEW.yaml")]
+    pub(super) output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum ClassName {
+    /// z' = h(y, u)
+    Pebo,
+    /// z' = Lambda(y, u) z + h(y, u)
+    Gpebo,
+    /// Either
+    Any,
+}
+
+impl ClassName {
+    /// The name as models write it; nothing for either.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Pebo => "pebo",
+            Self::Gpebo => "gpebo",
+            Self::Any => "",
+        }
+    }
+}
+
+#[derive(Args)]
 pub(super) struct SimulateOptions {
     /// The model file, with a `simulation` section; `-` reads standard input
     pub(super) model: PathBuf,
@@ -158,6 +228,9 @@ pub(super) struct SimulateOptions {
     /// The sampling period, instead of the model file's
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) step: Option<f64>,
+    /// The seed of the sensors' noise, 1 by default: the same seed gives the same run
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
     /// Whose estimates the control law uses: observer, truth, or a baseline's name
     #[arg(long, value_name = "NAME")]
     pub(super) feedback: Option<String>,

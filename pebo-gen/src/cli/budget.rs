@@ -1,9 +1,11 @@
 //! What a command may take for a model: `--limit`, by this machine's clock, and memory.
 
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use memory_stats::memory_stats;
 use pebo_gen::cas::budget::Budget;
+use pebo_gen::{Ask, Stage};
 
 use super::arguments::Limit;
 
@@ -14,8 +16,13 @@ const MEMORY: f64 = 512.0 * 1024.0 * 1024.0;
 const RESERVE: f64 = 0.25;
 
 impl Limit {
-    /// The budget of a model that is begun now.
-    pub(super) fn budget(self) -> Budget {
+    /// A question within the limit about a model that is begun now.
+    pub(super) fn ask(self) -> Ask {
+        Ask::new().limit(self.0).watch(self.watch())
+    }
+
+    /// Ends what takes longer from now on, or more memory.
+    pub(super) fn watch(self) -> impl Fn(Stage) -> ControlFlow<()> {
         let started = Instant::now();
         let time = Duration::from_secs_f64(self.0);
         let longer = (self.0 / Budget::SECONDS).max(1.0);
@@ -27,7 +34,10 @@ impl Limit {
         let memory = (MEMORY * longer * (1.0 - RESERVE)) as usize;
         // What was taken before, for another model, is not this one's.
         let before = resident();
-        Budget::watched(self.0, move || started.elapsed() >= time || resident().saturating_sub(before) >= memory)
+        move |_| {
+            let is_over = started.elapsed() >= time || resident().saturating_sub(before) >= memory;
+            if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
     }
 }
 

@@ -1,11 +1,12 @@
 //! `pebo-gen explain`: the longer story of a diagnostic.
 
+use pebo_gen::Standing;
 use pebo_gen::source::{Code, nearest};
 
 use super::arguments::ExplainOptions;
-use super::{Ending, standard, terminal};
+use super::{standard, terminal};
 
-pub(super) fn run(options: &ExplainOptions) -> Ending {
+pub(super) fn run(options: &ExplainOptions) -> Standing {
     let Some(code) = Code::from_name(&options.code) else {
         let names = Code::ALL.iter().map(|code| code.name());
         let help = match nearest(&options.code, names) {
@@ -13,7 +14,7 @@ pub(super) fn run(options: &ExplainOptions) -> Ending {
             None => format!("the codes are {}", Code::ALL.iter().map(|c| c.name()).collect::<Vec<_>>().join(", ")),
         };
         terminal::say(&format!("error: there is no diagnostic `{}`\n  = help: {help}\n", options.code));
-        return Ending::Malformed;
+        return Standing::Malformed;
     };
     standard::print(story(code).as_bytes())
 }

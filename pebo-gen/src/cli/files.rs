@@ -3,14 +3,46 @@
 use std::io::{Read as _, Write as _};
 use std::path::Path;
 
-use pebo_gen::Derived;
+use pebo_gen::analysis::Class;
 use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
+use pebo_gen::{Answer, Ask, Solution};
 
-use super::arguments::Limit;
-use super::{Ending, standard, terminal};
+use super::standard::{self, reason};
+
+/// The answer on a model file, with the text that its diagnostics are about.
+pub(super) fn answer(path: &Path, ask: Ask) -> (Source, Answer) {
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    match read(path) {
+        Ok(source) => {
+            let answer = pebo_gen::answer(&source, &ask.named(stem));
+            (source, answer)
+        }
+        Err(unread) => {
+            let (source, diagnostic) = *unread;
+            let answer = Answer::of_unread(&stem, vec![diagnostic], &source);
+            (source, answer)
+        }
+    }
+}
+
+/// The transforms of a model file's plant, with the text that its diagnostics are about.
+pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Solution) {
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    match read(path) {
+        Ok(source) => {
+            let solution = pebo_gen::solve(&source, class, &ask.named(stem));
+            (source, solution)
+        }
+        Err(unread) => {
+            let (source, diagnostic) = *unread;
+            let solution = Solution::of_unread(&stem, vec![diagnostic], &source);
+            (source, solution)
+        }
+    }
+}
 
 /// Reads a model file, or standard input for `-`; the error comes with a source to show it beside.
-pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
+fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
     let name = if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() };
     let bytes = bytes_of(path).map_err(|error| {
         let message = format!("cannot read {name}: {}", reason(&error));
@@ -19,25 +51,6 @@ pub(super) fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
         Box::new((Source::unread(&name), diagnostic))
     })?;
     Source::from_bytes(&name, bytes).map_err(|diagnostic| Box::new((Source::unread(&name), diagnostic)))
-}
-
-/// Reads and derives a model; what is wrong with it is reported.
-pub(super) fn derive(path: &Path, limit: Limit) -> Result<(Source, Derived), Ending> {
-    let source = match read(path) {
-        Ok(source) => source,
-        Err(unread) => {
-            let (source, diagnostic) = *unread;
-            terminal::report(&[diagnostic], &source);
-            return Err(Ending::Malformed);
-        }
-    };
-    match pebo_gen::derive_within(&source, limit.budget()) {
-        Ok(derived) => Ok((source, derived)),
-        Err(diagnostics) => {
-            terminal::report(&diagnostics, &source);
-            Err(Ending::of_unread(&diagnostics))
-        }
-    }
 }
 
 /// At most what a model can have, and one byte more so that the reader sees that it is too much.
@@ -82,12 +95,4 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
 
 pub(super) fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
-}
-
-/// The operating system's reason, without the number it puts behind it.
-pub(super) fn reason(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    let plain = text.split(" (os error").next().unwrap_or(&text);
-    let mut letters = plain.chars();
-    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }

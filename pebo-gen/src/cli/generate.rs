@@ -2,56 +2,38 @@
 
 use std::path::Path;
 
-use pebo_gen::analysis::Outcome;
-use pebo_gen::emit::Scalar;
-use pebo_gen::report;
+use pebo_gen::Standing;
 
-use super::arguments::{GenerateOptions, Limit, ScalarName};
-use super::{Ending, files, terminal};
+use super::arguments::{GenerateOptions, Limit};
+use super::{files, terminal};
 
-pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Ending {
+pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {
     let several = options.models.len() > 1;
     if several && options.output.as_deref().is_none_or(|output| !output.is_dir()) {
         terminal::say(
             "error: several models need a folder to write to\n  = help: make it, and name it with `-o FOLDER`\n",
         );
-        return Ending::Malformed;
+        return Standing::Malformed;
     }
-    let endings = options.models.iter().map(|model| one(model, options, limit));
-    endings.max().unwrap_or(Ending::Malformed)
+    let standings = options.models.iter().map(|model| one(model, options, limit));
+    standings.max().unwrap_or(Standing::Malformed)
 }
 
-fn one(path: &Path, options: &GenerateOptions, limit: Limit) -> Ending {
-    let (source, derived) = match files::derive(path, limit) {
-        Ok(read) => read,
-        Err(ending) => return ending,
-    };
-    terminal::say(&report::summary(&derived.plant, &derived.derivation));
-    terminal::report(&derived.derivation.diagnostics, &source);
-    if derived.derivation.outcome != Outcome::Accepted {
-        return Ending::Refused;
-    }
-    let scalar = match options.scalar {
-        ScalarName::F64 => Scalar::F64,
-        ScalarName::F32 => Scalar::F32,
-    };
-    let emitted = match derived.emit(scalar) {
-        Ok(emitted) => emitted,
-        Err(error) => {
-            terminal::say(&format!("error: {} cannot be emitted: {error}\n", derived.plant.name));
-            return Ending::Refused;
-        }
-    };
+fn one(path: &Path, options: &GenerateOptions, limit: Limit) -> Standing {
+    let (source, answer) = files::answer(path, limit.ask().emit(options.scalar));
+    terminal::say(&answer.summary);
+    terminal::report(&answer.diagnostics, &source);
+    let Some(emitted) = answer.emitted else { return answer.standing };
     let output = match options.output.as_deref() {
-        Some(folder) if folder.is_dir() => folder.join(format!("{}.rs", derived.plant.name)),
+        Some(folder) if folder.is_dir() => folder.join(format!("{}.rs", answer.report.model)),
         Some(file) => file.to_owned(),
         None => Path::new("-").to_owned(),
     };
     match files::write(&output, &emitted.text) {
-        Ok(()) => Ending::Accepted,
+        Ok(()) => answer.standing,
         Err(diagnostic) => {
             terminal::report(&[diagnostic], &source);
-            Ending::Malformed
+            Standing::Malformed
         }
     }
 }

@@ -1,17 +1,18 @@
 //! What describes the command line to shells, to `man` and to programs.
 
 use clap::CommandFactory as _;
+use pebo_gen::Standing;
 
 use super::arguments::{Arguments, CompletionsOptions, SchemaName, SchemaOptions};
-use super::{Ending, standard};
+use super::standard;
 
-pub(super) fn completions(options: &CompletionsOptions) -> Ending {
+pub(super) fn completions(options: &CompletionsOptions) -> Standing {
     let mut script = Vec::new();
     clap_complete::generate(options.shell, &mut Arguments::command(), "pebo-gen", &mut script);
     standard::print(&script)
 }
 
-pub(super) fn page() -> Ending {
+pub(super) fn page() -> Standing {
     let mut page = Vec::new();
     match clap_mangen::Man::new(Arguments::command()).render(&mut page) {
         Ok(()) => standard::print(&page),
@@ -19,7 +20,7 @@ pub(super) fn page() -> Ending {
     }
 }
 
-pub(super) fn schema(options: &SchemaOptions) -> Ending {
+pub(super) fn schema(options: &SchemaOptions) -> Standing {
     match options.of {
         SchemaName::Check => standard::print(pebo_gen::report::SCHEMA.as_bytes()),
         SchemaName::Model => standard::print(pebo_gen::model::json_schema().as_bytes()),

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write as _};
 
+use pebo_gen::Standing;
 use pebo_gen::source::{Code, Diagnostic, Source, Span};
 
-use super::files::reason;
-use super::{Ending, terminal};
+use super::terminal;
 
 /// Writes all of a text. A reader that went away is no error of ours.
 pub(super) fn write(text: &[u8]) -> Result<(), Diagnostic> {
@@ -17,17 +17,17 @@ pub(super) fn write(text: &[u8]) -> Result<(), Diagnostic> {
 }
 
 /// Writes all of a text, and says how that ended.
-pub(super) fn print(text: &[u8]) -> Ending {
+pub(super) fn print(text: &[u8]) -> Standing {
     match write(text) {
-        Ok(()) => Ending::Accepted,
+        Ok(()) => Standing::Accepted,
         Err(diagnostic) => refuse(diagnostic),
     }
 }
 
 /// Says that standard output could not be written.
-pub(super) fn refuse(diagnostic: Diagnostic) -> Ending {
+pub(super) fn refuse(diagnostic: Diagnostic) -> Standing {
     terminal::report(&[diagnostic], &Source::unread("standard output"));
-    Ending::Malformed
+    Standing::Malformed
 }
 
 /// What there is to say of a failed write.
@@ -35,4 +35,12 @@ pub(super) fn unwritten(error: &io::Error) -> Diagnostic {
     let message = format!("cannot write to standard output: {}", reason(error));
     Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
         .help("send the output to where there is room for it, or name a file if the command takes one")
+}
+
+/// The operating system's reason, without the number it puts behind it.
+pub(super) fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    let plain = text.split(" (os error").next().unwrap_or(&text);
+    let mut letters = plain.chars();
+    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }

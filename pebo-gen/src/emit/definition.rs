@@ -4,7 +4,10 @@
 
 use Argument::{Eta, Extension, U, Y, Z};
 
+use std::collections::BTreeMap;
+
 use super::error::EmitError;
+use super::fundamental::constant_entries;
 use crate::analysis::{Class, Derivation, LeftInverse, Outcome, Regression, RegressionKind};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
@@ -62,11 +65,30 @@ pub(super) const VELOCITY: &str = "velocity";
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
     pub(super) name: &'static str,
-    pub(super) arguments: Vec<Argument>,
     pub(super) shape: Shape,
     /// The entries by rows; a vector has one in each.
     pub(super) rows: Vec<Vec<Expr>>,
 }
+
+/// A function of the runtime's `Model`, which gives the values of one or more definitions.
+#[derive(Clone, Debug)]
+pub(super) struct Group<'d> {
+    pub(super) name: &'static str,
+    /// Its arguments, `Y` for the terms of the sample.
+    pub(super) arguments: Vec<Argument>,
+    pub(super) members: Vec<&'d Definition>,
+}
+
+/// The functions of `Model` by name: their arguments, `Y` for the terms of the sample, and the definitions whose values
+/// they give.
+pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 6] = [
+    ("flow", &[Y, U], &["h", "lambda"]),
+    ("regression", &[Extension, Y, U], &["phi_0", "phi_1"]),
+    ("primitive", &[Extension, Y], &["primitive_0", "primitive_1"]),
+    ("theta", &[Eta], &["theta"]),
+    ("recover", &[Z, Y], &["phi_left"]),
+    (VELOCITY, &[Z, Y], &[VELOCITY]),
+];
 
 /// The functions of a model, and the symbols that their arguments hold.
 #[derive(Clone, Debug)]
@@ -82,6 +104,8 @@ pub(super) struct Definitions<'a> {
     pub(super) chi: Vec<Symbol>,
     /// The columns of Psi, for a fundamental solution.
     pub(super) psi: Vec<Vec<Symbol>>,
+    /// The same as expressions: what stays 0 or 1 is that number.
+    pub(super) psi_entries: Vec<Vec<Expr>>,
 }
 
 impl<'a> Definitions<'a> {
@@ -100,43 +124,56 @@ impl<'a> Definitions<'a> {
             Class::Gpebo => (plant.xi.clone(), columns(&plant.psi)),
         };
 
-        let vector = |name, arguments: &[Argument], size, entries: Vec<Expr>| Definition {
+        let constant = cascade.lambda.as_ref().map(|lambda| constant_entries(arena, lambda)).unwrap_or_default();
+        let entry = |(row, column): (usize, usize), symbol: Symbol| {
+            constant.get(row).and_then(|entries| entries[column]).unwrap_or_else(|| arena.of_symbol(symbol))
+        };
+        let psi_entries: Vec<Vec<Expr>> = psi
+            .iter()
+            .enumerate()
+            .map(|(column, entries)| entries.iter().enumerate().map(|(row, &s)| entry((row, column), s)).collect())
+            .collect();
+        let known: BTreeMap<Symbol, Expr> =
+            psi.iter().flatten().copied().zip(psi_entries.iter().flatten().copied()).collect();
+
+        let vector = |name, size, entries: Vec<Expr>| Definition {
             name,
-            arguments: arguments.to_vec(),
             shape: Shape::Vector(size),
             rows: entries.into_iter().map(|entry| vec![entry]).collect(),
         };
-        let matrix = |name, arguments: &[Argument], rows, columns, entries: &[Vec<Expr>]| Definition {
+        let matrix = |name, rows, columns, entries: &[Vec<Expr>]| Definition {
             name,
-            arguments: arguments.to_vec(),
             shape: Shape::Matrix(rows, columns),
             rows: entries.to_vec(),
         };
-        let mut functions = vec![vector("h", &[Y, U], "NZ", cascade.h.clone())];
+        let mut functions = vec![vector("h", "NZ", cascade.h.clone())];
         if derivation.class == Class::Gpebo {
             let lambda = cascade.lambda.as_ref().ok_or(EmitError::Missing("lambda"))?;
-            functions.push(matrix("lambda", &[Y, U], "NZ", "NZ", lambda));
+            functions.push(matrix("lambda", "NZ", "NZ", lambda));
         }
-        functions.push(vector("phi_0", &[Extension, Y, U], "NR", regression.phi_0.clone()));
-        functions.push(matrix("phi_1", &[Extension, Y, U], "NR", "NE", &regression.phi_1));
+        functions.push(vector("phi_0", "NR", regression.phi_0.clone()));
+        functions.push(matrix("phi_1", "NR", "NE", &regression.phi_1));
         if regression.kind == RegressionKind::Dynamic {
             let rows = regression.rows.iter().map(|&row| y.get(row).map(|&s| arena.of_symbol(s)));
             let outputs: Option<Vec<Expr>> = rows.collect();
             let outputs = outputs.ok_or(EmitError::Missing("row of the regression"))?;
-            functions.push(vector("primitive_0", &[Extension, Y], "NR", outputs));
+            functions.push(vector("primitive_0", "NR", outputs));
         }
         if regression.kind == RegressionKind::Implicit {
-            functions.push(vector("primitive_0", &[Extension, Y], "NR", regression.primitive_0.clone()));
+            functions.push(vector("primitive_0", "NR", regression.primitive_0.clone()));
             // The trait has it that nothing unknown stands under the derivative.
             if regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor)) {
-                functions.push(matrix("primitive_1", &[Extension, Y], "NR", "NE", &regression.primitive_1));
+                functions.push(matrix("primitive_1", "NR", "NE", &regression.primitive_1));
             }
         }
-        functions.push(vector("theta", &[Eta], "NZ", regression.theta.clone()));
+        functions.push(vector("theta", "NZ", regression.theta.clone()));
         let states = left_inverse.x.iter().map(|state| state.1).collect();
-        functions.push(vector("phi_left", &[Z, Y], "NX", states));
+        functions.push(vector("phi_left", "NX", states));
         if let Some(crate::plant::Class::Mechanical(mechanical)) = &plant.class {
-            functions.push(vector(VELOCITY, &[Z, Y], "NY", mechanical.velocities.clone()));
+            functions.push(vector(VELOCITY, "NY", mechanical.velocities.clone()));
+        }
+        for entry in functions.iter_mut().flat_map(|function| &mut function.rows).flatten() {
+            *entry = arena.substitute(*entry, &known);
         }
         Ok(Self {
             functions,
@@ -148,7 +185,17 @@ impl<'a> Definitions<'a> {
             z: plant.z.clone(),
             chi,
             psi,
+            psi_entries,
         })
+    }
+
+    /// The functions of `Model` that the module has.
+    pub(super) fn groups(&self) -> Vec<Group<'_>> {
+        let groups = GROUPS.iter().map(|&(name, arguments, members)| {
+            let members = self.functions.iter().filter(|function| members.contains(&function.name)).collect();
+            Group { name, arguments: arguments.to_vec(), members }
+        });
+        groups.filter(|group| !group.members.is_empty()).collect()
     }
 
     /// What an argument holds.

@@ -3,9 +3,10 @@
 //! In: plant, derivation and programs. Out: lines of documentation. No date, no path: the same model
 //! gives the same text.
 
-use super::definition::{Argument, Definitions, VELOCITY};
+use super::accuracy;
+use super::definition::{Argument, Definitions, Group, VELOCITY};
 use super::module::Module;
-use super::prose::{self, sentence};
+use super::prose::{self, section, sentence};
 use crate::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind};
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Symbol};
@@ -33,10 +34,13 @@ pub(super) fn module(module: &Module<'_>) -> Vec<String> {
     ]);
     lines.extend(equations(plant));
     lines.extend(observer(plant, definitions));
-    lines.extend(fundamental(derivation));
+    lines.extend(fundamental(derivation, rebase));
     lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
-    lines.extend(costs(definitions, staged));
+    lines.extend(section("Cost"));
+    lines.extend(["| function | operations |", "|---|---|"].map(str::to_owned));
+    lines.extend(costs(definitions, staged).into_iter().map(|(function, cost)| format!("| {function} | {cost} |")));
+    lines.extend(accuracy::lines(module.accuracy));
     prose::wrapped(lines, MODULE)
 }
 
@@ -140,7 +144,7 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
 }
 
 /// What becomes of the fundamental matrix, and what there is against it.
-fn fundamental(derivation: &Derivation) -> Vec<String> {
+fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
     let fate = match derivation.cascade.result.as_ref().and_then(|cascade| cascade.fundamental) {
         None => return Vec::new(),
         Some(Fundamental::Bounded { fades: false }) => return vec![String::new(), "`Psi` stays bounded.".to_owned()],
@@ -152,8 +156,12 @@ fn fundamental(derivation: &Derivation) -> Vec<String> {
             "It was not shown that `Psi` stays bounded; if it grows, it amplifies errors of `theta`."
         }
     };
-    let restart = "`Observer::restart` from the estimate of `z` with zero `theta` sets `Psi` back to the identity.";
-    vec![String::new(), format!("{fate} {restart}")]
+    let remedy = if rebase {
+        "`Observer::rebasing` sets it back to the identity, with all memory carried over."
+    } else {
+        "`Observer::restart` from the estimate of `z` with zero `theta` sets `Psi` back to the identity."
+    };
+    vec![String::new(), format!("{fate} {remedy}")]
 }
 
 /// What the extension does under a constant bias, and what there is against it.
@@ -161,7 +169,7 @@ fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
     let Some(drift) = derivation.drift(plant) else { return Vec::new() };
     let remedy = match (derivation.class, rebase) {
         (Class::Pebo, true) => "Use `Observer::step_without_drift`, which keeps the extension bounded.",
-        (Class::Gpebo, true) => "Use `Observer::rebase`, which moves a part of the extension into `theta`.",
+        (Class::Gpebo, true) => "Use `Observer::rebasing`, which makes the extension start again from the estimate.",
         (_, false) => "Restart the observer before the extension grows so large that rounding matters.",
     };
     let integrators = listed(&plant.arena, drift.integrators.iter().copied());
@@ -179,7 +187,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     });
     let origin = match definitions.left_inverse.origin {
         Origin::Given => "as the model gives it",
-        Origin::Derived => "derived",
+        Origin::Derived => Origin::Derived.word(),
     };
     let mut inverse = format!("- Left inverse, {origin}: `phi_left(phi(x, y), y) = x`");
     for (state, period) in &definitions.left_inverse.modulo {
@@ -197,15 +205,12 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             asked.join(", ")
         ));
     }
-    let kind = match definitions.regression.kind {
-        RegressionKind::Dynamic => "dynamic",
-        RegressionKind::Static => "static",
-        RegressionKind::Implicit => "implicit",
-    };
-    let parameterisation = if definitions.regression.eta == theta(plant) {
-        "linear in `theta`".to_owned()
+    let (regression, kind) = (definitions.regression, definitions.regression.kind.word());
+    let parameterisation = regression.parameterisation(plant);
+    let parameterisation = if regression.is_linear(plant) {
+        format!("{parameterisation} in `theta`")
     } else {
-        format!("over-parameterised, {} unknowns", definitions.regression.eta.len())
+        format!("{parameterisation}, {} unknowns", regression.eta.len())
     };
     lines.push(format!("- Regression: {kind}, {parameterisation}."));
     if let Some(identifiability) = &derivation.identifiability.result {
@@ -253,18 +258,19 @@ fn compared(arena: &Arena, expr: Expr, relation: Relation) -> String {
     format!("`{} {}`", arena.print(expr), relation.sign())
 }
 
-fn costs(definitions: &Definitions, staged: &Staged) -> Vec<String> {
-    let mut lines = section("Cost");
-    lines.extend(["| function | operations |", "|---|---|"].map(str::to_owned));
-    lines.push(format!("| `new`, once | {} |", Cost::of(&staged.setup)));
-    for (definition, program) in definitions.functions.iter().zip(&staged.programs) {
-        lines.push(format!("| `{}` | {} |", definition.name, Cost::of(program)));
+/// The functions with what they return, and the operations of one call of each.
+pub(super) fn costs(definitions: &Definitions, staged: &Staged) -> Vec<(String, Cost)> {
+    let mut costs = vec![("`new`, once".to_owned(), Cost::of(&staged.setup))];
+    if !staged.terms.is_empty() {
+        costs.push(("`terms`, once a sample".to_owned(), Cost::of(&staged.sample)));
     }
-    lines
-}
-
-fn theta(plant: &Plant) -> Vec<Expr> {
-    plant.theta.iter().map(|&theta| plant.arena.of_symbol(theta)).collect()
+    for (group, program) in definitions.groups().iter().zip(&staged.programs) {
+        let members: Vec<String> = group.members.iter().map(|member| format!("`{}`", member.name)).collect();
+        let values =
+            if members == [format!("`{}`", group.name)] { String::new() } else { format!(": {}", members.join(", ")) };
+        costs.push((format!("`{}`{values}", group.name), Cost::of(program)));
+    }
+    costs
 }
 
 /// What a size of the module counts.
@@ -289,30 +295,41 @@ pub(super) fn size(plant: &Plant, definitions: &Definitions, name: &str) -> Stri
     }
 }
 
-/// What a function returns.
-pub(super) fn function(name: &str, definitions: &Definitions) -> &'static str {
-    match name {
-        "h" if definitions.class == Class::Gpebo => "The term `h` of the cascade `z' = lambda(y, u) z + h(y, u)`.",
-        "h" => "The right side `h` of the cascade `z' = h(y, u)`.",
-        "lambda" => "The matrix `lambda` of the cascade, written by columns.",
-        "phi_0" => "The known term `phi_0` of the regression.",
-        "phi_1" => "The regressor `phi_1`, written by columns: one for each unknown.",
-        "primitive_0" if definitions.regression.kind == RegressionKind::Implicit => {
-            "The known term under the time derivative of the regression."
-        }
-        "primitive_0" => "The outputs whose rates are the left side of the regression.",
-        "primitive_1" => "The factors of the unknowns under the time derivative, written by columns.",
-        "theta" => "The constant `theta`, from the unknowns of the regression.",
-        VELOCITY => {
-            "The velocities `M^-1 p`, which are the rates of the outputs, from the coordinates `z`. An observer has its \
-             estimate of `z` as `extension().coordinates(&theta())`."
-        }
-        _ => "The recovered states, by the left inverse of the transform.",
+/// A name as code, with the unit where the model gives one.
+pub(super) fn quantity(plant: &Plant, symbol: Symbol) -> String {
+    let name = plant.arena.name(symbol);
+    match plant.units.get(&symbol) {
+        Some(unit) => format!("`{name}` in {}", prose::prose(unit)),
+        None => format!("`{name}`"),
     }
 }
 
-fn section(title: &str) -> Vec<String> {
-    vec![String::new(), format!("# {title}"), String::new()]
+/// What a function returns.
+pub(super) fn group(group: &Group, definitions: &Definitions) -> &'static str {
+    match group.name {
+        "flow" if definitions.class == Class::Gpebo => {
+            "The cascade `z' = lambda(y, u) z + h(y, u)`; `lambda` is written by columns."
+        }
+        "flow" => "The right side `h` of the cascade `z' = h(y, u)`.",
+        "regression" => {
+            "Both sides of the regression: `phi_0`, which is known, and the regressor `phi_1`, written by columns: one for \
+             each unknown."
+        }
+        "primitive" if definitions.regression.kind == RegressionKind::Dynamic => {
+            "The outputs whose rates are the left side of the regression."
+        }
+        "primitive" if group.members.len() == 1 => "The known term under the time derivative of the regression.",
+        "primitive" => {
+            "What stands under the time derivative of the regression: the known term, and the factors of the unknowns, \
+             written by columns."
+        }
+        "theta" => "The constant `theta`, from the unknowns of the regression.",
+        VELOCITY => {
+            "The velocities `M^-1 p`, which are the rates of the outputs, from the coordinates `z`. An observer has its \
+             estimate of `z` as `extension().coordinates(&theta())`, and the terms of its last sample as `terms()`."
+        }
+        _ => "The recovered states: `phi_left`, the left inverse of the transform.",
+    }
 }
 
 fn text(lines: Vec<String>) -> Vec<String> {

@@ -6,6 +6,7 @@ use crate::cas::rational::Rational;
 
 /// The reason for which a derivation was not emitted.
 #[derive(Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum EmitError {
     /// A claim is refuted or undecided.
     NotAccepted,
@@ -28,6 +29,17 @@ pub enum EmitError {
     },
     /// The budget ended before the emitted code was read back.
     LimitReached,
+    /// A function loses digits that neither the rounding of its arguments nor the author's own formulas lose.
+    Inaccurate {
+        /// The function.
+        function: String,
+        /// Where.
+        place: String,
+        /// The error, in units of what rounding of the arguments causes.
+        units: String,
+        /// The type of the numbers.
+        scalar: &'static str,
+    },
     /// The emitted code does not compute what was derived.
     Differs {
         /// The function.
@@ -53,6 +65,12 @@ impl fmt::Display for EmitError {
             Self::Unreadable { code } => write!(f, "the emitted code cannot be read back: {code}"),
             Self::LimitReached => f.write_str(
                 "the limit on time or memory was reached in the check of the emitted code; allow more with `--limit SECONDS`",
+            ),
+            Self::Inaccurate { function, place, units, scalar } => write!(
+                f,
+                "`{function}` would lose digits in `{scalar}`: at {place} its error is {units} times what rounding of its \
+                 arguments causes; give `phi_left` in the form in which it is to be computed, or assume what keeps the \
+                 formulas away from there"
             ),
             Self::Differs { function, row, column } => {
                 write!(f, "the emitted `{function}` differs from the derived one in row {row}, column {column}")

@@ -3,11 +3,14 @@
 //! In: a program, and the tokens of its inputs. Out: `let` statements, and an expression for each
 //! output. A value that is used once stands where it is used, unless the line would become too long.
 
+use std::collections::BTreeMap;
+
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::literal::literal;
 use super::names::{LONGEST, Names};
+use crate::cas::Function;
 use crate::cas::rational::Rational;
 use crate::program::{Constant, Operand, Operation, Program};
 
@@ -57,6 +60,8 @@ impl Piece {
 pub(super) struct Body {
     pub(super) statements: Vec<TokenStream>,
     pub(super) outputs: Vec<Piece>,
+    /// The variables that the statements bind.
+    pub(super) variables: Vec<String>,
 }
 
 /// An expression that takes more characters is split.
@@ -77,15 +82,23 @@ pub(super) fn render(
             Constant::Number(value) => number(value, numbers),
         })
         .collect();
-    let mut renderer = Renderer { inputs, constants, results: Vec::new(), statements: Vec::new(), names };
+    let (results, statements, variables) = (Vec::new(), Vec::new(), Vec::new());
+    let mut renderer = Renderer { inputs, constants, results, pairs: BTreeMap::new(), statements, variables, names };
     let uses = program.uses();
-    for (operation, uses) in program.operations.iter().zip(uses) {
+    for (index, (operation, uses)) in program.operations.iter().zip(uses).enumerate() {
+        let other = operation.companion().and_then(|other| program.operations.iter().position(|found| *found == other));
+        if let Some(other) = other {
+            let pair = if other < index { renderer.pairs.get(&other).cloned() } else { None };
+            let piece = pair.unwrap_or_else(|| renderer.sine_and_cosine(*operation, index));
+            renderer.results.push(piece);
+            continue;
+        }
         let piece = renderer.operation(*operation);
         let piece = if uses > 1 { renderer.bind(piece) } else { piece };
         renderer.results.push(piece);
     }
     let outputs = program.outputs.iter().map(|&output| renderer.operand(output)).collect();
-    Body { statements: renderer.statements, outputs }
+    Body { statements: renderer.statements, outputs, variables: renderer.variables }
 }
 
 /// A number as a literal, or by its constant.
@@ -118,7 +131,10 @@ struct Renderer<'a> {
     inputs: &'a [Piece],
     constants: Vec<Piece>,
     results: Vec<Piece>,
+    /// For a sine or cosine whose companion is needed too: the companion, from the same call.
+    pairs: BTreeMap<usize, Piece>,
     statements: Vec<TokenStream>,
+    variables: Vec<String>,
     names: &'a mut Names,
 }
 
@@ -180,6 +196,30 @@ impl Renderer<'_> {
         }
     }
 
+    /// A sine or cosine whose companion is needed too: both from one call. Keeps the companion for its turn.
+    fn sine_and_cosine(&mut self, operation: Operation, index: usize) -> Piece {
+        let Operation::Unary(function, angle) = operation else {
+            unreachable!("only sine and cosine have a companion");
+        };
+        let label = self.label(angle);
+        let [angle] = self.fitting([angle], "Real::sin_cos()".len());
+        let names = ["sin", "cos"].map(|name| {
+            let wanted = label.as_ref().map(|label| format!("{name}_{label}")).filter(|wanted| wanted.len() <= LONGEST);
+            match wanted {
+                Some(wanted) => self.names.claim(&wanted),
+                None => self.names.number(&format!("{name}_")),
+            }
+        });
+        self.variables.extend(names.iter().cloned());
+        let [sine, cosine] = names.each_ref().map(|name| ident(name));
+        let angle = angle.tokens;
+        self.statements.push(quote!(let (#sine, #cosine) = Real::sin_cos(#angle);));
+        let [sine, cosine] = names.each_ref().map(|name| Piece::local(name));
+        let (own, companion) = if function == Function::Sin { (sine, cosine) } else { (cosine, sine) };
+        self.pairs.insert(index, companion);
+        own
+    }
+
     fn label(&self, operand: Operand) -> Option<String> {
         self.operand(operand).label
     }
@@ -204,6 +244,7 @@ impl Renderer<'_> {
             Some(label) => self.names.claim(&label),
             None => self.names.number("t"),
         };
+        self.variables.push(name.clone());
         let (variable, value) = (ident(&name), piece.tokens);
         self.statements.push(quote!(let #variable = #value;));
         Piece::local(&name)

@@ -1,4 +1,4 @@
-//! One function of the runtime's `Model`: a definition and its program in, a method out.
+//! One function of the runtime's `Model`: the definitions of its values and its program in, a method out.
 //!
 //! Arguments are taken apart by patterns: nothing is indexed, so nothing can be out of range. What is
 //! not read has no name.
@@ -8,44 +8,55 @@ use std::ops::Range;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::definition::{Argument, Definition, Part, Shape, VELOCITY};
+use super::definition::{Argument, Definition, Group, Part, Shape, VELOCITY};
 use super::document;
 use super::expression::{Piece, ident};
 use super::module::{Module, Scope, doc};
 use super::permission;
+use super::tasks::varying;
 use crate::cas::Symbol;
 use crate::program::{Operand, Program};
 
 impl Module<'_> {
-    /// The method.
-    pub(super) fn function(&self, definition: &Definition, program: &Program, scope: &mut Scope) -> TokenStream {
+    /// The method that gives the values of a group.
+    pub(super) fn function(&self, group: &Group, program: &Program, scope: &mut Scope) -> TokenStream {
         let scalar = ident(self.scalar.name());
-        let constants = scope.fields.iter().map(|name| {
-            let field = ident(name);
-            Piece::atom(quote!(self.#field), "self.".len() + name.len(), Some(name.clone()))
-        });
-        let mut inputs: Vec<Piece> = constants.collect();
+        let mut inputs = scope.constants();
         let stored = inputs.len();
-        let symbols: Vec<Symbol> = definition.arguments.iter().flat_map(|&a| self.definitions.symbols(a)).collect();
+        inputs.extend(self.terms(scope));
+        let first_argument = inputs.len();
+        let symbols: Vec<Symbol> =
+            varying(&group.arguments).flat_map(|argument| self.definitions.symbols(argument)).collect();
+        inputs.extend(symbols.iter().map(|symbol| Piece::local(&scope.locals[symbol])));
+
+        let mut next = first_argument;
         let mut arguments = Vec::new();
         let mut statements = Vec::new();
         let mut copied = None;
-        for &argument in &definition.arguments {
+        for &argument in &group.arguments {
+            if argument == Argument::Y && !self.staged.terms.is_empty() {
+                let name =
+                    ident(if (stored..first_argument).any(|input| program.reads(input)) { "terms" } else { "_terms" });
+                arguments.push(quote!(#name: &Terms));
+                continue;
+            }
             let mut reads = false;
             for part in self.definitions.parts(argument) {
-                let first = inputs.len();
-                let symbols = part.columns.iter().flatten();
-                inputs.extend(symbols.map(|symbol| Piece::local(&scope.locals[symbol])));
-                let range = first..inputs.len();
+                let count = part.columns.iter().flatten().count();
+                let first = if argument == Argument::Y { stored } else { next };
+                if argument != Argument::Y {
+                    next += count;
+                }
+                let range = first..first + count;
                 if !range.clone().any(|input| program.reads(input)) {
                     continue;
                 }
                 reads = true;
                 let source = source(argument, &part);
-                if is_copy(definition, program, &range) {
+                if is_copy(group, program, &range) {
                     copied = Some(quote!(*#source));
                 } else {
-                    let pattern = pattern(&part, program, first, scope);
+                    let pattern = pattern(&part, |input| program.reads(input), first, scope);
                     statements.push(quote!(let #pattern = #source.data.0;));
                 }
             }
@@ -59,29 +70,30 @@ impl Module<'_> {
                 }
             });
         }
-        let result = copied.unwrap_or_else(|| {
+        let mut variables = Vec::new();
+        let values = if let Some(copied) = copied {
+            vec![copied]
+        } else {
             let body = scope.render(program, &inputs);
             statements.extend(body.statements);
-            result(definition, &body.outputs, &mut statements)
-        });
-        let returned = match definition.shape {
-            Shape::Vector(size) => {
-                let size = ident(size);
-                quote!(SVector<#scalar, #size>)
-            }
-            Shape::Matrix(rows, columns) => {
-                let (rows, columns) = (ident(rows), ident(columns));
-                quote!(SMatrix<#scalar, #rows, #columns>)
-            }
+            variables = body.variables;
+            let mut entries = body.outputs.as_slice();
+            let value = |member: &&Definition| {
+                let (own, rest) = entries.split_at(member.rows.iter().map(Vec::len).sum());
+                entries = rest;
+                result(member, own, &mut statements)
+            };
+            group.members.iter().map(value).collect()
         };
-        let read = |&(index, _): &(usize, &Symbol)| program.reads(stored + index);
+        let (returned, result) = self.returned(group, &values);
+        let read = |&(index, _): &(usize, &Symbol)| program.reads(first_argument + index);
         let named: Vec<String> =
             symbols.iter().enumerate().filter(read).map(|(_, symbol)| scope.locals[symbol].clone()).collect();
-        let similar = permission::for_names(&named);
+        let similar = permission::for_names(&[named, variables].concat());
         let long = permission::for_length(statements.len() + program.outputs.len());
-        let (name, doc) = (ident(definition.name), doc(document::function(definition.name, self.definitions)));
+        let (name, doc) = (ident(group.name), doc(document::group(group, self.definitions)));
         // What the trait does not know is the model's own.
-        let visibility = (definition.name == VELOCITY).then(|| quote!(#[must_use] pub));
+        let visibility = (group.name == VELOCITY).then(|| quote!(#[must_use] pub));
         quote! {
             #doc
             #similar
@@ -89,6 +101,27 @@ impl Module<'_> {
             #visibility fn #name(&self, #(#arguments),*) -> #returned {
                 #(#statements)*
                 #result
+            }
+        }
+    }
+
+    /// The type of a group's result, and the result made of its members' values.
+    fn returned(&self, group: &Group, values: &[TokenStream]) -> (TokenStream, TokenStream) {
+        let scalar = ident(self.scalar.name());
+        let first = &values[0];
+        let zeros = quote!(SMatrix::zeros());
+        let second = values.get(1).unwrap_or(&zeros);
+        match group.name {
+            "flow" => (quote!(Flow<#scalar, NZ>), quote!(Flow { h: #first, lambda: #second })),
+            "regression" | "primitive" => {
+                (quote!(Sides<#scalar, NR, NE>), quote!(Sides { known: #first, factor: #second }))
+            }
+            _ => {
+                let Shape::Vector(size) = group.members[0].shape else {
+                    unreachable!("a group that is no structure is a vector");
+                };
+                let size = ident(size);
+                (quote!(SVector<#scalar, #size>), quote!(#first))
             }
         }
     }
@@ -118,16 +151,17 @@ fn source(argument: Argument, part: &Part) -> TokenStream {
 }
 
 /// Whether the result is a part of an argument, as it is.
-fn is_copy(definition: &Definition, program: &Program, part: &Range<usize>) -> bool {
-    matches!(definition.shape, Shape::Vector(_)) && program.outputs.iter().copied().eq(part.clone().map(Operand::Input))
+fn is_copy(group: &Group, program: &Program, part: &Range<usize>) -> bool {
+    matches!(group.members.as_slice(), [Definition { shape: Shape::Vector(_), .. }])
+        && program.outputs.iter().copied().eq(part.clone().map(Operand::Input))
 }
 
 /// The pattern that names the entries which are read.
-fn pattern(part: &Part, program: &Program, first: usize, scope: &Scope) -> TokenStream {
+pub(super) fn pattern(part: &Part, reads: impl Fn(usize) -> bool, first: usize, scope: &Scope) -> TokenStream {
     let mut inputs = first..;
     let columns = part.columns.iter().map(|column| {
         let entries = column.iter().zip(inputs.by_ref()).map(|(symbol, input)| {
-            if program.reads(input) {
+            if reads(input) {
                 let name = ident(&scope.locals[symbol]);
                 quote!(#name)
             } else {

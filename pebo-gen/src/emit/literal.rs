@@ -8,6 +8,7 @@ use crate::cas::rational::Rational;
 
 /// The floating-point type of the emitted code.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
 pub enum Scalar {
     /// Single precision.
     F32,
@@ -17,6 +18,14 @@ pub enum Scalar {
 }
 
 impl Scalar {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::F64, Self::F32];
+
+    /// The type of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scalar| scalar.name() == name)
+    }
+
     /// The name of the type.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,13 +1,15 @@
 //! Rust for an accepted derivation.
 //!
 //! ```text
-//! Derivation -> definitions -> program::stage -> tokens -> read back and compared -> text
+//! Derivation -> definitions -> tasks -> program::stage -> tokens -> read back and compared -> text
 //! ```
 //!
 //! In: a plant and its derivation, every claim proved. Out: the tokens and the text of one module
 //! that depends on `pebo_runtime` alone. Holds after: the tokens were interpreted again, and each
 //! function's value is, by the caller's zero test, what was derived.
 
+mod accuracy;
+mod block;
 mod check;
 mod definition;
 mod describe;
@@ -15,6 +17,7 @@ mod document;
 mod error;
 mod expression;
 mod function;
+mod fundamental;
 mod layout;
 mod literal;
 mod module;
@@ -23,37 +26,52 @@ mod parameters;
 mod permission;
 mod prose;
 mod read_back;
+mod signals;
+mod tasks;
+mod terms;
+mod tuned;
+mod tuning;
 mod value;
 
 #[cfg(test)]
 mod tests;
 
+pub use accuracy::{Accuracy, Loss, Worst};
 pub use error::EmitError;
 pub use literal::Scalar;
 
 use proc_macro2::TokenStream;
 
 use crate::analysis::Derivation;
+use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr};
-use crate::plant::Plant;
-use crate::program::{Task, Undeclared, lower, stage};
+use crate::plant::{Plant, Settings};
+use crate::program::{Cost, Undeclared, lower};
 use definition::Definitions;
 use module::Module;
 
-/// An emitted module.
+/// An emitted module. Serialises to its text and the name of its type.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Emitted {
     /// The items of the module, its documentation as inner attributes.
+    #[cfg_attr(feature = "yaml", serde(skip))]
     pub tokens: TokenStream,
     /// The same as text, in rustfmt's layout.
     pub text: String,
     /// The name of the type that implements `Model`.
     pub type_name: String,
+    /// What each function costs: its name with what it returns, and the operations of one call.
+    #[cfg_attr(feature = "yaml", serde(skip))]
+    pub costs: Vec<(String, Cost)>,
+    /// How many digits the functions keep.
+    pub accuracy: Accuracy,
 }
 
 /// Emits the module for a derivation.
 ///
-/// `is_zero` decides whether an expression is zero wherever the model is defined; an emission whose
+/// With `settings` the module has a constructor of the observer that they describe. `is_zero` decides whether an expression is zero wherever the model is defined; an emission whose
 /// tokens it cannot confirm is refused.
 ///
 /// # Errors
@@ -61,30 +79,51 @@ pub struct Emitted {
 pub fn emit(
     plant: &Plant,
     derivation: &Derivation,
+    settings: Option<&Settings<Rational>>,
     scalar: Scalar,
     is_zero: impl Fn(&Arena, Expr) -> bool,
 ) -> Result<Emitted, EmitError> {
     let arena = &plant.arena;
     let definitions = Definitions::of(plant, derivation)?;
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
-    let tasks: Vec<Task> = definitions
-        .functions
-        .iter()
-        .map(|definition| Task {
-            arguments: definition.arguments.iter().flat_map(|&a| definitions.symbols(a)).collect(),
-            outputs: definition.rows.concat(),
-        })
-        .collect();
     let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
-    let staged = stage(arena, &parameters, &tasks).map_err(undeclared)?;
+    let staged = tasks::staged(arena, &parameters, &definitions, &is_zero).map_err(undeclared)?;
+    let accuracy = accuracy::measure(plant, derivation, &definitions, &staged);
+    if arena.budget().is_exhausted() {
+        // What could not be enclosed was not measured.
+        return Err(EmitError::LimitReached);
+    }
+    let lost = accuracy.of(scalar).find(|(_, worst)| worst.is_refused());
+    if let Some((function, worst)) = lost {
+        let (function, place) = (function.to_owned(), worst.place.clone());
+        return Err(EmitError::Inaccurate {
+            function,
+            place,
+            units: accuracy::told_units(worst.units),
+            scalar: scalar.name(),
+        });
+    }
     let asked = derivation.asked_of_parameters(plant);
     let values: Vec<Expr> = asked.iter().map(|(value, _)| *value).collect();
     let checked = lower(arena, &parameters, &values).map_err(undeclared)?;
     let rebase = derivation.can_rebase(plant);
     let definitions = &definitions;
-    let module = Module { plant, derivation, definitions, staged: &staged, asked: &asked, checked, scalar, rebase };
+    let (staged, asked_of) = (&staged, &asked);
+    let module = Module {
+        plant,
+        derivation,
+        definitions,
+        staged,
+        asked: asked_of,
+        settings,
+        checked,
+        scalar,
+        rebase,
+        accuracy: &accuracy,
+    };
     let tokens = module.tokens()?;
-    read_back::confirm(plant, definitions, &asked, scalar, &tokens, is_zero)?;
+    read_back::confirm(plant, definitions, (&asked, settings), scalar, &tokens, is_zero)?;
     let text = layout::text(&tokens)?;
-    Ok(Emitted { tokens, text, type_name: names::camel(&plant.name) })
+    let costs = document::costs(definitions, staged);
+    Ok(Emitted { tokens, text, type_name: names::camel(&plant.name), costs, accuracy })
 }

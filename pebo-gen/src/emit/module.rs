@@ -1,10 +1,13 @@
 //! The module as tokens: definitions and their programs in, items out.
+//!
+//! One thing with `document`: the module writes its documentation, which describes the module.
 
 use std::collections::BTreeMap;
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
+use super::accuracy::Accuracy;
 use super::definition::{Argument, Definitions, VELOCITY};
 use super::describe::describe;
 use super::document;
@@ -17,8 +20,11 @@ use super::prose;
 use crate::analysis::{Class, Derivation, RegressionKind, Sign};
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
-use crate::plant::Plant;
+use crate::plant::{Plant, Settings};
 use crate::program::{Constant, Program, Staged};
+
+/// The `INTERFACE` of the runtime library that emitted code is written for: it fails to compile against another.
+const INTERFACE: u32 = 2;
 
 /// What the items are made of.
 pub(super) struct Module<'a> {
@@ -28,11 +34,15 @@ pub(super) struct Module<'a> {
     pub(super) staged: &'a Staged,
     /// What is asked of the parameters.
     pub(super) asked: &'a [(Expr, Sign)],
+    /// What the observer is built with, where the model says it.
+    pub(super) settings: Option<&'a Settings<Rational>>,
     /// From the parameters to the values that are asked for.
     pub(super) checked: Program,
     pub(super) scalar: Scalar,
     /// Whether the model may be re-based.
     pub(super) rebase: bool,
+    /// How many digits the functions keep.
+    pub(super) accuracy: &'a Accuracy,
 }
 
 /// The names of the module.
@@ -42,6 +52,8 @@ pub(super) struct Scope {
     /// Of the constants.
     pub(super) fields: Vec<String>,
     names: Names,
+    /// The same without those of the terms: where these are computed, their names are free for their parts.
+    names_before_terms: Names,
     /// Numbers without a literal, with the names of their constants.
     ratios: BTreeMap<Rational, String>,
 }
@@ -52,14 +64,17 @@ impl Module<'_> {
         self.check_numbers()?;
         let mut scope = self.scope();
         let model = self.model(&mut scope);
-        let (mut functions, mut own) = (Vec::new(), None);
-        for (definition, program) in self.definitions.functions.iter().zip(&self.staged.programs) {
-            let function = self.function(definition, program, &mut scope);
-            if definition.name == VELOCITY { own = Some(function) } else { functions.push(function) }
+        let terms = self.terms_type(&scope);
+        let (mut functions, mut own) = (vec![self.terms_function(&mut scope)], None);
+        for (group, program) in self.definitions.groups().iter().zip(&self.staged.programs) {
+            let function = self.function(group, program, &mut scope);
+            if group.name == VELOCITY { own = Some(function) } else { functions.push(function) }
         }
         let parameters = self.parameters(&mut scope);
         let check = (!self.asked.is_empty()).then(|| self.check(&mut scope));
+        let constructors = self.constructors(&mut scope);
         let ratios = self.ratios(&scope);
+        let signals = self.signals();
 
         let lines = document::module(self);
         let lines = lines.iter().map(|line| spaced(line));
@@ -69,13 +84,16 @@ impl Module<'_> {
             let (name, value) = (ident(size.name), proc_macro2::Literal::usize_unsuffixed(size.value));
             quote!(#doc pub const #name: usize = #value;)
         });
+        let interface = proc_macro2::Literal::u32_unsuffixed(INTERFACE);
+        let interface = quote!(#[doc = " It compiles with the runtime library that it was written for, and with no other."] const _: () = pebo_runtime::emitted_for(#interface););
         let (type_name, scalar) = (ident(&camel(&self.plant.name)), ident(self.scalar.name()));
-        let extension = ident(self.extension());
+        let (extension, terms_name) = (ident(self.extension()), self.terms_name());
         let regression = ident(match self.definitions.regression.kind {
             RegressionKind::Static => "Static",
             RegressionKind::Dynamic | RegressionKind::Implicit => "Dynamic",
         });
-        let precision = permission::for_numbers(self.scalar, self.staged.programs.iter().flat_map(numbers));
+        let sampled = self.staged.programs.iter().chain([&self.staged.sample]);
+        let precision = permission::for_numbers(self.scalar, sampled.flat_map(numbers));
         let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
         let rebase = self.rebase.then(|| {
             quote! {
@@ -87,15 +105,22 @@ impl Module<'_> {
         Ok(quote! {
             #(#![doc = #lines])*
             #uses
+            #interface
             #(#sizes)*
+            #signals
             #ratios
             #parameters
             #check
             #model
+            #terms
             #precision
             impl Model<NX, NY, NU, NZ, NR, NE> for #type_name {
                 type Scalar = #scalar;
+                type X = X;
+                type Y = Y;
+                type U = U;
                 type Extension = #extension<#scalar, NZ>;
+                type Terms = #terms_name;
                 const REGRESSION: Regression = Regression::#regression;
                 #(#functions)*
             }
@@ -104,6 +129,7 @@ impl Module<'_> {
             /// The observer of this model, with the gradient estimator unless another is named.
             pub type Observer<E = Gradient<#scalar, NE>> =
                 pebo_runtime::Observer<#type_name, E, NX, NY, NU, NZ, NR, NE>;
+            #constructors
         })
     }
 
@@ -115,7 +141,7 @@ impl Module<'_> {
     }
 
     fn programs(&self) -> impl Iterator<Item = &Program> {
-        [&self.staged.setup, &self.checked].into_iter().chain(&self.staged.programs)
+        [&self.staged.setup, &self.staged.sample, &self.checked].into_iter().chain(&self.staged.programs)
     }
 
     fn scope(&self) -> Scope {
@@ -124,34 +150,43 @@ impl Module<'_> {
         let parameters = self.plant.parameters.iter().map(|parameter| parameter.symbol);
         let arguments = [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta];
         let arguments = arguments.into_iter().flat_map(|argument| self.definitions.symbols(argument));
-        let locals: BTreeMap<Symbol, String> =
+        let mut locals: BTreeMap<Symbol, String> =
             parameters.chain(arguments).map(|symbol| (symbol, names.claim(&arena.name(symbol)))).collect();
+        let names_before_terms = names.clone();
+        let constants: BTreeMap<Symbol, Expr> = self.staged.constants.iter().copied().collect();
+        for &(term, formula) in &self.staged.terms {
+            let name = match describe(arena, arena.substitute(formula, &constants), &locals) {
+                Some(name) => names.claim(&name),
+                None => names.number("s"),
+            };
+            locals.insert(term, name);
+        }
         let mut fields = Names::default();
         let constants = self.staged.constants.iter().map(|(_, formula)| match describe(arena, *formula, &locals) {
             Some(name) => fields.claim(&name),
             None => fields.number("k"),
         });
         let fields = constants.collect();
-        Scope { locals, fields, names, ratios: BTreeMap::new() }
+        Scope { locals, fields, names, names_before_terms, ratios: BTreeMap::new() }
     }
 
     fn uses(&self) -> TokenStream {
-        let real = self.programs().any(expression::calls).then(|| quote!(Real,));
-        let rebase = self.rebase.then(|| quote!(Rebase,));
-        let extension = ident(self.extension());
         let scalar = ident(self.scalar.name());
         let pi = self.programs().any(|program| program.constants.contains(&Constant::Pi));
         let pi = pi.then(|| quote!(use core::#scalar::consts::PI;));
+        let mut names = vec!["Flow", "Gradient", self.extension(), "Model", "Regression", "Sides"];
+        names.extend(self.programs().any(expression::calls).then_some("Real"));
+        names.extend(self.rebase.then_some("Rebase"));
+        names.extend((!self.asked.is_empty()).then_some("Fault"));
+        names.extend(self.constructors_use());
         // In alphabetical order, as rustfmt has them.
-        let fault = (!self.asked.is_empty()).then(|| quote!(Fault,));
-        let first = match self.definitions.class {
-            Class::Pebo => quote!(#fault Gradient, #extension),
-            Class::Gpebo => quote!(#fault #extension, Gradient),
-        };
+        names.sort_unstable();
+        names.dedup();
+        let names = names.into_iter().map(ident);
         quote! {
             #pi
             use pebo_runtime::nalgebra::{SMatrix, SVector};
-            use pebo_runtime::{#first, Model, #real #rebase Regression};
+            use pebo_runtime::{#(#names),*};
         }
     }
 
@@ -163,7 +198,7 @@ impl Module<'_> {
             Constant::Pi => None,
         });
         let values = self.plant.parameters.iter().filter_map(|parameter| parameter.value.as_ref());
-        for value in numbers.chain(values) {
+        for value in numbers.chain(values).chain(self.tuned_numbers()) {
             let parts = [value.clone(), value.numerator().into(), value.denominator().into()];
             let written = if literal(value).is_some() { &parts[..1] } else { &parts[..] };
             if let Some(number) = written.iter().find(|part| !self.scalar.holds(part)) {
@@ -188,9 +223,24 @@ impl Module<'_> {
 }
 
 impl Scope {
+    /// The constants of the model, as inputs of a program.
+    pub(super) fn constants(&self) -> Vec<Piece> {
+        let constants = self.fields.iter().map(|name| {
+            let field = ident(name);
+            Piece::atom(quote!(self.#field), "self.".len() + name.len(), Some(name.clone()))
+        });
+        constants.collect()
+    }
+
     /// A program's statements and results, with local variables that differ from all arguments.
     pub(super) fn render(&mut self, program: &Program, inputs: &[Piece]) -> Body {
         let mut names = self.names.clone();
+        render(program, inputs, &mut |value| self.ratio(value), &mut names)
+    }
+
+    /// The same for the program that computes the terms.
+    pub(super) fn render_terms(&mut self, program: &Program, inputs: &[Piece]) -> Body {
+        let mut names = self.names_before_terms.clone();
         render(program, inputs, &mut |value| self.ratio(value), &mut names)
     }
 

@@ -19,7 +19,7 @@ const LONGEST_TYPE: usize = 40;
 
 /// Strict and reserved keywords of the 2024 edition, and the names that functions of the runtime's
 /// `Model` give their arguments.
-const RESERVED: [&str; 61] = [
+const RESERVED: [&str; 62] = [
     "abstract",
     "as",
     "async",
@@ -64,6 +64,7 @@ const RESERVED: [&str; 61] = [
     "static",
     "struct",
     "super",
+    "terms",
     "trait",
     "true",
     "try",
@@ -84,21 +85,41 @@ const RESERVED: [&str; 61] = [
 ];
 
 /// Types that an emitted module declares or imports.
-const TYPES: [&str; 14] = [
+const TYPES: [&str; 34] = [
+    "Bounded",
     "Default",
+    "Drem",
     "Fault",
+    "Filter",
+    "FiniteTime",
+    "Flow",
     "Fundamental",
     "Gradient",
+    "Hold",
     "Integrator",
+    "Kreisselmeier",
+    "LeastSquares",
     "Model",
+    "NormalisedGradient",
     "Observer",
+    "Ok",
     "Parameters",
     "Real",
     "Rebase",
     "Regression",
+    "Response",
+    "Result",
     "SMatrix",
     "SVector",
     "Self",
+    "Sides",
+    "Terms",
+    "Tuned",
+    "U",
+    "WindowedRegression",
+    "Within",
+    "X",
+    "Y",
 ];
 
 /// The names of one scope.
@@ -218,6 +239,7 @@ mod tests {
         assert_eq!(camel("cuk"), "Cuk");
         assert_eq!(camel("cuk_case2"), "CukCase2");
         assert_eq!(camel("observer"), "ObserverPlant");
+        assert_eq!(camel("tuned"), "TunedPlant");
         assert_eq!(camel("PMSM"), "Pmsm");
     }
 }

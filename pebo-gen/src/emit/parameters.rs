@@ -3,11 +3,24 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::document;
 use super::expression::{Piece, ident, number};
+use super::literal::literal;
 use super::module::{Module, Scope, doc, numbers};
 use super::names::camel;
 use super::permission;
+use crate::cas::Arena;
 use crate::cas::rational::Rational;
+
+/// A number as an author writes it: 8.875 rather than 71/8.
+pub(super) fn decimal(arena: &Arena, value: &Rational) -> String {
+    let digits = literal(&value.abs()).filter(|_| !value.is_integer());
+    match digits {
+        Some(digits) if value.is_negative() => format!("-{digits}"),
+        Some(digits) => digits,
+        None => arena.print(arena.number(value.clone())),
+    }
+}
 
 impl Module<'_> {
     /// The parameters as a type, with the model's values if each has one.
@@ -23,10 +36,10 @@ impl Module<'_> {
             };
         }
         let fields = parameters.iter().map(|parameter| {
-            let name = arena.name(parameter.symbol);
+            let name = document::quantity(self.plant, parameter.symbol);
             let line = match &parameter.value {
-                Some(value) => format!("`{name}`, {} in the model.", arena.print(arena.number(value.clone()))),
-                None => format!("`{name}`, without a value in the model."),
+                Some(value) => format!("{name}, {} in the model.", decimal(arena, value)),
+                None => format!("{name}, without a value in the model."),
             };
             let (doc, field) = (doc(&line), ident(&scope.locals[&parameter.symbol]));
             quote!(#doc pub #field: #scalar,)
@@ -87,6 +100,7 @@ impl Module<'_> {
             (quote!(pub struct #type_name { #(#docs #fields: #scalar,)* }), quote!(Self { #(#fields: #values),* }))
         };
         let statements = &body.statements;
+        let similar = permission::for_names(&body.variables);
         quote! {
             #summary
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +109,7 @@ impl Module<'_> {
             impl #type_name {
                 /// The model with these parameters.
                 #[must_use]
+                #similar
                 pub fn new(#argument: &Parameters) -> Self {
                     #(#statements)*
                     #value

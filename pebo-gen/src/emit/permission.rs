@@ -40,6 +40,21 @@ pub(super) fn for_names(names: &[String]) -> Option<TokenStream> {
     (!lints.is_empty()).then(|| quote!(#[allow(#(#lints,)* reason = "the names of the model")]))
 }
 
+/// For fields that share their first or last word, or begin or end with the name of their structure.
+pub(super) fn for_fields(structure: &str, names: &[String]) -> Option<TokenStream> {
+    /// Clippy looks at structures of so many fields.
+    const FEWEST: usize = 3;
+    let structure = structure.to_lowercase();
+    let words: Vec<(&str, &str)> = names
+        .iter()
+        .map(|name| (name.split('_').next().unwrap_or(name), name.rsplit('_').next().unwrap_or(name)))
+        .collect();
+    let shared = words.iter().all(|word| word.0 == words[0].0) || words.iter().all(|word| word.1 == words[0].1);
+    let own = words.iter().any(|&(first, last)| first == structure || last == structure);
+    (names.len() >= FEWEST && (shared || own))
+        .then(|| quote!(#[allow(clippy::struct_field_names, reason = "the names of the model")]))
+}
+
 /// For functions that may exceed a hundred lines.
 pub(super) fn for_length(lines: usize) -> Option<TokenStream> {
     /// A statement may take more than one line.

@@ -86,6 +86,11 @@ fn length(text: &str) -> usize {
     text.chars().count()
 }
 
+/// The heading of a section.
+pub(super) fn section(title: &str) -> Vec<String> {
+    vec![String::new(), format!("# {title}"), String::new()]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,23 +9,26 @@ use std::collections::BTreeMap;
 
 use proc_macro2::TokenStream;
 use quote::ToTokens;
-use syn::{FnArg, ImplItem, Item, Pat, Stmt};
+use syn::{FnArg, ImplItem, Item};
 
+use super::block::{body, name_of, only_function, statements};
 use super::check::{self, Condition};
-use super::definition::{Argument, Definitions, VELOCITY};
+use super::definition::{Argument, Definitions, GROUPS, VELOCITY};
 use super::error::EmitError;
 use super::literal::Scalar;
+use super::signals;
+use super::tuning;
 use super::value::{Scope, Value, expression, unreadable};
 use crate::analysis::{RegressionKind, Sign};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::Plant;
+use crate::plant::{Plant, Settings};
 
 /// Confirms that the tokens compute what is defined.
 pub(super) fn confirm(
     plant: &Plant,
     definitions: &Definitions,
-    asked: &[(Expr, Sign)],
+    (asked, settings): (&[(Expr, Sign)], Option<&Settings<Rational>>),
     scalar: Scalar,
     tokens: &TokenStream,
     is_zero: impl Fn(&Arena, Expr) -> bool,
@@ -34,6 +37,9 @@ pub(super) fn confirm(
     let read = read(plant, definitions, tokens)?;
     let expected = [
         ("Scalar", scalar.name()),
+        ("X", "X"),
+        ("Y", "Y"),
+        ("U", "U"),
         ("Extension", if definitions.psi.is_empty() { "Integrator" } else { "Fundamental" }),
         (
             "REGRESSION",
@@ -55,6 +61,12 @@ pub(super) fn confirm(
     let asked: Vec<Condition> = asked.iter().map(|asked| Condition::of(arena, *asked)).collect();
     if !plant.parameters.is_empty() && !same_conditions(arena, &read.checked, &asked, &is_zero) {
         return Err(EmitError::Unreadable { code: "the check of the parameters".to_owned() });
+    }
+    if read.settings.as_ref() != settings {
+        return Err(EmitError::Unreadable { code: "the settings of the observer".to_owned() });
+    }
+    if !read.signals.are_complete() {
+        return Err(EmitError::Unreadable { code: "the structures of the signals".to_owned() });
     }
     if read.functions.len() != definitions.functions.len() {
         return Err(EmitError::Unreadable { code: "another set of functions".to_owned() });
@@ -105,9 +117,15 @@ struct Read {
     default: Option<Vec<Rational>>,
     /// What is asked of the parameters.
     checked: Vec<Condition>,
+    /// What the constructor of the observer sets.
+    settings: Option<Settings<Rational>>,
     /// Associated types and constants, by the last segment of their values.
     choices: BTreeMap<String, String>,
-    /// The columns of each function's value.
+    /// The structures of the signals.
+    signals: signals::Fields,
+    /// What the functions need of a sample.
+    terms: Option<Value>,
+    /// The columns of each value.
     functions: BTreeMap<String, Vec<Vec<Expr>>>,
 }
 
@@ -119,9 +137,13 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
     let mut globals = Scope::default();
     let mut fields: BTreeMap<String, Expr> = BTreeMap::new();
     let mut stored: BTreeMap<String, Expr> = BTreeMap::new();
+    let mut window = None;
     for item in &file.items {
         match item {
             Item::Use(item) => globals.import(arena, &item.to_token_stream().to_string()),
+            // The version of the runtime library: it computes nothing.
+            Item::Const(item) if item.ident == "_" => {}
+            Item::Const(item) if item.ident == tuning::WINDOW => window = Some(&*item.expr),
             Item::Const(item) if is_size(&item.ty) => {
                 let name = item.ident.to_string();
                 let size = definitions.sizes().into_iter().find(|size| name == size.name);
@@ -142,7 +164,8 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                 let symbols = plant.parameters.iter().map(|p| arena.of_symbol(p.symbol));
                 fields = names.into_iter().zip(symbols).collect();
             }
-            Item::Struct(_) | Item::Type(_) => {}
+            Item::Struct(item) => read.signals.declare(item),
+            Item::Type(_) => {}
             Item::Impl(item) => match trait_name(item).as_deref() {
                 Some("Default") => {
                     let values = structure(arena, only_function(item)?, &globals)?;
@@ -153,8 +176,12 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                     };
                     read.default = declared.map(value).collect();
                 }
+                Some("From") => read.signals.convert(arena, definitions, item)?,
                 Some("Rebase") if item.items.is_empty() => {}
                 Some("Model") => model(plant, definitions, item, &globals, &stored, &mut read)?,
+                None if tuning::is_constructors(item) => {
+                    read.settings = tuning::read(arena, item, window, &globals)?;
+                }
                 None if only_function(item)?.sig.ident == VELOCITY => {
                     model(plant, definitions, item, &globals, &stored, &mut read)?;
                 }
@@ -206,17 +233,39 @@ fn model(
             ImplItem::Fn(function) => {
                 let mut scope = globals.clone();
                 scope.declare("self", Value::Fields(stored.clone()));
-                let arguments = signature(&function.sig.ident.to_string()).ok_or_else(|| unreadable(&function.sig))?;
+                let name = function.sig.ident.to_string();
+                let group = GROUPS.iter().find(|group| group.0 == name);
+                let arguments = match (name.as_str(), group) {
+                    ("terms", _) => &[Argument::Y][..],
+                    (_, Some(group)) => group.1,
+                    (_, None) => return Err(unreadable(&function.sig)),
+                };
                 let mut typed = function.sig.inputs.iter().skip(1);
                 for &argument in arguments {
                     let Some(FnArg::Typed(input)) = typed.next() else {
                         return Err(unreadable(&function.sig));
                     };
-                    scope.declare(&name_of(&input.pat)?, of_argument(arena, definitions, argument));
+                    let value = match (argument, group) {
+                        (Argument::Y, Some(_)) => read.terms.clone().ok_or_else(|| unreadable(&function.sig))?,
+                        _ => of_argument(arena, definitions, argument),
+                    };
+                    scope.declare(&name_of(&input.pat)?, value);
                 }
                 let value = body(arena, function, scope)?;
-                let columns = value.columns().ok_or_else(|| unreadable(&function.block))?;
-                read.functions.insert(function.sig.ident.to_string(), columns);
+                let Some(&(_, _, members)) = group else {
+                    read.terms = Some(value);
+                    continue;
+                };
+                let values = match value {
+                    Value::Matrix(columns) => vec![(members[0], columns)],
+                    Value::Parts(parts) => {
+                        let known = parts.into_iter().map(|(field, columns)| Some((member(&field, members)?, columns)));
+                        known.collect::<Option<_>>().ok_or_else(|| unreadable(&function.block))?
+                    }
+                    _ => return Err(unreadable(&function.block)),
+                };
+                let there = values.into_iter().filter(|(_, columns)| !columns.is_empty());
+                read.functions.extend(there.map(|(name, columns)| (name.to_owned(), columns)));
             }
             other => return Err(unreadable(other)),
         }
@@ -224,17 +273,13 @@ fn model(
     Ok(())
 }
 
-/// The arguments that the runtime's trait gives its functions.
-fn signature(function: &str) -> Option<&'static [Argument]> {
-    use Argument::{Eta, Extension, U, Y, Z};
-    Some(match function {
-        "h" | "lambda" => &[Y, U],
-        "phi_0" | "phi_1" => &[Extension, Y, U],
-        "primitive_0" | "primitive_1" => &[Extension, Y],
-        "theta" => &[Eta],
-        "phi_left" | VELOCITY => &[Z, Y],
-        _ => return None,
-    })
+/// The value that a field of the runtime's `Flow` or `Sides` holds, of those that a function gives.
+fn member(field: &str, members: &'static [&'static str]) -> Option<&'static str> {
+    match field {
+        "h" | "known" => members.first().copied(),
+        "lambda" | "factor" => members.get(1).copied(),
+        _ => None,
+    }
 }
 
 fn of_argument(arena: &Arena, definitions: &Definitions, argument: Argument) -> Value {
@@ -251,47 +296,11 @@ fn of_argument(arena: &Arena, definitions: &Definitions, argument: Argument) -> 
     }
 }
 
-/// The value of a function: its statements in order, then its last expression.
-fn body(arena: &Arena, function: &syn::ImplItemFn, scope: Scope) -> Result<Value, EmitError> {
-    let (last, scope) = statements(arena, function, scope)?;
-    expression(arena, last, &scope)
-}
-
-/// The last expression of a function, and the names that its statements bind before.
-fn statements<'a>(
-    arena: &Arena,
-    function: &'a syn::ImplItemFn,
-    mut scope: Scope,
-) -> Result<(&'a syn::Expr, Scope), EmitError> {
-    let (last, statements) = function.block.stmts.split_last().ok_or_else(|| unreadable(&function.sig))?;
-    for statement in statements {
-        let Stmt::Local(local) = statement else {
-            return Err(unreadable(statement));
-        };
-        let Some(init) = &local.init else {
-            return Err(unreadable(statement));
-        };
-        let value = expression(arena, &init.expr, &scope)?;
-        scope.bind(&local.pat, value)?;
-    }
-    match last {
-        Stmt::Expr(value, None) => Ok((value, scope)),
-        other => Err(unreadable(other)),
-    }
-}
-
 /// The fields of the structure that a function returns.
 fn structure(arena: &Arena, function: &syn::ImplItemFn, scope: &Scope) -> Result<BTreeMap<String, Expr>, EmitError> {
     match body(arena, function, scope.clone())? {
         Value::Fields(fields) => Ok(fields),
         _ => Err(unreadable(&function.block)),
-    }
-}
-
-fn only_function(item: &syn::ItemImpl) -> Result<&syn::ImplItemFn, EmitError> {
-    match item.items.as_slice() {
-        [ImplItem::Fn(function)] => Ok(function),
-        _ => Err(unreadable(item)),
     }
 }
 
@@ -311,12 +320,5 @@ fn last_segment(ty: &syn::Type) -> Result<String, EmitError> {
             Ok(last.ident.to_string())
         }
         _ => Err(unreadable(ty)),
-    }
-}
-
-fn name_of(pattern: &Pat) -> Result<String, EmitError> {
-    match pattern {
-        Pat::Ident(ident) => Ok(ident.ident.to_string()),
-        _ => Err(unreadable(pattern)),
     }
 }

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use quote::ToTokens;
-use syn::{BinOp, Expr as Syntax, Lit, Member, Pat, UnOp};
+use syn::{BinOp, Expr as Syntax, Lit, Member, Pat, PatSlice, PatTuple, UnOp};
 
 use super::error::EmitError;
 use super::literal::read;
@@ -83,8 +83,10 @@ impl Scope {
                 self.declare(&ident.ident.to_string(), value);
                 Ok(())
             }
-            (Pat::Slice(slice), Value::List(entries)) if slice.elems.len() == entries.len() => {
-                slice.elems.iter().zip(entries).try_for_each(|(pattern, entry)| self.bind(pattern, entry))
+            (Pat::Slice(PatSlice { elems, .. }) | Pat::Tuple(PatTuple { elems, .. }), Value::List(entries))
+                if elems.len() == entries.len() =>
+            {
+                elems.iter().zip(entries).try_for_each(|(pattern, entry)| self.bind(pattern, entry))
             }
             _ => Err(unreadable(pattern)),
         }
@@ -164,14 +166,22 @@ pub(super) fn expression(arena: &Arena, syntax: &Syntax, scope: &Scope) -> Resul
             Value::List(entries.collect::<Result<_, _>>()?)
         }
         Syntax::Struct(structure) if structure.rest.is_none() => {
-            let mut fields = BTreeMap::new();
+            let (mut fields, mut parts) = (BTreeMap::new(), BTreeMap::new());
             for field in &structure.fields {
                 let Member::Named(name) = &field.member else {
                     return Err(unknown());
                 };
-                fields.insert(name.to_string(), scalar(&field.expr)?);
+                match expression(arena, &field.expr, scope)? {
+                    Value::Scalar(value) => drop(fields.insert(name.to_string(), value)),
+                    Value::Matrix(columns) => drop(parts.insert(name.to_string(), columns)),
+                    _ => return Err(unknown()),
+                }
             }
-            Value::Fields(fields)
+            match (parts.is_empty(), fields.is_empty()) {
+                (true, _) => Value::Fields(fields),
+                (false, true) => Value::Parts(parts),
+                (false, false) => return Err(unknown()),
+            }
         }
         Syntax::Call(call) => function(arena, call, scope)?,
         _ => return Err(unknown()),
@@ -192,7 +202,7 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
         call.args.iter().map(|argument| expression(arena, argument, scope)).collect::<Result<_, _>>()?;
     if name == "from" {
         return match (owner.as_str(), arguments.as_slice()) {
-            ("SVector", [column]) => Ok(Value::Matrix(vec![column.column().ok_or_else(unknown)?])),
+            ("SVector" | "Self", [column]) => Ok(Value::Matrix(vec![column.column().ok_or_else(unknown)?])),
             ("SMatrix", [Value::List(columns)]) => {
                 let columns: Option<Vec<Vec<Expr>>> = columns.iter().map(Value::column).collect();
                 columns.map(Value::Matrix).ok_or_else(unknown)
@@ -200,12 +210,20 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
             _ => Err(unknown()),
         };
     }
+    if (owner.as_str(), name.as_str(), arguments.len()) == ("SMatrix", "zeros", 0) {
+        // No columns: what is not there.
+        return Ok(Value::Matrix(Vec::new()));
+    }
     let scalars: Option<Vec<Expr>> = arguments.iter().map(Value::scalar).collect();
     let scalars = scalars.ok_or_else(unknown)?;
     match (owner.as_str(), name.as_str(), scalars.as_slice()) {
         ("Real", "powf", [base, exponent]) => {
             let exponent = arena.as_number(*exponent).ok_or_else(unknown)?;
             Ok(Value::Scalar(arena.power(*base, &exponent)))
+        }
+        ("Real", "sin_cos", &[angle]) => {
+            let both = [Function::Sin, Function::Cos].map(|function| Value::Scalar(arena.call(function, &[angle])));
+            Ok(Value::List(both.to_vec()))
         }
         ("Real", name, arguments) => {
             let row = Function::table()

@@ -8,7 +8,8 @@ use std::collections::{HashMap, HashSet};
 
 use super::definitions::circles;
 use super::names::admit;
-use super::written::{Entry, Model, Simulation, Spanned};
+use super::spanned::{Entry, Spanned};
+use super::written::{Baseline, Model, Simulation};
 use super::{Decimal, Formula};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
@@ -31,17 +32,33 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.g_y, &y, "g_y");
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
+        pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
         if let Some(simulation) = &model.simulation {
             pass.belong(&simulation.initial, &both, "initial");
             pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
+            pass.belong(&simulation.noise, &y, "noise");
+            let parameters = model.parameters.iter().map(|entry| &entry.name);
+            let true_values = Group::new(parameters.chain(&model.x), "a parameter or a state of x");
+            pass.belong(&simulation.plant, &true_values, "plant");
             for baseline in &simulation.baselines {
-                pass.belong(&baseline.value.estimate, &x, "estimate");
+                match &baseline.value {
+                    Baseline::Equations(equations) => pass.belong(&equations.estimate, &x, "estimate"),
+                    Baseline::Kalman(filter) => {
+                        pass.belong(&filter.sensors, &y, "sensors");
+                        pass.belong(&filter.start, &x, "start");
+                        pass.belong(&filter.disturbance, &both, "disturbance");
+                        pass.belong(&filter.initial, &x, "initial");
+                    }
+                    Baseline::Luenberger(observer) => pass.belong(&observer.initial, &x, "initial"),
+                }
             }
         }
     }
+    pass.units(model);
+    pass.inverted(model);
     model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
-        pass.simulation(simulation, &scope, &model.w);
+        pass.simulation(simulation, &scope, (&model.u, &model.w));
     }
 }
 
@@ -101,6 +118,35 @@ impl Pass<'_> {
         }
     }
 
+    /// A unit is a word that goes into a line of documentation or beside an axis.
+    fn units(&mut self, model: &Model) {
+        const LONGEST: usize = 20;
+        for unit in model.units.iter().map(|entry| &entry.value) {
+            let text = unit.value.as_str();
+            let plain = text.chars().all(|letter| letter.is_alphanumeric() || " ·*/^().-+%°'\"_".contains(letter));
+            if text.trim().is_empty() || text.chars().count() > LONGEST || !plain {
+                let message = format!("{} is no unit", quoted(text));
+                self.diagnostics.push(
+                    Diagnostic::error(Code::WrongShape, unit.span, message)
+                        .help(format!("write up to {LONGEST} letters, digits and signs, as `kg m^2/s`")),
+                );
+            }
+        }
+    }
+
+    /// A left inverse is of a transform. What is wrong with a transform that is there has been told.
+    fn inverted(&mut self, model: &Model) {
+        if self.diagnostics.has_errors() {
+            return;
+        }
+        let (None, [], Some(first)) = (&model.class, model.phi.as_slice(), model.phi_left.first()) else { return };
+        let message = "`phi_left` stands without the `phi` that it inverts";
+        self.diagnostics.push(
+            Diagnostic::error(Code::MissingKey, first.name.span, message)
+                .help("write `phi`, or leave `phi_left` out: then both are searched for"),
+        );
+    }
+
     /// Every name has an entry.
     fn complete(&mut self, entries: &[Entry<Formula>], names: &[Spanned<String>], section: &str) {
         // Without any entry the section itself has been reported.
@@ -117,23 +163,42 @@ impl Pass<'_> {
     }
 
     /// Every entry has a name of the group.
-    fn belong(&mut self, entries: &[Entry<Formula>], group: &Group<'_>, section: &str) {
+    fn belong<T>(&mut self, entries: &[Entry<T>], group: &Group<'_>, section: &str) {
         let strangers = entries.iter().map(|entry| &entry.name);
         for name in strangers.filter(|name| !group.set.contains(name.value.as_str())) {
             self.diagnostics.push_with(|| stranger(name, group, section));
         }
     }
 
-    fn simulation(&mut self, simulation: &Simulation, model: &Scope<'_>, w: &[Spanned<String>]) {
+    fn simulation(
+        &mut self,
+        simulation: &Simulation,
+        model: &Scope<'_>,
+        (u, w): (&[Spanned<String>], &[Spanned<String>]),
+    ) {
         self.positive(simulation.duration.as_ref(), "the duration");
         self.positive(simulation.step.as_ref(), "the step");
         // The course of a signal of `w` is given here, under the name that it has already.
         let signals = simulation.signals.iter().map(|entry| &entry.name);
         let signals = signals.filter(|name| w.iter().all(|known| known.value != name.value));
+        let (inputs, signals): (Vec<_>, Vec<_>) =
+            signals.partition(|name| u.iter().any(|input| input.value == name.value));
+        for name in inputs {
+            let message = format!("{} is an input, which has no course under `signals`", quoted(&name.value));
+            self.diagnostics.push(
+                Diagnostic::error(Code::UnknownEntry, name.span, message).help(format!(
+                    "set it under `control`, as `{}: 0`, perhaps by a signal of another name",
+                    name.value
+                )),
+            );
+        }
         let define = simulation.define.iter().map(|entry| &entry.name);
-        let own = self.declare(signals.chain(define), &[model]);
+        let own = self.declare(signals.into_iter().chain(define), &[model]);
         self.circles(&simulation.define);
-        for signal in &simulation.signals {
+        for deviation in &simulation.noise {
+            self.not_negative(&deviation.value, "a standard deviation");
+        }
+        for signal in simulation.signals.iter().chain(&simulation.plant) {
             for pair in signal.value.windows(2) {
                 let [before, after] = pair else { continue };
                 self.ascend(&before.from, &after.from);
@@ -142,18 +207,30 @@ impl Pass<'_> {
         // Baselines do not see one another: the same state may occur in two of them.
         for baseline in &simulation.baselines {
             self.name(&baseline.name);
-            let states = || baseline.value.state.iter().map(|entry| &entry.name);
-            self.declare(states(), &[model, &own]);
-            let group = Group::new(states(), "a state of the baseline");
-            self.belong(&baseline.value.initial, &group, "initial");
+            match &baseline.value {
+                Baseline::Equations(equations) => {
+                    let states = || equations.state.iter().map(|entry| &entry.name);
+                    self.declare(states(), &[model, &own]);
+                    let group = Group::new(states(), "a state of the baseline");
+                    self.belong(&equations.initial, &group, "initial");
+                }
+                Baseline::Kalman(filter) => {
+                    for deviation in &filter.sensors {
+                        self.positive(Some(&deviation.value), "the standard deviation of a sensor");
+                    }
+                    for deviation in filter.start.iter().chain(&filter.disturbance) {
+                        self.not_negative(&deviation.value, "a standard deviation");
+                    }
+                }
+                Baseline::Luenberger(observer) => self.poles(&observer.poles),
+            }
         }
         self.feedback(simulation);
     }
 
     fn feedback(&mut self, simulation: &Simulation) {
         let Some(feedback) = &simulation.feedback else { return };
-        let baselines = simulation.baselines.iter().map(|entry| entry.name.value.as_str());
-        let choices: Vec<&str> = ["observer", "truth"].into_iter().chain(baselines).collect();
+        let choices = simulation.feedbacks();
         if choices.contains(&feedback.value.as_str()) {
             return;
         }
@@ -174,6 +251,32 @@ impl Pass<'_> {
                 .also(before.span, "the previous piece starts here")
                 .help("order the pieces by their start times"),
         );
+    }
+
+    fn not_negative(&mut self, number: &Spanned<Decimal>, what: &str) {
+        if number.value.to_f64() < 0.0 {
+            let message = format!("{what} must not be negative");
+            self.diagnostics
+                .push(Diagnostic::error(Code::NumberOutOfRange, number.span, message).help("write 0 for none"));
+        }
+    }
+
+    /// Poles are in the left half of the plane, and each there once.
+    fn poles(&mut self, poles: &[Spanned<Decimal>]) {
+        for (place, pole) in poles.iter().enumerate() {
+            let value = pole.value.to_f64();
+            let message = if value >= 0.0 {
+                "a pole must be negative"
+            } else if poles[..place].iter().any(|other| other.value.to_f64().total_cmp(&value).is_eq()) {
+                "this pole is there twice"
+            } else {
+                continue;
+            };
+            self.diagnostics.push(
+                Diagnostic::error(Code::NumberOutOfRange, pole.span, message)
+                    .help("write distinct numbers below zero, as `poles: [-100, -110]`"),
+            );
+        }
     }
 
     fn positive(&mut self, number: Option<&Spanned<Decimal>>, what: &str) {

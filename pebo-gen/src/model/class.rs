@@ -6,7 +6,7 @@
 use serde::Deserialize;
 
 use super::formula::{Decimal, Formula};
-use super::written::Spanned;
+use super::spanned::Spanned;
 use crate::source::Span;
 
 /// A class with its formulas.
@@ -70,7 +70,7 @@ pub struct Mechanical<F> {
     pub v: Option<F>,
     /// How the inputs act on the momenta.
     pub g: Option<Matrix<F>>,
-    /// The frame: the transform is `T(q)' p`.
+    /// The frame: the transform is `T(q)' p`; searched for where it is absent.
     pub t: Option<Matrix<F>>,
 }
 
@@ -160,12 +160,21 @@ impl<F> Electromechanical<F> {
 }
 
 impl Class {
+    /// The key of a linear plant.
+    pub const LTI: &str = "lti";
+
+    /// The key of a mechanical plant.
+    pub const MECHANICAL: &str = "mechanical";
+
+    /// The key of an electromechanical plant.
+    pub const ELECTROMECHANICAL: &str = "electromechanical";
+
     /// The key of the class.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Lti(_) => "lti",
-            Self::Mechanical(_) => "mechanical",
-            Self::Electromechanical(_) => "electromechanical",
+            Self::Lti(_) => Self::LTI,
+            Self::Mechanical(_) => Self::MECHANICAL,
+            Self::Electromechanical(_) => Self::ELECTROMECHANICAL,
         }
     }
 

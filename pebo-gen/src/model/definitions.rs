@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use super::formula::Formula;
-use super::written::{Entry, Spanned};
+use super::spanned::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, listed, quoted};
 
 /// More places of a circle than these make its diagnostic unreadable.

@@ -17,6 +17,7 @@ pub mod formula;
 mod names;
 mod observer;
 pub mod rust;
+mod spanned;
 mod written;
 #[cfg(feature = "yaml")]
 mod yaml;
@@ -26,10 +27,11 @@ mod tests;
 
 pub use check::check;
 pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
-pub use formula::{Comparison, Decimal, Formula, Function, Operator, Relation, Term};
+pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
-pub use written::{Baseline, CascadeClass, Entry, Model, Panel, Piece, Scale, Simulation, Spanned};
+pub use spanned::{Entry, Spanned};
+pub use written::{Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, Scale, Simulation};
 
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};

@@ -4,7 +4,7 @@
 use serde::Deserialize;
 
 use super::formula::Decimal;
-use super::written::Spanned;
+use super::spanned::Spanned;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
 /// How the observer is built; what is left out, the generator chooses.
@@ -22,6 +22,8 @@ pub struct Observer {
     pub regressor_gain: Vec<Spanned<Decimal>>,
     /// The rate at which the past is forgotten, in 1/s; zero if absent.
     pub forgetting: Option<Spanned<Decimal>>,
+    /// By how much the covariance of least squares grows in a second: one for each unknown, or one for all.
+    pub process_noise: Vec<Spanned<Decimal>>,
     /// `mu` of a gradient divided by `1 + mu |Phi|^2`.
     pub normalisation: Option<Spanned<Decimal>>,
     /// `mu` of finite-time DREM, between 0 and 1.
@@ -30,17 +32,21 @@ pub struct Observer {
     pub period: Option<Spanned<Decimal>>,
     /// Between what the unknowns are known to be.
     pub bounds: Bounds,
+    /// Between what the recovered states are known to be: their estimates are kept there.
+    pub within: Bounds,
     /// The filters' corner frequency in rad/s.
     pub filter: Option<Spanned<Decimal>>,
     /// In place of the filter, the samples of the window of the integral form.
     pub window: Option<Spanned<Decimal>>,
     /// How samples are joined to signals.
     pub hold: Option<Spanned<Hold>>,
+    /// Samples after which the extension starts again from the estimate; never if absent.
+    pub rebase: Option<Spanned<Decimal>>,
     /// The extension chi at the start: one value each; empty for zeros.
     pub extension: Vec<Spanned<Decimal>>,
 }
 
-/// Between what the unknowns are known to be: one number for each, or one for all; empty where there is no bound.
+/// Between what unknowns or states are known to be: one number for each, or one for all; empty where there is no bound.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
@@ -128,7 +134,8 @@ impl Estimator {
     pub fn admits(self) -> &'static [&'static str] {
         match self {
             Self::Gradient | Self::NormalisedGradient | Self::GradientDrem => &[],
-            Self::LeastSquares | Self::LeastSquaresDrem | Self::Drem => &["forgetting"],
+            Self::LeastSquares => &["forgetting", "process_noise"],
+            Self::LeastSquaresDrem | Self::Drem => &["forgetting"],
             Self::FiniteTimeDrem => &["forgetting", "period"],
         }
     }
@@ -153,6 +160,7 @@ impl Observer {
             "covariance" => all(&self.covariance),
             "regressor_gain" => all(&self.regressor_gain),
             "forgetting" => one(&self.forgetting),
+            "process_noise" => all(&self.process_noise),
             "normalisation" => one(&self.normalisation),
             "clip" => one(&self.clip),
             "period" => one(&self.period),
@@ -164,7 +172,9 @@ impl Observer {
     pub(super) fn check(&self, diagnostics: &mut Diagnostics) {
         // An estimator that was misspelt is absent, and nobody knows what it has.
         let known = self.estimator.is_some() || !diagnostics.has_errors();
-        for key in ["gain", "covariance", "regressor_gain", "forgetting", "normalisation", "clip", "period"] {
+        let keys =
+            ["gain", "covariance", "regressor_gain", "forgetting", "process_noise", "normalisation", "clip", "period"];
+        for key in keys {
             let estimator = self.estimator();
             if let Some(place) = self.place(key).filter(|_| known && !estimator.has(key)) {
                 diagnostics.push(self.stranger(key, place));
@@ -201,12 +211,21 @@ impl Observer {
                 within(number, |value| value >= 0.0, message, help);
             }
         }
+        for number in &self.process_noise {
+            let help = "write 0 for an unknown that does not wander";
+            within(number, |value| value >= 0.0, "process noise must not be negative", help);
+        }
         if let Some(clip) = &self.clip {
             let help = "write a number above 0 and below 1: 0.1 amplifies noise at most ten times";
             within(clip, |value| value > 0.0 && value < 1.0, "the clip must be between 0 and 1", help);
         }
+        let whole = |value: f64| value >= 1.0 && value.fract() == 0.0;
+        if let Some(rebase) = &self.rebase {
+            let countable = |value: f64| value >= 1.0 && value.fract() == 0.0 && value <= f64::from(u32::MAX);
+            let help = "write 1 for every sample, and leave the key out for never";
+            within(rebase, countable, "`rebase` is a number of samples", help);
+        }
         if let Some(window) = &self.window {
-            let whole = |value: f64| value >= 1.0 && value.fract() == 0.0;
             within(window, whole, "a window is a number of samples", "write a whole number above zero");
         }
         if let (Some(filter), Some(window)) = (&self.filter, &self.window) {

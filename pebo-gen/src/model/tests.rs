@@ -3,7 +3,7 @@
 mod hostile;
 mod mistakes;
 
-use super::{CascadeClass, Estimator, Hold, Model, Scale};
+use super::{Baseline, CascadeClass, Estimator, Hold, Model, Scale};
 use crate::source::{Diagnostic, Source};
 
 /// The design's example.
@@ -30,12 +30,15 @@ phi_left: {i3: z2}
 g_y: {v4: i1 + d}
 identities: [i1 - i1]
 angles: {i1: 2*pi}
-observer: {estimator: gradient, gain: 1e7, bounds: {lower: -1, upper: [2, 3]}, filter: 500, hold: first-order, extension: [0, 1]}
+units: {i1: A, v2: V, L1: H}
+observer: {estimator: gradient, gain: 1e7, bounds: {lower: -1, upper: [2, 3]}, within: {lower: 0, upper: [4, 5]}, filter: 500, hold: first-order, extension: [0, 1]}
 simulation:
   duration: 0.5
   step: 1e-6
   initial: {i1: 0, v2: E}
   signals: {V_d: {0: 25, 0.2: 30*t}, V: 1}
+  noise: {v2: 0.1}
+  plant: {E: {0: 12, 0.25: 13}}
   define: {power: V_d*hat(i1)}
   control: {d: V_d/(V_d + E)}
   feedback: copy
@@ -44,6 +47,8 @@ simulation:
       state: {a: -a + v2 - hat(i1)}
       initial: {a: v2}
       estimate: {i1: a}
+    kalman: {sensors: {v2: 0.1, v4: 0.2}, start: {i1: 1}, disturbance: {i1: 1, v2: 2}, initial: {i1: v2}}
+    luenberger: {poles: [-1, -2], initial: {i1: 1}}
   panels:
     - {title: error, unit: A, curves: [hat(i1) - i1, v2], scale: log}
     - {title: duty, curves: [d]}
@@ -77,12 +82,18 @@ fn every_key_is_read() {
     assert_eq!(model.observer.gain[0].value.text(), "1e7");
     assert_eq!(model.observer.hold.map(|hold| hold.value), Some(Hold::FirstOrder));
     assert_eq!(model.observer.extension.len(), 2);
+    assert_eq!((model.observer.within.lower.len(), model.observer.within.upper.len()), (1, 2));
     assert_eq!(model.asked.map(|asked| asked.value), Some(CascadeClass::Gpebo));
     let simulation = model.simulation.expect("it is there");
     let starts: Vec<f64> = simulation.signals[0].value.iter().map(|piece| piece.from.value.to_f64()).collect();
     assert_eq!(starts, [0.0, 0.2]);
     assert_eq!(simulation.signals[1].value.len(), 1);
-    assert_eq!(simulation.baselines[0].value.state.len(), 1);
+    assert_eq!(simulation.noise[0].value.value.text(), "0.1");
+    assert_eq!(simulation.plant[0].value.len(), 2);
+    let [copy, kalman, luenberger] = simulation.baselines.as_slice() else { panic!("three baselines") };
+    assert_eq!(copy.value.equations().map(|equations| equations.state.len()), Some(1));
+    assert!(matches!(&kalman.value, Baseline::Kalman(filter) if !filter.extended && filter.start.len() == 1));
+    assert!(matches!(&luenberger.value, Baseline::Luenberger(observer) if observer.poles.len() == 2));
     let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale).collect();
     assert_eq!(scales, [Scale::Log, Scale::Linear]);
 }
@@ -92,7 +103,7 @@ fn every_estimator_has_its_settings() {
     let sections = [
         "gain: 2",
         "estimator: normalised-gradient, gain: [2, 3], normalisation: 0",
-        "estimator: least-squares, covariance: 1e6, window: 100",
+        "estimator: least-squares, covariance: 1e6, process_noise: [0, 1], window: 100, rebase: 10",
         "estimator: drem, gain: 1, regressor_gain: 3, forgetting: 0",
         "estimator: finite-time-drem, gain: 1, regressor_gain: [3, 4], forgetting: 5, clip: 0.1, period: 0.01",
         "estimator: gradient-drem, gain: 1, regressor_gain: 3",

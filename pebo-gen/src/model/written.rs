@@ -10,27 +10,7 @@ use super::class::Class;
 use super::definitions::sorted;
 use super::formula::{Comparison, Decimal, Formula};
 use super::observer::Observer;
-use crate::source::Span;
-
-/// A value and where it stands.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-pub struct Spanned<T> {
-    /// The value.
-    pub value: T,
-    /// Its place.
-    pub span: Span,
-}
-
-/// A named value: `name: value` in a map.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-pub struct Entry<T> {
-    /// The name.
-    pub name: Spanned<String>,
-    /// The value.
-    pub value: T,
-}
+use super::spanned::{Entry, Spanned};
 
 /// A model.
 ///
@@ -76,6 +56,8 @@ pub struct Model {
     pub identities: Vec<Formula>,
     /// States that are angles, with their periods.
     pub angles: Vec<Entry<Formula>>,
+    /// Units of parameters and signals.
+    pub units: Vec<Entry<Spanned<String>>>,
     /// How the observer is built.
     pub observer: Observer,
     /// What to simulate.
@@ -93,6 +75,11 @@ pub struct Simulation {
     pub initial: Vec<Entry<Formula>>,
     /// Signals in time, in `t` and parameters.
     pub signals: Vec<Entry<Vec<Piece>>>,
+    /// Standard deviations of the outputs' samples, in their units; none where absent.
+    pub noise: Vec<Entry<Spanned<Decimal>>>,
+    /// True values in time of parameters, and of states whose rate is 0, in `t` and the model's parameters: where they
+    /// differ from what the model says.
+    pub plant: Vec<Entry<Vec<Piece>>>,
     /// Named sub-expressions for the control law, each of which uses only those before it
     /// and those of the model.
     pub define: Vec<Entry<Formula>>,
@@ -116,9 +103,61 @@ pub struct Piece {
     pub formula: Formula,
 }
 
+/// An observer to compare with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Baseline {
+    /// Given by its equations, under any name but those of the others.
+    Equations(Equations),
+    /// A Kalman filter of the plant, under its own name.
+    Kalman(Kalman),
+    /// Luenberger's observer of the plant, under its own name.
+    Luenberger(Luenberger),
+}
+
+impl Baseline {
+    /// The name of the Kalman filter, of a plant that is affine in its states.
+    pub const KALMAN: &str = "kalman";
+
+    /// The name of the extended Kalman filter.
+    pub const EXTENDED: &str = "ekf";
+
+    /// The name of Luenberger's observer.
+    pub const LUENBERGER: &str = "luenberger";
+
+    /// Its equations, if it is given by these.
+    pub fn equations(&self) -> Option<&Equations> {
+        if let Self::Equations(equations) = self { Some(equations) } else { None }
+    }
+}
+
+/// A Kalman filter of the states and outputs, fed the same samples; standard deviations of what is not named are those
+/// that the keys of the file say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kalman {
+    /// Whether it is the extended one, of the plant as linearised at its estimate.
+    pub extended: bool,
+    /// Standard deviations of the outputs' samples.
+    pub sensors: Vec<Entry<Spanned<Decimal>>>,
+    /// Standard deviations of the unmeasured states at the start.
+    pub start: Vec<Entry<Spanned<Decimal>>>,
+    /// By how much a state or an output drifts besides its rate, in its unit per root second.
+    pub disturbance: Vec<Entry<Spanned<Decimal>>>,
+    /// Its estimates at the start, zero where absent.
+    pub initial: Vec<Entry<Formula>>,
+}
+
+/// Luenberger's observer of the states and outputs: the error has these poles while the inputs rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Luenberger {
+    /// The poles of continuous time, in 1/s: one for each state and each output that has a rate.
+    pub poles: Vec<Spanned<Decimal>>,
+    /// Its estimates at the start, zero where absent.
+    pub initial: Vec<Entry<Formula>>,
+}
+
 /// An observer given by its equations.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Baseline {
+pub struct Equations {
     /// Its states with their rates; `hat(x)` is its own estimate.
     pub state: Vec<Entry<Formula>>,
     /// Its states at the start, in outputs and parameters; zero where absent.
@@ -178,6 +217,20 @@ impl CascadeClass {
             Self::Pebo => Self::NAMES[0],
             Self::Gpebo => Self::NAMES[1],
         }
+    }
+}
+
+impl Simulation {
+    /// For `feedback`: the estimates of the model's own observer.
+    pub const OBSERVER: &str = "observer";
+
+    /// For `feedback`: the unmeasured states themselves, as the control law may see them in a simulation.
+    pub const TRUTH: &str = "truth";
+
+    /// Whose estimates the control law may see.
+    pub fn feedbacks(&self) -> Vec<&str> {
+        let baselines = self.baselines.iter().map(|entry| entry.name.value.as_str());
+        [Self::OBSERVER, Self::TRUTH].into_iter().chain(baselines).collect()
     }
 }
 

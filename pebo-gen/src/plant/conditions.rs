@@ -6,7 +6,7 @@
 
 use crate::cas::asks::Want;
 use crate::cas::facts::Relation;
-use crate::cas::{Arena, Expr, Function};
+use crate::cas::{Arena, Expr};
 use crate::model::formula::{Formula, Operator, Term};
 use crate::source::Diagnostic;
 
@@ -38,9 +38,7 @@ pub(super) fn collect(
         }
         Term::Call(function, arguments) => {
             let values = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
-            if let Some(function) = Function::named(function.name) {
-                ask(&arguments[0], arena.asked_by_call(function, &values, want));
-            }
+            ask(&arguments[0], arena.asked_by_call(*function, &values, want));
         }
         _ => {}
     }

@@ -28,15 +28,8 @@ pub fn lower(arena: &Arena, scope: &Scope, formula: &Formula) -> Result<Expr, Di
         }
         Term::Call(function, arguments) => {
             let lowered = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
-            let Some(named) = Function::named(function.name) else {
-                return Err(Diagnostic::error(
-                    Code::UnknownFunction,
-                    formula.span,
-                    format!("the function `{}` has no meaning yet", function.name),
-                ));
-            };
-            in_domain(arena, named, &lowered, arguments[0].span)?;
-            Ok(arena.call(named, &lowered))
+            in_domain(arena, *function, &lowered, arguments[0].span)?;
+            Ok(arena.call(*function, &lowered))
         }
     }
 }

@@ -3,10 +3,14 @@
 //! Entries are kept as the shortest exact form that is at hand: the author's own, or the normal form of
 //! what was computed from it.
 
+mod adjugate;
+
 use crate::cas::determinant::determinant;
+use crate::cas::domain::Domain;
 use crate::cas::facts::Facts;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::linear::Echelon;
+use crate::cas::rank::rank_seen;
 use crate::cas::{Arena, Expr, Symbol};
 
 /// A matrix of expressions, by rows; at least one entry.
@@ -82,8 +86,8 @@ impl Matrix {
     /// The product.
     #[must_use]
     pub fn mul(&self, arena: &Arena, other: &Self) -> Self {
-        let entry = |i: usize, j: usize| arena.sum((0..self.width()).map(|k| arena.mul(self.at(i, k), other.at(k, j))));
-        Self::build(self.height(), other.width(), entry)
+        let columns: Vec<Vec<Expr>> = (0..other.width()).map(|column| other.column(column)).collect();
+        Self::build(self.height(), other.width(), |i, j| arena.dot(&self.rows[i], &columns[j]))
     }
 
     /// The product with a column.
@@ -130,6 +134,12 @@ impl Matrix {
 
     /// The rank over the field of functions of what the entries hold.
     pub fn rank(&self, arena: &Arena, facts: &Facts) -> Result<usize, Obstacle> {
+        // A rank that a point shows is the least that there is: the greatest possible needs no elimination.
+        let most = self.height().min(self.width());
+        let domain = Domain { facts: facts.clone(), ..Domain::default() };
+        if rank_seen(arena, &domain, &self.rows, self.width()) == most {
+            return Ok(most);
+        }
         self.echelon(arena, facts, |_, echelon| echelon.rank())
     }
 
@@ -165,5 +175,5 @@ impl Matrix {
 
 /// The sum of the products of the entries.
 pub fn dot(arena: &Arena, left: &[Expr], right: &[Expr]) -> Expr {
-    arena.sum(left.iter().zip(right).map(|(a, b)| arena.mul(*a, *b)))
+    arena.dot(left, right)
 }

@@ -19,11 +19,14 @@ mod period;
 mod plant;
 mod resolve;
 mod scope;
+pub mod settings;
 mod terms;
 mod values;
 
+pub use crate::model::CascadeClass;
 pub use class::{Class, Proposal};
 pub use formula::lower;
 pub use matrix::Matrix;
-pub use plant::{Assumption, Formula, Output, Parameter, Plant, State};
+pub use plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin};
 pub use scope::Scope;
+pub use settings::Settings;

@@ -1,8 +1,12 @@
 //! What a model means: names resolved, numbers exact.
+//!
+//! One thing with `class`, `resolve` and the passes that `resolve` calls: a plant holds what its class expanded to, a class
+//! expands to a plant's equations, and each pass adds to the plant what it has found.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
+use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::manifold::Manifold;
@@ -13,9 +17,10 @@ use crate::model::CascadeClass;
 use crate::source::Span;
 
 use super::class::{Class, Proposal};
+use super::own::Own;
 
-/// A plant with its candidate transform, resolved.
-#[derive(Debug)]
+/// A plant, resolved, with its candidate transform if there is one.
+#[derive(Clone, Debug)]
 pub struct Plant {
     /// The identifier of the model.
     pub name: String,
@@ -23,8 +28,8 @@ pub struct Plant {
     pub title: Option<String>,
     /// Where it is from.
     pub reference: Option<String>,
-    /// Where all expressions of this plant live.
-    pub arena: Arena,
+    /// Where all expressions of this plant live, and of the same plant with other transforms.
+    pub arena: Rc<Arena>,
     /// The class that it was written by, with what the class knows of it.
     pub class: Option<Class>,
     /// What the class proposes; proved like anything else.
@@ -41,8 +46,10 @@ pub struct Plant {
     pub u: Vec<Symbol>,
     /// Signals that are neither measured nor estimated; no result may depend on them.
     pub w: Vec<Symbol>,
-    /// The candidate transform z = phi(x, y), one formula a component.
+    /// The candidate transform z = phi(x, y), one formula a component; none where it is to be searched for.
     pub phi: Vec<Formula>,
+    /// Where the transform is from.
+    pub origin: TransformOrigin,
     /// The left inverse as the author gave it: states with formulas in z and y.
     pub phi_left: Option<Vec<(Symbol, Formula)>>,
     /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of the
@@ -50,6 +57,8 @@ pub struct Plant {
     pub identities: Vec<Formula>,
     /// States that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,
+    /// Units of parameters and signals, as far as the author gives them.
+    pub units: BTreeMap<Symbol, String>,
     /// The domain that the author assumes.
     pub assumptions: Vec<Assumption>,
     /// The summands of the rates as they are written, each where it stands.
@@ -68,6 +77,28 @@ pub struct Plant {
     pub theta: Vec<Symbol>,
     /// What stands before the number of an unknown of the regression, where these are functions of theta.
     pub eta: String,
+}
+
+/// Where a transform is from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TransformOrigin {
+    /// The author gave it, or nobody has yet.
+    Given,
+    /// The class that the plant was written by gives it.
+    Class,
+    /// It was searched for.
+    Found,
+}
+
+impl TransformOrigin {
+    /// The origin in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Class => "class",
+            Self::Found => "found",
+        }
+    }
 }
 
 /// A constant of the plant.
@@ -125,6 +156,34 @@ pub struct Assumption {
 }
 
 impl Plant {
+    /// The same plant with another transform, which was searched for: a component that fails is pointed at where the
+    /// rates of the states begin.
+    #[must_use]
+    pub fn with_transform(&self, transform: &[Expr]) -> Self {
+        let Own { z, chi, theta, xi, psi } = Own::of(&self.arena, transform.len());
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let mut conditions = self.conditions.clone();
+        for (expr, relation) in self.arena.asks(transform, Want::Slope) {
+            if conditions.iter().all(|known| (known.expr, known.relation) != (expr, relation)) {
+                conditions.push(Assumption { expr, relation, span });
+            }
+        }
+        let phi = transform.iter().map(|component| Formula { expr: *component, span }).collect();
+        let (origin, proposal) = (TransformOrigin::Found, Proposal::default());
+        Self { phi, origin, proposal, phi_left: None, conditions, z, chi, theta, xi, psi, ..self.clone() }
+    }
+
+    /// The same plant where these are positive.
+    #[must_use]
+    pub fn with_positive(&self, symbols: &[Symbol]) -> Self {
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let mut plant = self.clone();
+        let assumed =
+            |symbol: &Symbol| Assumption { expr: self.arena.of_symbol(*symbol), relation: Relation::Positive, span };
+        plant.assumptions.extend(symbols.iter().map(assumed));
+        plant
+    }
+
     /// The components of the transform.
     pub fn transform(&self) -> Vec<Expr> {
         self.phi.iter().map(|f| f.expr).collect()

@@ -1,9 +1,10 @@
 //! A written model to a plant.
 //!
-//! In: a model whose declarations are consistent. Out: the plant, or every name and formula in it that
+//! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every name and formula in it that
 //! has no meaning.
 
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 use crate::cas::asks::Want;
 use crate::cas::budget::Budget;
@@ -16,7 +17,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use super::class;
 use super::formula::{exact, lower};
 use super::own::{Own, letter_of_unknowns};
-use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, assumed};
+use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin, assumed};
 use super::scope::Scope;
 use super::{terms, values};
 
@@ -30,7 +31,7 @@ impl Plant {
     /// expansion of a class does.
     pub fn resolve_within(model: &Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
         let mut problems = Diagnostics::new();
-        let arena = Arena::within(budget);
+        let arena = Rc::new(Arena::within(budget));
         // In this order, so that results print parameters before states before inputs.
         let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
         let names = |list: &[Spanned<String>]| -> Vec<Symbol> {
@@ -70,6 +71,7 @@ impl Plant {
             }
         };
         let class::Expansion { x: states, y: mut outputs, phi, proposal, class, conditions } = dynamics;
+        let origin = if class.is_some() { TransformOrigin::Class } else { TransformOrigin::Given };
         let mut identities =
             problems.all(model.identities.iter().map(|f| within(f, &with(&[&x, &y, &u]), "an identity in x, y and u")));
         values::confine(&arena, &outputs, &with(&[&x, &y, &u]), &mut problems);
@@ -90,6 +92,8 @@ impl Plant {
             let formula = confined(&arena, expr, entry.value.span, &on_transform, "phi_left(z, y)")?;
             Ok((arena.symbol(&entry.name.value), formula))
         }));
+        let units =
+            model.units.iter().map(|entry| (arena.symbol(&entry.name.value), entry.value.value.clone())).collect();
         let conditions = asked(&arena, &scope, model, conditions);
         let terms = terms::of_rates(&arena, &scope, model);
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
@@ -111,10 +115,12 @@ impl Plant {
             y: outputs,
             u,
             w,
+            origin,
             phi,
             phi_left: (!phi_left.is_empty()).then_some(phi_left),
             identities,
             angles,
+            units,
             terms,
             conditions,
             assumptions,

@@ -25,7 +25,13 @@ impl Cost {
     /// The cost of one run.
     pub fn of(program: &Program) -> Self {
         let mut cost = Self::default();
-        for operation in &program.operations {
+        for (index, operation) in program.operations.iter().enumerate() {
+            // Sine and cosine of an angle are one call.
+            if let Some(other) = operation.companion()
+                && program.operations[..index].contains(&other)
+            {
+                continue;
+            }
             let counter = match operation {
                 Operation::Neg(_) | Operation::Add(..) | Operation::Sub(..) => &mut cost.sums,
                 Operation::Mul(..) => &mut cost.products,
@@ -36,6 +42,12 @@ impl Cost {
             *counter += 1;
         }
         cost
+    }
+
+    /// All operations in units of an addition, as on processors with a floating-point unit: a division or root about 8,
+    /// a call about 40.
+    pub fn weighted(self) -> usize {
+        self.sums + self.products + 8 * (self.quotients + self.roots) + 40 * self.calls
     }
 
     /// All operations together.
@@ -74,5 +86,17 @@ impl fmt::Display for Cost {
             separator = ", ";
         }
         if separator.is_empty() { f.write_str("none") } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_are_added_and_weighted() {
+        let cost = Cost { sums: 1, products: 2, quotients: 3, roots: 4, calls: 5 };
+        assert_eq!((cost.total(), cost.weighted()), (15, 3 + 8 * 7 + 40 * 5));
+        assert_eq!(cost + cost, Cost { sums: 2, products: 4, quotients: 6, roots: 8, calls: 10 });
     }
 }

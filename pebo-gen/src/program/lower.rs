@@ -1,17 +1,22 @@
 //! Expressions in, operations out.
 //!
-//! Every value is computed once. Signs travel with the values and end in subtractions; of the negations
-//! that are left, [`super::signs`] takes what it can. Products are in [`super::product`].
+//! Every value is computed once, sines and cosines of sums from those of the summands
+//! ([`super::angles`]). Signs travel with the values and end in subtractions; of the negations that are
+//! left, [`super::signs`] takes what it can. Products are in [`super::product`].
+//!
+//! One thing with `product`, `angles` and `sharing`: a product is lowered factor by factor, an angle by its
+//! parts, and what sharing counts is what that lowering computes.
 
 use std::fmt;
 
 use rustc_hash::FxHashMap;
 
+use super::angles::Angles;
 use super::factor::factor;
 use super::sharing::Sharing;
 use super::straight::{Constant, Operand, Operation, Program};
 use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Node, Product, Sum, Symbol};
+use crate::cas::{Arena, Expr, Function, Node, Product, Sum, Symbol};
 
 /// An output depends on a symbol that is not an input.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -30,25 +35,47 @@ impl std::error::Error for Undeclared {}
 /// # Errors
 /// [`Undeclared`] if an output depends on a symbol that is not an input.
 pub fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> Result<Program, Undeclared> {
+    lower_with(arena, inputs, &[], outputs)
+}
+
+/// The same for outputs that name some values by symbols; these depend on the inputs alone.
+pub(super) fn lower_with(
+    arena: &Arena,
+    inputs: &[Symbol],
+    parts: &[(Symbol, Expr)],
+    outputs: &[Expr],
+) -> Result<Program, Undeclared> {
     let declared: FxHashMap<Symbol, usize> =
         inputs.iter().enumerate().map(|(position, &symbol)| (symbol, position)).collect();
-    for symbol in arena.symbols_of(outputs) {
-        if !declared.contains_key(&symbol) {
-            return Err(Undeclared(symbol));
-        }
+    let values: Vec<Expr> = parts.iter().map(|part| part.1).collect();
+    let undeclared = |exprs: &[Expr], named: &[(Symbol, Expr)]| {
+        let known = |symbol: &Symbol| declared.contains_key(symbol) || named.iter().any(|part| part.0 == *symbol);
+        arena.symbols_of(exprs).into_iter().find(|symbol| !known(symbol))
+    };
+    if let Some(symbol) = undeclared(&values, &[]).or_else(|| undeclared(outputs, parts)) {
+        return Err(Undeclared(symbol));
     }
-    let outputs = factor(arena, outputs, |_| true);
+    let all = factor(arena, &[&values, outputs].concat(), |_| true);
+    let (values, outputs) = all.split_at(parts.len());
     let mut lowering = Lowering {
         arena,
         inputs: declared,
-        sharing: Sharing::of(arena, &outputs),
+        sharing: Sharing::of(arena, &all),
+        angles: Angles::of(arena, &all),
         known: FxHashMap::default(),
         constants: Numbering::default(),
         operations: Numbering::default(),
     };
-    for expr in arena.postorder(&outputs) {
-        let value = lowering.value(expr);
-        lowering.known.insert(expr, value);
+    for (&(name, _), &value) in parts.iter().zip(values) {
+        lowering.lowered(value);
+        let value = lowering.known[&value];
+        lowering.known.insert(arena.of_symbol(name), value);
+    }
+    for expr in arena.postorder(outputs) {
+        if !lowering.known.contains_key(&expr) {
+            let value = lowering.value(expr);
+            lowering.known.insert(expr, value);
+        }
     }
     let outputs = outputs.iter().map(|&expr| lowering.plain(lowering.known[&expr])).collect();
     let program = Program {
@@ -90,9 +117,10 @@ impl<T: Clone + Eq + std::hash::Hash> Numbering<T> {
 }
 
 pub(super) struct Lowering<'a> {
-    arena: &'a Arena,
+    pub(super) arena: &'a Arena,
     inputs: FxHashMap<Symbol, usize>,
     pub(super) sharing: Sharing,
+    pub(super) angles: Angles,
     pub(super) known: FxHashMap<Expr, Signed>,
     constants: Numbering<Constant>,
     operations: Numbering<Operation>,
@@ -100,7 +128,7 @@ pub(super) struct Lowering<'a> {
 
 impl Lowering<'_> {
     /// The value of an expression whose operands are known.
-    fn value(&mut self, expr: Expr) -> Signed {
+    pub(super) fn value(&mut self, expr: Expr) -> Signed {
         match self.arena.node(expr) {
             Node::Number(value) => {
                 let operand = self.number(&value.abs());
@@ -110,6 +138,9 @@ impl Lowering<'_> {
             Node::Symbol(symbol) => positive(Operand::Input(self.inputs[&symbol])),
             Node::Sum(sum) => self.sum(expr, &sum),
             Node::Product(product) => self.product(&product),
+            Node::Call(function @ (Function::Sin | Function::Cos), arguments) => {
+                positive(self.trigonometric(function, arguments[0]))
+            }
             Node::Call(function, arguments) => {
                 let values: Vec<Operand> = arguments.iter().map(|argument| self.plain(self.known[argument])).collect();
                 let operation = match values.as_slice() {

@@ -7,6 +7,7 @@
 //! In: expressions of the algebra. Out: a [`Program`], whose value is that of the expressions up to
 //! rounding, in an order of operations that depends on the expressions alone.
 
+mod angles;
 mod cost;
 mod factor;
 mod interpret;

@@ -128,3 +128,15 @@ fn is_short(value: &Rational) -> bool {
     }
     denominator.is_one()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_a_finite_decimal_is_short() {
+        let short = |n: i64, d: i64| is_short(&Rational::new(n, d).unwrap());
+        assert!(short(3, 1) && short(1, 8) && short(7, 25) && short(1, 40));
+        assert!(!short(1, 3) && !short(1, 30));
+    }
+}

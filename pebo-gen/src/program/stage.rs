@@ -1,76 +1,165 @@
-//! What depends on parameters alone, apart from what changes with every sample.
+//! What changes seldom, apart from what changes with every call.
 //!
-//! In: the functions of a model. Out: constants, and the functions with each maximal sub-expression
-//! of parameters replaced by its constant. A division by parameters becomes a multiplication by the
-//! stored reciprocal: one more rounding, and no division at run time. Numbers and pi alone are not
-//! worth a constant; an irrational number such as sqrt(2) is.
+//! In: the functions of a model. Out: constants, which depend on parameters alone; terms, which depend on
+//! parameters and the sampled outputs and are worth being kept for all functions and for both ends of an
+//! interval; and the functions with each maximal sub-expression of these kinds replaced by its name. A
+//! division by parameters becomes a multiplication by the stored reciprocal: one more rounding, and no
+//! division at run time. Numbers and pi alone are not worth a constant; an irrational number such as
+//! sqrt(2) is.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::factor::factor;
-use super::lower::{Undeclared, lower};
-use super::straight::Program;
+use super::lower::{Undeclared, lower, lower_with};
+use super::straight::{Operand, Operation, Program};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
 
 /// A function to be computed: its arguments and its outputs.
 #[derive(Clone, Debug)]
 pub struct Task {
-    /// The symbols that change from call to call.
+    /// The symbols that change from call to call, besides the sampled ones.
     pub arguments: Vec<Symbol>,
+    /// Values that the outputs name by symbols: each is computed once, as it is written.
+    pub parts: Vec<(Symbol, Expr)>,
     /// The values.
     pub outputs: Vec<Expr>,
+    /// Whether it runs with every sample. What only others need is computed where they need it.
+    pub is_regular: bool,
 }
 
-/// Functions that share constants.
+/// Functions that share constants and terms.
 #[derive(Clone, Debug)]
 pub struct Staged {
     /// The constants: each a formula in the parameters, the output of `setup` at the same position.
     pub constants: Vec<(Symbol, Expr)>,
     /// From the parameters to the constants.
     pub setup: Program,
-    /// A program for each task; its inputs are the constants, then the task's arguments.
+    /// The terms: each a formula in the constants and the sampled symbols, the output of `sample` at the same position.
+    pub terms: Vec<(Symbol, Expr)>,
+    /// From the constants and the sampled symbols to the terms.
+    pub sample: Program,
+    /// A program for each task; its inputs are the constants, the sampled symbols, the terms, then the task's arguments.
     pub programs: Vec<Program>,
 }
 
-/// Lowers functions together, with constants computed once.
+/// Lowers functions together, with constants computed once and terms once a sample.
 ///
 /// # Errors
-/// [`Undeclared`] if an output depends on a symbol that is neither a parameter nor an argument.
-pub fn stage(arena: &Arena, parameters: &[Symbol], tasks: &[Task]) -> Result<Staged, Undeclared> {
-    let parameter_set: BTreeSet<Symbol> = parameters.iter().copied().collect();
-    let roots: Vec<Expr> = tasks.iter().flat_map(|task| task.outputs.iter().copied()).collect();
-    // Factors that vary leave first: what they leave behind may be a sum of parameters.
-    let factored = {
-        let fixed = fixed(arena, &roots, &parameter_set);
-        factor(arena, &roots, |base| !fixed.contains(&base))
-    };
-    let mut split = Split {
-        arena,
-        fixed: fixed(arena, &factored, &parameter_set),
-        constants: Vec::new(),
-        symbols: FxHashMap::default(),
-    };
-    let varying = split.split(&factored);
-    let varying = factor(arena, &varying, |_| true);
+/// [`Undeclared`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
+pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[Task]) -> Result<Staged, Undeclared> {
+    let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
+    let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
+    let (mut varying, mut constants) = split(arena, &roots, parameters, "$", |_| true);
+    let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
+    let regular: Vec<bool> = tasks.iter().flat_map(|task| values(task).into_iter().map(|_| task.is_regular)).collect();
+    let steady: Vec<Expr> = varying.iter().zip(&regular).filter_map(|(value, &is)| is.then_some(*value)).collect();
+    let (steady, mut terms) = split(arena, &steady, &[&stored, sampled].concat(), "%", |expr| is_dear(arena, expr));
+    let mut steady = steady.into_iter();
+    for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| **regular) {
+        *value = steady.next().unwrap_or(*value);
+    }
+    let known: FxHashMap<Expr, Expr> = terms.iter().map(|&(term, value)| (value, arena.of_symbol(term))).collect();
+    for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
+        *value = arena.replace(*value, &known);
+    }
+    let inputs = [stored.as_slice(), sampled].concat();
+    let same = same(arena, &inputs, &terms)?;
+    terms.retain(|term| !same.contains_key(&term.0));
+    let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true);
 
     let used = arena.symbols_of(&varying);
-    let mut constants = split.constants;
+    terms.retain(|term| used.contains(&term.0));
+    let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
+    let used: BTreeSet<Symbol> = arena.symbols_of(&formulas).into_iter().chain(used).collect();
     constants.retain(|constant| used.contains(&constant.0));
-    let formulas: Vec<Expr> = constants.iter().map(|constant| constant.1).collect();
-    let setup = lower(arena, parameters, &formulas)?;
+    let setup = lower(arena, parameters, &constants.iter().map(|constant| constant.1).collect::<Vec<_>>())?;
+    let mut inputs: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
+    inputs.extend(sampled);
+    let sample = lower(arena, &inputs, &formulas)?;
+    inputs.extend(terms.iter().map(|term| term.0));
+
     let mut programs = Vec::with_capacity(tasks.len());
     let mut first = 0;
     for task in tasks {
-        let outputs = &varying[first..first + task.outputs.len()];
-        first += task.outputs.len();
-        let stored = constants.iter().map(|constant| constant.0);
-        let inputs: Vec<Symbol> = stored.chain(task.arguments.iter().copied()).collect();
-        programs.push(lower(arena, &inputs, outputs)?);
+        let (parts, rest) = varying[first..].split_at(task.parts.len());
+        let outputs = &rest[..task.outputs.len()];
+        first += task.parts.len() + task.outputs.len();
+        let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
+        programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
     }
-    Ok(Staged { constants, setup, programs })
+    Ok(Staged { constants, setup, terms, sample, programs })
+}
+
+/// Terms that are computed as another before them, or as its opposite, and what they are then: two shapes of a formula
+/// may come to the same operations.
+fn same(arena: &Arena, inputs: &[Symbol], terms: &[(Symbol, Expr)]) -> Result<BTreeMap<Symbol, Expr>, Undeclared> {
+    let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
+    let program = lower(arena, inputs, &formulas)?;
+    let opposite = |operand: Operand| {
+        let Operand::Result(index) = operand else { return None };
+        let found = |operation| program.operations.iter().position(|other| *other == operation).map(Operand::Result);
+        match program.operations[index] {
+            Operation::Neg(value) => Some(value),
+            Operation::Sub(a, b) => found(Operation::Sub(b, a)),
+            _ => None,
+        }
+    };
+    let mut known: BTreeMap<Operand, Symbol> = BTreeMap::new();
+    let mut same = BTreeMap::new();
+    for (&(term, _), &operand) in terms.iter().zip(&program.outputs) {
+        if let Some(&first) = known.get(&operand) {
+            same.insert(term, arena.of_symbol(first));
+        } else if let Some(&first) = opposite(operand).and_then(|operand| known.get(&operand)) {
+            same.insert(term, arena.neg(arena.of_symbol(first)));
+        } else {
+            known.insert(operand, term);
+        }
+    }
+    Ok(same)
+}
+
+/// The expressions with each maximal sub-expression of the given symbols that is worth it replaced by a symbol, and
+/// these symbols with their formulas.
+fn split(
+    arena: &Arena,
+    roots: &[Expr],
+    symbols: &[Symbol],
+    prefix: &'static str,
+    worth: impl Fn(Expr) -> bool,
+) -> (Vec<Expr>, Vec<(Symbol, Expr)>) {
+    let symbols: BTreeSet<Symbol> = symbols.iter().copied().collect();
+    // Factors that vary leave first: what they leave behind may be a sum of the given symbols.
+    let factored = {
+        let fixed = fixed(arena, roots, &symbols);
+        factor(arena, roots, |base| !fixed.contains(&base))
+    };
+    let fixed = fixed(arena, &factored, &symbols);
+    let mut split = Split { arena, fixed, prefix, worth, found: Vec::new(), symbols: FxHashMap::default() };
+    (split.split(&factored), split.found)
+}
+
+/// Whether computing the value takes more than a few operations.
+fn is_dear(arena: &Arena, expr: Expr) -> bool {
+    /// A multiplication or two cost as much as a number that is kept.
+    const FEW: usize = 3;
+    let mut operations = 0;
+    for part in arena.postorder(&[expr]) {
+        operations += match arena.node(part) {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,
+            Node::Sum(sum) => sum.terms.len(),
+            Node::Product(product) if product.factors.iter().any(|(_, exponent)| !is_natural(exponent)) => FEW,
+            Node::Product(product) => product.factors.len(),
+            Node::Call(..) => FEW,
+        };
+    }
+    operations >= FEW
+}
+
+fn is_natural(exponent: &Rational) -> bool {
+    exponent.is_integer() && !exponent.is_negative()
 }
 
 /// Every sub-expression that depends on nothing but parameters.
@@ -88,14 +177,16 @@ fn fixed(arena: &Arena, roots: &[Expr], parameters: &BTreeSet<Symbol>) -> FxHash
     fixed
 }
 
-struct Split<'a> {
+struct Split<'a, W> {
     arena: &'a Arena,
     fixed: FxHashSet<Expr>,
-    constants: Vec<(Symbol, Expr)>,
+    prefix: &'static str,
+    worth: W,
+    found: Vec<(Symbol, Expr)>,
     symbols: FxHashMap<Expr, Expr>,
 }
 
-impl Split<'_> {
+impl<W: Fn(Expr) -> bool> Split<'_, W> {
     fn split(&mut self, roots: &[Expr]) -> Vec<Expr> {
         let arena = self.arena;
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
@@ -156,7 +247,7 @@ impl Split<'_> {
     /// The constant that holds the value; a sign stays outside, so that both signs share one.
     fn constant(&mut self, value: Expr) -> Expr {
         let arena = self.arena;
-        if matches!(arena.node(value), Node::Number(_) | Node::Pi) {
+        if matches!(arena.node(value), Node::Number(_) | Node::Pi) || !(self.worth)(value) {
             return value;
         }
         if let Some(&known) = self.symbols.get(&value) {
@@ -172,8 +263,8 @@ impl Split<'_> {
             let known = self.constant(opposite);
             return arena.scale(known, &minus);
         }
-        let symbol = arena.generated(&format!("${}", self.constants.len()));
-        self.constants.push((symbol, value));
+        let symbol = arena.generated(&format!("{}{}", self.prefix, self.found.len()));
+        self.found.push((symbol, value));
         let constant = arena.of_symbol(symbol);
         self.symbols.insert(value, constant);
         constant

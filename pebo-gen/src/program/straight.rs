@@ -72,6 +72,15 @@ impl Operation {
         std::iter::once(first).chain(second)
     }
 
+    /// The cosine that goes with a sine, and the other way round: both come from one call.
+    pub fn companion(self) -> Option<Self> {
+        match self {
+            Self::Unary(Function::Sin, angle) => Some(Self::Unary(Function::Cos, angle)),
+            Self::Unary(Function::Cos, angle) => Some(Self::Unary(Function::Sin, angle)),
+            _ => None,
+        }
+    }
+
     /// The same operation on other operands.
     pub(super) fn map(self, mut change: impl FnMut(Operand) -> Operand) -> Self {
         match self {

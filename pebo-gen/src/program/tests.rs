@@ -168,12 +168,19 @@ proptest! {
         let mut point = point(&arena, values);
         let exprs = grow(&arena, &point, &steps);
         let parameters = [arena.symbol("p"), arena.symbol("q"), arena.symbol("E")];
-        let arguments = vec![arena.symbol("x"), arena.symbol("y")];
+        let (sampled, arguments) = ([arena.symbol("x")], vec![arena.symbol("y")]);
         let (first, second) = exprs.split_at(exprs.len() / 2);
-        let task = |outputs: &[Expr]| Task { arguments: arguments.clone(), outputs: outputs.to_vec() };
-        let staged = stage(&arena, &parameters, &[task(first), task(second)]).unwrap();
+        let task = |outputs: &[Expr], is_regular| Task {
+            arguments: arguments.clone(),
+            parts: Vec::new(),
+            outputs: outputs.to_vec(),
+            is_regular,
+        };
+        let staged = stage(&arena, &parameters, &sampled, &[task(first, true), task(second, false)]).unwrap();
         let stored = run(&staged.setup, &point);
         point.extend(staged.constants.iter().map(|constant| constant.0).zip(stored));
+        let kept = run(&staged.sample, &point);
+        point.extend(staged.terms.iter().map(|term| term.0).zip(kept));
         for (program, outputs) in staged.programs.iter().zip([first, second]) {
             assert_close(&arena, outputs, &run(program, &point), &point);
         }
@@ -186,7 +193,8 @@ fn staged(build: impl FnOnce(&Arena) -> Vec<Expr>) -> (Arena, Staged) {
     let parameters = ["L", "C"].map(|name| arena.symbol(name));
     let arguments = ["x", "y", "d"].map(|name| arena.symbol(name)).to_vec();
     let outputs = build(&arena);
-    let staged = stage(&arena, &parameters, &[Task { arguments, outputs }]).unwrap();
+    let task = Task { arguments, parts: Vec::new(), outputs, is_regular: true };
+    let staged = stage(&arena, &parameters, &[], &[task]).unwrap();
     (arena, staged)
 }
 
@@ -279,6 +287,32 @@ fn factors_of_several_summands_leave_the_sum() {
     assert_eq!(cost(build), "1 add, 1 mul");
 }
 
+/// Of x^2*y + x*d the smaller power leaves: the larger would leave y + d/x.
+#[test]
+fn the_smallest_power_leaves_a_sum() {
+    let square = |a: &Arena| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        (a.product([x, x, y]), a.mul(x, d))
+    };
+    assert_eq!(cost(|a| vec![a.add(square(a).0, square(a).1)]), "1 add, 2 mul");
+    let inverse = |a: &Arena, expr: Expr| a.div(a.one(), expr);
+    let below = |a: &Arena| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        a.add(a.mul(y, inverse(a, x)), a.mul(d, inverse(a, a.mul(x, x))))
+    };
+    assert_eq!(cost(|a| vec![below(a)]), "1 add, 2 mul, 1 div");
+}
+
+#[test]
+fn a_pair_of_factors_that_products_share_is_one_value() {
+    let products = cost(|a| {
+        let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));
+        let sin = a.call(Function::Sin, &[x]);
+        vec![a.product([x, y, d]), a.product([x, d, sin])]
+    });
+    assert_eq!(products, "3 mul, 1 call");
+}
+
 #[test]
 fn signs_end_in_subtractions() {
     let negated =
@@ -318,6 +352,91 @@ fn irrational_numbers_are_computed_once() {
     };
     assert_eq!(cost(build), "2 mul");
     assert_eq!(formulas(build), ["sqrt(2)"]);
+}
+
+/// What is kept of a sample of q and r, and the cost of computing it and of the rest, for formulas that run with every
+/// sample and for one that does not.
+fn sampled(regular: &[&str], seldom: &str, name: impl Fn(&Arena, &str) -> Expr) -> (Vec<String>, [String; 3]) {
+    let arena = Arena::new();
+    let [q, r, u, l] = ["q", "r", "u", "L"].map(|name| arena.symbol(name));
+    let task = |outputs: Vec<Expr>, is_regular| Task { arguments: vec![u], parts: Vec::new(), outputs, is_regular };
+    let regular = regular.iter().map(|text| name(&arena, text)).collect();
+    let tasks = [task(regular, true), task(vec![name(&arena, seldom)], false)];
+    let staged = stage(&arena, &[l], &[q, r], &tasks).unwrap();
+    let terms = staged.terms.iter().map(|term| arena.print(term.1)).collect();
+    let [first, second] = staged.programs.as_slice() else { panic!("two tasks") };
+    (terms, [&staged.sample, first, second].map(|program| Cost::of(program).to_string()))
+}
+
+#[test]
+fn what_a_sample_decides_is_kept_if_it_takes_more_than_a_few_operations() {
+    let formula = |a: &Arena, text: &str| {
+        let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
+        match text {
+            "u*q*r" => a.product([u, q, r]),
+            "u*sin(q)" => a.mul(u, a.call(Function::Sin, &[q])),
+            "u/(1 + r)" => a.div(u, a.add(a.one(), r)),
+            "cos(q)" => a.call(Function::Cos, &[q]),
+            "u + cos(r)" => a.add(u, a.call(Function::Cos, &[r])),
+            other => panic!("{other}"),
+        }
+    };
+    let kept = |regular: &[&str], seldom| sampled(regular, seldom, formula);
+    let costs = |costs: [&str; 3]| costs.map(str::to_owned);
+    assert_eq!(kept(&["u*q*r"], "cos(q)"), (vec![], costs(["none", "2 mul", "1 call"])));
+    let (terms, cost) = kept(&["u*sin(q)", "u/(1 + r)"], "u + cos(r)");
+    assert_eq!(terms, ["sin(q)", "1/(r + 1)"]);
+    assert_eq!(cost, costs(["1 add, 1 div, 1 call", "2 mul", "1 add, 1 call"]));
+    // What runs seldom takes what is kept anyway.
+    let (terms, cost) = kept(&["u + cos(r)"], "u + cos(r)");
+    assert_eq!(terms, ["cos(r)"]);
+    assert_eq!(cost, costs(["1 call", "1 add", "1 add"]));
+}
+
+#[test]
+fn an_angle_that_others_make_up_is_not_called_for() {
+    use Function::{Cos, Sin};
+
+    let angles = |terms: &[(Function, &[(&str, i64)])]| {
+        let arena = Arena::new();
+        let inputs = ["q", "r", "s"].map(|name| arena.symbol(name));
+        let values = terms.iter().map(|&(function, summands)| {
+            let angle = arena.sum(summands.iter().map(|&(q, k)| arena.scale(arena.variable(q), &Rational::from(k))));
+            arena.call(function, &[angle])
+        });
+        let values: Vec<Expr> = values.collect();
+        Cost::of(&lower(&arena, &inputs, &values).unwrap()).to_string()
+    };
+    // Sine and cosine of one angle are one call.
+    assert_eq!(angles(&[(Sin, &[("q", 1)]), (Cos, &[("q", 1)])]), "1 call");
+    assert_eq!(angles(&[(Sin, &[("q", 1)]), (Sin, &[("r", 1)]), (Cos, &[("q", 1), ("r", 1)])]), "1 add, 2 mul, 2 call");
+    assert_eq!(
+        angles(&[(Sin, &[("q", 1)]), (Sin, &[("r", 1)]), (Sin, &[("q", 1), ("r", -1)])]),
+        "1 add, 2 mul, 2 call"
+    );
+    // q + r less q is r; twice an angle is its sum with itself.
+    assert_eq!(angles(&[(Sin, &[("q", 1)]), (Cos, &[("q", 1), ("r", 1)]), (Sin, &[("r", 1)])]), "1 add, 2 mul, 2 call");
+    assert_eq!(angles(&[(Sin, &[("q", 1)]), (Cos, &[("q", 2)])]), "1 add, 2 mul, 1 call");
+    // Neither summand is needed by itself.
+    assert_eq!(angles(&[(Sin, &[("q", 1), ("r", 1)]), (Sin, &[("s", 1)])]), "1 add, 2 call");
+}
+
+#[test]
+fn a_part_is_computed_once_as_it_is_written() {
+    let arena = Arena::new();
+    let [x, y, d] = ["x", "y", "d"].map(|name| arena.symbol(name));
+    let (part, difference) = (arena.generated("B"), arena.sub(arena.one(), arena.of_symbol(d)));
+    let named = arena.of_symbol(part);
+    let outputs = [x, y].map(|signal| arena.mul(arena.of_symbol(signal), named)).to_vec();
+    let task = |parts, outputs| Task { arguments: vec![x, y, d], parts, outputs, is_regular: true };
+    let value = arena.mul(difference, arena.of_symbol(y));
+    let staged = stage(&arena, &[], &[], &[task(vec![(part, value)], [vec![named], outputs].concat())]).unwrap();
+    assert_eq!(Cost::of(&staged.programs[0]).to_string(), "1 add, 3 mul");
+    let point = BTreeMap::from([(x, 3.0), (y, 5.0), (d, 0.25)]);
+    assert_eq!(run(&staged.programs[0], &point), [3.75, 11.25, 18.75]);
+    let unknown = arena.symbol("w");
+    let strange = stage(&arena, &[], &[], &[task(vec![(part, arena.of_symbol(unknown))], vec![named])]);
+    assert_eq!(strange.unwrap_err(), Undeclared(unknown));
 }
 
 #[test]

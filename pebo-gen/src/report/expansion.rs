@@ -1,7 +1,8 @@
 //! The plant that a class stands for: its equations, and what the class is known by.
 
-use crate::cas::Expr;
-use crate::plant::{Class, Plant};
+use crate::cas::{Expr, Symbol};
+use crate::plant::class::InVelocities;
+use crate::plant::{Class, Output, Plant};
 
 /// What a class was expanded to, as formulas.
 pub(super) struct Expansion {
@@ -23,7 +24,10 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
     let arena = &plant.arena;
     let states = plant.x.iter().map(|s| (s.symbol, s.rate.expr));
     let outputs = plant.y.iter().filter_map(|o| Some((o.symbol, o.rate?.expr)));
-    let rates = states.chain(outputs).map(|(symbol, rate)| (arena.name(symbol), arena.print(rate)));
+    let is_shown = !matches!(class, Class::Mechanical(mechanical) if mechanical.in_velocities.is_some());
+    let written = states.chain(outputs).filter(|_| is_shown);
+    let mut rates: Vec<(String, String)> =
+        written.map(|(symbol, rate)| (arena.name(symbol), arena.print(rate))).collect();
     let matrix = |rows: &[Vec<Expr>]| {
         let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
         format!("[{}]", rows.iter().map(row).collect::<Vec<_>>().join(", "))
@@ -31,16 +35,32 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
     let mut velocity = Vec::new();
     let origin = match class {
         Class::Linear(linear) => vec![("T1", matrix(linear.t1.rows())), ("T2", matrix(linear.t2.rows()))],
-        Class::Mechanical(mechanical) => {
-            let velocities = mechanical.q.iter().zip(&mechanical.velocities);
-            velocity.extend(velocities.map(|(q, formula)| (arena.name(*q), arena.print(*formula))));
-            vec![("H", arena.print(mechanical.energy))]
-        }
+        Class::Mechanical(mechanical) => match &mechanical.in_velocities {
+            None => {
+                let velocities = mechanical.q.iter().zip(&mechanical.velocities);
+                velocity.extend(velocities.map(|(q, formula)| (arena.name(*q), arena.print(*formula))));
+                vec![("H", arena.print(mechanical.energy))]
+            }
+            Some(shown) => {
+                rates = in_velocities(plant, shown);
+                let row = |(index, q): (usize, &Symbol)| (arena.name(*q), format!("row {} of (T' M)^-1 z", index + 1));
+                velocity.extend(mechanical.q.iter().enumerate().map(row));
+                vec![("H", arena.print(shown.energy))]
+            }
+        },
         Class::Electromechanical(coils) => {
             let magnets: Vec<Vec<Expr>> = coils.magnets.iter().map(|e| vec![*e]).collect();
             vec![("L", matrix(coils.inductance.rows())), ("mu", matrix(&magnets))]
         }
     };
     let phi = plant.phi.iter().map(|f| arena.print(f.expr)).collect();
-    Some(Expansion { class: class.name(), origin, rates: rates.collect(), phi, velocity })
+    Some(Expansion { class: class.name(), origin, rates, phi, velocity })
+}
+
+/// The rates of a mechanical plant whose inverse of M nobody would read.
+fn in_velocities(plant: &Plant, shown: &InVelocities) -> Vec<(String, String)> {
+    let arena = &plant.arena;
+    let momenta = plant.x.iter().zip(&shown.rates).map(|(state, rate)| (arena.name(state.symbol), arena.print(*rate)));
+    let row = |(index, output): (usize, &Output)| (arena.name(output.symbol), format!("row {} of M^-1 p", index + 1));
+    momenta.chain(plant.y.iter().enumerate().map(row)).collect()
 }

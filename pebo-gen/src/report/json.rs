@@ -3,24 +3,29 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::{conditions, expansion, name};
+use super::growth::Growth;
+use super::{conditions, expansion, printed};
 use crate::analysis::{
-    Blind, Cascade, Claim, Class, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Origin, Outcome,
-    Regression, RegressionKind, Verdict, Witness,
+    Blind, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome, Regression,
+    Witness,
 };
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Located, Source};
 
-/// The object of one model.
-#[derive(Serialize)]
-struct Report<'a> {
+/// The object of one model, which [`SCHEMA`](super::SCHEMA) describes.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Report {
     schema: u32,
-    model: &'a str,
-    verdict: &'static str,
+    /// The model's name, or what stands for it.
+    pub model: String,
+    /// The verdict on the model.
+    pub verdict: Outcome,
     class: Option<&'static str>,
     /// The plant that a model by class stands for.
     expansion: Option<ExpansionReport>,
+    phi: Option<TransformReport>,
     cascade: Option<CascadeReport>,
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
@@ -28,12 +33,14 @@ struct Report<'a> {
     /// The components of the extension that a constant bias makes run away.
     drift: Vec<String>,
     operating_point: Option<OperatingPointReport>,
+    /// What the observer's functions cost beside the model; of an accepted one.
+    cost: Option<CostReport>,
     /// What the proofs rest on besides the assumptions, as comparisons with zero.
     conditions: Vec<String>,
-    diagnostics: Vec<Located<'a>>,
+    diagnostics: Vec<Located>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct ExpansionReport {
     class: &'static str,
     #[serde(flatten)]
@@ -43,7 +50,24 @@ struct ExpansionReport {
     velocity: IndexMap<String, String>,
 }
 
-#[derive(Serialize)]
+/// Operations of the model's own formulas and of the observer's functions; `times` where that is many times as much, and the
+/// function that most of them go to.
+#[derive(Clone, Debug, Serialize)]
+struct CostReport {
+    written: usize,
+    derived: usize,
+    times: Option<usize>,
+    most: &'static str,
+}
+
+/// The transform, and whether the author gave it, a class, or the search.
+#[derive(Clone, Debug, Serialize)]
+struct TransformReport {
+    origin: &'static str,
+    z: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
 struct CascadeReport {
     verdict: &'static str,
     h: Vec<String>,
@@ -56,7 +80,7 @@ struct CascadeReport {
     mend: Option<Vec<String>>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct LeftInverseReport {
     verdict: &'static str,
     x: IndexMap<String, String>,
@@ -69,7 +93,7 @@ struct LeftInverseReport {
     witness: Option<WitnessReport>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct RegressionReport {
     verdict: &'static str,
     kind: Option<&'static str>,
@@ -83,7 +107,7 @@ struct RegressionReport {
     theta: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct IdentifiabilityReport {
     verdict: &'static str,
     kind: Option<&'static str>,
@@ -99,7 +123,7 @@ struct IdentifiabilityReport {
 }
 
 /// A motion, what is seen on it of the unknowns, and directions that are not.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct BlindReport {
     #[serde(rename = "while")]
     place: String,
@@ -108,7 +132,7 @@ struct BlindReport {
 }
 
 /// `Phi_1' Phi_1` and its determinant; `positive` where that is proved on the whole assumed domain.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct GramReport {
     matrix: Vec<Vec<String>>,
     determinant: String,
@@ -116,7 +140,7 @@ struct GramReport {
 }
 
 /// Where the plant rests under a constant input.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct OperatingPointReport {
     verdict: &'static str,
     /// What is determined there, in what is free.
@@ -130,7 +154,7 @@ struct OperatingPointReport {
 }
 
 /// A point where an expression provably is not zero: exact coordinates, outward rounded bounds.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct WitnessReport {
     expression: String,
     point: IndexMap<String, String>,
@@ -140,81 +164,82 @@ struct WitnessReport {
 }
 
 /// Points with the same y, u and parameters, and bounds of what the expression is at each.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct ComparisonReport {
     expression: String,
     points: Vec<IndexMap<String, String>>,
     values: Vec<[f64; 2]>,
 }
 
-/// The object of a model that was read.
-pub fn check(plant: &Plant, derivation: &Derivation, source: &Source) -> String {
-    let arena = &plant.arena;
-    let report = Report {
-        schema: 1,
-        model: &plant.name,
-        verdict: match derivation.outcome {
-            Outcome::Accepted => "accepted",
-            Outcome::Rejected => "rejected",
-            Outcome::Undecided => "undecided",
-        },
-        class: Some(match derivation.class {
-            Class::Pebo => "pebo",
-            Class::Gpebo => "gpebo",
-        }),
-        expansion: expansion::of(plant).map(|expansion| ExpansionReport {
-            class: expansion.class,
-            origin: expansion.origin.into_iter().collect(),
-            rates: expansion.rates.into_iter().collect(),
-            phi: expansion.phi,
-            velocity: expansion.velocity.into_iter().collect(),
-        }),
-        cascade: Some(cascade(arena, &derivation.cascade)),
-        left_inverse: Some(left_inverse(plant, derivation)),
-        regression: Some(regression(plant, &derivation.regression)),
-        identifiability: Some(identifiability(plant, &derivation.identifiability)),
-        drift: derivation
-            .drift(plant)
-            .map(|drift| drift.integrators.iter().map(|s| arena.name(*s)).collect())
-            .unwrap_or_default(),
-        operating_point: derivation.operating_point(plant).map(|found| operating_point(arena, found)),
-        conditions: conditions(arena, &derivation.conditions),
-        diagnostics: located(&derivation.diagnostics, source),
-    };
-    line(&report)
+impl Report {
+    /// The object of a model that was read, with what there is to tell of it.
+    pub fn of(plant: &Plant, derivation: &Derivation, diagnostics: &[Diagnostic], source: &Source) -> Self {
+        let arena = &plant.arena;
+        Self {
+            schema: 1,
+            model: plant.name.clone(),
+            verdict: derivation.outcome,
+            class: Some(derivation.class.name()),
+            expansion: expansion::of(plant).map(|expansion| ExpansionReport {
+                class: expansion.class,
+                origin: expansion.origin.into_iter().collect(),
+                rates: expansion.rates.into_iter().collect(),
+                phi: expansion.phi,
+                velocity: expansion.velocity.into_iter().collect(),
+            }),
+            phi: (!plant.phi.is_empty())
+                .then(|| TransformReport { origin: plant.origin.word(), z: printed(arena, &plant.transform()) }),
+            cascade: Some(cascade(arena, &derivation.cascade)),
+            left_inverse: Some(left_inverse(plant, derivation)),
+            regression: Some(regression(plant, &derivation.regression)),
+            identifiability: Some(identifiability(plant, &derivation.identifiability)),
+            drift: derivation
+                .drift(plant)
+                .map(|drift| drift.integrators.iter().map(|s| arena.name(*s)).collect())
+                .unwrap_or_default(),
+            operating_point: derivation.operating_point(plant).map(|found| operating_point(arena, found)),
+            cost: Growth::of(plant, derivation).map(|growth| CostReport {
+                written: growth.written,
+                derived: growth.derived,
+                times: growth.many(),
+                most: growth.most,
+            }),
+            conditions: conditions(arena, &derivation.conditions),
+            diagnostics: located(diagnostics, source),
+        }
+    }
+
+    /// The object of a model of which no plant was made: rejected for the diagnostics alone, or undecided where they say
+    /// that something could not be worked out.
+    pub fn of_unread(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Self {
+        Self {
+            schema: 1,
+            model: name.to_owned(),
+            verdict: Outcome::of_unread(diagnostics),
+            class: None,
+            expansion: None,
+            phi: None,
+            cascade: None,
+            left_inverse: None,
+            regression: None,
+            identifiability: None,
+            drift: Vec::new(),
+            operating_point: None,
+            cost: None,
+            conditions: Vec::new(),
+            diagnostics: located(diagnostics, source),
+        }
+    }
+
+    /// The object as a line of `check --format json`, without the line's end.
+    pub fn line(&self) -> String {
+        // Strings, numbers and maps with string keys always serialise.
+        serde_json::to_string(self).unwrap_or_default()
+    }
 }
 
-/// The object of a model of which no plant was made: rejected for the diagnostics alone, or undecided where they say
-/// that something could not be worked out.
-pub fn malformed(name: &str, diagnostics: &[Diagnostic], source: &Source) -> String {
-    line(&Report {
-        schema: 1,
-        model: name,
-        verdict: if diagnostics.iter().all(|d| d.code.is_open()) { "undecided" } else { "rejected" },
-        class: None,
-        expansion: None,
-        cascade: None,
-        left_inverse: None,
-        regression: None,
-        identifiability: None,
-        drift: Vec::new(),
-        operating_point: None,
-        conditions: Vec::new(),
-        diagnostics: located(diagnostics, source),
-    })
-}
-
-fn line(report: &Report<'_>) -> String {
-    // Strings, numbers and maps with string keys always serialise.
-    serde_json::to_string(report).unwrap_or_default()
-}
-
-fn located<'a>(diagnostics: &'a [Diagnostic], source: &Source) -> Vec<Located<'a>> {
+fn located(diagnostics: &[Diagnostic], source: &Source) -> Vec<Located> {
     diagnostics.iter().map(|d| Located::new(d, source)).collect()
-}
-
-fn printed(arena: &Arena, exprs: &[Expr]) -> Vec<String> {
-    exprs.iter().map(|e| arena.print(*e)).collect()
 }
 
 fn matrix(arena: &Arena, rows: &[Vec<Expr>]) -> Vec<Vec<String>> {
@@ -238,12 +263,12 @@ fn witness(arena: &Arena, witness: &Witness) -> WitnessReport {
 fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {
     let result = claim.result.as_ref();
     CascadeReport {
-        verdict: name(claim.verdict),
+        verdict: claim.verdict.word(),
         h: result.map(|r| printed(arena, &r.h)).unwrap_or_default(),
         lambda: result.and_then(|r| r.lambda.as_ref()).map(|l| matrix(arena, l)),
         residual: result.map(|r| printed(arena, &r.residual)).unwrap_or_default(),
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
-        bounded: result.and_then(|r| r.fundamental).map(boundedness),
+        bounded: result.and_then(|r| r.fundamental).map(Fundamental::word),
         mend: result.and_then(|r| r.mend.as_ref()).map(|mend| printed(arena, mend)),
     }
 }
@@ -252,15 +277,12 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> LeftInverseReport {
     let (arena, claim) = (&plant.arena, &derivation.left_inverse);
     let result = claim.result.as_ref();
     LeftInverseReport {
-        verdict: name(claim.verdict),
+        verdict: claim.verdict.word(),
         x: result.map(|r| r.x.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect()).unwrap_or_default(),
         modulo: result
             .map(|r| r.modulo.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect())
             .unwrap_or_default(),
-        origin: result.map(|r| match r.origin {
-            Origin::Given => "given",
-            Origin::Derived => "derived",
-        }),
+        origin: result.map(|r| r.origin.word()),
         asks: conditions(arena, &derivation.asked_of_estimates(plant)),
         partial: result.is_some_and(|r| r.x.len() < plant.x.len()),
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
@@ -271,13 +293,9 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
     let arena = &plant.arena;
     let result = claim.result.as_ref();
     RegressionReport {
-        verdict: name(claim.verdict),
-        kind: result.map(|r| match r.kind {
-            RegressionKind::Dynamic => "dynamic",
-            RegressionKind::Static => "static",
-            RegressionKind::Implicit => "implicit",
-        }),
-        parameterisation: result.map(|r| if r.is_linear(plant) { "linear" } else { "over-parameterised" }),
+        verdict: claim.verdict.word(),
+        kind: result.map(|r| r.kind.word()),
+        parameterisation: result.map(|r| r.parameterisation(plant)),
         phi_0: result.map(|r| printed(arena, &r.phi_0)).unwrap_or_default(),
         phi_1: result.map(|r| matrix(arena, &r.phi_1)).unwrap_or_default(),
         primitive_0: result.map(|r| printed(arena, &r.primitive_0)).unwrap_or_default(),
@@ -299,12 +317,8 @@ fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> Identifiabi
     let arena = &plant.arena;
     let result = claim.result.as_ref();
     IdentifiabilityReport {
-        verdict: name(claim.verdict),
-        kind: result.map(|r| match r.kind {
-            Excitation::Instant => "instant",
-            Excitation::Excitation => "excitation",
-            Excitation::Never => "never",
-        }),
+        verdict: claim.verdict.word(),
+        kind: result.map(|r| r.kind.word()),
         singular_where: result.map(|r| r.singular_where.clone()).unwrap_or_default(),
         everywhere_else: result.is_some_and(|r| r.everywhere_else),
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
@@ -326,8 +340,9 @@ fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> Identifiabi
 }
 
 fn operating_point(arena: &Arena, equilibrium: &Equilibrium) -> OperatingPointReport {
-    let without = |verdict, reason| OperatingPointReport {
-        verdict: name(verdict),
+    let verdict = equilibrium.verdict().word();
+    let without = |reason| OperatingPointReport {
+        verdict,
         values: IndexMap::new(),
         still: None,
         rank: None,
@@ -335,22 +350,13 @@ fn operating_point(arena: &Arena, equilibrium: &Equilibrium) -> OperatingPointRe
     };
     match equilibrium {
         Equilibrium::At(point) => OperatingPointReport {
-            verdict: name(Verdict::Proved),
+            verdict,
             values: point.values.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect(),
             still: Some(point.still),
             rank: point.rank.filter(|_| point.still).map(|rank| [rank, 0]),
             reason: None,
         },
-        Equilibrium::Nowhere(symbol) => without(Verdict::Refuted, format!("`{}` never rests", arena.name(*symbol))),
-        Equilibrium::Undecided(reason) => without(Verdict::Undecided, reason.clone()),
-    }
-}
-
-/// Whether the fundamental matrix stays bounded, in words.
-fn boundedness(fundamental: Fundamental) -> &'static str {
-    match fundamental {
-        Fundamental::Bounded { .. } => name(Verdict::Proved),
-        Fundamental::Grows => name(Verdict::Refuted),
-        Fundamental::NotShown => "not shown",
+        Equilibrium::Nowhere(symbol) => without(format!("`{}` never rests", arena.name(*symbol))),
+        Equilibrium::Undecided(reason) => without(reason.clone()),
     }
 }

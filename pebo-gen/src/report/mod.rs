@@ -4,30 +4,30 @@
 //! text. Formulas are in the model file's grammar.
 
 mod expansion;
+mod growth;
 #[cfg(feature = "yaml")]
 mod json;
-mod remarks;
+pub(crate) mod notes;
+pub(crate) mod remarks;
+#[cfg(feature = "yaml")]
+mod search;
 mod text;
 
-use crate::analysis::Verdict;
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr};
 
 #[cfg(feature = "yaml")]
-pub use json::{check, malformed};
+pub use json::Report;
+#[cfg(feature = "yaml")]
+pub use search::{SearchReport, search_summary};
 pub use text::summary;
 
-/// The JSON schema of the objects that [`check`] and [`malformed`] give.
+/// The JSON schema of a `Report`.
 pub const SCHEMA: &str = include_str!("check.schema.json");
 
-/// A verdict in a word.
-fn name(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Proved => "proved",
-        Verdict::Refuted => "refuted",
-        Verdict::Undecided => "undecided",
-        Verdict::Skipped => "skipped",
-    }
+#[cfg(feature = "yaml")]
+fn printed(arena: &Arena, exprs: &[Expr]) -> Vec<String> {
+    exprs.iter().map(|e| arena.print(*e)).collect()
 }
 
 /// Comparisons with zero, as a reader would write them.

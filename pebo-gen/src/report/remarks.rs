@@ -1,32 +1,35 @@
 //! What to know in use, in a line each: whether Psi stays bounded, where the plant rests, what drifts, how long theta holds.
 
+use super::growth::Growth;
 use crate::analysis::{Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict};
-use crate::cas::Symbol;
+use crate::cas::{Expr, Symbol};
 use crate::plant::{Class as PlantClass, Plant};
 use crate::source::listed;
 
-/// A remark: its name and its lines.
-pub(super) struct Remark {
-    pub(super) name: &'static str,
-    pub(super) lines: Vec<String>,
+/// A remark: its name, the values that it gives, and its lines.
+pub(crate) struct Remark {
+    pub(crate) name: &'static str,
+    pub(crate) values: Vec<(Symbol, Expr)>,
+    pub(crate) lines: Vec<String>,
 }
 
 /// The remarks on a plant with a proved cascade.
-pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
+pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     if plant.arena.budget().is_exhausted() {
         return Vec::new();
     }
-    let remark = |name, lines| Remark { name, lines };
+    let remark = |name, lines| Remark { name, values: Vec::new(), lines };
     let rests = derivation.operating_point(plant).map(|equilibrium| match equilibrium {
-        Equilibrium::At(point) => rest(plant, derivation.class, point),
+        Equilibrium::At(point) => (point.values.clone(), rest(derivation.class, point)),
         Equilibrium::Nowhere(symbol) => {
-            vec![format!("none: the rate of `{}` is never zero", plant.arena.name(*symbol))]
+            (Vec::new(), vec![format!("none: the rate of `{}` is never zero", plant.arena.name(*symbol))])
         }
-        Equilibrium::Undecided(reason) => vec![format!("none was found: {reason}")],
+        Equilibrium::Undecided(reason) => (Vec::new(), vec![format!("none was found: {reason}")]),
     });
     let mut remarks = fundamental(plant, derivation);
-    remarks.extend(rests.map(|lines| remark("operating point", lines)));
+    remarks.extend(rests.map(|(values, lines)| Remark { name: "operating point", values, lines }));
     remarks.extend(special(plant).map(|line| remark("values", vec![line])));
+    remarks.extend(Growth::of(plant, derivation).and_then(long).map(|lines| remark("cost", lines)));
     if derivation.outcome == Outcome::Accepted {
         let drift = derivation.drift(plant);
         remarks.extend(
@@ -46,27 +49,28 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let Some((cascade, fundamental)) = cascade.and_then(|cascade| Some((cascade, cascade.fundamental?))) else {
         return Vec::new();
     };
+    let remedy = if derivation.can_rebase(plant) { REBASE } else { RESTART };
     let lines: &[&str] = match fundamental {
         Fundamental::Bounded { fades: false } => &["stays bounded: errors of theta are not amplified"],
-        Fundamental::Bounded { fades: true } => &[
-            "stays bounded but decays in some directions, in which later disturbances of z are not corrected",
-            RESTART,
-        ],
+        Fundamental::Bounded { fades: true } => {
+            &["stays bounded but decays in some directions, in which later disturbances of z are not corrected", remedy]
+        }
         Fundamental::Grows => {
-            &["grows without bound: it amplifies every error of theta until numbers overflow", RESTART]
+            &["grows without bound: it amplifies every error of theta until numbers overflow", remedy]
         }
         Fundamental::NotShown => &[
             "was not shown to stay bounded",
             "if it grows, it amplifies errors of theta; if it decays, later disturbances of z are not corrected",
-            RESTART,
+            remedy,
         ],
     };
     let lines = lines.iter().map(|line| (*line).to_owned()).collect();
-    let mut remarks = vec![Remark { name: "Psi", lines }];
+    let mut remarks = vec![Remark { name: "Psi", values: Vec::new(), lines }];
     remarks.extend(cascade.mend.iter().map(|mend| {
         let phi: Vec<String> = mend.iter().map(|component| plant.arena.print(*component)).collect();
         Remark {
             name: "plain cascade",
+            values: Vec::new(),
             lines: vec![
                 format!("phi: [{}] has the plain cascade z' = h(y, u) and needs no Psi", phi.join(", ")),
                 "its extension is an open integrator, which drifts under a constant bias of a sensor or input"
@@ -76,6 +80,9 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     }));
     remarks
 }
+
+/// The same where all memory can be carried over.
+const REBASE: &str = "remedy: `rebase: 1` under `observer` starts it again from the identity at every sample";
 
 /// What makes the fundamental matrix the identity again.
 const RESTART: &str = "remedy: `restart` from the estimate of z with theta = 0 sets Psi back to the identity";
@@ -94,14 +101,23 @@ fn special(plant: &Plant) -> Option<String> {
         .then(|| format!("the verdict holds for {given}: with general values, some matrix ranks are different"))
 }
 
-/// The point, and what holds there.
-fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
-    let arena = &plant.arena;
-    let mut lines: Vec<String> = point
-        .values
-        .iter()
-        .map(|(symbol, value)| format!("{} = {}", arena.name(*symbol), arena.print(*value)))
-        .collect();
+/// That the observer's functions are far longer than the model, and what shortens them.
+fn long(growth: Growth) -> Option<Vec<String>> {
+    let Growth { written, derived, most } = growth;
+    let times = growth.many()?;
+    let remedy = match most {
+        "phi_left" => "give a shorter `phi_left` if you know one: it is proved like the derived one",
+        _ => "write the model in other coordinates, or with parts under `define` that cancel in its derivatives",
+    };
+    Some(vec![
+        format!("the observer's functions take {derived} operations, {times} times those of the model ({written})"),
+        format!("most are in {most}; remedy: {remedy}"),
+    ])
+}
+
+/// What holds at the point.
+fn rest(class: Class, point: &OperatingPoint) -> Vec<String> {
+    let mut lines = Vec::new();
     if point.still {
         lines.push(match class {
             Class::Pebo => "h = 0 there: chi is constant if no sensor or input has a bias".to_owned(),
@@ -130,7 +146,7 @@ fn grows(plant: &Plant, drift: &Drift) -> String {
 fn remedy(plant: &Plant, derivation: &Derivation) -> &'static str {
     match (derivation.class, derivation.can_rebase(plant)) {
         (Class::Pebo, true) => "use `step_without_drift` and an estimator with forgetting",
-        (Class::Gpebo, true) => "use `rebase` and an estimator with forgetting",
+        (Class::Gpebo, true) => "use `rebase` and an estimator that forgets or has process noise",
         (_, false) => "restart the observer before the extension grows so large that rounding matters",
     }
 }

@@ -1,11 +1,9 @@
 //! The verdict as a person reads it.
 
-use crate::analysis::{
-    Claim, Class, Derivation, Excitation, Gram, Origin, Outcome, Positive, Regression, RegressionKind, Verdict,
-};
-use crate::cas::{Arena, Expr};
-use crate::plant::Plant;
-use crate::source::listed;
+use super::notes;
+use crate::analysis::{Claim, Class, Derivation, Gram, Outcome, Regression, RegressionKind, Verdict};
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::{Plant, TransformOrigin};
 
 /// As wide as the columns of names and verdicts: two spaces, 16, one, and nine.
 const INDENT: &str = "                            ";
@@ -16,35 +14,19 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
         Outcome::Accepted => super::conditions(&plant.arena, &derivation.conditions),
         Outcome::Rejected | Outcome::Undecided => Vec::new(),
     };
-    let outcome = match derivation.outcome {
-        Outcome::Accepted if conditions.is_empty() => "accepted: all four claims are proved",
-        Outcome::Accepted => "accepted: all four claims are proved where the conditions below hold",
-        Outcome::Rejected => "rejected: a claim is refuted",
-        Outcome::Undecided => "undecided: a claim could not be decided",
-    };
-    let mut text = format!("{}: {outcome}\n", plant.name);
+    let meaning = notes::meaning(derivation);
+    let mut text = format!("{}: {}: {meaning}\n", plant.name, derivation.outcome.word());
     expansion(&mut text, plant);
+    if plant.origin == TransformOrigin::Found {
+        let components = plant.transform().into_iter().enumerate();
+        let lines: Vec<String> = components.map(|(i, e)| format!("z{} = {}", i + 1, plant.arena.print(e))).collect();
+        block(&mut text, "phi", plant.origin.word(), &lines);
+    }
     claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));
     claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
     claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
-        let implicit = derivation.regression.result.as_ref().is_some_and(|r| r.kind == RegressionKind::Implicit);
-        let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
-        let mut lines = vec![match r.kind {
-            Excitation::Instant => format!("instant: {regressor} has full column rank"),
-            Excitation::Excitation => format!("over time: {regressor} and its derivatives have full column rank"),
-            Excitation::Never => "never: the outputs do not depend on one direction of the unknowns".to_owned(),
-        }];
-        if !r.singular_where.is_empty() {
-            let places = listed(r.singular_where.iter().map(String::as_str));
-            lines.push(format!("except where {places}: do not operate the plant there for long"));
-        }
-        if r.kind == Excitation::Instant && !r.everywhere_else {
-            lines.push(
-                "this holds at almost every point; the points where the rank drops were not all found".to_owned(),
-            );
-        }
-        lines.extend(r.motion.iter().flat_map(|motion| motion.lines(plant)));
+        let mut lines = notes::identifiability(plant, derivation);
         lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
         lines
     });
@@ -53,7 +35,10 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     }
     // No verdict stands beside what is no claim.
     for remark in super::remarks::of(plant, derivation) {
-        block(&mut text, remark.name, "", &remark.lines);
+        let value =
+            |(symbol, value): &(Symbol, Expr)| format!("{} = {}", plant.arena.name(*symbol), plant.arena.print(*value));
+        let lines: Vec<String> = remark.values.iter().map(value).chain(remark.lines).collect();
+        block(&mut text, remark.name, "", &lines);
     }
     text
 }
@@ -72,12 +57,7 @@ fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
         lines.push(format!("Phi_1' Phi_1 = [{rows}]"));
     }
     lines.push(format!("det(Phi_1' Phi_1) = {determinant}"));
-    lines.extend(gram.positive.map(|positive| match positive {
-        Positive::Assumed => "the determinant is positive wherever the assumptions hold: every input excites".to_owned(),
-        Positive::Divided => {
-            "the determinant is positive throughout the assumed box at the given parameter values: every input excites".to_owned()
-        }
-    }));
+    lines.extend(notes::positive(gram).map(str::to_owned));
     lines
 }
 
@@ -103,7 +83,7 @@ fn claim<T>(text: &mut String, name: &str, claim: &Claim<T>, lines: impl Fn(&T) 
         (Some(result), Verdict::Proved | Verdict::Refuted) => lines(result),
         _ => Vec::new(),
     };
-    block(text, name, super::name(claim.verdict), &shown);
+    block(text, name, claim.verdict.word(), &shown);
 }
 
 fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
@@ -136,34 +116,18 @@ fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
 fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     let Some(inverse) = &derivation.left_inverse.result else { return Vec::new() };
     let arena = &plant.arena;
-    let origin = match inverse.origin {
-        Origin::Given => "given",
-        Origin::Derived => "derived",
-    };
+    let origin = inverse.origin.word();
     let mut lines: Vec<String> = inverse
         .x
         .iter()
         .map(|(state, formula)| {
             let period = inverse.modulo.iter().find(|(s, _)| s == state);
             let modulo = period.map(|(_, p)| format!(" modulo {}", arena.print(*p))).unwrap_or_default();
-            format!("{} = {}{modulo} ({origin})", arena.name(*state), arena.print(*formula))
+            let unit = plant.units.get(state).map(|unit| format!(", in {unit}")).unwrap_or_default();
+            format!("{} = {}{modulo} ({origin}{unit})", arena.name(*state), arena.print(*formula))
         })
         .collect();
-    let missing: Vec<String> = plant
-        .x
-        .iter()
-        .filter(|s| inverse.x.iter().all(|(symbol, _)| *symbol != s.symbol))
-        .map(|s| arena.name(s.symbol))
-        .collect();
-    if !missing.is_empty() && derivation.left_inverse.verdict == Verdict::Proved {
-        lines
-            .push(format!("a partial observer, which does not recover {}", listed(missing.iter().map(String::as_str))));
-    }
-    let asked = super::conditions(arena, &derivation.asked_of_estimates(plant));
-    if !asked.is_empty() {
-        let asked = listed(asked.iter().map(String::as_str));
-        lines.push(format!("needs estimates with {asked}: `step` refuses a sample whose estimate is not finite"));
-    }
+    lines.extend(notes::left_inverse(plant, derivation));
     lines
 }
 
@@ -195,12 +159,7 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         for (index, eta) in regression.eta.iter().enumerate() {
             lines.push(format!("{} = {}", unknown(index), arena.print(*eta)));
         }
-        if regression.eta.len() > plant.theta.len() {
-            let (unknowns, components) = (regression.eta.len(), plant.theta.len());
-            lines.push(format!(
-                "eta has {unknowns} components and theta has {components}: all components of eta have to be excited"
-            ));
-        }
+        lines.extend(notes::regression(plant, regression));
     }
     lines
 }

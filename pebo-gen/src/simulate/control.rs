@@ -1,25 +1,20 @@
 //! The control law: which estimates it sees, and what it does with them.
 
 use crate::cas::Expr;
+use crate::model::Simulation;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
-use super::Overrides;
-use super::layout::rival_estimate;
+use super::layout::rival_estimates;
+use super::overrides::Overrides;
 use super::scope::{Estimates, Names, Sight, View};
-
-/// The estimates that the control law sees, unless told otherwise.
-pub(super) const OBSERVER: &str = "observer";
-
-/// The unmeasured states themselves, as the control law may see them in a simulation.
-const TRUTH: &str = "truth";
 
 /// Whose estimates the control law sees.
 pub(super) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diagnostics) -> Option<String> {
     let simulation = names.simulation;
     let written = simulation.feedback.as_ref();
-    let name = overrides.feedback.as_deref().or(written.map(|feedback| feedback.value.as_str())).unwrap_or(OBSERVER);
-    let baselines = simulation.baselines.iter().map(|entry| entry.name.value.as_str());
-    let choices: Vec<&str> = [OBSERVER, TRUTH].into_iter().chain(baselines).collect();
+    let name = overrides.feedback.as_deref().or(written.map(|feedback| feedback.value.as_str()));
+    let name = name.unwrap_or(Simulation::OBSERVER);
+    let choices = simulation.feedbacks();
     if choices.contains(&name) {
         return Some(name.to_owned());
     }
@@ -46,13 +41,12 @@ pub(super) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
 fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
     let arena = &names.plant.arena;
     match feedback {
-        OBSERVER => hats.clone(),
-        TRUTH => names.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol))).collect(),
+        Simulation::OBSERVER => hats.clone(),
+        Simulation::TRUTH => names.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol))).collect(),
         name => {
             let baseline = names.simulation.baselines.iter().find(|entry| entry.name.value == name);
-            let estimates = baseline.into_iter().flat_map(|entry| &entry.value.estimate);
-            let estimates = estimates.map(|entry| entry.name.value.clone());
-            estimates.map(|x| (x.clone(), arena.of_symbol(rival_estimate(arena, name, &x)))).collect()
+            let estimates = baseline.into_iter().flat_map(|entry| rival_estimates(names.plant, entry));
+            estimates.map(|(x, estimate)| (x, arena.of_symbol(estimate))).collect()
         }
     }
 }

@@ -9,16 +9,16 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Bounded, Extension, Fault, Fundamental, Integrator, Model, Observer, Regression};
+use pebo_runtime::{
+    Bounded, Extension, Fault, Flow, Fundamental, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
+};
 
 use crate::program::{Interpreter, Program};
 
-use super::estimator::{Chosen, MOST_MIXED, padded};
+use super::estimator::Chosen;
 use super::observer::Design;
+use super::sizes::{LARGEST, MOST_MIXED, pad};
 use super::window::Passage;
-
-/// The largest size.
-pub(super) const LARGEST: usize = 16;
 
 /// An observer of some size.
 pub(super) trait Estimation: fmt::Debug {
@@ -161,10 +161,6 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     }
 }
 
-pub(super) fn pad<const N: usize>(values: &[f64]) -> SVector<f64, N> {
-    padded(values, 0.0)
-}
-
 fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N> {
     let mut padded = SMatrix::zeros();
     for (k, &value) in values.iter().enumerate() {
@@ -176,58 +172,55 @@ fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N
 impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
     type Scalar = f64;
     type Extension = X;
+    type X = SVector<Self::Scalar, N>;
+    type Y = SVector<Self::Scalar, N>;
+    type U = SVector<Self::Scalar, N>;
+    type Terms = SVector<f64, N>;
     const REGRESSION: Regression = K::REGRESSION;
 
-    fn h(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SVector<f64, N> {
-        pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)))
+    fn terms(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
+        *y
     }
 
-    fn lambda(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+    fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
+        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
         match &self.lambda {
-            Some(lambda) => pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz),
-            None => SMatrix::zeros(),
+            Some(lambda) => {
+                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
+                Flow { lambda, h }
+            }
+            None => Flow::plain(h),
         }
     }
 
-    fn phi_0(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SVector<f64, N> {
-        pad(self.phi_0.borrow_mut().call(|arguments| {
+    fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        let at = |arguments: &mut Vec<f64>| {
             extension.write(self.nz, arguments);
             self.sampled(arguments, y, u);
-        }))
+        };
+        let known = pad(self.phi_0.borrow_mut().call(at));
+        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
     }
 
-    fn phi_1(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        let mut function = self.phi_1.borrow_mut();
-        let values = function.call(|arguments| {
-            extension.write(self.nz, arguments);
-            self.sampled(arguments, y, u);
-        });
-        pad_rows(values, self.ne)
-    }
-
-    fn primitive_0(&self, extension: &X, y: &SVector<f64, N>) -> SVector<f64, N> {
-        if let Some([known, _]) = &self.primitives {
-            return pad(self.held(&mut known.borrow_mut(), extension, y));
+    fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
+        if let Some([known, factor]) = &self.primitives {
+            return Sides {
+                known: pad(self.held(&mut known.borrow_mut(), extension, y)),
+                factor: pad_rows(self.held(&mut factor.borrow_mut(), extension, y), self.ne),
+            };
         }
         let mut used = SVector::zeros();
         for (row, &output) in self.rows.iter().enumerate() {
             used[row] = y[output];
         }
-        used
-    }
-
-    fn primitive_1(&self, extension: &X, y: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        match &self.primitives {
-            Some([_, factor]) => pad_rows(self.held(&mut factor.borrow_mut(), extension, y), self.ne),
-            None => SMatrix::zeros(),
-        }
+        Sides { known: used, factor: SMatrix::zeros() }
     }
 
     fn theta(&self, eta: &SVector<f64, N>) -> SVector<f64, N> {
         pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
     }
 
-    fn phi_left(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+    fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
         pad(self.phi_left.borrow_mut().call(|arguments| {
             arguments.extend(&z.as_slice()[..self.nz]);
             arguments.extend(&y.as_slice()[..self.ny]);
@@ -235,7 +228,11 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 }
 
-type Inner<X, K, const N: usize> = Observer<Derived<X, K, N>, Bounded<f64, Chosen<N>, N>, N, N, N, N, N, N, Passage<N>>;
+/// The promise is kept by those who ask for re-basing: a design has it only where it is proved.
+impl<X: Known<N>, K: Kind, const N: usize> Rebase<N, N, N, N, N> for Derived<X, K, N> {}
+
+type Inner<X, K, const N: usize> =
+    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Chosen<N>, N>, N, N, N, N, N, N, Passage<N>>;
 
 /// The runtime's observer at size N.
 struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
@@ -243,10 +240,16 @@ struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
 impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
-        let [lower, upper] = settings.bounds.each_ref().map(|bounds| padded(bounds, 0.0));
+        let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
         let estimator = Bounded::new(Chosen::new(&settings.estimator)?, &lower, &upper)?;
         let passage = Passage::new(settings)?;
-        Ok(Self(Observer::with_regression(Derived::new(design), estimator, passage, pad(&settings.chi_0))?))
+        let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
+        let model = Within::new(Derived::new(design), &lower, &upper)?;
+        let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
+        Ok(Self(match settings.rebase {
+            Some(every) => observer.rebasing(every)?,
+            None => observer,
+        }))
     }
 }
 
@@ -258,7 +261,7 @@ impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
 
 impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
-        let estimate = self.0.step(&pad(y), &pad(u), dt)?;
+        let estimate = self.0.step(pad(y), pad(u), dt)?;
         hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
         Ok(())
     }

@@ -10,14 +10,11 @@ use std::fmt;
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
     Drem, Estimator, Fault, FiniteTime, Gradient, Kreisselmeier, LeastSquares, NormalisedGradient, RegressorExtension,
-    Response,
+    Response, Turn,
 };
 
-use super::derived::{LARGEST, pad};
 use super::settings::{self, Covariance, Extension};
-
-/// The most unknowns of DREM, to which fewer are padded.
-pub(super) const MOST_MIXED: usize = 6;
+use super::sizes::{LARGEST, MOST_MIXED, pad, padded};
 
 /// An estimator of a model that was padded to the size N.
 #[derive(Debug)]
@@ -33,8 +30,12 @@ impl<const N: usize> Chosen<N> {
             settings::Estimator::NormalisedGradient { gain, mu } => {
                 Box::new(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
             }
-            settings::Estimator::LeastSquares(Covariance { start, forgetting }) => {
-                Box::new(LeastSquares::diagonal(&all(start), *forgetting)?)
+            settings::Estimator::LeastSquares(Covariance { start, forgetting, process_noise }) => {
+                let squares = LeastSquares::diagonal(&all(start), *forgetting)?;
+                Box::new(match process_noise {
+                    Some(noise) => squares.with_process_noise(&pad(noise))?,
+                    None => squares,
+                })
             }
             settings::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => mixed(gain, extension)?,
             // Refused with the settings.
@@ -62,6 +63,10 @@ impl<const N: usize> Estimator<f64, N, N> for Chosen<N> {
         self.0.shift(shift);
     }
 
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        self.0.turn(turn);
+    }
+
     fn reset(&mut self, estimate: &SVector<f64, N>) {
         self.0.reset(estimate);
     }
@@ -76,6 +81,7 @@ trait Face<const N: usize>: fmt::Debug {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault>;
     fn estimate(&self) -> SVector<f64, N>;
     fn shift(&mut self, shift: &SVector<f64, N>);
+    fn turn(&mut self, turn: &Turn<f64, N>);
     fn reset(&mut self, estimate: &SVector<f64, N>);
     fn is_finite(&self) -> bool;
     fn boxed(&self) -> Box<dyn Face<N>>;
@@ -92,6 +98,10 @@ impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> Face<N> for
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
         Estimator::shift(self, shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        Estimator::turn(self, turn);
     }
 
     fn reset(&mut self, estimate: &SVector<f64, N>) {
@@ -117,7 +127,7 @@ fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn 
             (Box::new(Kreisselmeier::new(&all(gain), *forgetting)?), finite_time.as_ref())
         }
         Extension::Gradient(gain) => (Box::new(response(Gradient::diagonal(&all(gain))?)?), None),
-        Extension::LeastSquares(Covariance { start, forgetting }) => {
+        Extension::LeastSquares(Covariance { start, forgetting, .. }) => {
             (Box::new(response(LeastSquares::diagonal(&all(start), *forgetting)?)?), None)
         }
     };
@@ -144,6 +154,7 @@ trait Extended: fmt::Debug {
     fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED>;
     fn vector(&self) -> SVector<f64, MOST_MIXED>;
     fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>);
+    fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>);
     fn reset(&mut self);
     fn is_finite(&self) -> bool;
     fn boxed(&self) -> Box<dyn Extended>;
@@ -167,6 +178,10 @@ impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> Ext
 
     fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>) {
         RegressorExtension::shift(self, shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>) {
+        RegressorExtension::turn(self, turn);
     }
 
     fn reset(&mut self) {
@@ -214,6 +229,10 @@ impl RegressorExtension<f64, LARGEST, MOST_MIXED> for Completed {
         self.extension.shift(shift);
     }
 
+    fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>) {
+        self.extension.turn(turn);
+    }
+
     fn reset(&mut self) {
         self.extension.reset();
     }
@@ -245,6 +264,11 @@ impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N
         self.0.shift(&pad(&shift.as_slice()[..MOST_MIXED]));
     }
 
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        // What is beyond is padding, which no turn mixes with the unknowns.
+        self.0.turn(&turn.leading());
+    }
+
     fn reset(&mut self, estimate: &SVector<f64, N>) {
         self.0.reset(&pad(&estimate.as_slice()[..MOST_MIXED]));
     }
@@ -252,11 +276,4 @@ impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }
-}
-
-/// The values, and behind them as many of another as there is room for.
-pub(super) fn padded<const N: usize>(values: &[f64], other: f64) -> SVector<f64, N> {
-    let mut vector = SVector::<f64, N>::repeat(other);
-    vector.as_mut_slice()[..values.len()].copy_from_slice(values);
-    vector
 }

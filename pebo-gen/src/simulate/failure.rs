@@ -6,6 +6,7 @@ use pebo_runtime::Fault;
 
 /// The reason for which a run stopped before its end.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Failure {
     /// A value is infinite or NaN.
     NotFinite {

@@ -1,4 +1,4 @@
-//! The plant and the baselines between two samples: one ordinary differential equation.
+//! The plant, and the baselines that have equations, between two samples: one ordinary differential equation.
 //!
 //! Method: Dormand and Prince's explicit Runge-Kutta pair of order 5(4), from a library, started anew
 //! at each sample, where the inputs jump, and where a signal that the rates depend on jumps.

@@ -1,6 +1,7 @@
 //! Formulas as a person writes them beside a curve: `hat(i1) - i1` becomes an i with a hat and a
 //! subscript, a minus sign, an i with a subscript.
 
+use crate::cas::letter::{greek, parts};
 use crate::model::formula::{Formula, Operator, Term};
 
 /// A label: pieces of text in a row.
@@ -122,7 +123,7 @@ impl Label {
                 self.write(right, least);
             }
             Term::Call(function, arguments) => {
-                self.upright(function.name);
+                self.upright(function.row().name);
                 self.upright("(");
                 for (index, argument) in arguments.iter().enumerate() {
                     if index > 0 {
@@ -177,47 +178,10 @@ fn binding(formula: &Formula) -> u8 {
     }
 }
 
-/// A name's letter and its index: what follows an underscore, or digits at the end.
-fn parts(name: &str) -> (&str, &str) {
-    if let Some((base, index)) = name.split_once('_')
-        && !base.is_empty()
-    {
-        return (base, index);
-    }
-    let base = name.trim_end_matches(|character: char| character.is_ascii_digit());
-    name.split_at(if base.is_empty() { name.len() } else { base.len() })
-}
-
 /// The letter with a hat: one character where there is one, for not every font can combine.
 fn hatted(letter: &str) -> String {
     const PLAIN: &str = "aceghijosuwyzACEGHIJOSUWYZ";
     const HATTED: &str = "âĉêĝĥîĵôŝûŵŷẑÂĈÊĜĤÎĴÔŜÛŴŶẐ";
     let found = PLAIN.chars().zip(HATTED.chars()).find(|(plain, _)| letter.starts_with(*plain));
     found.map_or_else(|| format!("{letter}\u{302}"), |(_, hatted)| hatted.to_string())
-}
-
-/// The Greek letter of that name.
-fn greek(name: &str) -> Option<char> {
-    const LETTERS: &[(&str, char)] = &[
-        ("alpha", 'α'),
-        ("beta", 'β'),
-        ("gamma", 'γ'),
-        ("delta", 'δ'),
-        ("epsilon", 'ε'),
-        ("zeta", 'ζ'),
-        ("eta", 'η'),
-        ("theta", 'θ'),
-        ("kappa", 'κ'),
-        ("lambda", 'λ'),
-        ("mu", 'μ'),
-        ("xi", 'ξ'),
-        ("rho", 'ρ'),
-        ("sigma", 'σ'),
-        ("tau", 'τ'),
-        ("phi", 'φ'),
-        ("chi", 'χ'),
-        ("psi", 'ψ'),
-        ("omega", 'ω'),
-    ];
-    LETTERS.iter().find(|(word, _)| *word == name).map(|(_, letter)| *letter)
 }

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::cas::{Arena, Expr, Symbol};
-use crate::model::Simulation;
+use crate::model::{Baseline, Entry, Simulation};
 use crate::plant::Plant;
 use crate::program::{Program, lower};
 use crate::source::{Code, Diagnostic, Span};
@@ -15,7 +15,7 @@ use crate::source::{Code, Diagnostic, Span};
 pub(super) const TIME: usize = 0;
 
 /// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
-/// estimates; the baselines' estimates; signals.
+/// estimates; the baselines' estimates; signals and courses; noise.
 #[derive(Debug)]
 pub(super) struct Layout {
     /// The symbols in the order of the table.
@@ -23,13 +23,15 @@ pub(super) struct Layout {
     /// x, y and the baselines' states together.
     pub(super) state: Range<usize>,
     pub(super) x: Range<usize>,
-    pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,
     /// The observer's estimates.
     pub(super) hat: Range<usize>,
     /// The baselines' estimates, one baseline after the other.
     pub(super) rivals: Range<usize>,
+    /// Signals, then the courses of what is true of the plant.
     pub(super) signals: Range<usize>,
+    /// The noise of each noisy output's last sample.
+    pub(super) noise: Range<usize>,
 }
 
 impl Layout {
@@ -44,17 +46,19 @@ impl Layout {
         };
         let baselines = || simulation.baselines.iter();
         let x = add(plant.x.iter().map(|state| state.symbol).collect());
-        let y = add(plant.y.iter().map(|output| output.symbol).collect());
+        add(plant.y.iter().map(|output| output.symbol).collect());
         let own = add(baselines()
-            .flat_map(|b| b.value.state.iter().map(|entry| rival_state(arena, &b.name.value, &entry.name.value)))
+            .filter_map(|b| Some((&b.name.value, b.value.equations()?)))
+            .flat_map(|(name, b)| b.state.iter().map(|entry| rival_state(arena, name, &entry.name.value)))
             .collect());
         let u = add(plant.u.clone());
         let hat = add(recovered.iter().map(|state| estimate(arena, &arena.name(*state))).collect());
-        let rivals = add(baselines()
-            .flat_map(|b| b.value.estimate.iter().map(|e| rival_estimate(arena, &b.name.value, &e.name.value)))
-            .collect());
-        let signals = add(simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value)).collect());
-        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals }
+        let rivals = add(baselines().flat_map(|b| rival_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
+        let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
+        let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
+        let signals = add(signals.chain(courses).collect());
+        let noise = add(simulation.noise.iter().map(|entry| noise(arena, &entry.name.value)).collect());
+        Self { symbols, state: x.start..own.end, x, u, hat, rivals, signals, noise }
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.
@@ -81,6 +85,16 @@ pub(super) fn time(arena: &Arena) -> Symbol {
     arena.generated("t")
 }
 
+/// The true value of a parameter or of a constant state, where it has a course.
+pub(super) fn course(arena: &Arena, name: &str) -> Symbol {
+    arena.generated(&format!("plant({name})"))
+}
+
+/// The noise of an output.
+pub(super) fn noise(arena: &Arena, output: &str) -> Symbol {
+    arena.generated(&format!("noise({output})"))
+}
+
 /// The observer's estimate of a state.
 pub(super) fn estimate(arena: &Arena, state: &str) -> Symbol {
     arena.generated(&format!("hat({state})"))
@@ -89,6 +103,20 @@ pub(super) fn estimate(arena: &Arena, state: &str) -> Symbol {
 /// A state of a baseline.
 pub(super) fn rival_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
     arena.generated(&format!("{baseline}.{state}"))
+}
+
+/// The states that a baseline estimates, with its estimates.
+pub(super) fn rival_estimates(plant: &Plant, baseline: &Entry<Baseline>) -> Vec<(String, Symbol)> {
+    let arena = &plant.arena;
+    let states: Vec<String> = match baseline.value.equations() {
+        Some(equations) => equations.estimate.iter().map(|entry| entry.name.value.clone()).collect(),
+        None => plant.x.iter().map(|state| arena.name(state.symbol)).collect(),
+    };
+    let estimate = |state: String| {
+        let symbol = rival_estimate(arena, &baseline.name.value, &state);
+        (state, symbol)
+    };
+    states.into_iter().map(estimate).collect()
 }
 
 /// A baseline's estimate of a state.

@@ -6,8 +6,9 @@
 //!
 //! In: an accepted derivation, and the model's sections `observer` and `simulation`. Out: the course
 //! of the loop, or a diagnostic where the sections do not say enough, or the fact that the run could
-//! not go on. The observer is the runtime library's own, on a model that is interpreted; the plant
-//! and the baselines are one ODE between two samples. No file is touched here and nothing printed.
+//! not go on. The observer is the runtime library's own, on a model that is interpreted. The plant, which may differ from
+//! its model (`truth`), and the baselines that have equations are one ODE between two samples; baselines by name (`rival`)
+//! are fed the samples that the observer is. No file is touched here and nothing printed.
 //!
 //! Holds: the same scenario gives the same trace, to the last bit.
 
@@ -20,7 +21,9 @@ pub mod figure;
 mod flow;
 mod label;
 mod layout;
+mod noise;
 mod observer;
+mod overrides;
 mod panel;
 mod rival;
 mod run;
@@ -28,13 +31,17 @@ mod scenario;
 mod scope;
 mod settings;
 mod signal;
+mod sizes;
 mod timing;
 mod trace;
+mod truth;
+mod unit;
 mod window;
 
 #[cfg(test)]
 mod tests;
 
 pub use failure::Failure;
-pub use scenario::{Overrides, Scenario};
+pub use overrides::Overrides;
+pub use scenario::Scenario;
 pub use trace::Trace;

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use crate::analysis::{Derivation, RegressionKind};
 use crate::cas::{Expr, Symbol};
+use crate::plant::settings::cannot_rebase;
 use crate::program::Program;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::derived::LARGEST;
 use super::layout::program;
 use super::scope::Names;
 use super::settings::Settings;
+use super::sizes::LARGEST;
 
 /// An observer, ready to be interpreted.
 #[derive(Debug)]
@@ -61,7 +62,11 @@ impl Design {
         let cascade = derivation.cascade.result.as_ref()?;
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        let settings = Settings::resolve(names, regression, problems)?;
+        let settings = Settings::resolve(names, (regression, inverse), problems)?;
+        if let Some(rebase) = names.model.observer.rebase.as_ref().filter(|_| !derivation.can_rebase(plant)) {
+            problems.push(cannot_rebase(&plant.name, rebase.span));
+            return None;
+        }
         let arena = &plant.arena;
         let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {
             let outputs = arena.substitute_all(outputs, numbers);

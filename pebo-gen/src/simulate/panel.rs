@@ -14,6 +14,7 @@ use super::label::Label;
 use super::layout::{estimate, rival_estimate};
 use super::rival::Rival;
 use super::scope::{Estimates, Names, Sight, View};
+use super::unit;
 
 /// A part of the figure.
 #[derive(Debug)]
@@ -71,7 +72,11 @@ impl Pass<'_> {
             let curves: Vec<(Label, Expr)> = curves
                 .filter_map(|f| Some((Label::formula(f), meant(problems.keep(lower(arena, &scope, f))?))))
                 .collect();
-            let unit = panel.unit.as_ref().map(|unit| unit.value.clone());
+            let known = |name: &str| self.unit(arena.symbol(name));
+            let unit = match &panel.unit {
+                Some(unit) => Some(unit.value.clone()),
+                None => unit::same(panel.curves.iter().map(|curve| unit::of(curve, &known))).map(str::to_owned),
+            };
             self.add((&panel.title.value, unit, panel.scale), curves);
         }
     }
@@ -80,15 +85,35 @@ impl Pass<'_> {
     fn usual(&mut self, errors: &[Expr]) {
         let plant = self.names.plant;
         let arena = &plant.arena;
-        let named = |symbol: Symbol| (Label::name(&arena.name(symbol)), arena.of_symbol(symbol));
-        let errors = self.hats.iter().zip(errors).map(|((state, _), error)| (Label::error(state), *error)).collect();
-        let outputs = plant.y.iter().map(|output| named(output.symbol)).collect();
+        let states = self.hats.iter().map(|(state, _)| arena.symbol(state));
+        let errors = self.hats.iter().zip(errors).map(|((state, _), error)| (Label::error(state), *error));
+        let errors = states.zip(errors).map(|(state, (label, error))| (state, label, error)).collect();
+        let named = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), arena.of_symbol(symbol));
+        let measured = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), self.names.measured(symbol));
+        let outputs = plant.y.iter().map(|output| measured(output.symbol)).collect();
         let inputs: Vec<_> = plant.u.iter().map(|input| named(*input)).collect();
-        self.add(("Estimation errors", None, Scale::Log), errors);
-        self.add(("Outputs", None, Scale::Linear), outputs);
+        self.signals("Estimation errors", Scale::Log, errors);
+        self.signals("Outputs", Scale::Linear, outputs);
         if !inputs.is_empty() {
-            self.add(("Inputs", None, Scale::Linear), inputs);
+            self.signals("Inputs", Scale::Linear, inputs);
         }
+    }
+
+    /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
+    fn signals(&mut self, title: &str, scale: Scale, curves: Vec<(Symbol, Label, Expr)>) {
+        let common = unit::same(curves.iter().map(|curve| self.unit(curve.0))).map(str::to_owned);
+        let beside = |symbol: Symbol| self.unit(symbol).filter(|_| common.is_none());
+        let labelled = curves.into_iter().map(|(symbol, label, value)| match beside(symbol) {
+            Some(unit) => (label.then(Label::text(&format!(" in {unit}"))), value),
+            None => (label, value),
+        });
+        let labelled = labelled.collect();
+        self.add((title, common, scale), labelled);
+    }
+
+    /// The unit that the model gives a signal.
+    fn unit(&self, symbol: Symbol) -> Option<&str> {
+        self.names.plant.units.get(&symbol).map(String::as_str)
     }
 
     fn add(&mut self, (title, unit, scale): (&str, Option<String>, Scale), curves: Vec<(Label, Expr)>) {

@@ -13,6 +13,8 @@ use super::derived::{Estimation, observer};
 use super::failure::Failure;
 use super::flow::Flow;
 use super::layout::TIME;
+use super::noise::normal;
+use super::rival::Follower;
 use super::scenario::Scenario;
 use super::signal::Course;
 use super::timing::real;
@@ -75,7 +77,10 @@ pub(super) struct Machine<'a> {
     pub(super) observer: Box<dyn Estimation>,
     flow: Flow,
     signals: Vec<Course>,
+    given: Formulas,
+    measured: Formulas,
     rivals: Formulas,
+    followers: Vec<Box<dyn Follower>>,
     control: Formulas,
 }
 
@@ -96,13 +101,21 @@ impl<'a> Machine<'a> {
                 scenario.timing.slack(),
             ),
             signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
+            given: Formulas::new(&scenario.given.1),
+            measured: Formulas::new(&scenario.measured),
             rivals: Formulas::new(&scenario.rivals),
+            followers: Vec::new(),
             control: Formulas::new(&scenario.control),
         };
         machine.read_signals();
         let mut start = Formulas::new(&scenario.start);
         let state = start.of(&machine.table);
         machine.table[layout.state.clone()].copy_from_slice(state);
+        machine.measure(0);
+        machine.admit(layout.state.clone())?;
+        let (x, y) = (&machine.table[layout.x.clone()], machine.measured.of(&machine.table));
+        let followers = scenario.followers.iter();
+        machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
         machine.estimate()?;
         Ok(machine)
     }
@@ -114,6 +127,15 @@ impl<'a> Machine<'a> {
         self.flow.advance(&mut self.table, from, to).map_err(stuck)?;
         self.table[TIME] = to;
         self.read_signals();
+        let given = self.given.of(&self.table);
+        for (position, value) in self.scenario.given.0.iter().zip(given) {
+            self.table[*position] = *value;
+        }
+        self.measure(sample);
+        self.admit(self.scenario.layout.state.clone())?;
+        let y = self.measured.of(&self.table);
+        let u = &self.table[self.scenario.layout.u.clone()];
+        self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
         self.estimate()
     }
 
@@ -133,17 +155,29 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// Draws the noise of this sample.
+    fn measure(&mut self, sample: u64) {
+        let noisy = self.scenario.layout.noise.clone().zip(&self.scenario.deviations).zip(0_u64..);
+        for ((position, deviation), output) in noisy {
+            self.table[position] = deviation * normal(self.scenario.seed, output, sample);
+        }
+    }
+
     /// Lets all observers have the outputs of now and the inputs of the interval before.
     fn estimate(&mut self) -> Result<(), Failure> {
         let layout = &self.scenario.layout;
-        self.admit(layout.state.clone())?;
+        for ((place, _), follower) in self.scenario.followers.iter().zip(&self.followers) {
+            follower.write(&mut self.table[place.clone()]);
+            self.admit(place.clone())?;
+        }
         let estimates = self.rivals.of(&self.table);
         self.table[layout.rivals.clone()].copy_from_slice(estimates);
         // The observer's first call gives its inputs and its step no effect.
+        let y = self.measured.of(&self.table);
         let (before, after) = self.table.split_at_mut(layout.hat.start);
         let hat = &mut after[..layout.hat.len()];
         self.observer
-            .sample(&before[layout.y.clone()], &before[layout.u.clone()], self.scenario.timing.step, hat)
+            .sample(y, &before[layout.u.clone()], self.scenario.timing.step, hat)
             .map_err(|fault| Failure::Refused { at: before[TIME], fault })
     }
 
@@ -164,6 +198,7 @@ struct Record<'a> {
     scenario: &'a Scenario,
     trace: Trace,
     next_row: u64,
+    measured: Formulas,
     errors: Formulas,
     values: Formulas,
     curves: Vec<Curve>,
@@ -175,6 +210,7 @@ impl<'a> Record<'a> {
             scenario,
             trace: Trace::new(scenario.columns.clone()),
             next_row: 0,
+            measured: Formulas::new(&scenario.measured),
             errors: Formulas::new(&scenario.errors),
             values: Formulas::new(&scenario.curves),
             curves: vec![Curve::default(); scenario.curves.outputs.len()],
@@ -191,9 +227,10 @@ impl<'a> Record<'a> {
         }
         self.next_row += 1;
         let layout = &self.scenario.layout;
-        let measured = [layout.x.clone(), layout.y.clone(), layout.u.clone()];
         self.trace.push(table[TIME]);
-        measured.into_iter().flatten().for_each(|position| self.trace.push(table[position]));
+        table[layout.x.clone()].iter().for_each(|state| self.trace.push(*state));
+        self.measured.of(table).iter().for_each(|output| self.trace.push(*output));
+        table[layout.u.clone()].iter().for_each(|input| self.trace.push(*input));
         for (hat, error) in table[layout.hat.clone()].iter().zip(self.errors.of(table)) {
             self.trace.push(*hat);
             self.trace.push(*error);

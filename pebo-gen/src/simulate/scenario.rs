@@ -4,10 +4,11 @@
 //! every mistake in the sections. After this, a run can fail only by what its numbers do.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::analysis::Derivation;
 use crate::cas::{Expr, Symbol};
-use crate::model::Model;
+use crate::model::{Model, Simulation};
 use crate::plant::Plant;
 use crate::program::Program;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
@@ -15,29 +16,19 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use super::control;
 use super::failure::Failure;
 use super::flow;
-use super::layout::{Layout, estimate};
+use super::layout::{Layout, estimate, rival_estimate};
 use super::observer::Design;
+use super::overrides::Overrides;
 use super::panel::{Panel, Panels};
-use super::rival::Rival;
+use super::rival::{Rival, Sampled};
 use super::scope::{Estimates, Names, Sight, View};
 use super::signal::Signal;
 use super::timing::Timing;
+use super::trace::Trace;
+use super::truth::Truth;
 
 /// Numbers that a table may hold; as text this is some hundred megabytes.
 const MOST_VALUES: f64 = 2e7;
-
-/// Settings of a call, which go before those of the file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Overrides {
-    /// Whose estimates the control law sees: `observer`, `truth`, or a baseline.
-    pub feedback: Option<String>,
-    /// The duration in seconds.
-    pub duration: Option<f64>,
-    /// The sampling period in seconds.
-    pub step: Option<f64>,
-    /// The time between rows of the table in seconds; a thousandth of the duration if absent.
-    pub every: Option<f64>,
-}
 
 /// A closed loop, ready to be run.
 #[derive(Debug)]
@@ -51,10 +42,20 @@ pub struct Scenario {
     pub(super) signals: Vec<Signal>,
     /// The state at the start.
     pub(super) start: Program,
+    /// The values of states and outputs that are not integrated, with their positions in the table.
+    pub(super) given: (Vec<usize>, Program),
+    /// What the sensors show.
+    pub(super) measured: Program,
+    /// The standard deviations of the noise.
+    pub(super) deviations: Vec<f64>,
+    /// Of the noise.
+    pub(super) seed: u64,
     /// The rates of the state.
     pub(super) rates: Program,
     /// The baselines' estimates.
     pub(super) rivals: Program,
+    /// Baselines that are fed samples, with where they write their estimates.
+    pub(super) followers: Vec<(Range<usize>, Sampled)>,
     /// The inputs.
     pub(super) control: Program,
     /// The errors of the observer's estimates.
@@ -130,12 +131,13 @@ impl Resolution<'_> {
         let design = Design::resolve(&names, derivation, &numbers, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
-        let signals: Vec<Signal> =
-            simulation.signals.iter().map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
-        let rivals: Vec<Rival> =
-            simulation.baselines.iter().map(|entry| Rival::resolve(&names, entry, problems)).collect();
-        let start = start(&names, &rivals, problems);
-        let rates = rates(plant, &numbers, &rivals, span, problems);
+        let courses = simulation.signals.iter().chain(&simulation.plant);
+        let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
+        let mut rivals: Vec<Rival> =
+            simulation.baselines.iter().filter_map(|entry| Rival::resolve(&names, entry, problems)).collect();
+        let truth = Truth::resolve(&names, problems);
+        let start = start(&names, &truth, &rivals, problems);
+        let rates = rates(&names, &truth, &rivals, problems);
         let (timing, design, rates) = (timing?, design?, rates?);
 
         let hats: Estimates = design
@@ -159,14 +161,24 @@ impl Resolution<'_> {
         }
         let columns = columns(plant, &design.recovered, &rivals);
         problems.keep(admit_table(&timing, columns.len()));
+        let followers = followers(plant, &layout, &mut rivals);
         let estimates: Vec<Expr> = rivals.iter().flat_map(|rival| rival.estimates.iter().map(|e| e.1)).collect();
+        let outputs = plant.y.iter().map(|output| output.symbol);
+        let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs.clone()).collect();
+        let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
+        let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
-            feedback: (feedback != control::OBSERVER).then_some(feedback),
+            feedback: (feedback != Simulation::OBSERVER).then_some(feedback),
             start: compile(&start)?,
+            given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
+            measured: compile(&measured)?,
+            deviations: simulation.noise.iter().map(|entry| entry.value.value.to_f64()).collect(),
+            seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
             rivals: compile(&estimates)?,
+            followers,
             control: compile(&control)?,
             errors: compile(&errors)?,
             curves: compile(&panels.values)?,
@@ -182,44 +194,58 @@ impl Resolution<'_> {
     }
 }
 
-/// x, y and the baselines' states at the start.
-fn start(names: &Names, rivals: &[Rival], problems: &mut Diagnostics) -> Vec<Expr> {
-    let plant = names.plant;
+/// x, y and the baselines' states at the start, where the inputs are still 0.
+fn start(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Vec<Expr> {
+    let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol);
-    let wanted: Vec<Symbol> = states.chain(plant.y.iter().map(|output| output.symbol)).collect();
+    let states: Vec<Symbol> = states.chain(plant.y.iter().map(|output| output.symbol)).collect();
+    let moving: Vec<Symbol> = states.iter().copied().filter(|symbol| !truth.gives(*symbol)).collect();
     let scope = names.scope(&View::default());
-    let mut found = names.entries(&scope, &wanted, ("initial", &names.simulation.initial), problems);
-    let values: BTreeMap<Symbol, Expr> = wanted.into_iter().zip(found.iter().copied()).collect();
-    let others: Vec<Expr> = rivals.iter().flat_map(|rival| rival.start.iter().copied()).collect();
-    found.extend(plant.arena.substitute_all(&others, &values));
-    found
+    let found = names.entries(&scope, &moving, ("initial", &names.simulation.initial), problems);
+    let mut values: BTreeMap<Symbol, Expr> = moving.into_iter().zip(found).collect();
+    for (place, value) in truth.given(&states) {
+        values.insert(states[place], arena.substitute(value, &values));
+    }
+    let all: Vec<Expr> = states.into_iter().map(|symbol| arena.of_symbol(symbol)).collect();
+    let others = rivals.iter().flat_map(|rival| rival.start.iter().copied());
+    arena.substitute_all(&all.into_iter().chain(others).collect::<Vec<_>>(), &values)
 }
 
-/// The rates of x, y and the baselines' states.
-fn rates(
-    plant: &Plant,
-    numbers: &BTreeMap<Symbol, Expr>,
-    rivals: &[Rival],
-    span: Span,
-    problems: &mut Diagnostics,
-) -> Option<Vec<Expr>> {
-    let mut found: Vec<Expr> = plant.x.iter().map(|state| state.rate.expr).collect();
+/// The rates of x, y and the baselines' states; of what is not integrated, 0.
+fn rates(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Option<Vec<Expr>> {
+    let (plant, arena) = (names.plant, &names.plant.arena);
+    let rate = |symbol: Symbol, rate: Expr| if truth.gives(symbol) { arena.zero() } else { rate };
+    let mut found: Vec<Expr> = plant.x.iter().map(|state| rate(state.symbol, state.rate.expr)).collect();
     for output in &plant.y {
-        found.extend(output.rate.map(|rate| rate.expr));
-        if output.rate.is_none() {
-            let name = plant.arena.name(output.symbol);
-            let missing = Diagnostic::error(Code::SimulationIncomplete, output.span, format!("`{name}` has no rate"))
-                .also(span, "the simulation needs it")
-                .help(format!("give the rate of `{name}` under `f_y`"));
-            problems.push(match &output.value {
-                None => missing,
-                Some(value) => missing.also(value.span, "an input moves this value, and its own rate is not known"),
-            });
+        match output.rate {
+            Some(given) => found.push(rate(output.symbol, given.expr)),
+            None if truth.gives(output.symbol) => found.push(arena.zero()),
+            None => {
+                let name = arena.name(output.symbol);
+                problems.push(
+                    Diagnostic::error(Code::SimulationIncomplete, output.span, format!("`{name}` has no rate"))
+                        .also(names.section(), "the simulation needs it")
+                        .help(format!("give the rate of `{name}` under `f_y`, or its value under `g_y`")),
+                );
+            }
         }
     }
-    let mut found = plant.arena.substitute_all(&found, numbers);
-    found.extend(rivals.iter().flat_map(|rival| rival.rates.iter().copied()));
+    let mut found = truth.of_plant(names, &found);
+    let others: Vec<Expr> = rivals.iter().flat_map(|rival| rival.rates.iter().copied()).collect();
+    found.extend(truth.between_samples(names, &others));
     (!problems.has_errors()).then_some(found)
+}
+
+/// The baselines that are fed samples, with where they write.
+fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range<usize>, Sampled)> {
+    let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
+    let follower = |rival: &mut Rival| {
+        let sampled = rival.sampled.take()?;
+        let symbol = rival_estimate(&plant.arena, &rival.name, &first);
+        let start = layout.symbols.iter().position(|known| *known == symbol)?;
+        Some((start..start + plant.x.len(), sampled))
+    };
+    rivals.iter_mut().filter_map(follower).collect()
 }
 
 /// Estimate less truth; for an angle, the difference that is least in magnitude.
@@ -247,7 +273,7 @@ fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String>
     let mut columns = vec!["t".to_owned()];
     columns.extend(signals.map(|symbol| arena.name(symbol)));
     for state in recovered.iter().map(|state| arena.name(*state)) {
-        columns.extend([format!("{state}_hat"), format!("{state}_error")]);
+        columns.extend([format!("{state}_hat"), format!("{state}{}", Trace::ERROR)]);
     }
     for rival in rivals {
         columns.extend(rival.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", rival.name)));

@@ -1,16 +1,16 @@
 //! What each place of the section `simulation` can see.
 //!
-//! Parameters are numbers here. A definition is lowered in each place anew, so that `hat(x)` in it is
+//! Parameters are numbers here, those of the model; an output is what its sensor shows, noise included. A definition is lowered in each place anew, so that `hat(x)` in it is
 //! the estimate of the place that uses it; where it needs what is hidden, the definition is hidden too.
 
 use std::collections::BTreeMap;
 
 use crate::cas::{Expr, Symbol};
-use crate::model::{Baseline, Entry, Formula, Model, Simulation};
+use crate::model::{Entry, Equations, Formula, Model, Simulation};
 use crate::plant::{Plant, Scope, lower};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::layout::{rival_state, time};
+use super::layout::{noise, rival_state, time};
 
 /// Estimates by the state's name.
 pub(super) type Estimates = Vec<(String, Expr)>;
@@ -36,7 +36,7 @@ pub(super) enum Sight {
 pub(super) struct View<'a> {
     pub(super) sight: Sight,
     /// The states of this baseline are visible.
-    pub(super) own: Option<&'a Entry<Baseline>>,
+    pub(super) own: Option<(&'a str, &'a Equations)>,
     /// What `hat(x)` stands for.
     pub(super) hats: Estimates,
 }
@@ -64,6 +64,21 @@ impl<'a> Names<'a> {
     pub(super) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
         let given = self.plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.clone()?)));
         given.map(|(symbol, value)| (symbol, self.plant.arena.number(value))).collect()
+    }
+
+    /// Outputs with noise.
+    fn noisy(&self) -> impl Iterator<Item = Symbol> {
+        self.simulation.noise.iter().map(|entry| self.plant.arena.symbol(&entry.name.value))
+    }
+
+    /// What the sensor of an output shows.
+    pub(super) fn measured(&self, output: Symbol) -> Expr {
+        let arena = &self.plant.arena;
+        let value = arena.of_symbol(output);
+        if !self.noisy().any(|noisy| noisy == output) {
+            return value;
+        }
+        arena.add(value, arena.of_symbol(noise(arena, &arena.name(output))))
     }
 
     /// The names of a place with their meanings.
@@ -96,9 +111,12 @@ impl<'a> Names<'a> {
         show(plant.u.clone(), Sight::Inputs, "an input, whose value is not known here");
         // After the signals, which give w its course.
         show(plant.w.clone(), Sight::Everything, "not measured");
-        if let Some(baseline) = view.own {
-            for state in &baseline.value.state {
-                let symbol = rival_state(arena, &baseline.name.value, &state.name.value);
+        for output in self.noisy().filter(|_| view.sight >= Sight::Outputs) {
+            scope.define(arena.name(output), self.measured(output));
+        }
+        if let Some((name, baseline)) = view.own {
+            for state in &baseline.state {
+                let symbol = rival_state(arena, name, &state.name.value);
                 scope.define(&state.name.value, arena.of_symbol(symbol));
             }
         }

@@ -2,17 +2,21 @@
 
 use std::fmt::Write as _;
 
-/// What a run gives.
-#[derive(Clone, Debug)]
+/// What a run gives. Serialises to `columns`, the names, and `values`, row by row.
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct Trace {
     columns: Vec<String>,
     /// Row by row.
     values: Vec<f64>,
     /// The points of each panel's curves.
+    #[serde(skip)]
     pub(super) curves: Vec<Vec<Vec<(f64, f64)>>>,
 }
 
 impl Trace {
+    /// What the name of the column of a state's error ends with.
+    pub const ERROR: &str = "_error";
+
     pub(super) fn new(columns: Vec<String>) -> Self {
         Self { columns, values: Vec::new(), curves: Vec::new() }
     }
@@ -30,6 +34,11 @@ impl Trace {
     /// The rows, from the first instant to the last.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact(self.columns.len())
+    }
+
+    /// The last instant, in seconds.
+    pub fn end(&self) -> f64 {
+        self.rows().last().map_or(0.0, |row| row[0])
     }
 
     /// The values of the column of that name.

@@ -3,12 +3,9 @@
 use std::collections::VecDeque;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Filter, FilteredRegression, Hold, RegressionOperator, Sides, Sum};
+use pebo_runtime::{Filter, FilteredRegression, Hold, Outcome, RegressionOperator, Sides, Sum, Turn};
 
 use super::settings::{Operator, Settings};
-
-/// The longest window in samples: an observer copies it at every step.
-pub(super) const LONGEST: usize = 1024;
 
 /// The operator of a padded model.
 #[derive(Clone, Debug)]
@@ -27,10 +24,20 @@ impl<const N: usize> Passage<N> {
 }
 
 impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
-    fn advance(&mut self, sides: [&Sides<f64, N, N>; 2], dt: f64) {
+    type Step = Taken<N>;
+
+    fn step(&self, sides: [&Sides<f64, N, N>; 2], dt: f64) -> Taken<N> {
         match self {
-            Self::Filtered(filtered) => filtered.advance(sides, dt),
-            Self::Windowed(window) => window.advance(sides, dt),
+            Self::Filtered(filtered) => Taken::Filtered(Box::new(filtered.step(sides, dt))),
+            Self::Windowed(window) => Taken::Windowed(Box::new(window.step(sides, dt))),
+        }
+    }
+
+    fn take(&mut self, step: Taken<N>) {
+        match (self, step) {
+            (Self::Filtered(filtered), Taken::Filtered(step)) => filtered.take(*step),
+            (Self::Windowed(window), Taken::Windowed(step)) => window.take(*step),
+            _ => unreachable!("a step is taken by what worked it out"),
         }
     }
 
@@ -55,6 +62,13 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         }
     }
 
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        match self {
+            Self::Filtered(filtered) => filtered.turn(turn),
+            Self::Windowed(window) => window.turn(turn),
+        }
+    }
+
     fn reset(&mut self) {
         match self {
             Self::Filtered(filtered) => filtered.reset(),
@@ -66,6 +80,36 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => filtered.is_finite(),
             Self::Windowed(window) => window.is_finite(),
+        }
+    }
+}
+
+/// A step of either kind.
+#[derive(Clone, Debug)]
+pub(super) enum Taken<const N: usize> {
+    Filtered(Box<FilteredRegression<f64, N, N>>),
+    Windowed(Box<Moved<N>>),
+}
+
+impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
+    fn regressand(&self) -> SVector<f64, N> {
+        match self {
+            Self::Filtered(step) => Outcome::regressand(&**step),
+            Self::Windowed(step) => step.regressand(),
+        }
+    }
+
+    fn regressor(&self) -> SMatrix<f64, N, N> {
+        match self {
+            Self::Filtered(step) => Outcome::regressor(&**step),
+            Self::Windowed(step) => step.regressor(),
+        }
+    }
+
+    fn blemish(&self) -> f64 {
+        match self {
+            Self::Filtered(step) => Outcome::blemish(&**step),
+            Self::Windowed(step) => step.blemish(),
         }
     }
 }
@@ -110,6 +154,19 @@ impl<const N: usize> Total<N> {
         self.duration.add(&SVector::repeat(*length));
     }
 
+    fn inverse_duration(&self) -> f64 {
+        let duration = self.duration.value().x;
+        if duration > 0.0 { 1.0 / duration } else { 0.0 }
+    }
+
+    fn mean_known(&self) -> SVector<f64, N> {
+        self.known.value() * self.inverse_duration()
+    }
+
+    fn mean_factor(&self) -> SMatrix<f64, N, N> {
+        self.factor.value() * self.inverse_duration()
+    }
+
     fn is_finite(&self) -> bool {
         self.known.is_finite() && self.factor.is_finite() && self.duration.is_finite()
     }
@@ -120,15 +177,34 @@ impl<const N: usize> Window<N> {
         let (total, front) = (Total::nothing(), Total::nothing());
         Self { hold, samples, steps: VecDeque::new(), recent: 0, total, front }
     }
+}
 
-    fn inverse_duration(&self) -> f64 {
-        let duration = self.total.duration.value().x;
-        if duration > 0.0 { 1.0 / duration } else { 0.0 }
+/// A window with one more step in it.
+#[derive(Clone, Debug)]
+pub(super) struct Moved<const N: usize> {
+    step: Step<N>,
+    total: Total<N>,
+    front: Total<N>,
+}
+
+impl<const N: usize> Outcome<f64, N, N> for Moved<N> {
+    fn regressand(&self) -> SVector<f64, N> {
+        self.total.mean_known()
+    }
+
+    fn regressor(&self) -> SMatrix<f64, N, N> {
+        self.total.mean_factor()
+    }
+
+    fn blemish(&self) -> f64 {
+        if self.total.is_finite() && self.front.is_finite() { 0.0 } else { f64::NAN }
     }
 }
 
 impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
-    fn advance(&mut self, [start, end]: [&Sides<f64, N, N>; 2], dt: f64) {
+    type Step = Moved<N>;
+
+    fn step(&self, [start, end]: [&Sides<f64, N, N>; 2], dt: f64) -> Moved<N> {
         let sides = match self.hold {
             Hold::Zero => Sides { known: start.known * dt, factor: start.factor * dt },
             Hold::First => Sides {
@@ -136,28 +212,38 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
                 factor: (start.factor + end.factor) * (0.5 * dt),
             },
         };
+        let (mut total, mut front) = (self.total.clone(), self.front.clone());
         if self.steps.len() == self.samples
-            && let Some((oldest, length)) = self.steps.pop_front()
+            && let Some((oldest, length)) = self.steps.front()
         {
-            self.total.add(&(Sides { known: -oldest.known, factor: -oldest.factor }, -length));
+            total.add(&(Sides { known: -oldest.known, factor: -oldest.factor }, -length));
         }
         let step = (sides, dt);
-        self.total.add(&step);
-        self.front.add(&step);
-        self.steps.push_back(step);
-        self.recent += 1;
-        if self.recent == self.samples {
-            self.recent = 0;
-            self.total = std::mem::replace(&mut self.front, Total::nothing());
+        total.add(&step);
+        front.add(&step);
+        if self.recent + 1 == self.samples {
+            Moved { step, total: front, front: Total::nothing() }
+        } else {
+            Moved { step, total, front }
         }
+    }
+
+    fn take(&mut self, Moved { step, total, front }: Moved<N>) {
+        if self.steps.len() == self.samples {
+            self.steps.pop_front();
+        }
+        self.steps.push_back(step);
+        self.recent = if self.recent + 1 == self.samples { 0 } else { self.recent + 1 };
+        self.total = total;
+        self.front = front;
     }
 
     fn regressand(&self) -> SVector<f64, N> {
-        self.total.known.value() * self.inverse_duration()
+        self.total.mean_known()
     }
 
     fn regressor(&self) -> SMatrix<f64, N, N> {
-        self.total.factor.value() * self.inverse_duration()
+        self.total.mean_factor()
     }
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
@@ -170,6 +256,20 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
             self.total.known.add(&sides.known);
             if place >= older {
                 self.front.known.add(&sides.known);
+            }
+        }
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        self.total.factor = Sum::new(SMatrix::zeros());
+        self.front.factor = Sum::new(SMatrix::zeros());
+        let older = self.steps.len() - self.recent;
+        for (place, (sides, _)) in self.steps.iter_mut().enumerate() {
+            let turned = turn.of_factor(&sides.factor);
+            sides.factor += turned;
+            self.total.factor.add(&sides.factor);
+            if place >= older {
+                self.front.factor.add(&sides.factor);
             }
         }
     }

@@ -9,8 +9,14 @@ macro_rules! codes {
     ($($(#[$group:meta])* $variant:ident $name:literal $title:literal $explanation:literal $(=> $paper:literal)?)*) => {
         /// What kind of mistake or finding a diagnostic is about.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+        #[non_exhaustive]
         pub enum Code {
-            $(#[doc = concat!("`", $name, "`: ", $title, ".")] $variant,)*
+            $(
+                #[doc = concat!("`", $name, "`: ", $title, ".")]
+                #[cfg_attr(feature = "yaml", serde(rename = $name))]
+                $variant,
+            )*
         }
 
         impl Code {
@@ -80,16 +86,10 @@ codes! {
     FileTooLarge "file-too-large" "a file is larger than a model can be"
         "Model files are limited to one megabyte. Models written by hand have a few kilobytes."
 
-    // Commands.
-
-    NotYet "not-yet" "a command that this version does not have"
-        "The command belongs to the interface of pebo-gen, and is not written yet. `pebo-gen --help` lists the \
-         commands that are."
-
     // YAML.
 
     EmptyFile "empty-file" "a model file has no content"
-        "The file is empty, or holds only comments. A model is a map with at least the keys model, x, y, f_x and phi."
+        "The file is empty, or holds only comments. A model is a map with at least the keys model, x, y, f_x and f_y."
     YamlSyntax "yaml-syntax" "the text is not YAML"
         "The YAML parser stopped here. Frequent causes: a tab in the indentation; a missing space after a colon; a \
          formula that begins with a character that means something to YAML (* & ! { [ % @ ` | >) and needs quotes; a \
@@ -109,16 +109,17 @@ codes! {
     UnknownKey "unknown-key" "a key that model files do not have"
         "The help lists the keys that are valid in this place. Keys are written exactly so: case matters."
     MissingKey "missing-key" "a required key is absent"
-        "A model needs model, x, y, f_x and phi; some of the nested maps have required keys of their own."
+        "A model needs model, x, y and f_x; some of the nested maps have required keys of their own, and phi_left \
+         needs phi."
     WrongShape "wrong-shape" "a value has the wrong shape"
         "A key expects a name, a number, a formula, a list or a map, and found another of these."
     WrongChoice "wrong-choice" "a word that is none of the choices"
         "The key accepts only the words that the help lists."
     SettingConflict "setting-conflict" "settings of the observer that do not go together"
         "Each estimator has settings of its own: gain for gradient; gain, normalisation for normalised-gradient; \
-         covariance, forgetting for least-squares; gain, regressor_gain, forgetting for drem, and clip, period \
+         covariance, forgetting, process_noise for least-squares; gain, regressor_gain, forgetting for drem, and clip, period \
          besides for finite-time-drem; gain, regressor_gain for gradient-drem; gain, covariance, forgetting for \
-         least-squares-drem. All have bounds. The regression goes through a filter or through a window, not both."
+         least-squares-drem. All have bounds, and rebase where the regression is affine in z. The regression goes through a filter or through a window, not both."
     EmptyList "empty-list" "a list must not be empty"
         "A model has at least one unmeasured state, one output and one component of phi."
     ClassConflict "class-conflict" "a class beside keys that the class gives"
@@ -142,8 +143,8 @@ codes! {
 
     MissingItem "missing-item" "a struct or a function of the model is absent"
         "A module under #[pebo_model] has at least the structs X and Y, whose fields are the unmeasured states and \
-         the measured outputs, and the functions f_x and phi. It may also have the structs U (inputs) and W \
-         (unmeasured signals that are not estimated), the functions f_y, g_y, phi_left and identities, and \
+         the measured outputs, and the function f_x. It may also have the structs U (inputs) and W \
+         (unmeasured signals that are not estimated), the functions f_y, g_y, phi, phi_left and identities, and \
          constants, which are the parameters."
     UnsupportedRust "unsupported-rust" "Rust that has no meaning in a model"
         "The functions of a model are read as formulas: + - * /, the functions of floating-point numbers, let, \
@@ -199,10 +200,10 @@ codes! {
     ImplicitMultiplication "implicit-multiplication" "two factors without an operator"
         "Multiplication is written: 2*x, not 2 x."
     UnknownFunction "unknown-function" "a function that does not exist"
-        "The functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log (ln) sqrt abs. A name followed by \
-         an opening parenthesis is a call; a product is written with *."
+        "A name followed by an opening parenthesis is a call; a product is written with *. The message of the error \
+         lists the functions that there are."
     ArgumentCount "argument-count" "a function with the wrong number of arguments"
-        "atan2 takes two arguments, all other functions take one."
+        "The message says how many the function takes: most take one, as sin(q); atan2 takes two, as atan2(y, x)."
     MisplacedEstimate "misplaced-estimate" "hat() where there is no estimate"
         "hat(x) is the observer's estimate of the state x. It has a meaning in the control law, in the definitions, \
          baselines and panels of a simulation, and nowhere else."
@@ -210,8 +211,8 @@ codes! {
     ComparisonExpected "comparison-expected" "an assumption without a comparison"
         "An assumption compares formulas with < <= > >= or !=, as 0 < d < 1."
     FormulaTooDeep "formula-too-deep" "a formula is nested too deep"
-        "Formulas are limited to 200 levels of operators, calls and parentheses; a sum of n terms has n levels. Name \
-         parts of the formula under define."
+        "Formulas are limited to 200 levels of operators, calls and parentheses. A sum has few levels, however many terms \
+         it has; a product of n factors has n. Name parts of the formula under define."
     FormulaTooLarge "formula-too-large" "a formula is too large"
         "Formulas are limited in length, and powers of powers in their total degree. Name parts of the formula under \
          define."
@@ -256,6 +257,12 @@ codes! {
          or it could not be decided whether this identity is invariant along the plant. An identity can be used if \
          it can be solved for one of its names: the name occurs to the first or second power, or in one power \
          alone, with a factor that is never zero."
+    TransformNotFound "transform-not-found" "no transform was found"
+        "The model has no phi, and the search found none whose claims are all proved. The message says what was tried, and \
+         the notes what came nearest: a transform of some states, or one that a further assumption would make \
+         acceptable. `pebo-gen solve MODEL` lists the candidates. Measure another signal, assume the signs of what is \
+         positive, or write a phi of your own."
+        => "Section 2.2, Assumption 1"
     CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
         "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone, or for the \
          generalised cascade an affine function of phi with such coefficients; `class: pebo` in a model asks for \
@@ -297,6 +304,14 @@ codes! {
     IdentifiabilityUndecided "identifiability-undecided" "identifiability is neither proved nor refuted"
         "Claim C4 could not be decided; the obstacle says which rank is unknown."
         => "Section 2.3, Assumption 2"
+
+    // Code.
+
+    CannotEmit "cannot-emit" "an accepted model cannot be written as code"
+        "Every claim is proved, but the code is not there. Most often a number of the model is too large or too small \
+         for the floating-point type: f32 holds magnitudes from 1.2e-38 to 3.4e38. Units in which quantities are near 1 \
+         help accuracy too. What was written is read back and proved equal to what was derived; should that fail, it \
+         is a defect of pebo-gen, and no code is better than wrong code."
 
     // Simulation.
 

@@ -5,6 +5,7 @@ use super::{Code, Span};
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Severity {
     /// Nothing can be made from this input.
     Error,
@@ -16,11 +17,19 @@ pub enum Severity {
 
 /// A place and what to write beside it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Label {
-    /// The place.
+    /// The place; serialises to the range of bytes, or null where there is none.
+    #[cfg_attr(feature = "yaml", serde(serialize_with = "place"))]
     pub span: Span,
     /// What stands beside it; may be empty.
     pub text: Box<str>,
+}
+
+#[cfg(feature = "yaml")]
+fn place<S: serde::Serializer>(span: &Span, serializer: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&Some(*span).filter(|span| *span != Span::NOWHERE), serializer)
 }
 
 /// One mistake, or one finding.
@@ -28,6 +37,8 @@ pub struct Label {
 /// Texts are lower case without a full stop. The message says what is wrong, `help` what to do
 /// about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// Its row in the table of codes.
     pub code: Code,

@@ -24,5 +24,5 @@ pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
 #[cfg(feature = "yaml")]
 pub use render::{Colour, Located, render, render_within};
 pub use span::Span;
-pub use spelling::{listed, nearest, quoted};
+pub use spelling::{counted, listed, nearest, quoted};
 pub use text::{Position, SIZE_LIMIT, Source};

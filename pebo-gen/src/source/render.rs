@@ -67,33 +67,34 @@ fn first_line(span: Span, source: &Source) -> Span {
 
 /// A diagnostic as a program reads it: serialises to the object of the JSON report.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Located<'a> {
+#[non_exhaustive]
+pub struct Located {
     /// The code's name.
     pub code: &'static str,
     /// `error`, `warning` or `note`.
     pub severity: Severity,
     /// What is wrong.
-    pub message: &'a str,
+    pub message: Box<str>,
     /// Line of the primary place, from 1; 1 where there is none.
     pub line: usize,
     /// Column in characters, from 1; 1 where there is no place.
     pub column: usize,
     /// What to do, or null.
-    pub help: Option<&'a str>,
+    pub help: Option<Box<str>>,
 }
 
-impl<'a> Located<'a> {
+impl Located {
     /// The diagnostic with its place counted in `source`.
-    pub fn new(diagnostic: &'a Diagnostic, source: &Source) -> Self {
+    pub fn new(diagnostic: &Diagnostic, source: &Source) -> Self {
         let start = if diagnostic.primary.span == Span::NOWHERE { 0 } else { diagnostic.primary.span.start };
         let position = source.position(start);
         Self {
             code: diagnostic.code.name(),
             severity: diagnostic.severity,
-            message: &diagnostic.message,
+            message: diagnostic.message.clone(),
             line: position.line,
             column: position.column,
-            help: diagnostic.help.as_deref(),
+            help: diagnostic.help.clone(),
         }
     }
 }

@@ -24,6 +24,11 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
+/// A count and its noun, whose plural takes an `s`.
+pub fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
 /// Edit distance with exchanges of neighbours (optimal string alignment).
 fn distance(left: &str, right: &str) -> usize {
     if left.eq_ignore_ascii_case(right) {

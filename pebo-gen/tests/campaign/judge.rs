@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pebo_gen::cas::function::{Function, Value};
+use pebo_gen::cas::function::Value;
 use pebo_gen::model::formula::{Formula, Operator, Term};
 
 use super::draw::Draw;
@@ -51,7 +51,7 @@ pub(crate) fn sample(formula: &Formula, draw: &mut Draw) -> Sampled {
             continue;
         }
         values += 1;
-        if value.abs() > 1e3 * error + 1e-9 {
+        if differs((value, error)) {
             return Sampled::Differs;
         }
         if value.abs() <= 1e3 * error && error < 1e-4 {
@@ -59,6 +59,11 @@ pub(crate) fn sample(formula: &Formula, draw: &mut Draw) -> Sampled {
         }
     }
     if values >= 3 && small * 2 > values { Sampled::Vanishes } else { Sampled::Unclear }
+}
+
+/// Whether a value is no zero, by much more than its rounding error.
+pub(crate) fn differs((value, error): (f64, f64)) -> bool {
+    value.is_finite() && value.abs() > 1e3 * error + 1e-9
 }
 
 /// The value as written with a bound for its rounding error, to first order.
@@ -84,7 +89,7 @@ pub(crate) fn value(formula: &Formula, point: &Point) -> (f64, f64) {
             }
         }
         Term::Call(function, arguments) => {
-            let row = Function::named(function.name).expect("a function of the table").row();
+            let row = function.row();
             match row.value {
                 Value::Unary(f) => {
                     let (a, e) = at(&arguments[0]);

@@ -185,6 +185,8 @@ fn bracketed(text: &str) -> String {
 pub(crate) fn perturbed(case: &Case, draw: &mut Draw) -> Case {
     let bytes = case.right.as_bytes();
     let word = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_alphabetic);
+    // Behind an operand a sign is that of a sum or difference.
+    let unary = |at: usize| case.right[..at].trim_end().ends_with(['(', '*', '/', ',']) || at == 0;
     let places: Vec<usize> = (0..bytes.len())
         .filter(|&at| match bytes[at] {
             b'+' => true,
@@ -201,7 +203,7 @@ pub(crate) fn perturbed(case: &Case, draw: &mut Draw) -> Case {
     let changed = match (&case.right[at..end], bytes[at]) {
         ("+", _) => "-".to_owned(),
         // There is no unary plus.
-        ("-", _) if at == 0 || matches!(bytes[at - 1], b'(' | b'*' | b'/' | b',') => String::new(),
+        ("-", _) if unary(at) => String::new(),
         ("-", _) => "+".to_owned(),
         (digit, b'0'..=b'9') => (digit.parse::<u32>().unwrap_or(1) + 1).to_string(),
         ("sin", _) => "cos".to_owned(),

@@ -44,7 +44,7 @@ pub(crate) const INVERSE: &[(&str, &str)] = &[
     ("2*atan(A/(1 + sqrt(1 + A^2)))", "atan(A)"),
 ];
 
-/// Absolute values.
+/// Absolute values, and what is put together of them.
 pub(crate) const ABSOLUTE: &[(&str, &str)] = &[
     ("abs(P)", "P"),
     ("abs(-P)", "P"),
@@ -76,4 +76,15 @@ pub(crate) const ABSOLUTE: &[(&str, &str)] = &[
     ("sqrt(abs(A)*P)", "sqrt(abs(A))*sqrt(P)"),
     ("(A + abs(A))*(A - abs(A))", "0"),
     ("abs(A)*abs(A - 1)", "abs(A^2 - A)"),
+    ("sign(P)", "1"),
+    ("sign(A*B)", "sign(A)*sign(B)"),
+    ("abs(A)*sign(A)", "A"),
+    ("min(A, B) + max(A, B)", "A + B"),
+    ("min(A, B)*max(B, A)", "A*B"),
+    ("max(A, B)", "B + max(A - B, 0)"),
+    ("min(A, B)", "-max(-A, -B)"),
+    ("max(P*A, P*B)", "P*max(A, B)"),
+    ("sat(A)", "-sat(-A)"),
+    ("sat(N + A^2 + 1)", "1"),
+    ("2*sat(A)", "abs(A + 1) - abs(A - 1)"),
 ];

@@ -20,6 +20,7 @@ const MATRICES: &[(&str, &str, Fundamental)] = &[
     ("0, k, 0; -k, -m, k; 0, 0, 0", "a damped spring with a load", Fundamental::Bounded { fades: true }),
     ("0, 1, 0; 0, 0, 1; -1, -2, -1", "all roots to the left", Fundamental::Bounded { fades: true }),
     ("0, 1, 0; 0, 0, 1; -3, -2, -1", "a pair to the right", Fundamental::Grows),
+    ("-1, -8, 0; 0, -1, 8; 8, 0, -1", "a cycle one way round", Fundamental::Grows),
     ("m, -2*k, 0; m, -m, 0; 0, 0, 0", "signs say nothing", Fundamental::NotShown),
     ("1, -2, 0; 1, -1, 0; 0, 0, 0", "an oscillation", Fundamental::Bounded { fades: false }),
     ("0, 1, 0; k, 0, 0; 0, 0, -m", "a saddle", Fundamental::Grows),

@@ -9,6 +9,7 @@ use std::path::Path;
 use serde_json::Value as Json;
 
 use pebo_gen::model::Model;
+use pebo_gen::report::Report;
 use pebo_gen::source::Source;
 
 use super::draw::Draw;
@@ -94,8 +95,8 @@ fn formulas_are_those_of_the_verified_answers() {
         let source = Source::new(&name, text.as_str()).expect("a text");
         let plant = Plant::read(&source, &Model::parse(&source).expect("a model")).expect("a plant by its equations");
         let derived = pebo_gen::derive(&source).unwrap_or_else(|d| panic!("{name}: {}", d[0].message));
-        let report = pebo_gen::report::check(&derived.plant, &derived.derivation, &source);
-        let report: Json = serde_json::from_str(&report).expect("a report");
+        let report = Report::of(&derived.plant, &derived.derivation, &derived.derivation.diagnostics, &source);
+        let report: Json = serde_json::from_str(&report.line()).expect("a report");
         let mut compare = |what: &str, found: &[Formula], wanted: &[Formula]| {
             compared += wanted.len();
             if !equal(&plant, found, wanted, draw) {

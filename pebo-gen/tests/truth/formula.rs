@@ -169,6 +169,17 @@ fn call(name: &str, arguments: &[Evaluated]) -> Evaluated {
         "log" | "ln" => (x.ln(), 1.0 / x),
         "sqrt" => (x.sqrt(), 0.5 / x.sqrt()),
         "abs" => (x.abs(), if x == 0.0 { f64::NAN } else { x.signum() }),
+        "sign" => (if x == 0.0 { f64::NAN } else { x.signum() }, 0.0),
+        "sat" if x.abs() < 1.0 => (x, 1.0),
+        "sat" => (x.signum(), if x.abs() > 1.0 { 0.0 } else { f64::NAN }),
+        "min" | "max" => {
+            let b = arguments[1];
+            let ahead = b.value - x;
+            let first = (ahead > 0.0) == (name == "min");
+            let chosen = if first { a } else { b };
+            let slope = if ahead == 0.0 { f64::NAN } else { chosen.slope };
+            return Evaluated::after(chosen.value, slope, arguments);
+        }
         "atan2" => {
             let b = arguments[1];
             let square = x * x + b.value * b.value;

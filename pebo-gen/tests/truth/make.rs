@@ -52,6 +52,7 @@ const SOMEWHERE_ZERO: &[Part] = &[
     ("(exp(@) - 1)", "exp(@)"),
     ("atan(@)", "1/(@^2 + 1)"),
     ("(1 - abs(@)*@)", "(-2*abs(@))"),
+    ("(max(@, 0)^2 - 1)", "2*max(@, 0)"),
 ];
 
 /// Functions that a transform may add.
@@ -64,6 +65,7 @@ const ADDED: &[Part] = &[
     ("(-@)^3", "(-3*@^2)"),
     ("sqrt(@^2)*@", "2*sqrt(@^2)"),
     ("tanh(2*@)", "2*(1 - tanh(2*@)^2)"),
+    ("min(@, 1)^3", "(3*min(@, 1)^2*(1 + sign(1 - @))/2)"),
     ("@/(1 + @^2)", "(1 - @^2)/(1 + @^2)^2"),
 ];
 
@@ -127,6 +129,8 @@ const KNOWN: &[&str] = &[
     "cos(q1)^2 + u^2",
     "abs(q1) + u",
     "tanh(5*u)",
+    "sat(3*u) - max(q1, u)",
+    "b*sign(u)",
     "b*u - q1^3",
     "sqrt(b)*u",
 ];
@@ -264,7 +268,8 @@ impl Recipe {
             }
             ("nonlinear", _) => {
                 self.truth = Truth::Fails;
-                let functions = ["1/(1 + (@)^2)", "exp(-(@)^2)", "tanh(@)", "atan(@)", "log(1 + (@)^2)", "abs(@)"];
+                let functions =
+                    ["1/(1 + (@)^2)", "exp(-(@)^2)", "tanh(@)", "atan(@)", "log(1 + (@)^2)", "abs(@)", "sat(@)"];
                 Some(within(self.pick(&functions)))
             }
             // The component is in no output at all.

@@ -3,8 +3,9 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Estimator;
+use crate::linear::solve;
 use crate::sum::{Sum, all_finite};
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// An estimator whose estimate is projected onto bounds `lower <= eta <= upper`, component by component.
 ///
@@ -12,7 +13,10 @@ use crate::{Fault, Real};
 /// leaves it. What is projected is the estimate that goes out: the estimator's own keeps the exact form of its
 /// equations (least squares stays least squares, the response stays linear), and its stability needs no help.
 ///
-/// A [`shift`](Estimator::shift) of the unknown moves the bounds along; a [`reset`](Estimator::reset) puts them back.
+/// A [`shift`](Estimator::shift) of the unknown moves the bounds along and a [`turn`](Estimator::turn) turns them, so
+/// they stay said of the unknown as it was at the start; a [`reset`](Estimator::reset) puts them back. Where all turns
+/// together have no inverse any more, nothing is projected. Bounds of the state itself are for
+/// [`Within`](crate::Within).
 ///
 /// Source: Ioannou and Sun, *Robust adaptive control*, 1996, chapter 4 (parameter projection; there it acts
 /// on the adaptive law).
@@ -24,6 +28,8 @@ pub struct Bounded<S: Real, E, const NE: usize> {
     upper: SVector<S, NE>,
     /// How far the unknown has moved.
     moved: Sum<S, NE, 1>,
+    /// How it has turned, if it has: it is `turned eta + moved` of the unknown `eta` at the start.
+    turned: Option<SMatrix<S, NE, NE>>,
 }
 
 impl<S: Real, E, const NE: usize> Bounded<S, E, NE> {
@@ -33,7 +39,8 @@ impl<S: Real, E, const NE: usize> Bounded<S, E, NE> {
     /// [`Fault::Start`] unless `lower <= upper` in every component.
     pub fn new(estimator: E, lower: &SVector<S, NE>, upper: &SVector<S, NE>) -> Result<Self, Fault> {
         if lower.iter().zip(upper.iter()).all(|(lower, upper)| lower <= upper) {
-            Ok(Self { estimator, lower: *lower, upper: *upper, moved: Sum::new(SVector::zeros()) })
+            let moved = Sum::new(SVector::zeros());
+            Ok(Self { estimator, lower: *lower, upper: *upper, moved, turned: None })
         } else {
             Err(Fault::Start)
         }
@@ -54,8 +61,15 @@ where
     }
 
     fn estimate(&self) -> SVector<S, NE> {
-        let moved = self.moved.value();
-        self.estimator.estimate().sup(&(self.lower + moved)).inf(&(self.upper + moved))
+        let (estimate, moved) = (self.estimator.estimate(), self.moved.value());
+        let Some(turned) = &self.turned else {
+            return estimate.sup(&(self.lower + moved)).inf(&(self.upper + moved));
+        };
+        let first = solve(*turned, estimate - moved).ok().filter(all_finite);
+        first.map_or(estimate, |first| {
+            let beyond = first.sup(&self.lower).inf(&self.upper) - first;
+            estimate + turned * beyond
+        })
     }
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
@@ -63,9 +77,17 @@ where
         self.moved.add(shift);
     }
 
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.estimator.turn(turn);
+        self.moved.add(&turn.of_unknown(self.moved.value()));
+        let turned = self.turned.unwrap_or_else(SMatrix::identity);
+        self.turned = Some(turned + turn.of_unknown(&turned));
+    }
+
     fn reset(&mut self, estimate: &SVector<S, NE>) {
         self.estimator.reset(estimate);
         self.moved = Sum::new(SVector::zeros());
+        self.turned = None;
     }
 
     fn is_finite(&self) -> bool {

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::cramer::{adjugate_times, determinant};
 use super::{Estimator, RegressorExtension};
 use crate::sum::{Sum, all_finite};
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// DREM with the scalar gradient estimator.
 ///
@@ -24,7 +24,10 @@ use crate::{Fault, Real};
 ///
 /// A column of zeros in the regressor makes `Delta` 0, and no component moves: leave out an unknown that nothing depends on.
 ///
-/// Units of `gamma`: 1/s, as `Delta` has none.
+/// A [`turn`](Estimator::turn) of the unknown leaves what is known, but not what a component is: each then converges by
+/// itself in the coordinates of the moment, and it is there that its error never grows.
+///
+/// Units of `gamma`: 1/s, as `Delta` has none and is about 1 where the unknowns are seen well.
 ///
 /// Source: Aranovskiy, Bobtsov, Ortega, Pyrkin, *Performance enhancement of parameter estimators via dynamic regressor
 /// extension and mixing*, IEEE TAC, 2017, arXiv:1509.02763; Cramer's rule: Ortega, Aranovskiy, Pyrkin, Astolfi,
@@ -63,7 +66,7 @@ impl<S: Real, X, const NE: usize> Drem<S, X, NE> {
         &self.extension
     }
 
-    /// The determinant: 0 before any excitation, below 1 always.
+    /// The determinant: 0 before any excitation, never above 1 but for rounding.
     pub fn determinant<const NR: usize>(&self) -> S
     where
         X: RegressorExtension<S, NR, NE>,
@@ -118,6 +121,11 @@ where
     fn shift(&mut self, shift: &SVector<S, NE>) {
         self.extension.shift(shift);
         self.theta.add(shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.extension.turn(turn);
+        self.theta.add(&turn.of_unknown(self.theta.value()));
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {

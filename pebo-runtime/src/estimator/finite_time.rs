@@ -3,8 +3,9 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Drem, Estimator, RegressorExtension};
+use crate::linear::solve;
 use crate::sum::{Sum, all_finite};
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// Finite-time DREM.
 ///
@@ -25,6 +26,10 @@ use crate::{Fault, Real};
 /// - [`tracking`](Self::tracking): the reference moves on, at least every `period` seconds as long as there is
 ///   excitation; after a jump the estimate is exact again when the reference and the extension's memory lie behind the
 ///   jump, at most two periods of excitation later.
+///
+/// A [`turn`](Estimator::turn) of the unknown mixes the components: what is left of the error since the reference is then
+/// a matrix `W`, and the estimate `theta(ref) + (1 - W)^-1 (theta - theta(ref))` once `|(1 - W)^-1| <= 1/mu`; until then it is
+/// that of DREM where the clip would not bound it.
 ///
 /// Method: implicit steps in theta and w with the same factor, so the identity holds to rounding at any gain and step.
 /// Two references are kept instead of a delay line: one in use, one that ripens.
@@ -50,22 +55,42 @@ pub struct FiniteTime<S: Real, X, const NE: usize> {
 struct Reference<S: Real, const NE: usize> {
     /// The estimate of DREM then.
     theta: SVector<S, NE>,
-    /// What is gone since of the error then, `1 - w`. In steps that take less than the resolution of 1, `w` itself would
-    /// stand still.
-    gone: Sum<S, NE, 1>,
+    /// What is gone since of the error then, `1 - W`. In steps that take less than the resolution of 1, `W` itself would
+    /// stand still. Diagonal as long as nothing was turned.
+    gone: Sum<S, NE, NE>,
     age: Sum<S, 1, 1>,
 }
 
 impl<S: Real, const NE: usize> Reference<S, NE> {
     fn now(theta: &SVector<S, NE>) -> Self {
-        Self { theta: *theta, gone: Sum::new(SVector::zeros()), age: Sum::new(SVector::zeros()) }
+        Self { theta: *theta, gone: Sum::new(SMatrix::zeros()), age: Sum::new(SVector::zeros()) }
     }
 
     /// Loses a share of the rest.
     fn contract(&mut self, lost: &SVector<S, NE>, dt: S) {
-        let more = self.gone.value().zip_map(lost, |gone, lost| (S::one() - gone) * lost);
+        let gone = self.gone.value();
+        let more = SMatrix::from_fn(|i, j| (if i == j { S::one() - gone[(i, j)] } else { -gone[(i, j)] }) * lost[i]);
         self.gone.add(&more);
         self.age.add(&SVector::repeat(dt));
+    }
+
+    /// Follows a change of the unknown.
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.theta += turn.of_unknown(&self.theta);
+        self.gone.add(&turn.of_map(self.gone.value()));
+    }
+
+    /// Whether nothing was turned.
+    fn is_diagonal(&self) -> bool {
+        let gone = self.gone.value();
+        (0..NE).all(|i| (0..NE).all(|j| i == j || gone[(i, j)] == S::zero()))
+    }
+
+    /// `(1 - W)^-1` where the clip admits it.
+    fn inverse(&self, clip: S) -> Option<SMatrix<S, NE, NE>> {
+        let inverse = solve(*self.gone.value(), SMatrix::<S, NE, NE>::identity()).ok()?;
+        let admitted = inverse.iter().all(|&entry| Real::abs(entry) * clip <= S::one());
+        admitted.then_some(inverse)
     }
 }
 
@@ -98,7 +123,10 @@ impl<S: Real, X, const NE: usize> FiniteTime<S, X, NE> {
     pub fn estimate(&self) -> SVector<S, NE> {
         let Reference { theta, gone, .. } = &self.used;
         let now = self.drem.estimate();
-        SVector::from_fn(|i, _| theta[i] + (now[i] - theta[i]) / gone.value()[i].max(self.clip))
+        if self.used.is_diagonal() {
+            return SVector::from_fn(|i, _| theta[i] + (now[i] - theta[i]) / gone.value()[(i, i)].max(self.clip));
+        }
+        self.used.inverse(self.clip).map_or(*now, |inverse| theta + inverse * (now - theta))
     }
 
     /// Whether the estimate is past the clip in every component: exact without noise.
@@ -107,7 +135,10 @@ impl<S: Real, X, const NE: usize> FiniteTime<S, X, NE> {
     }
 
     fn is_ripe(&self, reference: &Reference<S, NE>) -> bool {
-        reference.gone.value().iter().all(|&gone| gone >= self.clip)
+        if reference.is_diagonal() {
+            return reference.gone.value().diagonal().iter().all(|&gone| gone >= self.clip);
+        }
+        reference.inverse(self.clip).is_some()
     }
 }
 
@@ -138,6 +169,12 @@ where
         self.ripening.theta += shift;
     }
 
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.drem.turn(turn);
+        self.used.turn(turn);
+        self.ripening.turn(turn);
+    }
+
     fn reset(&mut self, estimate: &SVector<S, NE>) {
         self.drem.reset(estimate);
         self.used = Reference::now(estimate);
@@ -145,6 +182,7 @@ where
     }
 
     fn is_finite(&self) -> bool {
-        self.drem.is_finite() && all_finite(&self.used.theta) && all_finite(&self.ripening.theta)
+        let finite = |reference: &Reference<S, NE>| all_finite(&reference.theta) && reference.gone.is_finite();
+        self.drem.is_finite() && finite(&self.used) && finite(&self.ripening)
     }
 }

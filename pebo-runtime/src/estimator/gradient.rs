@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Estimator, Information};
-use crate::sum::{Sum, all_finite};
-use crate::{Fault, Real};
+use crate::sum::{Sum, all_finite, as_blemish};
+use crate::{Fault, Real, Turn};
 
 /// The gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta)` (the paper, Section 5.3, the equation
 /// after the filtered regression; it has no number).
@@ -19,6 +19,8 @@ use crate::{Fault, Real};
 pub struct Gradient<S: Real, const NE: usize> {
     /// `Gamma^-1`.
     inertia: Information<S, NE>,
+    /// Whether the gain turns with the unknown.
+    carried: bool,
     theta: Sum<S, NE, 1>,
 }
 
@@ -28,7 +30,7 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
     /// # Errors
     /// [`Fault::Gain`] unless each gain and its inverse is positive and finite.
     pub fn diagonal(gains: &SVector<S, NE>) -> Result<Self, Fault> {
-        Ok(Self { inertia: Information::from_variances(gains)?, theta: Sum::new(SVector::zeros()) })
+        Ok(Self::of(Information::from_variances(gains)?))
     }
 
     /// A gain matrix `Gamma`, from the estimate 0.
@@ -36,7 +38,18 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
     /// # Errors
     /// [`Fault::Gain`] unless `Gamma` is symmetric, positive definite and finite.
     pub fn full(gain: &SMatrix<S, NE, NE>) -> Result<Self, Fault> {
-        Ok(Self { inertia: Information::from_covariance(gain)?, theta: Sum::new(SVector::zeros()) })
+        Ok(Self::of(Information::from_covariance(gain)?))
+    }
+
+    fn of(inertia: Information<S, NE>) -> Self {
+        Self { inertia, carried: false, theta: Sum::new(SVector::zeros()) }
+    }
+
+    /// The same with a gain that turns with the unknown, `Gamma` becoming `T Gamma T^T`: the estimator of the unknown as
+    /// it was at the start, whatever coordinates it is told in. Without, the gain is one in the coordinates of the moment.
+    #[must_use]
+    pub fn carrying_its_gain(self) -> Self {
+        Self { carried: true, ..self }
     }
 
     /// The same gains from another estimate.
@@ -72,12 +85,22 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradien
         self.theta.add(shift);
     }
 
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.theta.add(&turn.of_unknown(self.theta.value()));
+        if self.carried {
+            self.inertia.turn(turn);
+            // Told of here, and not looked for at each step.
+            let gain: S = as_blemish(self.inertia.is_finite());
+            self.theta.add(&SVector::repeat(gain));
+        }
+    }
+
     fn reset(&mut self, estimate: &SVector<S, NE>) {
         self.theta = Sum::new(*estimate);
     }
 
     fn is_finite(&self) -> bool {
-        self.theta.is_finite()
+        self.theta.is_finite() && (!self.carried || self.inertia.is_finite())
     }
 
     fn blemish(&self) -> S {

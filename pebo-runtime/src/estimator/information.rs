@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
 
 use crate::sum::all_finite;
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// A weighted least-squares problem, kept in triangular form.
 ///
@@ -13,8 +13,7 @@ use crate::{Fault, Real};
 /// U`,
 /// `U` unit upper triangular and `D` diagonal.
 ///
-/// Method: Givens rotations without square roots. Weights only ever grow and nothing is subtracted from `D`, so it
-/// stays positive and no row, weight or ratio between them makes the problem singular. The matrix itself is never
+/// Method: Givens rotations without square roots. Nothing is subtracted from `D`, so it stays positive and no row, weight or ratio between them makes the problem singular. The matrix itself is never
 /// formed: that would square the ratios. Reference: Gentleman, *Least squares computations by Givens transformations
 /// without square roots*, J. Inst. Maths Applics, 1973, and algorithm AS 75, 1974.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,13 +86,25 @@ impl<S: Real, const N: usize> Information<S, N> {
     }
 
     /// Adds the equation `row * d = value` with a weight, `weight >= 0`.
+    #[inline]
     pub fn absorb(&mut self, row: &SVector<S, N>, value: S, weight: S) {
+        self.rotate::<false>(row, value, weight);
+    }
+
+    /// [`absorb`](Self::absorb); `VAGUE` if weights may be zero before. It is asked at compile time, as each step of an
+    /// estimator comes here.
+    #[inline]
+    fn rotate<const VAGUE: bool>(&mut self, row: &SVector<S, N>, value: S, weight: S) {
         let (mut row, mut value, mut weight) = (*row, value, weight);
         for i in 0..N {
             let lead = row[i];
             if lead != S::zero() {
                 let before = self.weight[i];
                 let after = before + weight * lead * lead;
+                // Of nothing and next to nothing, nothing.
+                if VAGUE && after == S::zero() {
+                    continue;
+                }
                 let kept = before / after;
                 let taken = weight * lead / after;
                 self.weight[i] = after;
@@ -110,6 +121,62 @@ impl<S: Real, const N: usize> Information<S, N> {
         }
     }
 
+    /// The same problem in `d_new = T d`: each row times `T^-1`.
+    pub fn turn(&mut self, turn: &Turn<S, N>) {
+        let mut turned = Self { upper: SMatrix::zeros(), weight: SVector::zeros(), target: SVector::zeros() };
+        for i in 0..N {
+            let row = self.row(i);
+            let row = row + turn.of_factor(&row);
+            turned.rotate::<true>(&row.transpose(), self.target[i], self.weight[i]);
+        }
+        // What dies out is known ever better, up to weights that overflow and are a fault for ever: not better than this.
+        let most = S::max_value().map_or(S::one() / S::EPSILON, |largest| largest * S::EPSILON);
+        if turned.weight.iter().any(|&weight| weight > most) {
+            (0..N).for_each(|i| turned.diffuse(i, S::one() / most));
+        }
+        *self = turned;
+    }
+
+    /// Component `i` of `d` has moved by an unknown step of this variance, `variance >= 0`: the covariance gains it on its
+    /// diagonal.
+    ///
+    /// Method: the step is one more unknown with an equation of its own, eliminated by rotations from row `i` upwards,
+    /// which keeps the form triangular; nothing is subtracted from a weight. Reference: Bierman, *Factorization methods for
+    /// discrete sequential estimation*, 1977, chapter VI (the square-root information filter's time update).
+    pub fn diffuse(&mut self, i: usize, variance: S) {
+        let mut variance = variance;
+        let mut above = SMatrix::<S, 1, N>::zeros();
+        let mut above_target = S::zero();
+        for r in (0..=i).rev() {
+            let (row, target, weight) = (self.row(r), self.target[r], self.weight[r]);
+            let Some(&lead) = row.get(i).filter(|&&lead| lead != S::zero()) else { continue };
+            let against = variance * weight * lead * lead;
+            // Where the product overflows, the step is all that is known of the component.
+            let known = Real::is_finite(against);
+            let kept = if known { S::one() / (S::one() + against) } else { S::zero() };
+            let taken = if known { -(against * kept) / lead } else { -S::one() / lead };
+            let left = if known { weight * kept } else { S::one() / variance / (lead * lead) };
+            let reduced = row + above * lead;
+            for k in r + 1..N {
+                self.upper[(r, k)] = reduced[k];
+            }
+            self.target[r] = target + lead * above_target;
+            self.weight[r] = left;
+            above = above * kept + row * taken;
+            above_target = above_target * kept + target * taken;
+            variance *= kept;
+        }
+    }
+
+    /// Row `i` of `U`; none of its entries are left of `i`.
+    fn row(&self, i: usize) -> SMatrix<S, 1, N> {
+        SMatrix::from_fn(|_, k| match k.cmp(&i) {
+            Ordering::Less => S::zero(),
+            Ordering::Equal => S::one(),
+            Ordering::Greater => self.upper[(i, k)],
+        })
+    }
+
     /// Multiplies every weight by a factor, `factor > 0`; the vector that fits best stays the same.
     pub fn scale(&mut self, factor: S) {
         self.weight *= factor;
@@ -118,11 +185,7 @@ impl<S: Real, const N: usize> Information<S, N> {
     /// Adds the equations of another problem, with their right sides, its weights multiplied by `factor >= 0`.
     pub fn absorb_information(&mut self, other: &Self, factor: S) {
         for i in 0..N {
-            let row = SVector::from_fn(|k, _| match k.cmp(&i) {
-                Ordering::Less => S::zero(),
-                Ordering::Equal => S::one(),
-                Ordering::Greater => other.upper[(i, k)],
-            });
+            let row = other.row(i).transpose();
             self.absorb(&row, other.target[i], factor * other.weight[i]);
         }
     }

@@ -5,13 +5,13 @@ use nalgebra::{SMatrix, SVector};
 use super::{Estimator, Information};
 use crate::decay::Decay;
 use crate::sum::{Sum, all_finite};
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// Least squares with forgetting and bounded covariance.
 ///
 /// ```text
 /// theta' = P Phi^T (vartheta - Phi theta)
-/// R'     = -beta (R - R_0) + Phi^T Phi        R = P^-1, R(0) = R_0
+/// R'     = -beta (R - R_0) + Phi^T Phi - R Q R        R = P^-1, R(0) = R_0
 /// ```
 ///
 /// Holds when: without forgetting (`beta = 0`) the estimate minimises the integral of the squared equation error plus
@@ -19,7 +19,11 @@ use crate::{Fault, Real};
 /// the least variance of all unbiased estimates, up to the weight of `R_0`. With `beta > 0` and persistent excitation
 /// it follows a moving unknown with the time constant
 /// `1/beta`. Since `R >= R_0` at all times, `P` never exceeds its start: no wind-up in directions without excitation,
-/// where the estimate rests.
+/// where the estimate rests. [Process noise](Self::with_process_noise) `Q` says instead that the unknown wanders: then
+/// this is a Kalman filter, `P` grows where there is no excitation, and nothing is forgotten that still holds.
+///
+/// A [`turn`](Estimator::turn) of the unknown takes `P` to `T P T^T`; `R_0`, towards which is forgotten, and `Q` are
+/// then said of the unknown as it is now. Weights that a turn would take beyond the largest number stay below it.
 ///
 /// Method: `R` in the triangular form of [`Information`], the regressor held over the step: the past decays by
 /// `e^(-beta dt)`, `1 - e^(-beta dt)` of `R_0` flows in, then each equation is absorbed by a rotation. Nothing is subtracted, so `R` stays
@@ -43,6 +47,8 @@ pub struct LeastSquares<S: Real, const NE: usize> {
     /// `R_0`.
     floor: Information<S, NE>,
     forgetting: Decay<S>,
+    /// The intensity of the process noise of each component.
+    noise: SVector<S, NE>,
     theta: Sum<S, NE, 1>,
 }
 
@@ -67,7 +73,17 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
 
     fn from_information(floor: Information<S, NE>, beta: S) -> Result<Self, Fault> {
         let theta = Sum::new(SVector::zeros());
-        Ok(Self { information: floor, floor, forgetting: Decay::new(beta)?, theta })
+        Ok(Self { information: floor, floor, forgetting: Decay::new(beta)?, noise: SVector::zeros(), theta })
+    }
+
+    /// The same for an unknown that wanders: `P` gains `Q dt` over a step, `Q` the diagonal given, in units of `P` per
+    /// second.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] unless each entry is finite and not negative.
+    pub fn with_process_noise(self, noise: &SVector<S, NE>) -> Result<Self, Fault> {
+        let admitted = |&entry: &S| entry >= S::zero() && Real::is_finite(entry);
+        if noise.iter().all(admitted) { Ok(Self { noise: *noise, ..self }) } else { Err(Fault::Gain) }
     }
 
     /// The same from another estimate.
@@ -98,6 +114,11 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
             self.information.scale(S::one() - share.lost);
             self.information.absorb_information(&self.floor, share.lost);
         }
+        for (component, &intensity) in self.noise.iter().enumerate() {
+            if intensity > S::zero() {
+                self.information.diffuse(component, intensity * dt);
+            }
+        }
         let innovation = regressand - regressor * self.theta.value();
         for (row, &error) in regressor.row_iter().zip(innovation.iter()) {
             self.information.absorb(&row.transpose(), error, share.taken);
@@ -112,6 +133,11 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
         self.theta.add(shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.theta.add(&turn.of_unknown(self.theta.value()));
+        self.information.turn(turn);
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {

@@ -36,7 +36,7 @@ pub use normalised::NormalisedGradient;
 use nalgebra::{SMatrix, SVector};
 
 use crate::sum::as_blemish;
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// Estimates `NE` constants from `NR` linear equations a sample.
 ///
@@ -56,6 +56,11 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Follows a move of the unknown from `eta` to `eta + shift`: the error of the estimate, now and later, is that of
     /// an estimator that was never moved. All memory of past regressands has to move too.
     fn shift(&mut self, shift: &SVector<S, NE>);
+
+    /// Follows a change of the unknown from `eta` to `T eta`: the estimate becomes `T` times what it was, and all memory of
+    /// past regressors and regressands is that of regressors times `T^-1`. What is a setting and no memory, as a gain,
+    /// stays as it is, now said of the new unknown.
+    fn turn(&mut self, turn: &Turn<S, NE>);
 
     /// Starts again from an estimate, with no memory of the past.
     fn reset(&mut self, estimate: &SVector<S, NE>);

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Estimator, Gradient};
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// The normalised gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta) / (1 + mu |Phi|^2)`.
 ///
@@ -50,6 +50,10 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Normali
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
         Estimator::<S, NR, NE>::shift(&mut self.gradient, shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        Estimator::<S, NR, NE>::turn(&mut self.gradient, turn);
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {

@@ -3,8 +3,10 @@
 //! Values, start and set points: the paper, with the misprints mended (second row of `Phi_0` in case II: `-(G/C4) y2`)
 //! and `lambda_0 = 0.1`, which the paper does not give.
 
-use pebo_runtime::nalgebra::{Matrix2, SVector, Vector2, Vector4};
-use pebo_runtime::{Fault, Filter, Fundamental, Gradient, Hold, Integrator, Model, Observer, Real, Rebase, Regression};
+use pebo_runtime::nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
+use pebo_runtime::{
+    Fault, Filter, Flow, Fundamental, Gradient, Hold, Integrator, Model, Observer, Real, Rebase, Regression, Sides,
+};
 
 const L1: f64 = 10e-3;
 const C2: f64 = 22e-6;
@@ -32,25 +34,35 @@ pub(crate) struct CaseOne<S>(core::marker::PhantomData<S>);
 impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseOne<S> {
     type Scalar = S;
     type Extension = Integrator<S, 2>;
+    type X = SVector<Self::Scalar, 2>;
+    type Y = SVector<Self::Scalar, 2>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector2<S>;
     const REGRESSION: Regression = Regression::Dynamic;
 
-    fn h(&self, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
-        Vector2::new(di1(y.x, u.x), -(u.x * y.x + y.y) / real(L3))
-    }
-    fn phi_0(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
-        let chi = extension.chi();
-        Vector2::new(((S::one() - u.x) * chi.x + u.x * chi.y) / real(C2), (chi.y - real::<S>(G) * y.y) / real(C4))
-    }
-    fn phi_1(&self, _: &Self::Extension, _: &Vector2<S>, u: &Input<S>) -> Matrix2<S> {
-        Matrix2::new((S::one() - u.x) / real(C2), u.x / real(C2), S::zero(), real(1.0 / C4))
-    }
-    fn primitive_0(&self, _: &Self::Extension, y: &Vector2<S>) -> Vector2<S> {
+    fn terms(&self, y: &Vector2<S>) -> Vector2<S> {
         *y
+    }
+    fn flow(&self, y: &Vector2<S>, u: &Input<S>) -> Flow<S, 2> {
+        Flow::plain(Vector2::new(di1(y.x, u.x), -(u.x * y.x + y.y) / real(L3)))
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Sides<S, 2, 2> {
+        let chi = extension.chi();
+        Sides {
+            known: Vector2::new(
+                ((S::one() - u.x) * chi.x + u.x * chi.y) / real(C2),
+                (chi.y - real::<S>(G) * y.y) / real(C4),
+            ),
+            factor: Matrix2::new((S::one() - u.x) / real(C2), u.x / real(C2), S::zero(), real(1.0 / C4)),
+        }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector2<S>) -> Sides<S, 2, 2> {
+        Sides { known: *y, factor: SMatrix::zeros() }
     }
     fn theta(&self, eta: &Vector2<S>) -> Vector2<S> {
         *eta
     }
-    fn phi_left(&self, z: &Vector2<S>, _: &Vector2<S>) -> Vector2<S> {
+    fn recover(&self, z: &Vector2<S>, _: &Vector2<S>) -> Vector2<S> {
         *z
     }
 }
@@ -64,28 +76,35 @@ pub(crate) struct CaseTwo<S>(core::marker::PhantomData<S>);
 impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseTwo<S> {
     type Scalar = S;
     type Extension = Integrator<S, 2>;
+    type X = SVector<Self::Scalar, 2>;
+    type Y = SVector<Self::Scalar, 2>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector2<S>;
     const REGRESSION: Regression = Regression::Dynamic;
 
-    fn h(&self, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
-        Vector2::new(di1(y.x, u.x), (y.y + real::<S>(G) * u.x * y.x) / real(C4))
-    }
-    fn phi_0(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
-        let chi = extension.chi();
-        Vector2::new(
-            ((S::one() - u.x) * chi.x + u.x * y.y) / real(C2),
-            -(u.x * y.x + chi.y) / real(L3) - real::<S>(G / C4) * y.y,
-        )
-    }
-    fn phi_1(&self, _: &Self::Extension, _: &Vector2<S>, u: &Input<S>) -> Matrix2<S> {
-        Matrix2::new((S::one() - u.x) / real(C2), S::zero(), S::zero(), real(-1.0 / L3))
-    }
-    fn primitive_0(&self, _: &Self::Extension, y: &Vector2<S>) -> Vector2<S> {
+    fn terms(&self, y: &Vector2<S>) -> Vector2<S> {
         *y
+    }
+    fn flow(&self, y: &Vector2<S>, u: &Input<S>) -> Flow<S, 2> {
+        Flow::plain(Vector2::new(di1(y.x, u.x), (y.y + real::<S>(G) * u.x * y.x) / real(C4)))
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Sides<S, 2, 2> {
+        let chi = extension.chi();
+        Sides {
+            known: Vector2::new(
+                ((S::one() - u.x) * chi.x + u.x * y.y) / real(C2),
+                -(u.x * y.x + chi.y) / real(L3) - real::<S>(G / C4) * y.y,
+            ),
+            factor: Matrix2::new((S::one() - u.x) / real(C2), S::zero(), S::zero(), real(-1.0 / L3)),
+        }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector2<S>) -> Sides<S, 2, 2> {
+        Sides { known: *y, factor: SMatrix::zeros() }
     }
     fn theta(&self, eta: &Vector2<S>) -> Vector2<S> {
         *eta
     }
-    fn phi_left(&self, z: &Vector2<S>, y: &Vector2<S>) -> Vector2<S> {
+    fn recover(&self, z: &Vector2<S>, y: &Vector2<S>) -> Vector2<S> {
         Vector2::new(z.x, z.y + real::<S>(G * L3 / C4) * y.y)
     }
 }
@@ -99,29 +118,36 @@ pub(crate) struct CaseTwoGeneralised<S>(core::marker::PhantomData<S>);
 impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseTwoGeneralised<S> {
     type Scalar = S;
     type Extension = Fundamental<S, 2>;
+    type X = SVector<Self::Scalar, 2>;
+    type Y = SVector<Self::Scalar, 2>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector2<S>;
     const REGRESSION: Regression = Regression::Dynamic;
 
-    fn h(&self, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
-        Vector2::new(di1(y.x, u.x), y.y / real(C4))
-    }
-    fn lambda(&self, _: &Vector2<S>, _: &Input<S>) -> Matrix2<S> {
-        Matrix2::new(S::zero(), S::zero(), S::zero(), real(-G / C4))
-    }
-    fn phi_0(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Vector2<S> {
-        let xi = extension.xi();
-        Vector2::new(((S::one() - u.x) * xi.x + u.x * y.y) / real(C2), -(u.x * y.x + xi.y) / real(L3))
-    }
-    fn phi_1(&self, extension: &Self::Extension, _: &Vector2<S>, u: &Input<S>) -> Matrix2<S> {
-        let through = Matrix2::new((S::one() - u.x) / real(C2), S::zero(), S::zero(), real(-1.0 / L3));
-        through * extension.psi()
-    }
-    fn primitive_0(&self, _: &Self::Extension, y: &Vector2<S>) -> Vector2<S> {
+    fn terms(&self, y: &Vector2<S>) -> Vector2<S> {
         *y
+    }
+    fn flow(&self, y: &Vector2<S>, u: &Input<S>) -> Flow<S, 2> {
+        Flow {
+            lambda: Matrix2::new(S::zero(), S::zero(), S::zero(), real(-G / C4)),
+            h: Vector2::new(di1(y.x, u.x), y.y / real(C4)),
+        }
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Vector2<S>, u: &Input<S>) -> Sides<S, 2, 2> {
+        let xi = extension.xi();
+        let through = Matrix2::new((S::one() - u.x) / real(C2), S::zero(), S::zero(), real(-1.0 / L3));
+        Sides {
+            known: Vector2::new(((S::one() - u.x) * xi.x + u.x * y.y) / real(C2), -(u.x * y.x + xi.y) / real(L3)),
+            factor: through * extension.psi(),
+        }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector2<S>) -> Sides<S, 2, 2> {
+        Sides { known: *y, factor: SMatrix::zeros() }
     }
     fn theta(&self, eta: &Vector2<S>) -> Vector2<S> {
         *eta
     }
-    fn phi_left(&self, z: &Vector2<S>, _: &Vector2<S>) -> Vector2<S> {
+    fn recover(&self, z: &Vector2<S>, _: &Vector2<S>) -> Vector2<S> {
         *z
     }
 }
@@ -129,7 +155,7 @@ impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseTwoGeneralised<S> {
 impl<S: Real> Rebase<2, 2, 1, 2, 2> for CaseTwoGeneralised<S> {}
 
 /// How a measurement case reads the circuit state (i1, v2, i3, v4).
-pub(crate) trait Case<S: Real>: Model<2, 2, 1, 2, 2, 2, Scalar = S> {
+pub(crate) trait Case<S: Real>: Model<2, 2, 1, 2, 2, 2, Scalar = S, X = Vector2<S>> {
     fn new() -> Self;
     /// The measured pair.
     fn outputs(circuit: &Vector4<f64>) -> Vector2<f64>;
@@ -242,7 +268,7 @@ impl<S: Real, M: Case<S>> Loop<S, M> {
     /// Samples the output, updates the estimate, sets the duty cycle for the interval to come.
     fn sample(&mut self) -> Result<(), Fault> {
         let y = M::outputs(&self.circuit);
-        let estimate = self.observer.step(&y.map(real), &Input::new(real(self.d)), real(self.dt))?;
+        let estimate = self.observer.step(y.map(real), Input::new(real(self.d)), real(self.dt))?;
         let estimate = estimate.map(Real::to_f64);
         let t = f64::from(self.steps) * self.dt;
         self.d = circuit::duty(circuit::set_point(t), y.x, &M::currents(&y, &estimate));
@@ -279,7 +305,7 @@ impl<S: Real, M: Case<S>> Loop<S, M> {
 
     /// Estimate minus truth.
     pub(crate) fn error(&self) -> Vector2<f64> {
-        let estimate = self.observer.estimate_at(&M::outputs(&self.circuit).map(real));
+        let estimate = self.observer.estimate_at(M::outputs(&self.circuit).map(real));
         estimate.map(Real::to_f64) - M::unmeasured(&self.circuit)
     }
 }

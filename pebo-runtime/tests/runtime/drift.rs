@@ -55,7 +55,7 @@ fn shift_by_powers_of_two_is_exact() {
         for shift in shifts {
             observer.rebase(shift).unwrap();
         }
-        observer.estimate_at(&Vector2::new(10.0, -12.0))
+        observer.estimate_at(Vector2::new(10.0, -12.0))
     };
     // Dyadic numbers throughout: nothing rounds, so nothing may change.
     for exponent in [-40, -3, 0, 5, 40] {
@@ -74,7 +74,7 @@ fn extension_stays_bounded_under_a_bias() {
         let mut observer = Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
         let (mut largest, mut last) = (0.0_f64, Vector2::zeros());
         for _ in 0..periods * 100 {
-            last = observer.step(&Vector2::new(30.0, -20.0), &[0.7].into(), 1e-5).unwrap();
+            last = observer.step(Vector2::new(30.0, -20.0), [0.7], 1e-5).unwrap();
             largest = largest.max(observer.extension().chi().norm());
             if rebase && observer.extension().chi().norm() > 1.0 {
                 let chi = *observer.extension().chi();
@@ -108,7 +108,7 @@ fn a_leak_takes_its_share_of_each_step() {
     observer.rebase(&Vector2::new(-1.0, 2.0)).unwrap();
     // At v2 = E, v4 = 0 and d = 0 this converter's h is zero: nothing but the leak moves chi.
     let mut step = || {
-        observer.step_without_drift(&Vector2::new(12.0, 0.0), &[0.0].into(), dt, Drift::Leak(rate)).unwrap();
+        observer.step_without_drift(Vector2::new(12.0, 0.0), [0.0], dt, Drift::Leak(rate)).unwrap();
         *observer.extension().chi()
     };
     let mut before = step();

@@ -321,13 +321,20 @@ proptest! {
     ) {
         let mut estimator = drem(kreisselmeier::<3>(gain, 0.1), speed);
         let mut last: Vector3<f64> = truth.abs();
+        // The diagonal of the Gramian.
+        let mut seen = Vector3::zeros();
         for (phi, dt) in &samples {
             estimator.advance(phi, &(phi * truth), *dt).unwrap();
             let now = (estimator.estimate() - truth).abs();
-            // The determinant and the mixed innovation are sums of products up to 1 and 20, rounded; the step is at
-            // most 1/Delta of the latter, and never taken where Delta is but rounding: half of sqrt(gamma dt) at most.
-            let noise = 1e-13 * (1.0 + (speed * dt).sqrt());
-            prop_assert!((now - last).max() <= noise, "{} {}", now, last);
+            let share = -(-0.1 * dt).exp_m1();
+            seen = seen * (1.0 - share) + (phi.transpose() * phi).diagonal() * (share / 0.1);
+            // In units in which each unknown is seen alike, the determinant and the mixed innovation are sums of products
+            // up to 1 and `size`, rounded; the step is at most 1/Delta of the latter, and never taken where Delta is but
+            // rounding: half of sqrt(gamma dt) at most.
+            let units = seen.map(|seen| (seen + 1.0 / gain).sqrt());
+            let size = units.dot(&(truth.abs() + last));
+            let noise = (units.map(|unit| size / unit) + last) * 1e-13 * (1.0 + (speed * dt).sqrt());
+            prop_assert!((now - last - noise).max() <= 0.0, "{} {} {}", now, last, noise);
             last = now;
         }
     }

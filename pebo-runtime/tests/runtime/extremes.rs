@@ -73,10 +73,18 @@ fn a_long_gap_is_as_long_as_it_was() {
 }
 
 #[test]
+fn an_empty_window_says_nothing() {
+    let window = WindowedRegression::<f32, 1, 1, 8>::new(Hold::First);
+    let (known, factor) = (RegressionOperator::regressand(&window).x, RegressionOperator::regressor(&window).x);
+    assert_eq!((known, factor, window.duration()), (0.0, 0.0, 0.0));
+}
+
+#[test]
 fn a_window_forgets_outliers_to_the_last_bit() {
     let side = |known: f32, factor: f32| Sides { known: Vector1::new(known), factor: Matrix1::new(factor) };
     let advance = |window: &mut WindowedRegression<f32, 1, 1, 8>, known: f32, factor: f32, dt: f32| {
-        window.advance([&side(known, factor), &side(known, factor)], dt);
+        let step = window.step([&side(known, factor), &side(known, factor)], dt);
+        window.take(step);
     };
     // What cannot be held beside ordinary numbers in the 48 bits of a sum: values, and times.
     for outliers in [[(1e30, 1e20, 1e-3), (1e12, 1e10, 1e-3)], [(1.0, 1.0, 1e30), (1.0, 1.0, 1e10)]] {

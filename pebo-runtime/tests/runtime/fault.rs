@@ -1,7 +1,7 @@
 //! Bad samples: refused, without a trace in the state.
 
-use pebo_runtime::nalgebra::{Matrix1, Vector1, Vector2};
-use pebo_runtime::{Fault, Filter, Gradient, Hold, Integrator, Model, Observer, Real, Regression};
+use pebo_runtime::nalgebra::{Matrix1, SVector, Vector1, Vector2};
+use pebo_runtime::{Fault, Filter, Flow, Gradient, Hold, Integrator, Model, Observer, Real, Regression, Sides};
 use proptest::prelude::*;
 
 use crate::converter::{Case, CaseOne, CaseTwoGeneralised, CukObserver, Loop};
@@ -13,21 +13,25 @@ struct Narrow;
 impl Model<1, 1, 1, 1, 1, 1> for Narrow {
     type Scalar = f64;
     type Extension = Integrator<f64, 1>;
+    type X = SVector<Self::Scalar, 1>;
+    type Y = SVector<Self::Scalar, 1>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector1<f64>;
     const REGRESSION: Regression = Regression::Static;
 
-    fn h(&self, _: &Vector1<f64>, u: &Vector1<f64>) -> Vector1<f64> {
-        *u
+    fn terms(&self, y: &Vector1<f64>) -> Vector1<f64> {
+        *y
     }
-    fn phi_0(&self, _: &Self::Extension, y: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
-        y.map(Real::sqrt)
+    fn flow(&self, _: &Vector1<f64>, u: &Vector1<f64>) -> Flow<f64, 1> {
+        Flow::plain(*u)
     }
-    fn phi_1(&self, _: &Self::Extension, _: &Vector1<f64>, _: &Vector1<f64>) -> Matrix1<f64> {
-        Matrix1::new(1e-3)
+    fn regression(&self, _: &Self::Extension, y: &Vector1<f64>, _: &Vector1<f64>) -> Sides<f64, 1, 1> {
+        Sides { known: y.map(Real::sqrt), factor: Matrix1::new(1e-3) }
     }
     fn theta(&self, eta: &Vector1<f64>) -> Vector1<f64> {
         *eta
     }
-    fn phi_left(&self, z: &Vector1<f64>, y: &Vector1<f64>) -> Vector1<f64> {
+    fn recover(&self, z: &Vector1<f64>, y: &Vector1<f64>) -> Vector1<f64> {
         Vector1::new(y.x / z.x)
     }
 }
@@ -42,7 +46,7 @@ fn narrow(chi_0: f64) -> Result<NarrowObserver, Fault> {
 /// A step that must be refused and leave no trace: the printed state tells every bit of a finite number.
 fn refused(observer: &mut NarrowObserver, y: f64, u: f64, dt: f64) -> Fault {
     let before = format!("{observer:?}");
-    let fault = observer.step(&Vector1::new(y), &Vector1::new(u), dt).unwrap_err();
+    let fault = observer.step(Vector1::new(y), Vector1::new(u), dt).unwrap_err();
     assert_eq!(format!("{observer:?}"), before);
     fault
 }
@@ -60,7 +64,7 @@ fn every_fault_leaves_the_state_as_it_was() {
         for bad in [0.0, -0.0, -0.1] {
             assert_eq!(refused(&mut observer, 1.0, 0.0, bad), Fault::Step);
         }
-        observer.step(&Vector1::new(1.0), &Vector1::new(0.0), 0.1).unwrap();
+        observer.step(Vector1::new(1.0), Vector1::new(0.0), 0.1).unwrap();
     }
     // The square root of a negative number, an integral that overflows, a left inverse at its pole.
     assert_eq!(refused(&mut observer, -1.0, 0.0, 0.1), Fault::State);
@@ -72,7 +76,7 @@ fn every_fault_leaves_the_state_as_it_was() {
 #[test]
 fn index_names_the_bad_channel() {
     let mut observer: CukObserver<f64, CaseOne<f64>> = Loop::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
-    let fault = observer.step(&Vector2::new(1.0, f64::NAN), &Vector1::new(0.5), 1e-5);
+    let fault = observer.step(Vector2::new(1.0, f64::NAN), Vector1::new(0.5), 1e-5);
     assert_eq!(fault, Err(Fault::Output { index: 1 }));
     assert_eq!(Fault::Output { index: 1 }.to_string(), "output sample 1 is not finite");
     let _: &dyn core::error::Error = &Fault::Step;
@@ -82,10 +86,10 @@ fn index_names_the_bad_channel() {
 fn step_after_a_refused_one_covers_both_intervals() {
     let (mut seeing, mut blind) = (narrow(1.0).unwrap(), narrow(1.0).unwrap());
     for observer in [&mut seeing, &mut blind] {
-        observer.step(&Vector1::new(4.0), &Vector1::new(0.0), 0.1).unwrap();
+        observer.step(Vector1::new(4.0), Vector1::new(0.0), 0.1).unwrap();
     }
     refused(&mut blind, f64::NAN, 0.5, 0.1);
-    let whole = |observer: &mut NarrowObserver| observer.step(&Vector1::new(9.0), &Vector1::new(0.5), 0.2).unwrap();
+    let whole = |observer: &mut NarrowObserver| observer.step(Vector1::new(9.0), Vector1::new(0.5), 0.2).unwrap();
     assert_eq!(whole(&mut blind), whole(&mut seeing));
     assert_eq!(format!("{blind:?}"), format!("{seeing:?}"));
 }
@@ -94,8 +98,8 @@ fn step_after_a_refused_one_covers_both_intervals() {
 fn first_sample_only_sets_the_clock() {
     let mut observer = narrow(2.0).unwrap();
     assert_eq!(observer.estimate(), None);
-    assert_eq!(observer.estimate_at(&Vector1::new(3.0)), Vector1::new(1.5));
-    let estimate = observer.step(&Vector1::new(3.0), &Vector1::new(1e9), 1e9).unwrap();
+    assert_eq!(observer.estimate_at(Vector1::new(3.0)), Vector1::new(1.5));
+    let estimate = observer.step(Vector1::new(3.0), Vector1::new(1e9), 1e9).unwrap();
     assert_eq!((estimate, observer.estimate()), (Vector1::new(1.5), Some(Vector1::new(1.5))));
     assert_eq!(*observer.extension().chi(), Vector1::new(2.0));
     assert_eq!(*observer.regression().regressor(), Matrix1::new(0.0));
@@ -106,7 +110,7 @@ fn restart_is_a_new_observer() {
     let mut observer = narrow(1.0).unwrap();
     let new = format!("{:?}", narrow(5.0).unwrap());
     for y in [4.0, 9.0, 1.0] {
-        observer.step(&Vector1::new(y), &Vector1::new(0.5), 0.1).unwrap();
+        observer.step(Vector1::new(y), Vector1::new(0.5), 0.1).unwrap();
     }
     assert_eq!(observer.restart(Vector1::new(f64::NAN), &Vector1::new(0.0)), Err(Fault::Start));
     observer.restart(Vector1::new(5.0), &Vector1::new(0.0)).unwrap();
@@ -116,7 +120,7 @@ fn restart_is_a_new_observer() {
     assert_eq!(format!("{other:?}"), new);
     for observer in [&mut observer, &mut other] {
         for y in [4.0, 9.0] {
-            observer.step(&Vector1::new(y), &Vector1::new(0.5), 0.1).unwrap();
+            observer.step(Vector1::new(y), Vector1::new(0.5), 0.1).unwrap();
         }
     }
     assert_eq!(format!("{observer:?}"), format!("{other:?}"));
@@ -149,7 +153,7 @@ where
     for &[y1, y2, u, dt] in samples {
         let before = format!("{observer:?}");
         let y = Vector2::new(real(y1), real(y2));
-        if let Ok(estimate) = observer.step(&y, &Vector1::new(real(u)), real(dt)) {
+        if let Ok(estimate) = observer.step(y, Vector1::new(real(u)), real(dt)) {
             prop_assert!(estimate.iter().all(|&x| Real::is_finite(x)));
             prop_assert_eq!(Some(estimate), observer.estimate());
         } else {

@@ -1,7 +1,7 @@
 //! The other kinds of regression: static and over-parameterised, implicit, padded.
 
 use pebo_runtime::nalgebra::{Matrix1, Matrix1x3, SMatrix, SVector, Vector1, Vector2, Vector3};
-use pebo_runtime::{Filter, Gradient, Hold, Integrator, Model, Observer, Rebase, Regression};
+use pebo_runtime::{Filter, Flow, Gradient, Hold, Integrator, Model, Observer, Rebase, Regression, Sides};
 
 use crate::converter::{CaseOne, Loop};
 
@@ -17,22 +17,26 @@ const POLES: f64 = 3.0;
 impl Model<1, 2, 2, 2, 1, 3> for Motor {
     type Scalar = f64;
     type Extension = Integrator<f64, 2>;
+    type X = SVector<Self::Scalar, 1>;
+    type Y = SVector<Self::Scalar, 2>;
+    type U = SVector<Self::Scalar, 2>;
+    type Terms = Vector2<f64>;
     const REGRESSION: Regression = Regression::Static;
 
-    fn h(&self, i: &Vector2<f64>, u: &Vector2<f64>) -> Vector2<f64> {
-        u - i * R
+    fn terms(&self, y: &Vector2<f64>) -> Vector2<f64> {
+        *y
     }
-    fn phi_0(&self, extension: &Self::Extension, i: &Vector2<f64>, _: &Vector2<f64>) -> Vector1<f64> {
-        Vector1::new((extension.chi() - i * L).norm_squared())
+    fn flow(&self, i: &Vector2<f64>, u: &Vector2<f64>) -> Flow<f64, 2> {
+        Flow::plain(u - i * R)
     }
-    fn phi_1(&self, extension: &Self::Extension, i: &Vector2<f64>, _: &Vector2<f64>) -> Matrix1x3<f64> {
+    fn regression(&self, extension: &Self::Extension, i: &Vector2<f64>, _: &Vector2<f64>) -> Sides<f64, 1, 3> {
         let s = (extension.chi() - i * L) * -2.0;
-        Matrix1x3::new(s.x, s.y, 1.0)
+        Sides { known: Vector1::new((extension.chi() - i * L).norm_squared()), factor: Matrix1x3::new(s.x, s.y, 1.0) }
     }
     fn theta(&self, eta: &Vector3<f64>) -> Vector2<f64> {
         eta.xy()
     }
-    fn phi_left(&self, z: &Vector2<f64>, i: &Vector2<f64>) -> Vector1<f64> {
+    fn recover(&self, z: &Vector2<f64>, i: &Vector2<f64>) -> Vector1<f64> {
         let magnet = z - i * L;
         Vector1::new(magnet.y.atan2(magnet.x) / POLES)
     }
@@ -56,7 +60,7 @@ fn motor_finds_its_position() {
         let before = (now - dt).max(0.0);
         // The voltage that moves the flux as told under the trapezoidal rule: the regression then holds without error.
         let u = (flux(now) - flux(before)) / dt + (current(now) + current(before)) * (R / 2.0);
-        estimate = observer.step(&current(now), &u, dt).unwrap();
+        estimate = observer.step(current(now), u, dt).unwrap();
     }
     let theta = flux(0.0) - chi_0;
     let eta = Vector3::new(theta.x, theta.y, LAMBDA_M * LAMBDA_M - theta.norm_squared());
@@ -74,27 +78,28 @@ struct Implicit;
 impl Model<1, 1, 2, 1, 1, 1> for Implicit {
     type Scalar = f64;
     type Extension = Integrator<f64, 1>;
+    type X = SVector<Self::Scalar, 1>;
+    type Y = SVector<Self::Scalar, 1>;
+    type U = SVector<Self::Scalar, 2>;
+    type Terms = Vector1<f64>;
     const REGRESSION: Regression = Regression::Dynamic;
 
-    fn h(&self, _: &Vector1<f64>, u: &Vector2<f64>) -> Vector1<f64> {
-        Vector1::new(u.x)
-    }
-    fn phi_0(&self, _: &Self::Extension, y: &Vector1<f64>, u: &Vector2<f64>) -> Vector1<f64> {
-        Vector1::new(u.y - y.x + u.x * y.x)
-    }
-    fn phi_1(&self, _: &Self::Extension, _: &Vector1<f64>, _: &Vector2<f64>) -> Matrix1<f64> {
-        Matrix1::zeros()
-    }
-    fn primitive_0(&self, extension: &Self::Extension, y: &Vector1<f64>) -> Vector1<f64> {
-        extension.chi().component_mul(y)
-    }
-    fn primitive_1(&self, _: &Self::Extension, y: &Vector1<f64>) -> Matrix1<f64> {
+    fn terms(&self, y: &Vector1<f64>) -> Vector1<f64> {
         *y
+    }
+    fn flow(&self, _: &Vector1<f64>, u: &Vector2<f64>) -> Flow<f64, 1> {
+        Flow::plain(Vector1::new(u.x))
+    }
+    fn regression(&self, _: &Self::Extension, y: &Vector1<f64>, u: &Vector2<f64>) -> Sides<f64, 1, 1> {
+        Sides { known: Vector1::new(u.y - y.x + u.x * y.x), factor: Matrix1::zeros() }
+    }
+    fn primitive(&self, extension: &Self::Extension, y: &Vector1<f64>) -> Sides<f64, 1, 1> {
+        Sides { known: extension.chi().component_mul(y), factor: *y }
     }
     fn theta(&self, eta: &Vector1<f64>) -> Vector1<f64> {
         *eta
     }
-    fn phi_left(&self, z: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
+    fn recover(&self, z: &Vector1<f64>, _: &Vector1<f64>) -> Vector1<f64> {
         *z
     }
 }
@@ -112,7 +117,7 @@ fn implicit_errors(dt: f64) -> [f64; 2] {
     let mut errors = [f64::NAN; 2];
     for k in 0_u32..=20_000 {
         for (observer, error) in [&mut plain, &mut moved].into_iter().zip(&mut errors) {
-            *error = observer.step(&Vector1::new(y), &u, dt).unwrap().x - x;
+            *error = observer.step(Vector1::new(y), u, dt).unwrap().x - x;
         }
         if k % 1000 == 500 {
             let chi = *moved.extension().chi();
@@ -144,31 +149,36 @@ struct Padded<M>(M);
 
 impl<M> Model<2, 2, 1, 4, 4, 4> for Padded<M>
 where
-    M: Model<2, 2, 1, 2, 2, 2, Scalar = f64, Extension = Integrator<f64, 2>>,
+    M: Model<2, 2, 1, 2, 2, 2, Scalar = f64, Extension = Integrator<f64, 2>, Terms = Vector2<f64>>,
 {
     type Scalar = f64;
     type Extension = Integrator<f64, 4>;
+    type X = SVector<Self::Scalar, 2>;
+    type Y = SVector<Self::Scalar, 2>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector2<f64>;
     const REGRESSION: Regression = M::REGRESSION;
 
-    fn h(&self, y: &Vector2<f64>, u: &Vector1<f64>) -> SVector<f64, 4> {
-        pad(&self.0.h(y, u))
+    fn terms(&self, y: &Vector2<f64>) -> Vector2<f64> {
+        *y
     }
-    fn phi_0(&self, extension: &Self::Extension, y: &Vector2<f64>, u: &Vector1<f64>) -> SVector<f64, 4> {
-        pad(&self.0.phi_0(&narrow(extension), y, u))
+    fn flow(&self, y: &Vector2<f64>, u: &Vector1<f64>) -> Flow<f64, 4> {
+        Flow::plain(pad(&self.0.flow(y, u).h))
     }
-    fn phi_1(&self, extension: &Self::Extension, y: &Vector2<f64>, u: &Vector1<f64>) -> SMatrix<f64, 4, 4> {
+    fn regression(&self, extension: &Self::Extension, y: &Vector2<f64>, u: &Vector1<f64>) -> Sides<f64, 4, 4> {
         let mut padded = SMatrix::<f64, 4, 4>::zeros();
-        padded.fixed_view_mut::<2, 2>(0, 0).copy_from(&self.0.phi_1(&narrow(extension), y, u));
-        padded
+        let sides = self.0.regression(&narrow(extension), y, u);
+        padded.fixed_view_mut::<2, 2>(0, 0).copy_from(&sides.factor);
+        Sides { known: pad(&sides.known), factor: padded }
     }
-    fn primitive_0(&self, extension: &Self::Extension, y: &Vector2<f64>) -> SVector<f64, 4> {
-        pad(&self.0.primitive_0(&narrow(extension), y))
+    fn primitive(&self, extension: &Self::Extension, y: &Vector2<f64>) -> Sides<f64, 4, 4> {
+        Sides { known: pad(&self.0.primitive(&narrow(extension), y).known), factor: SMatrix::zeros() }
     }
     fn theta(&self, eta: &SVector<f64, 4>) -> SVector<f64, 4> {
         *eta
     }
-    fn phi_left(&self, z: &SVector<f64, 4>, y: &Vector2<f64>) -> Vector2<f64> {
-        self.0.phi_left(&z.xy(), y)
+    fn recover(&self, z: &SVector<f64, 4>, y: &Vector2<f64>) -> Vector2<f64> {
+        self.0.recover(&z.xy(), y)
     }
 }
 
@@ -187,11 +197,11 @@ fn padded_model_is_the_same_observer() {
     let gradient = Gradient::diagonal(&SVector::<f64, 4>::repeat(1e-3)).unwrap();
     let filter = Filter::new(0.5, Hold::First).unwrap();
     let mut padded = Observer::new(model, gradient, filter, SVector::zeros()).unwrap();
-    padded.step(&closed.outputs(), &Vector1::zeros(), 1e-5).unwrap();
+    padded.step(closed.outputs(), Vector1::zeros(), 1e-5).unwrap();
     for _ in 0..1000 {
         let duty = closed.duty();
         closed.advance().unwrap();
-        let estimate = padded.step(&closed.outputs(), &Vector1::new(duty), 1e-5).unwrap();
+        let estimate = padded.step(closed.outputs(), Vector1::new(duty), 1e-5).unwrap();
         assert_eq!(Some(estimate), closed.observer.estimate());
     }
 }

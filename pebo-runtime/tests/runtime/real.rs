@@ -32,6 +32,9 @@ fn functions_are_the_standard_ones() {
 fn the_rest() {
     assert_eq!(Real::abs(-3.0_f64), 3.0);
     assert_eq!(Real::powi(-2.0_f32, 3), -8.0);
+    assert_eq!([-2.5, 0.0, 0.1].map(|a: f64| Real::sign(a)), [-1.0, 0.0, 1.0]);
+    assert_eq!([-2.5, -0.5, 7.0].map(|a: f32| Real::sat(a)), [-1.0, -0.5, 1.0]);
+    assert_eq!((Real::smaller(2.0_f64, -3.0), Real::larger(2.0_f64, -3.0)), (-3.0, 2.0));
     // A quadrant each, and the axis that a quotient y/x does not have.
     assert!((Real::atan2(1.0_f64, -1.0) - 2.356_194_490_192_345).abs() < 1e-15);
     assert!((Real::atan2(-1.0_f64, -1.0) + 2.356_194_490_192_345).abs() < 1e-15);

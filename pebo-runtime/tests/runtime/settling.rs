@@ -19,7 +19,7 @@ where
     // The loop is closed by the paper's observer: whoever watches sees the same data.
     let mut closed = Loop::<f64, CaseTwo<f64>>::new(1.0, [1.0, 10.0], DT).unwrap();
     let mut observer = Observer::with_regression(CaseTwo::new(), estimator, regression, Vector2::zeros()).unwrap();
-    observer.step(&closed.outputs(), &Vector1::zeros(), DT).unwrap();
+    observer.step(closed.outputs(), Vector1::zeros(), DT).unwrap();
     let initial = closed.error();
     let mut settled = 0;
     let mut error = initial;
@@ -27,7 +27,7 @@ where
         let duty = Vector1::new(closed.duty());
         closed.advance().unwrap();
         let truth = CaseTwo::<f64>::unmeasured(&closed.circuit);
-        error = observer.step(&closed.outputs(), &duty, DT).unwrap() - truth;
+        error = observer.step(closed.outputs(), duty, DT).unwrap() - truth;
         if error.component_div(&initial).abs().max() > 0.01 {
             settled = k + 1;
         }

@@ -31,6 +31,11 @@ fn sine_and_cosine() {
     }
     // As the module's documentation says.
     assert!(worst < 1.0e-7, "{worst:e}");
+    for x in representations(1e9, 10_000) {
+        let (sine, cosine) = Real::sin_cos(x);
+        let apart: [f32; 2] = [Real::sin(x), Real::cos(x)];
+        assert_eq!([sine, cosine].map(f32::to_bits), apart.map(f32::to_bits), "{x}");
+    }
     // Near 0 the sine is right to its own last place.
     let near = representations(0.78, 300_000).map(|x| units(Real::sin(x), f64::from(x).sin())).fold(0.0, f64::max);
     assert!(near < 1.5, "{near}");

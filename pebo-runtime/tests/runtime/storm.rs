@@ -5,19 +5,23 @@
 
 use core::fmt::Debug;
 
-use pebo_runtime::nalgebra::{Vector1, Vector2};
+use pebo_runtime::nalgebra::{SVector, Vector1, Vector2};
 use pebo_runtime::{
-    Bounded, Drem, Drift, Estimator, Fault, Filter, FilteredRegression, FiniteTime, Gradient, Hold, Kreisselmeier,
-    LeastSquares, Monitor, NormalisedGradient, Observer, Real, RegressionOperator, Response, WindowedRegression,
+    Bounded, Drem, Drift, Estimator, Extension as _, Fault, Filter, FilteredRegression, FiniteTime, Gradient, Hold,
+    Kreisselmeier, LeastSquares, Model, Monitor, NormalisedGradient, Observer, OutputForm, Real, Rebase,
+    RegressionOperator, Response, SampledRegression, WindowedRegression, Within,
 };
 
-use crate::converter::{Case, CaseTwo};
+use crate::converter::{Case, CaseTwo, CaseTwoGeneralised};
 use crate::noise::Noise;
 
-/// The steps of each estimator in each scalar; there are 11 of the former and 2 of the latter.
+/// The runs in each of the two scalars: an estimator, a regression and a form of the observer each.
+const RUNS: u32 = 24;
+
+/// The steps of each run.
 fn steps() -> u32 {
     let all: u32 = std::env::var("STORM_STEPS").map_or(400_000, |steps| steps.parse().expect("a number of steps"));
-    all.div_ceil(2 * 11)
+    all.div_ceil(2 * RUNS)
 }
 
 /// An ordinary number as a rule; else zeros, infinities, NaN, huge and tiny numbers, or any bits at all.
@@ -45,16 +49,35 @@ fn period(noise: &mut Noise) -> f64 {
     }
 }
 
+/// The generalised converter, plain and re-based at every third sample.
 fn weather<S, E, R>(estimator: E, regression: R, seed: u64) -> u32
 where
     S: Real,
     E: Estimator<S, 2, 2> + Copy + Debug + PartialEq,
     R: RegressionOperator<S, 2, 2> + Copy + Debug + PartialEq,
 {
+    of_model(&CaseTwo::<S>::new(), estimator, regression, None, seed)
+        + of_model(&CaseTwoGeneralised::<S>::new(), estimator, regression, Some(3), seed + 100)
+}
+
+fn of_model<S, M, E, R, const NZ: usize>(model: &M, estimator: E, regression: R, every: Option<u32>, seed: u64) -> u32
+where
+    S: Real,
+    M: Rebase<2, 2, 1, NZ, 2> + Model<2, 2, 1, NZ, 2, NZ, Scalar = S, X = Vector2<S>> + Clone,
+    E: Estimator<S, 2, NZ> + Copy + Debug + PartialEq,
+    R: RegressionOperator<S, 2, NZ> + Copy + Debug + PartialEq,
+{
     let real = |x: f64| -> S { Real::from_f64(x) };
-    let finite = |vector: &Vector2<S>| vector.iter().all(|&x| Real::is_finite(x));
+    let finite = |vector: &[S]| vector.iter().all(|&x| Real::is_finite(x));
     let mut noise = Noise::new(seed);
-    let mut observer = Observer::with_regression(CaseTwo::<S>::new(), estimator, regression, Vector2::zeros()).unwrap();
+    let build = || {
+        let observer = Observer::with_regression(model.clone(), estimator, regression, SVector::zeros()).unwrap();
+        match every {
+            Some(every) => observer.rebasing(every).unwrap(),
+            None => observer,
+        }
+    };
+    let mut observer = build();
     let mut refused = 0;
     for k in 0..steps() {
         let y = Vector2::new(real(number(&mut noise, 30.0)), real(number(&mut noise, 1.0)));
@@ -62,24 +85,23 @@ where
         let dt = real(period(&mut noise));
         let before = *observer.state();
         let estimate = match k % 3 {
-            0 => observer.step(&y, &u, dt),
-            1 => observer.step_straight(&y, [&u, &Vector1::new(real(noise.uniform()))], dt),
-            _ => observer.step_without_drift(&y, &u, dt, Drift::Free),
+            0 => observer.step(y, u, dt),
+            1 => observer.step_straight(y, [u, Vector1::new(real(noise.uniform()))], dt),
+            _ if every.is_some() => observer.step(y, u, dt),
+            _ => observer.step_without_drift(y, u, dt, Drift::Free),
         };
         if let Ok(estimate) = estimate {
-            assert!(finite(&estimate), "{estimate}");
+            assert!(finite(estimate.as_slice()), "{estimate}");
         } else {
             refused += 1;
             assert_eq!(*observer.state(), before);
         }
-        assert!(finite(&observer.eta()) && finite(observer.extension().chi()));
+        assert!(finite(observer.eta().as_slice()) && finite(observer.extension().offset().as_slice()));
         assert!(observer.estimator().is_finite() && observer.regression().is_finite());
         // An outage now and then, or nothing would be left to go wrong after the first huge number.
         if noise.bits().is_multiple_of(256) {
-            observer.restart(Vector2::zeros(), &Vector2::zeros()).unwrap();
-            let fresh =
-                Observer::with_regression(CaseTwo::<S>::new(), estimator, regression, Vector2::zeros()).unwrap();
-            assert_eq!(observer.estimate_at(&Vector2::zeros()), fresh.estimate_at(&Vector2::zeros()));
+            observer.restart(SVector::zeros(), &SVector::zeros()).unwrap();
+            assert_eq!(observer.estimate_at(Vector2::zeros()), build().estimate_at(Vector2::zeros()));
         }
     }
     refused
@@ -88,6 +110,7 @@ where
 fn all_weathers<S: Real>() -> Result<u32, Fault> {
     let pair = |a: f64, b: f64| Vector2::<S>::new(Real::from_f64(a), Real::from_f64(b));
     let real = |x: f64| -> S { Real::from_f64(x) };
+    let four = |a: f64| SVector::<S, 4>::repeat(Real::from_f64(a));
     let filtered = FilteredRegression::<S, 2, 2>::new(Filter::new(real(1e3), Hold::First)?);
     let window = WindowedRegression::<S, 2, 2, 8>::new(Hold::First);
     let gradient = Gradient::diagonal(&pair(1.0, 10.0))?;
@@ -107,6 +130,20 @@ fn all_weathers<S: Real>() -> Result<u32, Fault> {
         weather::<S, _, _>(FiniteTime::once(drem, real(0.1))?, filtered, 9),
         weather::<S, _, _>(FiniteTime::tracking(drem, real(0.1), real(1e-3))?, filtered, 10),
         weather::<S, _, _>(Bounded::new(squares, &pair(-50.0, -50.0), &pair(50.0, 50.0))?, filtered, 11),
+        of_model::<S, _, _, _, 4>(
+            &OutputForm::<_, 2>::new(CaseTwo::<S>::new()),
+            LeastSquares::diagonal(&four(1e3), real(0.0))?.with_process_noise(&four(1.0))?,
+            SampledRegression::new(&pair(0.1, 0.1))?,
+            Some(1),
+            12,
+        ),
+        of_model::<S, _, _, _, 2>(
+            &Within::new(CaseTwoGeneralised::<S>::new(), &pair(-1.0, 0.0), &pair(1.0, f64::INFINITY))?,
+            gradient.carrying_its_gain(),
+            filtered,
+            Some(1),
+            13,
+        ),
     ]
     .iter()
     .sum())
@@ -114,7 +151,7 @@ fn all_weathers<S: Real>() -> Result<u32, Fault> {
 
 #[test]
 fn nothing_gets_through() {
-    let all = steps() * 2 * 11;
+    let all = steps() * 2 * RUNS;
     let refused = all_weathers::<f64>().unwrap() + all_weathers::<f32>().unwrap();
     // About a third are faults by themselves; far from all are refused, far from all accepted.
     assert!(refused > all / 4 && refused < all / 10 * 9, "{refused} of {all}");
@@ -123,7 +160,9 @@ fn nothing_gets_through() {
 #[test]
 fn monitor_stands_it_too() {
     let mut noise = Noise::new(12);
-    let mut monitor = Monitor::new(&Vector2::new(1e-3_f32, 1e-2), 1e-3, 10.0).unwrap();
+    let filter = Filter::new(1e3_f32, Hold::First).unwrap();
+    let sensors = Vector2::new(0.1_f32, 0.3);
+    let mut monitor = Monitor::of_rates(&Vector2::new(1e-3_f32, 1e-2), &sensors, filter, 10.0).unwrap();
     for _ in 0..steps() {
         let mut entry = || -> f32 { Real::from_f64(number(&mut noise, 1e4)) };
         let regressor = pebo_runtime::nalgebra::Matrix2::new(entry(), entry(), entry(), entry());

@@ -108,14 +108,15 @@ fn run<E: Estimator<f32, 2, 2>, R: RegressionOperator<f32, 2, 2>>(
         gap.add(&duty, DT);
         if k == 700 {
             let broken = Vector2::new(y.x, f32::NAN);
-            report.flag(observer.step(&broken, &duty, DT) == Err(Fault::Output { index: 1 }));
+            report.flag(observer.step(broken, duty, DT) == Err(Fault::Output { index: 1 }));
             report.flag(limits.check(&broken, &duty, DT) == Err(Fault::OutputRange { index: 1 }));
         } else {
             let (duty, dt) = gap.take();
             let estimate = match drift {
-                Some(drift) => observer.step_without_drift(&y, &duty, dt, drift)?,
-                None => observer.step(&y, &duty, dt)?,
+                Some(drift) => observer.step_without_drift(y, duty, dt, drift)?,
+                None => observer.step(y, duty, dt)?,
             };
+            let estimate = Vector2::from(estimate);
             if k % 400 == 399 {
                 report.estimate(&estimate, &circuit.unmeasured());
                 // From 8 ms on every observer here has the current to 1 % of its error at the start, 0.5 A.
@@ -172,7 +173,7 @@ pub fn all(report: &mut impl Report) -> Result<(), Fault> {
 /// The excitation of the regressor at rest.
 fn monitor(report: &mut impl Report) -> Result<(), Fault> {
     report.name("monitor");
-    let mut monitor = Monitor::new(&Vector2::new(1e-3, 1e-2), 1e-3, 10.0)?;
+    let mut monitor = Monitor::of_white(&Vector2::new(1e-3, 1e-2), &Vector2::new(1e-3, 1e-3), 10.0)?;
     let mut duty = 0.6;
     for _ in 0..200_u32 {
         let regressor = pebo_runtime::nalgebra::Matrix2::new((1.0 - duty) / 22e-6, 0.0, 0.0, -100.0);

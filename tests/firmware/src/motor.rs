@@ -2,10 +2,10 @@
 
 use core::f32::consts::PI;
 
-use pebo_runtime::nalgebra::{Vector2, Vector3};
+use pebo_runtime::nalgebra::Vector2;
 use pebo_runtime::{Fault, Filter, Hold, LeastSquares, Real};
 
-use crate::emitted::pmsm::{Observer, Parameters, Pmsm};
+use crate::emitted::pmsm::{self, Observer, Parameters, Pmsm, U};
 use crate::report::Report;
 
 const DT: f32 = 1e-4;
@@ -39,14 +39,14 @@ pub fn run(report: &mut impl Report) -> Result<(), Fault> {
         // Held at its mean over the interval behind, which is that of its middle.
         let u = voltage(now - DT / 2.0);
         let i = turned(SPEED * n_p * now) * CURRENT;
-        let estimate = observer.step(&i, &Vector3::new(u.x, u.y, SPEED), DT)?;
+        let pmsm::X { q } = observer.step(i, U { v1: u.x, v2: u.y, w: SPEED }, DT)?;
         if k % 800 == 799 {
             // The error modulo the period of the position.
-            let turns = (estimate.x - position(now)) * n_p / (2.0 * PI);
+            let turns = (q - position(now)) * n_p / (2.0 * PI);
             // Adding and taking away 1.5 * 2^23 rounds to an integer.
             let whole = (turns + 12_582_912.0) - 12_582_912.0;
             let error = (turns - whole) * 2.0 * PI / n_p;
-            report.estimate(&Vector2::new(estimate.x, error), &Vector2::new(estimate.x, 0.0));
+            report.estimate(&Vector2::new(q, error), &Vector2::new(q, 0.0));
             // A voltage held at its mean misses (200/s * DT)^2/24 = 1.7e-5 of the flux, a fifth of that in position; as much
             // again for rounding.
             report.flag(Real::abs(error) < 1e-5);

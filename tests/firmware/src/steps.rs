@@ -1,11 +1,10 @@
 //! The steps that are counted, each a function of its own so that counters and size figures find it.
 
 use pebo_runtime::Fault;
-use pebo_runtime::nalgebra::{SVector, Vector2};
 
 use crate::by_hand::ByHand;
 use crate::converter::{Circuit, DT, counted};
-use crate::emitted::cuk_case2::Observer;
+use crate::emitted::cuk_case2::{Observer, U, X, Y};
 
 /// Samples in a round of counting.
 pub const ROUND: usize = 64;
@@ -25,8 +24,8 @@ pub fn samples() -> Samples {
 
 /// One step of the emitted observer.
 #[inline(never)]
-pub fn emitted_step(observer: &mut Observer, y: &[f32; 2], d: f32) -> Result<Vector2<f32>, Fault> {
-    observer.step(&Vector2::from(*y), &SVector::from([d]), DT)
+pub fn emitted_step(observer: &mut Observer, &[v2, i3]: &[f32; 2], d: f32) -> Result<X, Fault> {
+    observer.step(Y { v2, i3 }, U { d }, DT)
 }
 
 /// One step of the observer written by hand.
@@ -61,9 +60,9 @@ pub fn agree() -> Result<bool, Fault> {
     let mut duty = 0.5;
     for _ in 0..2000_u32 {
         let y: [f32; 2] = circuit.outputs().into();
-        let estimate: [f32; 2] = emitted_step(&mut emitted, &y, duty)?.into();
+        let X { i1, v4 } = emitted_step(&mut emitted, &y, duty)?;
         same &= hand_step(&mut hand, &y, duty)
-            .is_some_and(|by_hand| by_hand.map(f32::to_bits) == estimate.map(f32::to_bits));
+            .is_some_and(|by_hand| by_hand.map(f32::to_bits) == [i1, v4].map(f32::to_bits));
         duty = circuit.duty();
         circuit.advance();
     }

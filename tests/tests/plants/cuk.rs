@@ -1,7 +1,8 @@
 /// DC-DC Cuk converter, inductor currents from capacitor voltages.
 #[pebo_macros::pebo_model(
     reference = "Ortega et al. 2015, Section 5.3, case I",
-    assume(L1 > 0, C2 > 0, L3 > 0, C4 > 0, 0 < d < 1)
+    assume(L1 > 0, C2 > 0, L3 > 0, C4 > 0, 0 < d < 1),
+    units(L1 = "H", C2 = "F", L3 = "H", C4 = "F", G = "S", E = "V", i1 = "A", i3 = "A", v2 = "V", v4 = "V")
 )]
 pub(crate) mod cuk {
     pub(crate) const L1: f64 = 10e-3;

@@ -1,7 +1,10 @@
 /// Fluxes of a permanent magnet motor from its currents.
 #[pebo_macros::pebo_model(
     reference = "Ortega et al. 2015, Section 5.2, eq. 28",
-    assume(L > 0, lambda_m > 0)
+    assume(L > 0, lambda_m > 0),
+    units(
+        R = "ohm", L = "H", lambda_m = "Wb", l1 = "Wb", l2 = "Wb", i1 = "A", i2 = "A", omega = "rad/s", v1 = "V", v2 = "V"
+    )
 )]
 pub(crate) mod motor_flux {
     #![allow(non_upper_case_globals)]

@@ -108,6 +108,15 @@ mod tests {
     }
 
     #[test]
+    fn without_an_integrator_there_is_no_drift() {
+        for (rate, drifts) in [("0", false), ("q", true)] {
+            let text = format!("model: m\nx: [a]\ny: [q]\nf_x: {{a: {rate}}}\nf_y: {{q: a}}\nphi: [a]\n");
+            let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+            assert_eq!(Derivation::derive(&plant).drift(&plant).is_some(), drifts, "{rate}");
+        }
+    }
+
+    #[test]
     fn without_a_cascade_nothing_is_said() {
         assert_eq!(of("x: [x]\ny: [y]\nf_x: {x: x^2}\nf_y: {y: y}\nphi: [x]"), None);
     }

@@ -17,13 +17,17 @@ use crate::plant::Plant;
 
 use crate::analysis::design::{Cascade, Derivation, Verdict};
 use crate::cas::elimination::Elimination;
-use crate::cas::tidy::shortest_turned;
+use crate::cas::tidy::{operations, shortest_turned};
 
 /// The search for an operating point may take one part in so many of what the command has left.
 const SHARE: u64 = 4;
 
+/// Operations of a value from which on it is shown as it was found.
+const MOST_TIDIED: usize = 40;
+
 /// What is known of where a plant rests.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Equilibrium {
     /// It rests there: proved.
     At(OperatingPoint),
@@ -35,6 +39,7 @@ pub enum Equilibrium {
 
 /// Values at which every rate vanishes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct OperatingPoint {
     /// Symbols that are determined, in those that are free.
     pub values: Vec<(Symbol, Expr)>,
@@ -69,9 +74,6 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
     let rates = plant.rates();
-    if let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero)) {
-        return Ok(Equilibrium::Nowhere(*symbol));
-    }
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
     let inputs = plant.u.iter().chain(&plant.w).copied().collect();
     let mut doubtful = None;
@@ -87,7 +89,14 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
     // Where it is too hard to find where the unmeasured states rest, they may rest at zero, as momenta do.
     let still = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
-    let (values, there) = match search.run(&equations, &[BTreeMap::new(), still], &mut rests)? {
+    let searched = arena.budget().share(2, || search.run(&equations, &[BTreeMap::new(), still], &mut rests));
+    // Where it rests it does not move: what always does is looked for only if no such point was found.
+    if !matches!(searched, Ok(Ok(_)))
+        && let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero))
+    {
+        return Ok(Equilibrium::Nowhere(*symbol));
+    }
+    let (values, there) = match searched? {
         Ok(found) => found,
         Err(stuck) => {
             let contradiction = arena.symbols_of(&[stuck]).is_empty();
@@ -104,7 +113,11 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
     let orientation = Orientation::new(arena, &there);
-    let shown = |value: Expr| orientation.of(shortest_turned(arena, &orientation, value));
+    let shown = |value: Expr| match operations(arena, value) {
+        // Its normal form would be longer than anybody reads, and take longer than all claims.
+        MOST_TIDIED.. => value,
+        _ => orientation.of(shortest_turned(arena, &orientation, value)),
+    };
     let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
 }
@@ -115,7 +128,7 @@ fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> R
     let arena = &plant.arena;
     let there = domain
         .restricted(arena, values)
-        .ok_or_else(|| "no operating point was found within the assumptions and conditions".to_owned())?;
+        .ok_or_else(|| "no rest point that was looked at lies within the assumptions and conditions".to_owned())?;
     match plant.rates().iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
         None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
@@ -285,6 +298,12 @@ mod tests {
         let alone = "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v + p}\nf_y: {q: -q, r: p}\nphi: [p*q]";
         let (_, equilibrium) = of(alone);
         assert!(matches!(equilibrium, Some(Equilibrium::Nowhere(_))), "{equilibrium:?}");
+    }
+
+    #[test]
+    fn what_stands_still_everywhere_has_rank_zero() {
+        let (_, equilibrium) = of("x: [x]\ny: [y]\nf_x: {x: 0}\nf_y: {y: 0}\nphi: [x]");
+        assert!(matches!(equilibrium, Some(Equilibrium::At(OperatingPoint { rank: Some(0), .. }))), "{equilibrium:?}");
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //! started anew in motion.
 //!
 //! Worked out once, when it is first asked for: what does not print it, as the macro, does not pay for it.
+//!
+//! One thing with `design`, `drift` and `equilibrium`: a derivation keeps the remarks on itself, which are made of it.
 
 use std::cell::OnceCell;
 

@@ -11,6 +11,7 @@
 //! Then in the order in which the blocks feed one another: what is fed through constants by something bounded stays
 //! bounded if by itself it dies out at a constant rate; what does not, only if all that feeds it dies out so.
 
+mod fate;
 mod flows;
 
 use crate::cas::Expr;
@@ -19,23 +20,11 @@ use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::plant::Plant;
 
+use self::fate::Fate;
 use crate::analysis::design::Fundamental;
 
 /// A block with more components is not judged by its characteristic polynomial.
 const MOST_COMPONENTS: usize = 6;
-
-/// What is known of a part of the fundamental matrix.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Fate {
-    /// It dies out, no slower than some exponential.
-    Fades,
-    /// It stays bounded.
-    Stays,
-    /// It grows without bound.
-    Grows,
-    /// Nothing.
-    Open,
-}
 
 /// What becomes of the fundamental matrix.
 pub(super) fn of(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Fundamental {
@@ -92,7 +81,7 @@ impl System<'_> {
         for &i in block {
             trace = self.field.add(&trace, &self.entries[i][i])?;
         }
-        if self.is_constant(&trace) && self.field.is_positive(&trace)? {
+        if self.is_constant(&trace) && self.field.signs().is_positive(&trace)? {
             return Ok(Fate::Grows);
         }
         let by_energy = self.by_energy(block)?;
@@ -130,7 +119,7 @@ impl System<'_> {
                 }
                 // P_j = -P_i Lambda_ij / Lambda_ji
                 let other = field.div(&field.mul(&weight, out)?, &back.opposite())?;
-                if !field.is_positive(&other)? || !self.is_constant(&other) {
+                if !field.signs().is_positive(&other)? || !self.is_constant(&other) {
                     return Ok(Fate::Open);
                 }
                 match &weights[j] {
@@ -146,10 +135,10 @@ impl System<'_> {
         let mut fate = Fate::Fades;
         for &i in block {
             let loss = self.entries[i][i].opposite();
-            if !field.is_not_negative(&loss)? && !field.is_positive(&loss)? {
+            if !field.signs().is_not_negative(&loss)? && !field.signs().is_positive(&loss)? {
                 return Ok(Fate::Open);
             }
-            if !self.is_constant(&loss) || !field.is_positive(&loss)? {
+            if !self.is_constant(&loss) || !field.signs().is_positive(&loss)? {
                 fate = Fate::Stays;
             }
         }
@@ -165,17 +154,17 @@ impl System<'_> {
         // negative determinant of Hurwitz; one with all roots to the left has positive ones.
         for size in 0..=block.len() {
             for value in [polynomial[size].clone(), hurwitz(field, &polynomial, size)?] {
-                if field.is_positive(&value.opposite())? {
+                if field.signs().is_positive(&value.opposite())? {
                     return Ok(Fate::Grows);
                 }
-                all_positive &= field.is_positive(&value)?;
+                all_positive &= field.signs().is_positive(&value)?;
             }
         }
         if all_positive {
             return Ok(Fate::Fades);
         }
         // s^2 + c with c > 0: an oscillation.
-        let oscillates = block.len() == 2 && polynomial[1].is_zero() && field.is_positive(&polynomial[2])?;
+        let oscillates = block.len() == 2 && polynomial[1].is_zero() && field.signs().is_positive(&polynomial[2])?;
         Ok(if oscillates { Fate::Stays } else { Fate::Open })
     }
 
@@ -218,7 +207,8 @@ impl System<'_> {
             let still = self.entries[j].iter().all(Fraction::is_zero);
             let alone = feeding.iter().all(|&other| other == j || !self.fed[other][j]);
             if still && alone && self.is_constant(&row[j]) {
-                let signed = self.field.is_positive(&row[j])? || self.field.is_positive(&row[j].opposite())?;
+                let signed =
+                    self.field.signs().is_positive(&row[j])? || self.field.signs().is_positive(&row[j].opposite())?;
                 if signed {
                     return Ok(true);
                 }

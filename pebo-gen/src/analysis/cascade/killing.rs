@@ -21,7 +21,8 @@ use crate::cas::rational::half;
 use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr};
 use crate::plant::Matrix;
-use crate::plant::class::Mechanical;
+use crate::plant::class::{Mechanical, change_along};
+use crate::plant::matrix::dot;
 
 /// Whether a column of T is a Killing field: `z_i' = h_i`.
 pub(super) fn is_killing(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -> Result<bool, Obstacle> {
@@ -39,19 +40,14 @@ pub(super) fn offending(
     nonzero(arena, domain, &b.add(arena, &b.transpose()))
 }
 
-/// `L_{T_i} M = sum over k of T_ki dM/dq_k + (dT_i)' M + M dT_i`.
+/// `L_{T_i} M`.
 fn lie_derivative(arena: &Arena, plant: &Mechanical, index: usize) -> Matrix {
-    let (m, field) = (&plant.inertia, plant.frame.column(index));
-    let n = field.len();
-    let jacobian = Matrix::build(n, n, |j, k| arena.derivative(field[j], plant.q[k]));
-    let drag = m.mul(arena, &jacobian);
-    let mut total = drag.add(arena, &drag.transpose());
-    for (component, q) in field.iter().zip(&plant.q) {
-        if !arena.is_zero(*component) {
-            total = total.add(arena, &m.derivative(arena, *q).map(|e| arena.mul(*component, e)));
-        }
-    }
-    total
+    change_along(arena, &plant.inertia, &plant.frame.column(index), &plant.q)
+}
+
+/// `v' (L_{T_i} M) v / 2`.
+pub(super) fn quadratic(arena: &Arena, plant: &Mechanical, index: usize, v: &[Expr]) -> Expr {
+    arena.scale(dot(arena, v, &lie_derivative(arena, plant, index).apply(arena, v)), &half())
 }
 
 /// `B_(i)` of Assumption 3, with the sum to the number of positions and derivatives by these.
@@ -65,16 +61,12 @@ fn structure(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -
     let mut total = Matrix::zero(arena, n, n);
     for (j, position) in q.iter().enumerate() {
         let bracket = bracket(arena, plant, index, j).normal(arena, facts)?;
-        if bracket.entries().iter().any(|e| !arena.is_zero(*e)) {
-            let row = Matrix::new(vec![frame.column(j)]);
-            total = total.add(arena, &bracket.mul(arena, &row).mul(arena, &inverse));
-        }
+        let row = Matrix::new(vec![frame.column(j)]);
+        total = total.add(arena, &bracket.mul(arena, &row).mul(arena, &inverse));
         let weight = arena.scale(frame.at(j, index), &half());
         let slope = inverse_metric.derivative(arena, *position);
-        if !arena.is_zero(weight) && slope.entries().iter().any(|e| !arena.is_zero(*e)) {
-            let term = frame.mul(arena, &slope).mul(arena, &transposed);
-            total = total.add(arena, &term.map(|e| arena.mul(weight, e)));
-        }
+        let term = frame.mul(arena, &slope).mul(arena, &transposed);
+        total = total.add(arena, &term.map(|e| arena.mul(weight, e)));
     }
     Ok(total)
 }

@@ -59,7 +59,8 @@ fn worked_out(
         .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
         .collect::<Result<Vec<_>, _>>()?;
     let product = gram(&field, &rows, columns)?;
-    let written = |i: usize, j: usize| arena.sum(phi_1.iter().map(|row| arena.mul(row[i], row[j])));
+    let columns: Vec<Vec<Expr>> = (0..columns).map(|column| phi_1.iter().map(|row| row[column]).collect()).collect();
+    let written = |i: usize, j: usize| arena.dot(&columns[i], &columns[j]);
     let entry = |i: usize, j: usize, product: &Fraction| {
         let shown = shorter(arena, written(i, j), shortest(arena, domain, field.show(product)));
         oriented(arena, domain, shown)
@@ -127,18 +128,33 @@ fn bound(arena: &Arena, expr: Expr, symbol: Symbol) -> Option<(bool, Rational)> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::Identifiability;
     use crate::model::Model;
     use crate::source::Source;
 
-    fn gram_of(assume: &str, rates: &str) -> Gram {
+    fn identified(assume: &str, rates: &str) -> Identifiability {
         let text = format!(
-            "model: m\nx: [a, b]\ny: [p, q]\nu: [d, e]\nassume: [{assume}]\n\
+            "model: m\nparameters: {{k: 0.9}}\nx: [a, b]\ny: [p, q]\nu: [d, e]\nassume: [{assume}]\n\
              f_x: {{a: d, b: e}}\nf_y: {{{rates}}}\nphi: [a, b]\n"
         );
         let model = Model::parse(&Source::new("m", text.as_str()).unwrap()).unwrap();
         let plant = Plant::resolve(&model).unwrap();
         let derivation = crate::analysis::Derivation::derive(&plant);
-        derivation.identifiability.result.unwrap().gram.unwrap()
+        derivation.identifiability.result.unwrap()
+    }
+
+    fn gram_of(assume: &str, rates: &str) -> Gram {
+        identified(assume, rates).gram.unwrap()
+    }
+
+    /// With another value of k the determinant may vanish, and values may be set at run time.
+    #[test]
+    fn what_dividing_the_box_shows_holds_for_the_values_of_parameters_alone() {
+        let general = identified("0 < d < 0.9", "p: (1 + d*sin(e))*a + d*b, q: b");
+        assert!(general.singular_where.is_empty() && general.everywhere_else);
+        let special = identified("0 < d < 1", "p: (1 + k*d*sin(e))*a + d*b, q: b");
+        assert_eq!(special.gram.unwrap().positive, Some(Positive::Divided));
+        assert_eq!(special.singular_where, ["k*d*sin(e) + 1 = 0"]);
     }
 
     #[test]

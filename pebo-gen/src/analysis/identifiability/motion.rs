@@ -17,6 +17,7 @@ use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
 use crate::analysis::design::{Blind, Cascade, Motion, Place, Regression};
+use crate::cas::parts::Side;
 use crate::cas::rank::{null_vectors, rank_seen};
 
 use super::flow::{Flow, effective, without_psi};
@@ -228,7 +229,7 @@ impl Question<'_> {
 
 /// What is seen of the unknowns where these directions are not: combinations that do not change along them. Each direction
 /// has a component that is one, and zero in the others.
-fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+pub(super) fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
     let own = |index: usize| {
         (0..symbols.len()).find(|&column| {
             let entry = |(other, vector): (usize, &Vec<Expr>)| {
@@ -248,9 +249,17 @@ fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
 }
 
 impl Motion {
+    /// Whether there are parts of the domain in which not all unknowns are seen.
+    pub fn is_divided(&self) -> bool {
+        self.blind.iter().any(|blind| matches!(blind.place, Place::Part(_)))
+    }
+
     /// What has to move, in a line, and where the regression is blind, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let first = match (self.by_itself, self.at_rest) {
+            _ if self.is_divided() => {
+                "the unknowns are identified on almost every motion that does not stay where one of these holds"
+            }
             (Some(true), true) => "the unknowns are identified without excitation by the inputs, even at rest",
             (Some(true), false) => "the unknowns are identified while the plant moves, also with constant inputs",
             (Some(false), _) => "the unknowns are identified under excitation: keep the inputs varying",
@@ -282,6 +291,10 @@ impl Blind {
                 format!("{} is constant", names.join(", "))
             }
             Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+            Place::Part(sides) => {
+                let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", arena.print(*expr), side.sign());
+                sides.iter().map(side).collect::<Vec<_>>().join(" and ")
+            }
         }
     }
 

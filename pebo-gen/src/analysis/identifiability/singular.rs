@@ -104,7 +104,7 @@ impl<'a> Volume<'a> {
         let field = &self.field;
         let open = |factor: &Poly| -> Result<bool, Obstacle> {
             let formula = field.show(&field.of_polynomial(factor)?);
-            Ok(!field.never_zero(factor) && !domain.implies(self.arena, formula, Relation::NonZero))
+            Ok(!field.signs().never_zero(factor) && !domain.implies(self.arena, formula, Relation::NonZero))
         };
         let mut shared = false;
         for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
@@ -262,11 +262,14 @@ pub(super) fn gram(
     columns: usize,
 ) -> Result<Vec<Vec<Fraction>>, Obstacle> {
     let mut gram = vec![vec![Fraction::zero(); columns]; columns];
-    for (i, line) in gram.iter_mut().enumerate() {
-        for (j, entry) in line.iter_mut().enumerate() {
+    for i in 0..columns {
+        for j in i..columns {
+            let mut entry = Fraction::zero();
             for row in matrix {
-                *entry = field.add(entry, &field.mul(&row[i], &row[j])?)?;
+                entry = field.add(&entry, &field.mul(&row[i], &row[j])?)?;
             }
+            gram[j][i] = entry.clone();
+            gram[i][j] = entry;
         }
     }
     Ok(gram)
@@ -281,9 +284,14 @@ mod tests {
 
     /// Where the regressor of p' and q' as functions of a and b, with b in q', loses rank; the root of the determinant.
     fn of(assume: &str, rate: &str) -> String {
+        of_both(assume, [rate, "b"])
+    }
+
+    /// The same for a q' of any kind.
+    fn of_both(assume: &str, [rate, other]: [&str; 2]) -> String {
         let text = format!(
             "model: m\nparameters: [k, l]\nx: [a, b]\ny: [p, q, w]\nu: [d, e]\nassume: [{assume}]\n\
-             f_x: {{a: d, b: e}}\nf_y: {{p: {rate}, q: b, w: d}}\nphi: [a, b]\n"
+             f_x: {{a: d, b: e}}\nf_y: {{p: {rate}, q: {other}, w: d}}\nphi: [a, b]\n"
         );
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
         let derivation = Derivation::derive(&plant);
@@ -306,6 +314,11 @@ mod tests {
         // As it comes out of sums.
         assert_eq!(of("0 < d < 1", "(1 - d - e + d*e)*a + d*b"), "e = 1 | (1 - d)^2*(e - 1)^2");
         assert_eq!(of("k > 0", "(d^2 - e^2)*a"), "d + e = 0, d - e = 0 | (d + e)^2*(d - e)^2");
+        // A quotient stays as it is written.
+        assert_eq!(of("d > 0", "(1 - 1/d^2)*a"), "d = 1 | (1 - 1/d^2)^2");
+        // Of powers the least is common.
+        let powers = of_both("k > 0", ["(1 - d)^2*a + (1 - d)*b", "a + b"]);
+        assert_eq!(powers, "d = 0, d = 1 | d^2*(d - 1)^2");
         // Parameters alone are no signal's business.
         assert_eq!(of("d > 0", "d*(k - l)*a"), "k - l != 0 | d^2*(k - l)^2");
     }

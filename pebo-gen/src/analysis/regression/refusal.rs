@@ -107,7 +107,7 @@ pub(super) fn nonlinear(
         ));
     }
     let points = affine::refuted(plant, domain, rate)?;
-    let compared = Comparison::of(rate, &points, &plant.hidden());
+    let compared = Comparison::of([rate, rate], &points, &plant.hidden());
     Some(format!("no affine function of phi has the values of this rate: {}", compared.sentence(arena, "the rate")))
 }
 

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::cas::combination::combine;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::frozen::Frozen;
 use crate::cas::poly::Monomial;
 use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide};
@@ -48,15 +49,41 @@ pub(in crate::analysis) fn separate(
     if exprs.iter().any(|e| arena.depends_on(*e, &plant.hidden())) {
         return Ok(None);
     }
-    let field = Field::over(arena, &domain.facts, &exprs)?;
-    let kernels: Vec<u32> = field.kernels_of(&unknown).into_iter().collect();
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).chain(unknown).collect();
+    let Some(mut separated) = apart(plant, domain, &unknown, &exprs)? else { return Ok(None) };
+    // Functions of known signals stay as they are written, where no relation among them is needed: `tanh(5*u)` by
+    // exponentials overflows where it is 1.
+    let mut frozen = Frozen::new(arena, &unknown);
+    let signals = frozen.freeze(&exprs);
+    if !frozen.is_empty()
+        && let Ok(Some(kept)) = apart(plant, domain, &unknown, &signals)
+        && kept.eta == separated.eta
+    {
+        let thaw = |exprs: &[Expr]| -> Vec<Expr> { exprs.iter().map(|expr| frozen.thaw(*expr)).collect() };
+        separated.known = thaw(&kept.known);
+        separated.factors = kept.factors.iter().map(|row| thaw(row)).collect();
+    }
+    prove(plant, domain, &exprs, &separated)?;
+    Ok(Some(separated))
+}
+
+/// The parts of expressions at z = chi + theta; none where a kernel mixes theta with signals.
+fn apart(
+    plant: &Plant,
+    domain: &Domain,
+    unknown: &BTreeSet<Symbol>,
+    exprs: &[Expr],
+) -> Result<Option<Separated>, Obstacle> {
+    let arena = &plant.arena;
+    let field = Field::over(arena, &domain.facts, exprs)?;
+    let kernels: Vec<u32> = field.kernels_of(unknown).into_iter().collect();
+    let constants: BTreeSet<Symbol> =
+        plant.parameters.iter().map(|p| p.symbol).chain(unknown.iter().copied()).collect();
     if kernels.iter().any(|k| !arena.symbols_of(&[field.kernel(*k)]).is_subset(&constants)) {
         return Ok(None);
     }
     let mut columns: Vec<Powers> = Vec::new();
     let mut rows: Vec<BTreeMap<Powers, Fraction>> = Vec::new();
-    for expr in &exprs {
+    for expr in exprs {
         let fraction = field.fraction(*expr)?;
         // A product of kernels of theta may stand below, as exp(theta) in cosh; a sum may not.
         let denominator = fraction.denominator().collect(&kernels);
@@ -78,16 +105,14 @@ pub(in crate::analysis) fn separate(
     let show = |row: &BTreeMap<Powers, Fraction>, column: &Powers| {
         row.get(column).map_or_else(|| arena.zero(), |fraction| field.show(fraction))
     };
-    let separated = Separated {
+    Ok(Some(Separated {
         known: rows.iter().map(|row| show(row, &Powers::new())).collect(),
         factors: rows.iter().map(|row| columns.iter().map(|c| show(row, c)).collect()).collect(),
         eta: columns
             .iter()
             .map(|c| arena.multiply(&Rational::ONE, c.iter().map(|&(k, e)| (field.kernel(k), Rational::from(e)))))
             .collect(),
-    };
-    prove(plant, domain, &exprs, &separated)?;
-    Ok(Some(separated))
+    }))
 }
 
 /// Kernels with their exponents, ascending, no exponent zero.

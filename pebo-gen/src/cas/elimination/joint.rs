@@ -13,7 +13,7 @@ use crate::cas::poly::{Monomial, Poly};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 
-use super::Values;
+use super::values::Values;
 
 /// Monomials on the right sides for every unknown, past which elimination with a column for each is not tried.
 const MOST_COLUMNS_EACH: usize = 4;

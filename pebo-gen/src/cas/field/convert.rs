@@ -1,8 +1,9 @@
 //! Expressions to fractions, operands first.
 
-use crate::cas::expr::{Expr, Node};
+use crate::cas::expr::{Expr, Node, Sum};
 use crate::cas::function::Function;
-use crate::cas::poly::steps;
+use crate::cas::integer::Integer;
+use crate::cas::poly::{Poly, steps};
 use crate::cas::rational::half;
 
 use crate::cas::field::fraction::{Fraction, negated};
@@ -39,14 +40,7 @@ impl Field<'_> {
             Node::Number(value) => Ok(Fraction::constant(&value)),
             Node::Pi => Ok(self.entered(expr, None, true)),
             Node::Symbol(symbol) => self.of_symbol(expr, symbol),
-            Node::Sum(sum) => {
-                let mut total = Fraction::constant(&sum.constant);
-                for (term, coefficient) in &sum.terms {
-                    let term = self.scale(&self.get(*term)?, coefficient)?;
-                    total = self.add(&total, &term)?;
-                }
-                Ok(total)
-            }
+            Node::Sum(sum) => self.of_sum(&sum),
             Node::Product(product) => {
                 let mut total = Fraction::constant(&product.coefficient);
                 for (base, exponent) in &product.factors {
@@ -63,6 +57,37 @@ impl Field<'_> {
                 self.applied(expr, function, &first)
             }
         }
+    }
+
+    /// A sum: what has a number for a denominator over the common one first, all at once, so that a long sum is not
+    /// brought to lowest terms at each step.
+    fn of_sum(&self, sum: &Sum) -> Result<Fraction, Obstacle> {
+        let mut common = sum.constant.denominator();
+        let mut parts = Vec::with_capacity(sum.terms.len() + 1);
+        let mut others = Vec::new();
+        for (term, coefficient) in &sum.terms {
+            let term = self.get(*term)?;
+            match term.den.to_constant() {
+                Some(below) => {
+                    let below = &below * &coefficient.denominator();
+                    common = common.lcm(&below);
+                    parts.push((term.num, coefficient.numerator(), below));
+                }
+                None => others.push((term, coefficient)),
+            }
+        }
+        parts.push((Poly::one(), sum.constant.numerator(), sum.constant.denominator()));
+        let over = |(poly, above, below): &(Poly, Integer, Integer)| {
+            let missing = common.div_exact(below).unwrap_or_default();
+            poly.scale(&(above * &missing))
+        };
+        let num = total(parts.iter().map(over).collect());
+        self.work().spend(steps(num.term_count()))?;
+        let mut total = self.fraction_of(&num, &Poly::constant(common))?;
+        for (term, coefficient) in others {
+            total = self.add(&total, &self.scale(&term, coefficient)?)?;
+        }
+        Ok(total)
     }
 
     /// A function of the table at an argument.
@@ -94,6 +119,11 @@ impl Field<'_> {
             Function::Sqrt => self.root(argument, &half()),
             Function::Abs => self.absolute(argument),
             Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => self.inverse_function(expr),
+            _ => match (function.row().in_terms, self.arena.node(expr)) {
+                (Some(in_terms), Node::Call(_, arguments)) => self.fraction(in_terms(self.arena, &arguments)),
+                // What no rule relates to other functions is a kernel of its own.
+                _ => Ok(self.entered(self.tidy_call(expr)?, None, false)),
+            },
         }
     }
 
@@ -106,4 +136,13 @@ impl Field<'_> {
         }
         Ok(self.arena.call(function, &tidied))
     }
+}
+
+/// The sum of polynomials, in pairs: each term is moved a few times, and not once for every summand.
+fn total(mut parts: Vec<Poly>) -> Poly {
+    while parts.len() > 1 {
+        parts =
+            parts.chunks(2).map(|pair| pair.get(1).map_or_else(|| pair[0].clone(), |other| &pair[0] + other)).collect();
+    }
+    parts.pop().unwrap_or_default()
 }

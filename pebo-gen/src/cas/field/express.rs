@@ -3,7 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::cas::expr::Expr;
+use crate::cas::expr::{Expr, Node};
+use crate::cas::function::Function;
 use crate::cas::integer::Integer;
 use crate::cas::poly::{Monomial, Poly, TooLarge, steps};
 use crate::cas::rational::Rational;
@@ -23,11 +24,13 @@ impl Field<'_> {
         self.count(fraction);
         let (above, num) = primitive(&fraction.num);
         let (below, den) = primitive(&fraction.den);
+        let (den, sines) = self.sines(den);
         let coefficient = Rational::new(above, below).unwrap_or(Rational::ZERO);
         let powers =
             |poly: &Poly, exponent| self.powers(poly, exponent).unwrap_or_else(|| self.factors(poly, exponent));
         let mut factors = powers(&num, 1);
         factors.extend(powers(&den, -1));
+        factors.extend(sines);
         self.arena.multiply(&coefficient, factors)
     }
 
@@ -87,6 +90,29 @@ impl Field<'_> {
             factors.push((rest, Rational::from(-1)));
             self.arena.multiply(&(&scale * &Rational::from(above)), factors)
         }))
+    }
+
+    /// A divisor without its factors `cos(q)^2 - 1`, and these as what they are, `-sin(q)^2`: no digits are lost where
+    /// they are small, and what one sine too many came from cancels.
+    fn sines(&self, mut divisor: Poly) -> (Poly, Vec<(Expr, Rational)>) {
+        let mut found = Vec::new();
+        for variable in divisor.variables().to_vec() {
+            let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) else {
+                continue;
+            };
+            let square = [(Monomial::new([(variable, 2)]), Integer::ONE), (Monomial::new([]), -&Integer::ONE)];
+            let Ok(square) = Poly::from_terms(square) else {
+                continue;
+            };
+            while divisor.degree(variable) > 1
+                && let Ok(Some(rest)) = divisor.div_exact(&square, self.limit())
+            {
+                divisor = rest;
+                found.push((self.arena.number(-1), Rational::ONE));
+                found.push((self.arena.call(Function::Sin, &arguments), Rational::from(-2)));
+            }
+        }
+        (divisor, found)
     }
 
     /// The square-free factors with their multiplicities, to a common power; none where that is no shorter, or takes
@@ -194,6 +220,8 @@ mod tests {
             (arena.product([square, a, arena.number(6)]), "6*a*(a + b)^2"),
             (arena.div(arena.product([square, square]), arena.add(c, c)), "(a + b)^4/(2*c)"),
             (arena.add(c, arena.product([a, sum, arena.number(-2)])), "c - 2*a*(a + b)"),
+            // Of a and b, in two terms each, b saves two products and a one.
+            (arena.sum([a, arena.mul(a, b), arena.mul(b, c)]), "a + b*(a + c)"),
             // Factors of one multiplicity are not told apart.
             (arena.div(c, arena.sub(arena.number(1), square)), "-c/(a*(a + 2*b) + b^2 - 1)"),
         ];

@@ -90,6 +90,9 @@ impl Field<'_> {
     pub(in crate::cas::field) fn fraction_of(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
         self.work().spend(steps(num.term_count() + den.term_count()))?;
         let mut num = self.reduce(num)?;
+        if den.is_one() {
+            return Ok(Fraction::polynomial(num));
+        }
         let mut den = self.reduce(den)?;
         if den.is_zero() {
             return Err(Obstacle::DivisionByZero);
@@ -134,6 +137,9 @@ impl Field<'_> {
         if b.is_zero() {
             return Ok(a.clone());
         }
+        if let Some((a, b)) = numbers(a, b) {
+            return self.of_number(&(&a + &b));
+        }
         if a.den == b.den {
             return self.fraction_of(&(&a.num + &b.num), &a.den);
         }
@@ -159,6 +165,12 @@ impl Field<'_> {
         if b.is_one() {
             return Ok(a.clone());
         }
+        if a.is_zero() || b.is_zero() {
+            return Ok(Fraction::zero());
+        }
+        if let Some((a, b)) = numbers(a, b) {
+            return self.of_number(&(&a * &b));
+        }
         let num = a.num.mul(&b.num, self.work())?;
         let den = a.den.mul(&b.den, self.work())?;
         self.fraction_of(&num, &den)
@@ -169,6 +181,12 @@ impl Field<'_> {
         let num = a.num.mul(&b.den, self.work())?;
         let den = a.den.mul(&b.num, self.work())?;
         self.fraction_of(&num, &den)
+    }
+
+    /// A number that was worked out.
+    fn of_number(&self, value: &Rational) -> Result<Fraction, Obstacle> {
+        self.work().spend(1 + value.bits() / 64)?;
+        Ok(Fraction::constant(value))
     }
 
     /// `factor * a`.
@@ -189,8 +207,11 @@ impl Field<'_> {
 
     /// A power reduced as it grows, so that relations keep it small.
     fn repeated_product(&self, base: &Poly, times: u32) -> Result<Poly, Obstacle> {
-        let mut result = Poly::one();
-        for bit in (0..u32::BITS - times.leading_zeros()).rev() {
+        if times == 0 || base.is_one() {
+            return Ok(Poly::one());
+        }
+        let mut result = base.clone();
+        for bit in (0..u32::BITS - 1 - times.leading_zeros()).rev() {
             result = self.reduce(&result.mul(&result, self.work())?)?;
             if times >> bit & 1 == 1 {
                 result = self.reduce(&result.mul(base, self.work())?)?;
@@ -244,10 +265,10 @@ impl Field<'_> {
             .copied()
             .find(|&variable| kernels[variable].relation.as_ref().is_some_and(|relation| relation.degree == 2));
         let Some(variable) = algebraic else { return Ok(None) };
-        // den = a + b v, conjugate a - b v
+        // Reduced, it holds the kernel once at most: den = a + b v, conjugate a - b v.
         let flipped = den.terms().map(|(monomial, coefficient)| {
-            let odd = monomial.exponent(variable) % 2 == 1;
-            (monomial, if odd { -coefficient } else { coefficient.clone() })
+            let has = monomial.exponent(variable) > 0;
+            (monomial, if has { -coefficient } else { coefficient.clone() })
         });
         let conjugate = Poly::from_terms(flipped)?;
         if conjugate == -den {
@@ -256,6 +277,11 @@ impl Field<'_> {
         }
         Ok(Some(conjugate))
     }
+}
+
+/// Both values, if they are numbers: then no polynomial is needed.
+fn numbers(a: &Fraction, b: &Fraction) -> Option<(Rational, Rational)> {
+    Some((a.to_constant()?, b.to_constant()?))
 }
 
 /// `-a`.
@@ -288,7 +314,9 @@ mod tests {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let root = arena.sqrt(x);
-        let exprs = [x, y, arena.mul(x, y), arena.add(x, y), arena.add(root, y), arena.one()];
+        let cube_root = arena.power(x, &Rational::new(1, 3).unwrap());
+        let sums = [root, cube_root].map(|root| arena.add(root, y));
+        let exprs = [x, y, arena.mul(x, y), arena.add(x, y), sums[0], arena.one(), sums[1]];
         let field = Field::over(&arena, &Facts::new(), &exprs).unwrap();
         let together = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|index| field.fraction(exprs[index]).unwrap().num);
@@ -296,6 +324,7 @@ mod tests {
         };
         assert!(!together(0, 1) && !together(0, 3) && !together(3, 5));
         assert!(together(0, 2) && together(2, 1) && together(3, 3));
-        assert!(!together(4, 5), "a number vanishes nowhere");
+        assert!(!together(4, 5) && !together(5, 6) && !together(6, 5), "a number vanishes nowhere");
+        assert!(together(6, 0), "what the cube root hides is not known");
     }
 }

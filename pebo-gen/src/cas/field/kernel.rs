@@ -2,6 +2,7 @@
 
 pub(super) mod argument;
 mod cyclotomic;
+mod elements;
 mod exponential;
 pub(super) mod inverse;
 mod logarithm;
@@ -97,7 +98,7 @@ impl Field<'_> {
     }
 
     /// Whether an algebraic relation says something of a kernel that occurs.
-    pub(in crate::cas::field) fn has_relations(&self, fraction: &Fraction) -> bool {
+    pub(in crate::cas) fn has_relations(&self, fraction: &Fraction) -> bool {
         let kernels = self.round.kernels.borrow();
         let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());
         variables.any(|variable| kernels[*variable].relation.is_some())

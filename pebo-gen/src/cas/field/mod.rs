@@ -25,6 +25,9 @@
 //! It is not known to be for relations among constants (e, pi, sin(1): Schanuel's conjecture), roots of
 //! sums of roots that do not denest, and inverse trigonometric functions beyond sums of three. Nothing
 //! here relies on independence for a verdict: what refutes is an enclosure (see [`super::zero`]).
+//!
+//! One thing with `domain`, `manifold` and all files of this room: a kernel has arguments in normal form, a normal form
+//! consists of kernels, and which kernels are equal depends on their signs on the domain, which normal forms decide.
 
 mod convert;
 mod coprime;
@@ -33,6 +36,7 @@ mod fourier;
 mod fraction;
 mod kernel;
 mod obstacle;
+pub(crate) mod residue;
 mod sign;
 
 use std::cell::{Cell, RefCell};
@@ -43,12 +47,13 @@ use rustc_hash::FxHashMap;
 use super::arena::Arena;
 use super::domain::Domain;
 use super::expr::{Expr, Symbol};
-use super::facts::{Facts, Relation};
+use super::facts::Facts;
 use super::manifold::Step;
 use super::poly::{Poly, Work};
 
 pub use fraction::Fraction;
 pub use obstacle::Obstacle;
+pub use sign::Signs;
 
 use coprime::CoprimeBase;
 use kernel::Kernels;
@@ -56,7 +61,7 @@ use kernel::argument::{Atoms, Units};
 use kernel::inverse::{InverseAngle, domain_of};
 use kernel::radical::ProductRoot;
 use kernel::trigonometric::Pair;
-use sign::Signs;
+use sign::Known;
 
 /// Steps of polynomial arithmetic that one field may spend, some seconds' worth.
 const STEPS: u64 = 50_000_000;
@@ -92,10 +97,8 @@ pub struct Field<'a> {
     finest: Cell<Option<u32>>,
     /// What roots, logarithms and magnitudes are taken of.
     base: RefCell<CoprimeBase>,
-    /// What must hold for the expressions to have values.
-    learned: RefCell<Vec<(Expr, Relation)>>,
-    /// Signs of expressions over the box that the facts state.
-    boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
+    /// What [`Signs`] keeps.
+    known_signs: Known,
     round: Round,
 }
 
@@ -112,7 +115,6 @@ struct Round {
     angles: RefCell<Vec<(Fraction, Pair)>>,
     /// Roots of products.
     products: RefCell<Vec<ProductRoot>>,
-    signs: Signs,
     /// Whether something became finer that kernels were made of.
     finer: Cell<bool>,
 }
@@ -142,8 +144,7 @@ impl<'a> Field<'a> {
             units: RefCell::default(),
             finest: Cell::default(),
             base: RefCell::default(),
-            learned: RefCell::default(),
-            boxed: RefCell::default(),
+            known_signs: Known::default(),
             round: Round::default(),
         };
         for _ in 0..MOST_ROUNDS {
@@ -158,6 +159,7 @@ impl<'a> Field<'a> {
             }
             field.keep_base();
             field.round = Round::default();
+            field.known_signs.start_again();
         }
         Err(Obstacle::TooLarge)
     }
@@ -175,6 +177,11 @@ impl<'a> Field<'a> {
     pub fn kernels_of(&self, symbols: &BTreeSet<Symbol>) -> BTreeSet<u32> {
         let kernels = self.round.kernels.borrow();
         kernels.iter().filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
+    }
+
+    /// What all kernels stand for.
+    pub fn kernels(&self) -> Vec<Expr> {
+        self.round.kernels.borrow().iter().map(|(_, kernel)| kernel.expr).collect()
     }
 
     /// What a kernel stands for.

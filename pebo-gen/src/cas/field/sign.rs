@@ -1,9 +1,10 @@
-//! Signs of polynomials on the assumed domain.
+//! Signs of polynomials on the assumed domain: a question of its own, which has its own memory.
 //!
-//! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the
-//! kernels have values, or none. The rules are sound and simple: numbers, kernels ([`crate::cas::field::sign::kernel`]),
-//! sums of like signs, facts ([`crate::cas::field::sign::facts`]), factors, discriminants ([`crate::cas::field::sign::discriminant`]), distances from
-//! bounds ([`crate::cas::field::sign::shift`]), and last enclosures over the box that the facts state.
+//! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the kernels have
+//! values, or none. The rules are sound and simple: numbers, kernels ([`kernel`]), sums of like signs, facts ([`facts`]),
+//! factors, discriminants ([`discriminant`]), distances from bounds ([`shift`]), and last enclosures over the box that the
+//! facts state. [`Signs`] asks, with the algebra of a field; [`Known`] is what is kept between questions. The field holds
+//! that, and looks into it nowhere: what a root or a logarithm becomes depends on signs, so that it asks too.
 
 mod discriminant;
 mod facts;
@@ -13,6 +14,8 @@ mod shift;
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
+
+use rustc_hash::FxHashMap;
 
 use crate::cas::enclosure::Point;
 use crate::cas::expr::Expr;
@@ -36,11 +39,21 @@ pub(in crate::cas::field) enum Sign {
     Negative,
 }
 
-/// What a round knows of signs.
+/// What is kept between questions.
 #[derive(Default, Debug)]
-pub(in crate::cas::field) struct Signs {
+pub(in crate::cas::field) struct Known {
+    /// What must hold for the expressions to have values.
+    learned: RefCell<Vec<(Expr, Relation)>>,
+    /// Signs of expressions over the box that the facts state.
+    boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
+    round: Round,
+}
+
+/// What speaks of kernels, and is forgotten with them.
+#[derive(Default, Debug)]
+struct Round {
     /// Polynomials of known signs: the facts, once they are read, and what must hold for the expressions to have values.
-    pub(in crate::cas::field) facts: RefCell<Vec<(Poly, Relation)>>,
+    facts: RefCell<Vec<(Poly, Relation)>>,
     /// Whether the facts were read: most questions ask for no sign.
     read: Cell<bool>,
     /// Of kernels.
@@ -48,7 +61,28 @@ pub(in crate::cas::field) struct Signs {
     /// How deep questions by discriminants are nested.
     depth: Cell<u32>,
     /// Factors of whose unknown signs something was made: with another sign it would be something else.
-    pub(in crate::cas::field) undecided: RefCell<BTreeSet<Poly>>,
+    undecided: RefCell<BTreeSet<Poly>>,
+}
+
+impl Known {
+    /// Forgets what speaks of kernels: they are made anew.
+    pub(in crate::cas::field) fn start_again(&mut self) {
+        self.round = Round::default();
+    }
+}
+
+/// Asks for signs.
+#[derive(Clone, Copy)]
+pub struct Signs<'f, 'a> {
+    field: &'f Field<'a>,
+    known: &'f Known,
+}
+
+impl<'a> Field<'a> {
+    /// Signs throughout the domain.
+    pub fn signs(&self) -> Signs<'_, 'a> {
+        Signs { field: self, known: &self.known_signs }
+    }
 }
 
 impl Sign {
@@ -67,17 +101,17 @@ impl Sign {
     }
 }
 
-impl Field<'_> {
+impl Signs<'_, '_> {
     /// The sign of a fraction.
-    pub(in crate::cas::field) fn sign_of(&self, fraction: &Fraction) -> Result<Option<Sign>, Obstacle> {
-        let (Some(top), Some(bottom)) = (self.sign(&fraction.num)?, self.sign(&fraction.den)?) else {
+    pub(in crate::cas::field) fn of(&self, fraction: &Fraction) -> Result<Option<Sign>, Obstacle> {
+        let (Some(top), Some(bottom)) = (self.of_polynomial(&fraction.num)?, self.of_polynomial(&fraction.den)?) else {
             return Ok(None);
         };
         Ok(top.times(bottom))
     }
 
     /// The sign of a polynomial.
-    pub(in crate::cas::field) fn sign(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn of_polynomial(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         if let Some(number) = poly.to_constant() {
             return Ok(Some(if number.is_zero() {
                 Sign::Zero
@@ -88,34 +122,34 @@ impl Field<'_> {
             }));
         }
         self.learn()?;
-        if let Some(sign) = self.plain_sign(poly) {
+        if let Some(sign) = self.by_terms(poly) {
             return Ok(Some(sign));
         }
         let (content, rest) = primitive(poly);
         debug_assert!(!content.is_negative());
-        if let Some(sign) = self.sign_by_facts(&rest)? {
+        if let Some(sign) = self.by_facts(&rest)? {
             return Ok(Some(sign));
         }
-        if let Some(sign) = self.sign_by_factors(&rest)? {
+        if let Some(sign) = self.by_factors(&rest)? {
             return Ok(Some(sign));
         }
-        if let Some(sign) = self.sign_by_discriminant(&rest)? {
+        if let Some(sign) = self.by_discriminant(&rest)? {
             return Ok(Some(sign));
         }
-        self.sign_by_shift(&rest)
+        self.by_shift(&rest)
     }
 
     /// The sign of a primitive polynomial by those of its factors.
-    fn sign_by_factors(&self, rest: &Poly) -> Result<Option<Sign>, Obstacle> {
+    fn by_factors(&self, rest: &Poly) -> Result<Option<Sign>, Obstacle> {
         // Factor by factor, where there is more than one.
         let monomial = rest.monomial_content();
-        let square_free = rest.square_free(self.limit())?;
+        let square_free = rest.square_free(self.field.limit())?;
         if monomial.is_one() && square_free.factors.len() <= 1 && square_free.factors.iter().all(|f| f.1 == 1) {
             return Ok(None);
         }
         let mut total = if square_free.content.is_negative() { Sign::Negative } else { Sign::Positive };
         for (factor, multiplicity) in square_free.factors {
-            let sign = match self.factor_sign(&factor)? {
+            let sign = match self.of_factor(&factor)? {
                 Some(sign) if multiplicity % 2 == 1 => Some(sign),
                 Some(Sign::Positive | Sign::Negative) => Some(Sign::Positive),
                 _ if multiplicity % 2 == 0 => Some(Sign::NonNegative),
@@ -128,81 +162,89 @@ impl Field<'_> {
     }
 
     /// The sign of a square-free factor: its monomial content apart.
-    fn factor_sign(&self, factor: &Poly) -> Result<Option<Sign>, Obstacle> {
+    fn of_factor(&self, factor: &Poly) -> Result<Option<Sign>, Obstacle> {
         let mut rest = factor.clone();
         let mut total = Sign::Positive;
         for &(variable, exponent) in factor.monomial_content().powers() {
             let variable = Poly::variable(variable);
-            if let Some(quotient) = rest.div_exact(&variable.pow(exponent, self.limit())?, self.limit())? {
+            if let Some(quotient) = rest.div_exact(&variable.pow(exponent, self.field.limit())?, self.field.limit())? {
                 rest = quotient;
-                let Some(product) = self.plain_sign(&variable).and_then(|sign| total.times(sign)) else {
+                let Some(product) = self.by_terms(&variable).and_then(|sign| total.times(sign)) else {
                     return Ok(None);
                 };
                 total = product;
             }
         }
-        let mut sign = self.plain_sign(&rest);
+        let mut sign = self.by_terms(&rest);
         if sign.is_none() {
-            sign = self.sign_by_facts(&rest)?;
+            sign = self.by_facts(&rest)?;
         }
         if sign.is_none() {
-            sign = self.sign_by_discriminant(&rest)?;
+            sign = self.by_discriminant(&rest)?;
         }
         if sign.is_none() {
-            sign = self.sign_by_shift(&rest)?;
+            sign = self.by_shift(&rest)?;
         }
         Ok(sign.and_then(|sign| total.times(sign)))
     }
 
     /// Of a number that is not rational, as `pi/2 - 1`, by enclosing it.
-    fn constant_sign(&self, poly: &Poly) -> Option<Sign> {
+    fn of_constant(&self, poly: &Poly) -> Option<Sign> {
         const MOST_TERMS: usize = 24;
-        let numbers = |v: &u32| self.arena.symbols_of(&[self.kernel(*v)]).is_empty();
+        let numbers = |v: &u32| self.field.arena.symbols_of(&[self.field.kernel(*v)]).is_empty();
         if poly.is_constant() || poly.term_count() > MOST_TERMS || !poly.variables().iter().all(numbers) {
             return None;
         }
-        let value = self.arena.separated_from_zero(self.show_polynomial(poly), &Point::new())?;
+        let value = self.field.arena.separated_from_zero(self.field.show_polynomial(poly), &Point::new())?;
         Some(if value.is_positive() { Sign::Positive } else { Sign::Negative })
     }
 
     /// By the signs of the terms.
-    pub(in crate::cas::field) fn plain_sign(&self, poly: &Poly) -> Option<Sign> {
+    pub(in crate::cas::field) fn by_terms(&self, poly: &Poly) -> Option<Sign> {
         if poly.is_zero() {
             return Some(Sign::Zero);
         }
-        if let Some(sign) = self.constant_sign(poly) {
+        if let Some(sign) = self.of_constant(poly) {
             return Some(sign);
         }
-        sign_of_terms(poly, |variable| self.kernel_sign(variable))
+        sign_of_terms(poly, |variable| self.of_kernel(variable))
     }
 
     /// The sign of a part: by algebra, or by enclosing it over the box that the facts state.
-    pub(in crate::cas::field) fn sign_of_part(&self, part: &Poly) -> Result<Option<Sign>, Obstacle> {
-        if let Some(sign) = self.sign(part)? {
+    pub(in crate::cas::field) fn of_part(&self, part: &Poly) -> Result<Option<Sign>, Obstacle> {
+        if let Some(sign) = self.of_polynomial(part)? {
             return Ok(Some(sign));
         }
-        let positive = self.sign_over_box(self.show_polynomial(part));
+        let positive = self.over_box(self.field.show_polynomial(part));
         Ok(positive.map(|positive| if positive { Sign::Positive } else { Sign::Negative }))
     }
 
     /// What enclosures over the box say, once for each expression.
-    fn sign_over_box(&self, expr: Expr) -> Option<bool> {
-        if let Some(known) = self.boxed.borrow().get(&expr) {
+    fn over_box(&self, expr: Expr) -> Option<bool> {
+        if let Some(known) = self.known.boxed.borrow().get(&expr) {
             return *known;
         }
-        let sign = self.domain.sign_over_box(self.arena, expr);
-        self.boxed.borrow_mut().insert(expr, sign);
+        let sign = self.field.domain.sign_over_box(self.field.arena, expr);
+        self.known.boxed.borrow_mut().insert(expr, sign);
         sign
     }
 
     /// Whether the fraction is known to be positive throughout the domain.
     pub fn is_positive(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
-        Ok(self.sign_of(fraction)? == Some(Sign::Positive) || self.sign_over_box(self.show(fraction)) == Some(true))
+        Ok(self.of(fraction)? == Some(Sign::Positive) || self.over_box(self.field.show(fraction)) == Some(true))
     }
 
     /// Whether the fraction is known to be positive or zero throughout the domain.
     pub fn is_not_negative(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
-        Ok(self.sign_of(fraction)?.is_some_and(Sign::is_positive_or_zero))
+        Ok(self.of(fraction)?.is_some_and(Sign::is_positive_or_zero))
+    }
+}
+
+#[cfg(test)]
+impl Signs<'_, '_> {
+    /// How much must hold for the expressions to have values.
+    pub(in crate::cas::field) fn count_learned(&self) -> usize {
+        self.known.learned.borrow().len()
     }
 }
 

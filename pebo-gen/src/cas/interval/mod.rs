@@ -17,6 +17,7 @@ mod dyadic;
 mod exponential;
 mod fixed;
 mod inverse;
+mod piecewise;
 mod power;
 mod trigonometric;
 

@@ -27,6 +27,12 @@ impl<T: Clone> Powers<T> {
     }
 }
 
+/// The coordinate of a variable at one of several points that are the same in every run.
+pub(super) fn coordinate(field: &PrimeField, variable: u32, sample: u64) -> Residue {
+    let seed = u64::from(variable) + 1;
+    field.pow(field.from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)), 2 * sample + 1)
+}
+
 impl Poly {
     /// The value modulo a prime, at the point with the given coordinates.
     pub fn evaluate_mod(&self, field: &PrimeField, point: impl Fn(u32) -> Residue) -> Residue {

@@ -5,6 +5,8 @@
 
 use super::super::integer::Integer;
 use super::Poly;
+use super::evaluate::coordinate;
+use super::field::{PrimeField, Residue};
 use super::square_free::SquareFree;
 use super::work::{TooLarge, Work};
 
@@ -90,11 +92,17 @@ fn quadratic(poly: &Poly, variable: u32) -> [Poly; 3] {
 fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarge> {
     let coefficients = poly.coefficients_in(variable);
     let (Some((_, first)), Some((0, last))) = (coefficients.first(), coefficients.last()) else { return Ok(None) };
-    let belows = divisors(last, work)?;
+    let image = Image::of(&coefficients);
+    let belows: Vec<(Residue, Poly)> = divisors(last, work)?.into_iter().map(|e| (image.value(&e), e)).collect();
     for above in divisors(first, work)? {
+        let value = image.value(&above);
         let above = above.mul(&Poly::variable(variable), work)?;
-        for below in &belows {
-            for candidate in [&above - below, &above + below] {
+        for (other, below) in &belows {
+            for (opposite, sign) in [(*other, -1), (image.field.neg(*other), 1)] {
+                if !image.may_have_root(value, opposite) {
+                    continue;
+                }
+                let candidate = if sign < 0 { &above - below } else { &above + below };
                 if poly.div_exact(&candidate, work)?.is_some() {
                     return Ok(Some(candidate));
                 }
@@ -102,6 +110,37 @@ fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarg
         }
     }
     Ok(None)
+}
+
+/// What is left of a polynomial in one variable where the others have values modulo a prime: most candidates for a
+/// factor are no factors there.
+struct Image {
+    field: PrimeField,
+    /// The powers of the variable, highest first, with their coefficients.
+    coefficients: Vec<(u32, Residue)>,
+}
+
+impl Image {
+    fn of(coefficients: &[(u32, Poly)]) -> Self {
+        let field = PrimeField::MERSENNE;
+        let mut image = Self { field, coefficients: Vec::new() };
+        image.coefficients = coefficients.iter().map(|(power, e)| (*power, image.value(e))).collect();
+        image
+    }
+
+    fn value(&self, poly: &Poly) -> Residue {
+        poly.evaluate_mod(&self.field, |variable| coordinate(&self.field, variable, 1))
+    }
+
+    /// Whether `below / above` is a root, as it has to be if `above v - below` divides the polynomial.
+    fn may_have_root(&self, above: Residue, below: Residue) -> bool {
+        let (field, degree) = (&self.field, self.coefficients.first().map_or(0, |(power, _)| *power));
+        let sum = self.coefficients.iter().fold(Residue::ZERO, |sum, (power, coefficient)| {
+            let powers = field.mul(field.pow(below, u64::from(*power)), field.pow(above, u64::from(degree - power)));
+            field.add(sum, field.mul(*coefficient, powers))
+        });
+        sum.is_zero()
+    }
 }
 
 /// Divisors up to the sign, the first of them if there are many.

@@ -117,8 +117,14 @@ impl PrimeField {
 
     /// The residue of a rational number, unless the prime divides its denominator.
     pub fn from_rational(&self, value: &Rational) -> Option<Residue> {
-        let denominator = self.inv(self.from_integer(&value.denominator()))?;
-        Some(self.mul(self.from_integer(&value.numerator()), denominator))
+        if value.is_zero() {
+            return Some(Residue::ZERO);
+        }
+        let numerator = self.from_integer(&value.numerator());
+        if value.is_integer() {
+            return Some(numerator);
+        }
+        Some(self.mul(numerator, self.inv(self.from_integer(&value.denominator()))?))
     }
 
     /// The number from 0 to the prime less one that a residue stands for.

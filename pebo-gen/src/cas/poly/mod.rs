@@ -30,6 +30,7 @@ mod layout;
 mod linear;
 mod monomial;
 mod multiply;
+mod packed;
 mod parts;
 mod root;
 mod square_free;

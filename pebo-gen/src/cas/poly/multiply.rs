@@ -5,12 +5,16 @@
 //! larger than the number of products, else in a hash table, whose keys are sorted at the end. And
 //! what they are: a word, a double word, or an integer of any size, by the sizes of the
 //! coefficients.
+//!
+//! One thing with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table or
+//! one long integer, for products and quotients alike, and each sends to the others what is too sparse or too dense
+//! for it.
 
 use super::super::integer::Integer;
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
 use super::work::{TooLarge, Work, steps};
-use super::{Poly, hashed};
+use super::{Poly, hashed, packed};
 
 /// A sum of products of coefficients.
 pub(super) trait Sum: Clone + Default {
@@ -95,6 +99,9 @@ impl Poly {
         }
         let fewer = self.term_count().min(other.term_count());
         let bits = self.bits() + other.bits() + u64::from(usize::BITS - fewer.leading_zeros());
+        if let Some((keys, coefficients)) = packed::product(&layout, self, other, bits) {
+            return Ok(Self::from_sorted(layout, keys, coefficients));
+        }
         let (keys, coefficients) = match (self.small_coefficients(), other.small_coefficients()) {
             (Some(a), Some(b)) if bits <= 63 => {
                 product::<i64>(&layout, &degrees, &factor(&left, &a), &factor(&right, &b))
@@ -113,10 +120,21 @@ impl Poly {
     }
 
     /// The power, by repeated multiplication: of a sparse polynomial that is less work than by
-    /// repeated squaring (Fateman, 1974).
+    /// repeated squaring (Fateman, 1974). Of a dense one in one variable it is that of an integer.
     pub fn pow(&self, exponent: u32, work: &Work) -> Result<Self, TooLarge> {
         if self.term_count() <= 1 {
             return self.power_of_term(exponent, work);
+        }
+        let degree = self.degrees().first().copied().unwrap_or(0);
+        let layout = self.layout.widened(u64::from(degree) * u64::from(exponent))?;
+        // As products would take: their number of terms, and the words of each.
+        let terms = u64::from(degree).saturating_mul(u64::from(exponent));
+        let words = self.bits().saturating_mul(u64::from(exponent)) / 64 + 1;
+        if layout.variables().len() == 1 && exponent > 1 {
+            work.spend(terms.saturating_mul(words))?;
+        }
+        if let Some((keys, coefficients)) = packed::power(&layout, self, exponent)? {
+            return Ok(Self::from_sorted(layout, keys, coefficients));
         }
         let mut power = Self::one();
         for _ in 0..exponent {

@@ -1,6 +1,7 @@
 //! Exact square roots.
 
 use super::super::integer::Integer;
+use super::evaluate::coordinate;
 use super::field::PrimeField;
 use super::work::{TooLarge, Work, steps};
 use super::{Monomial, Poly};
@@ -49,13 +50,8 @@ impl Poly {
     /// Whether values at some points are squares: of a square all are, of others one in two.
     fn may_be_square(&self) -> bool {
         let field = PrimeField::MERSENNE;
-        (1..=6_u64).all(|sample| {
-            let coordinate = |variable: u32| {
-                let seed = u64::from(variable) + 1;
-                field.pow(field.from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)), 2 * sample + 1)
-            };
-            field.is_square(self.evaluate_mod(&field, coordinate))
-        })
+        (1..=6_u64)
+            .all(|sample| field.is_square(self.evaluate_mod(&field, |variable| coordinate(&field, variable, sample))))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sums of many numbers.
 //!
-//! In: numbers. Out: their sum. Long ones are added over a common denominator and brought to lowest terms once: the
+//! In: pairs of numbers. Out: the sum of their products. Long ones are added over a common denominator and brought to lowest terms once: the
 //! denominators of a linear combination have nearly all factors in common, and a greatest common divisor after each
 //! addition would cost more than all else.
 
@@ -9,15 +9,22 @@ use crate::cas::integer::Integer;
 use super::{Rational, Small};
 
 impl Rational {
-    /// The sum.
-    pub(in crate::cas) fn total(parts: &[Self]) -> Self {
-        if parts.len() < 3 || parts.iter().all(|part| matches!(part.0, Small(..))) {
-            return parts.iter().fold(Self::ZERO, |sum, part| &sum + part);
+    /// The sum of the products of pairs.
+    pub(in crate::cas) fn total_of_products<'a>(
+        mut pairs: impl ExactSizeIterator<Item = (&'a Self, &'a Self)> + Clone,
+    ) -> Self {
+        let small = |(a, b): (&Self, &Self)| matches!((&a.0, &b.0), (Small(..), Small(..)));
+        match pairs.len() {
+            1 => return pairs.next().map_or(Self::ZERO, |(a, b)| a * b),
+            2 => return pairs.fold(Self::ZERO, |sum, (a, b)| &sum + &(a * b)),
+            _ if pairs.clone().all(small) => return pairs.fold(Self::ZERO, |sum, (a, b)| &sum + &(a * b)),
+            _ => {}
         }
         let mut above = Integer::ZERO;
         let mut below = Integer::ONE;
-        for part in parts {
-            let (numerator, denominator) = (part.numerator(), part.denominator());
+        for (a, b) in pairs {
+            let numerator = &a.numerator() * &b.numerator();
+            let denominator = &a.denominator() * &b.denominator();
             let multiple = match below.div_rem(&denominator) {
                 Some((quotient, rest)) if rest.is_zero() => quotient,
                 _ => {
@@ -51,8 +58,11 @@ mod tests {
             &[over(1), part(3, 7), over(-1), part(-3, 7)],
         ];
         for parts in cases {
-            let one_by_one = parts.iter().fold(Rational::ZERO, |sum, part| &sum + part);
-            assert_eq!(Rational::total(parts), one_by_one, "{parts:?}");
+            for scale in [Rational::ONE, part(-6, 5), over(10)] {
+                let one_by_one = parts.iter().fold(Rational::ZERO, |sum, part| &sum + &(part * &scale));
+                let total = Rational::total_of_products(parts.iter().map(|part| (part, &scale)));
+                assert_eq!(total, one_by_one, "{parts:?}");
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use quote::ToTokens;
 use syn::{Attribute, Expr, Fields, ImplItem, Item, Lit, Meta, ReturnType, Stmt, UseTree};
 
 use super::super::error::EmitError;
-use super::syntax::{expression, joined, path_text, pattern, type_text};
+use super::syntax::{broken_type, expression, filled, joined, path_text, pattern, type_text};
 use super::{LINE, Page, STEP, unknown};
 
 /// The longest arguments of an attribute on one line.
@@ -35,7 +35,7 @@ pub(super) fn module(file: &syn::File) -> Result<String, EmitError> {
 
 fn item(page: &mut Page, item: &Item) -> Result<(), EmitError> {
     match item {
-        Item::Use(item) => page.line(0, &format!("use {};", use_text(&item.tree)?)),
+        Item::Use(item) => used(page, &item.tree)?,
         Item::Const(item) => {
             attributes(page, &item.attrs, 0)?;
             let (visible, name) = (visibility(&item.vis), &item.ident);
@@ -60,10 +60,13 @@ fn alias(page: &mut Page, item: &syn::ItemType) -> Result<(), EmitError> {
         });
     }
     let (visible, name, generics) = (visibility(&item.vis), &item.ident, generics.join(", "));
-    let head = format!("{visible}type {name}<{generics}> =");
+    let generics = if generics.is_empty() { generics } else { format!("<{generics}>") };
+    let head = format!("{visible}type {name}{generics} =");
     let value = format!("{};", type_text(&item.ty)?);
     if head.len() + 1 + value.len() <= LINE {
         page.line(0, &format!("{head} {value}"));
+    } else if STEP + value.len() > LINE {
+        page.line(0, &format!("{head} {};", broken_type(&item.ty)?));
     } else {
         page.line(0, &head);
         page.line(STEP, &value);
@@ -172,6 +175,7 @@ fn statement(page: &mut Page, statement: &Stmt, indent: usize) -> Result<(), Emi
             let value = expression(&init.expr, indent, column, 1)?;
             page.line(indent, &format!("let {name} = {value};"));
         }
+        Stmt::Expr(value, Some(_)) => page.line(indent, &format!("{};", expression(value, indent, indent, 1)?)),
         Stmt::Expr(value, None) => page.line(indent, &expression(value, indent, indent, 0)?),
         other => return Err(unknown(other)),
     }
@@ -243,6 +247,20 @@ fn root(tree: &UseTree) -> Option<String> {
         UseTree::Path(path) => Some(path.ident.to_string()),
         _ => None,
     }
+}
+
+/// A `use`, the names of its group filled into lines where one is too short.
+fn used(page: &mut Page, tree: &UseTree) -> Result<(), EmitError> {
+    let one_line = format!("use {};", use_text(tree)?);
+    match one_line.split_once('{') {
+        // Rustfmt keeps room for a comma and a brace.
+        Some((head, names)) if one_line.len() > LINE - "},".len() => {
+            let names: Vec<String> = names.trim_end_matches("};").split(", ").map(str::to_owned).collect();
+            page.line(0, &format!("{}{};", head, filled(&names, STEP, LINE - 1).within("{", "}", 0)));
+        }
+        _ => page.line(0, &one_line),
+    }
+    Ok(())
 }
 
 fn use_text(tree: &UseTree) -> Result<String, EmitError> {

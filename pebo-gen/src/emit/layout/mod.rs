@@ -2,6 +2,8 @@
 //!
 //! In: the tokens of a module. Out: its text, items apart by blank lines. Only the forms that the
 //! emitter uses are known. The widths are those of rustfmt's default configuration.
+//!
+//! One thing with `items` and `syntax`: items hold expressions, and both ask here for the width that is left.
 
 mod items;
 mod syntax;

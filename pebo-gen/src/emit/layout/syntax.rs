@@ -32,7 +32,7 @@ pub(super) fn expression(syntax: &Expr, indent: usize, column: usize, behind: us
         Expr::Array(array) => {
             let elements: Vec<String> = array.elems.iter().map(flat).collect::<Result<_, _>>()?;
             let short = elements.iter().all(|element| element.chars().count() <= SHORT);
-            let page = if short { filled(&elements, inner) } else { each(&mut array.elems.iter())? };
+            let page = if short { filled(&elements, inner, LINE) } else { each(&mut array.elems.iter())? };
             Ok(page.within("[", "]", indent))
         }
         Expr::Call(call) => {
@@ -70,12 +70,12 @@ fn broken(syntax: &Expr, indent: usize) -> Result<String, EmitError> {
 }
 
 /// Short elements, as many to a line as fit.
-fn filled(elements: &[String], indent: usize) -> Page {
+pub(super) fn filled(elements: &[String], indent: usize, longest: usize) -> Page {
     let mut page = Page::default();
     let mut line = String::new();
     for element in elements {
         let width = indent + line.chars().count() + element.chars().count() + " ,".len();
-        if !line.is_empty() && width > LINE {
+        if !line.is_empty() && width > longest {
             page.line(indent, &std::mem::take(&mut line));
         }
         if !line.is_empty() {
@@ -131,6 +131,8 @@ fn flat(syntax: &Expr) -> Result<String, EmitError> {
         Expr::Lit(literal) => literal.lit.to_token_stream().to_string(),
         Expr::Path(path) => joined(&path.to_token_stream()),
         Expr::Paren(inner) => format!("({})", flat(&inner.expr)?),
+        Expr::Reference(reference) => format!("&{}", flat(&reference.expr)?),
+        Expr::Try(attempt) => format!("{}?", flat(&attempt.expr)?),
         Expr::Unary(unary) => {
             let operator = match unary.op {
                 UnOp::Neg(_) => "-",
@@ -157,8 +159,8 @@ fn flat(syntax: &Expr) -> Result<String, EmitError> {
             format!("{} {operator} {}", flat(&binary.left)?, flat(&binary.right)?)
         }
         Expr::Field(field) => format!("{}.{}", flat(&field.base)?, member(&field.member)),
-        Expr::MethodCall(call) if call.args.is_empty() => {
-            format!("{}.{}()", flat(&call.receiver)?, call.method)
+        Expr::MethodCall(call) => {
+            format!("{}.{}({})", flat(&call.receiver)?, call.method, list(&mut call.args.iter())?)
         }
         Expr::Array(array) => format!("[{}]", list(&mut array.elems.iter())?),
         Expr::Call(call) => format!("{}({})", flat(&call.func)?, list(&mut call.args.iter())?),
@@ -204,6 +206,10 @@ fn flat_pattern(syntax: &Pat) -> Result<String, EmitError> {
             let elements: Vec<String> = slice.elems.iter().map(flat_pattern).collect::<Result<_, _>>()?;
             format!("[{}]", elements.join(", "))
         }
+        Pat::Tuple(tuple) => {
+            let elements: Vec<String> = tuple.elems.iter().map(flat_pattern).collect::<Result<_, _>>()?;
+            format!("({})", elements.join(", "))
+        }
         _ => return Err(unknown(syntax)),
     })
 }
@@ -216,6 +222,22 @@ pub(super) fn type_text(syntax: &Type) -> Result<String, EmitError> {
         Type::Tuple(tuple) if tuple.elems.is_empty() => Ok("()".to_owned()),
         _ => Err(unknown(syntax)),
     }
+}
+
+/// A type with a line for each of its generic arguments.
+pub(super) fn broken_type(syntax: &Type) -> Result<String, EmitError> {
+    let Type::Path(path) = syntax else { return Err(unknown(syntax)) };
+    let Some(PathArguments::AngleBracketed(arguments)) = path.path.segments.last().map(|last| &last.arguments) else {
+        return Err(unknown(syntax));
+    };
+    let mut page = Page::default();
+    for argument in &arguments.args {
+        let GenericArgument::Type(argument) = argument else { return Err(unknown(argument)) };
+        page.line(STEP, &format!("{},", type_text(argument)?));
+    }
+    let one_line = path_text(&path.path)?;
+    let head = one_line.split('<').next().unwrap_or_default();
+    Ok(page.within(&format!("{head}<"), ">", 0))
 }
 
 /// A path, its generic arguments included.

@@ -181,6 +181,7 @@ impl Sketch {
             remarks: Remarks::default(),
         };
         let plant = Plant {
+            origin: crate::plant::TransformOrigin::Given,
             class: None,
             asked: None,
             proposal: Proposal::default(),
@@ -211,6 +212,7 @@ impl Sketch {
             phi_left: None,
             identities: Vec::new(),
             angles: Vec::new(),
+            units: BTreeMap::new(),
             assumptions: self
                 .assume
                 .iter()
@@ -222,7 +224,7 @@ impl Sketch {
             psi: (1..=count).map(|row| indexed(&format!("Psi{row}"))).collect(),
             theta: indexed("theta"),
             eta: "eta".to_owned(),
-            arena,
+            arena: arena.into(),
         };
         (plant, derivation)
     }

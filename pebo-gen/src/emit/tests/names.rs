@@ -40,7 +40,7 @@ fn each_entry_of_a_wide_fundamental_matrix_is_read_where_it_stands() {
         "model: m\nparameters: {{a: 1}}\nx: [{p}]\ny: [{q}]\nu: [v]\nf_x: {{{f_x}}}\nf_y: {{{f_y}}}\nphi: [{p}]\n",
         p = each(&|i| format!("p{i}")),
         q = each(&|i| format!("q{i}")),
-        f_x = each(&|i| format!("p{i}: -(a + q{i}^2)*p{i} + v")),
+        f_x = each(&|i| format!("p{i}: -(a + q{i}^2)*p{i} + v + p{}", i % COMPONENTS + 1)),
         f_y = each(&|i| format!("q{i}: p{i}")),
     ));
     let (plant, arena) = (&wide.plant, &wide.plant.arena);

@@ -3,10 +3,11 @@
 //! A formula from outside must end in a diagnostic, not in a stack overflow or in a power with a
 //! million digits. Definitions can still multiply sizes; that is for the algebra to bound.
 
-use super::{Formula, Function, Operator, Term};
+use super::{Formula, Operator, Term};
+use crate::cas::Function;
 use crate::source::{Code, Diagnostic, Span};
 
-/// Most levels of a formula. A sum of n terms has n levels.
+/// Most levels of a formula. A product of n factors has n levels; a sum has few, however many terms it has.
 pub const DEPTH_LIMIT: usize = 200;
 
 /// Most bytes of a formula's text.
@@ -70,11 +71,7 @@ impl Measured {
     }
 
     /// A call of a function with as many arguments as it takes.
-    pub(in crate::model) fn call(
-        function: &'static Function,
-        arguments: Vec<Self>,
-        span: Span,
-    ) -> Result<Self, Diagnostic> {
+    pub(in crate::model) fn call(function: Function, arguments: Vec<Self>, span: Span) -> Result<Self, Diagnostic> {
         let depth = arguments.iter().map(|argument| argument.depth).max().unwrap_or(0);
         let parts = arguments.iter().map(|argument| argument.parts).sum();
         let arguments = arguments.into_iter().map(|argument| argument.formula).collect();

@@ -1,9 +1,10 @@
 //! What the parser says about a text that is no formula.
 
+use super::DEPTH_LIMIT;
 use super::lexer::{Kind, Token};
 use super::parser::Parser;
-use super::{DEPTH_LIMIT, Function};
-use crate::source::{Code, Diagnostic, Span, nearest, quoted};
+use crate::cas::Function;
+use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 
 impl Parser<'_> {
     /// An operand should stand here.
@@ -77,8 +78,8 @@ pub(super) fn no_estimate(hat: Span) -> Diagnostic {
 }
 
 /// A call with the wrong number of arguments.
-pub(super) fn argument_count(function: &Function, found: usize, span: Span) -> Diagnostic {
-    let (name, wanted) = (function.name, function.arguments);
+pub(super) fn argument_count(function: Function, found: usize, span: Span) -> Diagnostic {
+    let (name, wanted) = (function.row().name, function.row().arity);
     let found = if found == 0 { "none".to_owned() } else { found.to_string() };
     Diagnostic::error(Code::ArgumentCount, span, format!("`{name}` takes {wanted} and has {found}"))
         .help(format!("write `{name}({})`", if wanted == 1 { "a" } else { "a, b" }))
@@ -93,4 +94,5 @@ pub(super) fn unknown_function(name: &str, span: Span) -> Diagnostic {
         None => diagnostic.help(format!("write `{name}*(` for a product")),
     }
     .note("a name before a parenthesis is a call")
+    .note(format!("the functions are {}", listed(Function::names())))
 }

@@ -21,20 +21,21 @@
 mod bounds;
 mod complaints;
 mod decimal;
-mod functions;
+mod display;
 mod lexer;
 mod parser;
 mod places;
+mod sum;
 
 #[cfg(test)]
 mod tests;
 
+use crate::cas::Function;
 use crate::source::Span;
 
 pub(super) use bounds::Measured;
 pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
-pub use functions::{FUNCTIONS, Function};
 pub(super) use lexer::greek;
 pub use parser::{Estimates, parse_comparison, parse_formula};
 pub use places::Places;
@@ -65,7 +66,7 @@ pub enum Term {
     /// Two operands.
     Binary(Operator, Box<Formula>, Box<Formula>),
     /// A function applied to as many arguments as it takes.
-    Call(&'static Function, Vec<Formula>),
+    Call(Function, Vec<Formula>),
 }
 
 /// What stands between two operands.

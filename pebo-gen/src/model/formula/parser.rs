@@ -1,9 +1,13 @@
 //! Tokens to formulas, by precedence climbing.
+//!
+//! One thing with `complaints`: its methods word what the parser finds, of the parser's own state.
 
 use super::bounds::Measured;
 use super::complaints;
 use super::lexer::{Kind, Lexer, Token};
-use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, Function, LENGTH_LIMIT, Operator, Places, Term};
+use super::sum::sum;
+use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, Places, Term};
+use crate::cas::Function;
 use crate::source::{Code, Diagnostic, Span};
 
 /// Whether a formula may hold `hat(x)`.
@@ -96,17 +100,22 @@ impl<'a> Parser<'a> {
             return Err(self.too_deep());
         }
         let mut left = self.operand()?;
+        let mut terms = Vec::new();
         while let Some((operator, level)) = operator(self.next.kind)
             && level >= least
         {
             self.advance()?;
             // Powers group to the right: 2^3^2 is 2^(3^2). All others group to the left.
             let right = self.expression(if level == POWER { POWER } else { level + 1 })?;
+            if level == SUM {
+                terms.push((operator, right));
+                continue;
+            }
             let span = left.formula.span.to(right.formula.span);
             left = Measured::binary(operator, left, right, span)?;
         }
         self.depth -= 1;
-        Ok(left)
+        sum(left, terms)
     }
 
     fn operand(&mut self) -> Result<Measured, Diagnostic> {
@@ -171,7 +180,7 @@ impl<'a> Parser<'a> {
     }
 
     /// A call, from the parenthesis on.
-    fn call(&mut self, function: &'static Function, name: Span) -> Result<Measured, Diagnostic> {
+    fn call(&mut self, function: Function, name: Span) -> Result<Measured, Diagnostic> {
         let open = self.advance()?;
         let mut arguments = Vec::new();
         if self.next.kind != Kind::Close {
@@ -184,7 +193,7 @@ impl<'a> Parser<'a> {
             }
         }
         let span = name.to(self.close(open)?);
-        if arguments.len() != function.arguments {
+        if arguments.len() != function.row().arity {
             return Err(complaints::argument_count(function, arguments.len(), span));
         }
         Measured::call(function, arguments, span)

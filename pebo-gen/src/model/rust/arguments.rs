@@ -1,22 +1,27 @@
 //! The attribute's own arguments.
 //!
 //! ```text
-//! #[pebo_model(reference = "..", assume(L > 0, 0 < d < 1), angles(q = 2.0 * PI / N_P))]
+//! #[pebo_model(reference = "..", assume(L > 0, 0 < d < 1), angles(q = 2.0 * PI / N_P), units(L = "H"))]
 //! ```
 
 use proc_macro2::{Spacing, TokenStream, TokenTree};
 use quote::ToTokens as _;
 use syn::parse::Parser as _;
 use syn::punctuated::Punctuated;
-use syn::{Expr, Lit, Meta, MetaNameValue, Token};
+use syn::{Expr, Lit, Meta, MetaList, MetaNameValue, Token};
 
-use super::{Places, unsupported};
+use super::places::Places;
+use super::refusal::unsupported;
 use crate::model::formula::Relation;
-use crate::model::written::{CascadeClass, Spanned};
+use crate::model::spanned::{Entry, Spanned};
+use crate::model::written::CascadeClass;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
 /// What an attribute may say.
-const KEYS: [&str; 5] = ["title", "reference", "class", "assume", "angles"];
+const KEYS: [&str; 6] = ["title", "reference", "class", "assume", "angles", "units"];
+
+const ANGLES: &str = "angles(q = 2.0 * PI)";
+const UNITS: &str = "units(L = \"H\", i = \"A\")";
 
 /// What an attribute says.
 #[derive(Default)]
@@ -26,6 +31,7 @@ pub(super) struct Arguments {
     pub(super) class: Option<Spanned<CascadeClass>>,
     pub(super) assume: Vec<Chain>,
     pub(super) angles: Vec<MetaNameValue>,
+    pub(super) units: Vec<Entry<Spanned<String>>>,
 }
 
 /// Sides with relations between them.
@@ -71,19 +77,24 @@ impl Arguments {
                 }
             }
             ("angles", Meta::List(list)) => {
-                let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
-                let pairs = pairs.map_err(|error| {
-                    unsupported(places.at(error.span()), "an angle needs a period")
-                        .help("write for example `angles(q = 2.0 * PI)`")
-                })?;
-                self.angles.extend(pairs);
+                self.angles.extend(pairs(list, "an angle needs a period", ANGLES, places)?);
+            }
+            ("units", Meta::List(list)) => {
+                for pair in pairs(list, "a quantity needs its unit", UNITS, places)? {
+                    let name = Spanned { value: Places::path(&pair.path), span: places.of(&pair.path) };
+                    self.units.push(Entry { name, value: text(&pair, places)? });
+                }
             }
             ("title" | "reference" | "class", _) => {
                 return Err(unsupported(places.of(meta), format!("`{name}` takes a text"))
                     .help(format!("write `{name} = \"..\"`")));
             }
-            ("assume" | "angles", _) => {
-                let example = if name == "assume" { "assume(L > 0)" } else { "angles(q = 2.0 * PI)" };
+            ("assume" | "angles" | "units", _) => {
+                let example = match name.as_str() {
+                    "assume" => "assume(L > 0)",
+                    "angles" => ANGLES,
+                    _ => UNITS,
+                };
                 return Err(unsupported(places.of(meta), format!("`{name}` takes a list in parentheses"))
                     .help(format!("write for example `{example}`")));
             }
@@ -101,6 +112,14 @@ impl Arguments {
         }
         Ok(())
     }
+}
+
+/// A list of names with what is said of each.
+fn pairs(list: &MetaList, wrong: &str, example: &str, places: &mut Places) -> Result<Vec<MetaNameValue>, Diagnostic> {
+    let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
+    let pairs = pairs
+        .map_err(|error| unsupported(places.at(error.span()), wrong).help(format!("write for example `{example}`")))?;
+    Ok(pairs.into_iter().collect())
 }
 
 fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Diagnostic> {

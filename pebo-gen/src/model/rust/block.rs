@@ -4,8 +4,8 @@ use syn::ext::IdentExt as _;
 use syn::{Block, Expr, Pat, Stmt};
 
 use super::evaluate::Reader;
+use super::refusal::{self, unsupported};
 use super::value::{Locals, Value};
-use super::{refusal, unsupported};
 use crate::source::Diagnostic;
 
 impl Reader<'_> {

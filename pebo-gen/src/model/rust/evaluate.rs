@@ -5,12 +5,14 @@ use std::collections::HashSet;
 use syn::ext::IdentExt as _;
 use syn::{BinOp, Expr, ExprStruct, ItemFn, Member, Path, UnOp};
 
+use super::functions;
 use super::items::{self, Items};
+use super::places::Places;
+use super::refusal::{self, unsupported};
 use super::value::{Field, Locals, Value};
-use super::{Places, functions, refusal, unsupported};
 use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
 use crate::model::names::unknown_name;
-use crate::model::written::Spanned;
+use crate::model::spanned::Spanned;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Most calls of helper functions inside one another.

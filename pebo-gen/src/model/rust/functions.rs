@@ -1,20 +1,20 @@
 //! Calls: methods and functions of floating-point numbers, and functions of the module.
+//!
+//! One thing with `evaluate`: to run a function is to evaluate its body, in which functions are called.
 
 use syn::{Expr, ExprCall, ExprMethodCall};
 
 use super::evaluate::Reader;
 use super::items;
+use super::places::Places;
+use super::refusal::{self, unsupported};
 use super::value::{Locals, Value};
-use super::{Places, refusal, unsupported};
-use crate::model::formula::{Decimal, Formula, Function, Measured, Operator, PI, Term};
+use crate::cas::Function;
+use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
 use crate::source::{Code, Diagnostic, Span, listed, nearest};
 
 /// Functions that Rust calls otherwise than formulas do, or that are not analytic, with what to do instead.
 const REFUSED: &[(&str, &str)] = &[
-    ("max", "a maximum is not smooth: write the case that occurs, and state its condition under `assume`"),
-    ("min", "a minimum is not smooth: write the case that occurs, and state its condition under `assume`"),
-    ("clamp", "limits belong to the control law; describe the plant where it is not saturated"),
-    ("signum", "write the sign that occurs, and state its condition under `assume`; `a.abs() / a` is the sign of `a`"),
     ("floor", "rounding is not continuous: leave it out of the formula"),
     ("ceil", "rounding is not continuous: leave it out of the formula"),
     ("round", "rounding is not continuous: leave it out of the formula"),
@@ -35,6 +35,10 @@ const OWN: &[&str] = &[
     "recip",
     "mul_add",
     "hypot",
+    "clamp",
+    "signum",
+    "min",
+    "max",
     "exp2",
     "log10",
     "log2",
@@ -57,11 +61,11 @@ const CONSTANTS: &[(&str, Constant)] = &[
     ("FRAC_PI_8", |at| Measured::binary(Operator::Divide, pi(at), decimal("8", at)?, at)),
     ("FRAC_1_PI", |at| Measured::binary(Operator::Divide, decimal("1", at)?, pi(at), at)),
     ("FRAC_2_PI", |at| Measured::binary(Operator::Divide, decimal("2", at)?, pi(at), at)),
-    ("SQRT_2", |at| applied("sqrt", decimal("2", at)?, at)),
-    ("FRAC_1_SQRT_2", |at| applied("sqrt", decimal("0.5", at)?, at)),
-    ("LN_2", |at| applied("log", decimal("2", at)?, at)),
-    ("LN_10", |at| applied("log", decimal("10", at)?, at)),
-    ("E", |at| applied("exp", decimal("1", at)?, at)),
+    ("SQRT_2", |at| applied(Function::Sqrt, decimal("2", at)?, at)),
+    ("FRAC_1_SQRT_2", |at| applied(Function::Sqrt, decimal("0.5", at)?, at)),
+    ("LN_2", |at| applied(Function::Log, decimal("2", at)?, at)),
+    ("LN_10", |at| applied(Function::Log, decimal("10", at)?, at)),
+    ("E", |at| applied(Function::Exp, decimal("1", at)?, at)),
 ];
 
 /// The constant of that name in `core::f64::consts`.
@@ -167,7 +171,7 @@ fn applied_method(
             expected(1)?;
             let other = reader.number(arguments[0], locals)?;
             let square = |a: Measured| Measured::binary(Operator::Power, a, decimal("2", at)?, at);
-            applied("sqrt", Measured::binary(Operator::Add, square(receiver)?, square(other)?, at)?, at)?
+            applied(Function::Sqrt, Measured::binary(Operator::Add, square(receiver)?, square(other)?, at)?, at)?
         }
         "exp2" => {
             expected(0)?;
@@ -176,7 +180,12 @@ fn applied_method(
         "log10" | "log2" => {
             expected(0)?;
             let base = decimal(name.trim_start_matches("log"), at)?;
-            Measured::binary(Operator::Divide, applied("log", receiver, at)?, applied("log", base, at)?, at)?
+            Measured::binary(
+                Operator::Divide,
+                applied(Function::Log, receiver, at)?,
+                applied(Function::Log, base, at)?,
+                at,
+            )?
         }
         "to_radians" => {
             expected(0)?;
@@ -188,22 +197,43 @@ fn applied_method(
             let radian = Measured::binary(Operator::Divide, decimal("180", at)?, pi(at), at)?;
             Measured::binary(Operator::Multiply, receiver, radian, at)?
         }
+        // Not differentiable where Rust's 1 at zero differs from the 0 of formulas.
+        "signum" => {
+            expected(0)?;
+            applied(Function::Sign, receiver, at)?
+        }
+        "min" | "max" => {
+            expected(1)?;
+            let function = if name == "min" { Function::Min } else { Function::Max };
+            Measured::call(function, vec![receiver, reader.number(arguments[0], locals)?], at)?
+        }
+        "clamp" => {
+            expected(2)?;
+            let (least, most) = (reader.number(arguments[0], locals)?, reader.number(arguments[1], locals)?);
+            let above = Measured::call(Function::Max, vec![receiver, least], at)?;
+            Measured::call(Function::Min, vec![above, most], at)?
+        }
         "sin_cos" => {
             expected(0)?;
-            let (sine, cosine) = (applied("sin", receiver.clone(), at)?, applied("cos", receiver, at)?);
+            let (sine, cosine) = (applied(Function::Sin, receiver.clone(), at)?, applied(Function::Cos, receiver, at)?);
             return Ok(Value::List(vec![Value::Number(sine), Value::Number(cosine)]));
         }
         "log" => {
             expected(1)?;
             let base = reader.number(arguments[0], locals)?;
-            Measured::binary(Operator::Divide, applied("log", receiver, at)?, applied("log", base, at)?, at)?
+            Measured::binary(
+                Operator::Divide,
+                applied(Function::Log, receiver, at)?,
+                applied(Function::Log, base, at)?,
+                at,
+            )?
         }
         _ => {
             if let Some((_, help)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
                 return Err(unsupported(place, format!("formulas do not have the function `{name}`")).help(*help));
             }
-            let Some(function) = Function::named(name) else { return Err(no_such_method(name, place)) };
-            expected(function.arguments - 1)?;
+            let Some(function) = Function::of_method(name) else { return Err(no_such_method(name, place)) };
+            expected(function.row().arity - 1)?;
             let mut operands = vec![receiver];
             for argument in arguments {
                 operands.push(reader.number(argument, locals)?);
@@ -229,7 +259,7 @@ fn no_such_function(reader: &mut Reader<'_>, path: &syn::ExprPath, name: &str) -
     let names = reader.items.functions.iter().map(|item| item.sig.ident.to_string()).collect::<Vec<_>>();
     let diagnostic = unsupported(place, format!("the function `{written}` is not known here"))
         .label("only functions of this module can be read");
-    if Function::named(name).is_some() || OWN.contains(&name) {
+    if Function::of_method(name).is_some() || OWN.contains(&name) {
         return diagnostic.help(format!("write it as a method, as in `a.{name}()`"));
     }
     match nearest(name, names.iter().map(String::as_str)) {
@@ -247,10 +277,10 @@ fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic 
 }
 
 fn no_such_method(name: &str, place: Span) -> Diagnostic {
-    // As Rust calls them.
-    let known =
-        ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "ln", "sqrt", "abs"];
-    let known = || known.into_iter().chain(OWN.iter().copied());
+    // What Rust's numbers call otherwise is among our own.
+    let otherwise = [Function::Sign, Function::Min, Function::Max, Function::Sat];
+    let methods = || Function::table().iter().filter(|row| !otherwise.contains(&row.function));
+    let known = || methods().map(|row| row.rust).chain(OWN.iter().copied());
     let diagnostic =
         Diagnostic::error(Code::UnknownFunction, place, format!("formulas do not have the function `{name}`"));
     match nearest(name, known()) {
@@ -267,9 +297,6 @@ fn decimal(text: &str, at: Span) -> Result<Measured, Diagnostic> {
     Ok(Measured::leaf(Formula { span: at, term: Term::Number(Decimal::parse(text, at)?) }))
 }
 
-fn applied(name: &str, argument: Measured, at: Span) -> Result<Measured, Diagnostic> {
-    match Function::named(name) {
-        Some(function) => Measured::call(function, vec![argument], at),
-        None => Err(no_such_method(name, at)),
-    }
+fn applied(function: Function, argument: Measured, at: Span) -> Result<Measured, Diagnostic> {
+    Measured::call(function, vec![argument], at)
 }

@@ -4,8 +4,9 @@ use syn::ext::IdentExt as _;
 use syn::{Attribute, Expr, Fields, Item, ItemConst, ItemFn, ItemMod, ItemStruct, ItemType, Type};
 
 use super::imports::Imports;
-use super::{Places, refusal, unsupported};
-use crate::model::written::Spanned;
+use super::places::Places;
+use super::refusal::{self, unsupported};
+use crate::model::spanned::Spanned;
 use crate::source::{Diagnostic, Diagnostics};
 
 /// The items of the module; those of other kinds are the author's own affair.

@@ -10,7 +10,7 @@
 //! component of the result was computed by is its formula. Rust's own rules stay Rust's: whatever this reader accepts
 //! means what the compiled function computes, but for rounding.
 //!
-//! There is no text here: a [`Span`] is a range of [`Places`], each of which is a run of tokens.
+//! There is no text here: a [`Span`](crate::source::Span) is a range of [`Places`], each of which is a run of tokens.
 
 mod arguments;
 mod block;
@@ -26,7 +26,7 @@ mod value;
 use proc_macro2::TokenStream;
 
 use super::{Model, check};
-use crate::source::{Code, Diagnostic, Diagnostics, Span};
+use crate::source::{Diagnostic, Diagnostics};
 pub use places::Places;
 
 impl Model {
@@ -45,9 +45,4 @@ impl Model {
         // Without a model there is an error, which was propagated.
         model.map(Self::ordered).ok_or_else(Vec::new)
     }
-}
-
-/// Rust that has no meaning in a model.
-fn unsupported(place: Span, message: impl Into<Box<str>>) -> Diagnostic {
-    Diagnostic::error(Code::UnsupportedRust, place, message)
 }

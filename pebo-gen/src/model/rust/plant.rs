@@ -7,11 +7,13 @@ use syn::{Expr, ItemFn, ItemMod, Lit, Meta, Type};
 use super::arguments::{Arguments, Chain};
 use super::evaluate::Reader;
 use super::items::{self, Items};
+use super::places::Places;
+use super::refusal::unsupported;
 use super::value::{Locals, Value};
-use super::{Places, unsupported};
 use crate::model::formula::{Comparison, Decimal, Formula};
 use crate::model::observer::Observer;
-use crate::model::written::{Entry, Model, Spanned};
+use crate::model::spanned::{Entry, Spanned};
+use crate::model::written::Model;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Signals by the struct that declares them.
@@ -79,8 +81,8 @@ pub(super) fn read(
         pass.required("f_x", "pub fn f_x(x: &X, y: &Y, u: &U) -> X { X { .. } }").map(|item| pass.entries(item, 0));
     let f_y = pass.reader.items.function("f_y").map(|item| pass.entries(item, 0)).unwrap_or_default();
     let g_y = pass.reader.items.function("g_y").map(|item| pass.entries(item, 0)).unwrap_or_default();
-    let phi = pass.required("phi", "pub fn phi(x: &X, y: &Y) -> [f64; 1] { [x.a] }").map(|item| pass.list(item));
-    let components = phi.as_ref().map_or(0, Vec::len);
+    let phi = pass.reader.items.function("phi").map(|item| pass.list(item)).unwrap_or_default();
+    let components = phi.len();
     let phi_left =
         pass.reader.items.function("phi_left").map(|item| pass.entries(item, components)).unwrap_or_default();
     let identities = pass.reader.items.function("identities").map(|item| pass.list(item)).unwrap_or_default();
@@ -103,10 +105,11 @@ pub(super) fn read(
         f_x: f_x?,
         f_y,
         g_y,
-        phi: phi?,
+        phi,
         phi_left,
         identities,
         angles,
+        units: arguments.units,
         observer: Observer::default(),
         simulation: None,
     })

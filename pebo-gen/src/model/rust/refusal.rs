@@ -4,10 +4,15 @@ use proc_macro2::Ident;
 use quote::ToTokens;
 use syn::{BinOp, Expr, Macro, Pat, Type};
 
+use super::places::Places;
 use super::value::Field;
-use super::{Places, unsupported};
 use crate::model::names::unknown_name;
-use crate::source::Diagnostic;
+use crate::source::{Code, Diagnostic, Span};
+
+/// Rust that has no meaning in a model.
+pub(super) fn unsupported(place: Span, message: impl Into<Box<str>>) -> Diagnostic {
+    Diagnostic::error(Code::UnsupportedRust, place, message)
+}
 
 /// An expression of a kind that formulas do not have.
 pub(super) fn expression(expr: &Expr, places: &mut Places) -> Diagnostic {

@@ -1,7 +1,7 @@
 //! What an expression of Rust stands for.
 
 use crate::model::formula::{Formula, Measured, Term};
-use crate::model::written::Spanned;
+use crate::model::spanned::Spanned;
 use crate::source::Span;
 
 /// A value: numbers are formulas.

@@ -8,7 +8,8 @@ use serde::Deserialize;
 use crate::model::class::{Electromechanical, Lti, Mechanical};
 use crate::model::formula::Decimal;
 use crate::model::observer::Observer;
-use crate::model::written::{CascadeClass, Entry, Scale, Spanned};
+use crate::model::spanned::{Entry, Spanned};
+use crate::model::written::{CascadeClass, Scale};
 
 /// A text with its place: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;
@@ -35,6 +36,7 @@ pub(super) struct Document {
     pub(super) phi_left: Vec<Entry<Text>>,
     pub(super) identities: Vec<Text>,
     pub(super) angles: Vec<Entry<Text>>,
+    pub(super) units: Vec<Entry<Text>>,
     pub(super) observer: Observer,
     pub(super) simulation: Option<Simulation>,
     pub(super) lti: Option<Lti<Text>>,
@@ -50,6 +52,8 @@ pub(super) struct Simulation {
     pub(super) step: Option<Spanned<Decimal>>,
     pub(super) initial: Vec<Entry<Text>>,
     pub(super) signals: Vec<Entry<Vec<Piece>>>,
+    pub(super) noise: Vec<Entry<Spanned<Decimal>>>,
+    pub(super) plant: Vec<Entry<Vec<Piece>>>,
     pub(super) define: Vec<Entry<Text>>,
     pub(super) control: Vec<Entry<Text>>,
     pub(super) feedback: Option<Text>,
@@ -65,13 +69,17 @@ pub(super) struct Piece {
     pub(super) formula: Text,
 }
 
-/// An entry of `baselines`.
+/// An entry of `baselines`: its name says which of the keys it may have.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Baseline {
     pub(super) state: Vec<Entry<Text>>,
     pub(super) initial: Vec<Entry<Text>>,
     pub(super) estimate: Vec<Entry<Text>>,
+    pub(super) poles: Vec<Spanned<Decimal>>,
+    pub(super) sensors: Vec<Entry<Spanned<Decimal>>>,
+    pub(super) start: Vec<Entry<Spanned<Decimal>>>,
+    pub(super) disturbance: Vec<Entry<Spanned<Decimal>>>,
 }
 
 /// An entry of `panels`.

@@ -6,7 +6,8 @@
 use super::document::{self, Document, Text};
 use crate::model::class::{Class, Electromechanical, Lti, Mechanical};
 use crate::model::formula::{Comparison, Decimal, Estimates, Formula, Places, Term, parse_comparison, parse_formula};
-use crate::model::written::{Baseline, Entry, Model, Panel, Piece, Simulation};
+use crate::model::spanned::Entry;
+use crate::model::written::{Baseline, Equations, Kalman, Luenberger, Model, Panel, Piece, Simulation};
 use crate::source::{Diagnostics, Source};
 
 /// Parses every formula of the document; nothing if the model has no name.
@@ -43,6 +44,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         phi_left,
         identities,
         angles,
+        units: document.units,
         observer: document.observer,
         simulation,
     })
@@ -94,38 +96,58 @@ impl Pass<'_> {
 
     fn simulation(&mut self, simulation: document::Simulation) -> Simulation {
         let initial = self.entries(simulation.initial);
-        let signals = simulation.signals.into_iter().map(|signal| Entry {
-            name: signal.name,
-            value: signal.value.into_iter().map(|piece| self.piece(piece)).collect(),
-        });
-        let signals = signals.collect();
+        let signals = self.courses(simulation.signals);
+        let plant = self.courses(simulation.plant);
         self.estimates = Estimates::Allowed;
         Simulation {
             duration: simulation.duration,
             step: simulation.step,
             initial,
             signals,
+            noise: simulation.noise,
+            plant,
             define: self.entries(simulation.define),
             control: self.entries(simulation.control),
             feedback: simulation.feedback,
             baselines: simulation
                 .baselines
                 .into_iter()
-                .map(|entry| Entry { value: self.baseline(entry.value), name: entry.name })
+                .map(|entry| Entry { value: self.baseline(&entry.name, entry.value), name: entry.name })
                 .collect(),
             panels: simulation.panels.into_iter().filter_map(|panel| self.panel(panel)).collect(),
         }
+    }
+
+    /// Formulas that hold one after the other, by name.
+    fn courses(&mut self, entries: Vec<Entry<Vec<document::Piece>>>) -> Vec<Entry<Vec<Piece>>> {
+        let course = |entry: Entry<Vec<document::Piece>>| Entry {
+            value: entry.value.into_iter().map(|piece| self.piece(piece)).collect(),
+            name: entry.name,
+        };
+        entries.into_iter().map(course).collect()
     }
 
     fn piece(&mut self, piece: document::Piece) -> Piece {
         Piece { formula: self.formula(&piece.formula), from: piece.from }
     }
 
-    fn baseline(&mut self, baseline: document::Baseline) -> Baseline {
-        Baseline {
-            state: self.entries(baseline.state),
-            initial: self.entries(baseline.initial),
-            estimate: self.entries(baseline.estimate),
+    /// A baseline, of the kind that its name says.
+    fn baseline(&mut self, name: &Text, baseline: document::Baseline) -> Baseline {
+        let initial = self.entries(baseline.initial);
+        match name.value.as_str() {
+            name @ (Baseline::KALMAN | Baseline::EXTENDED) => Baseline::Kalman(Kalman {
+                extended: name == Baseline::EXTENDED,
+                sensors: baseline.sensors,
+                start: baseline.start,
+                disturbance: baseline.disturbance,
+                initial,
+            }),
+            Baseline::LUENBERGER => Baseline::Luenberger(Luenberger { poles: baseline.poles, initial }),
+            _ => Baseline::Equations(Equations {
+                state: self.entries(baseline.state),
+                initial,
+                estimate: self.entries(baseline.estimate),
+            }),
         }
     }
 

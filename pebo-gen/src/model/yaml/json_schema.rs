@@ -68,7 +68,7 @@ pub(super) fn text() -> String {
     let given = |class: &Key| {
         let barred = MODEL.iter().filter(|key| match key.role {
             Role::Class => key.name != class.name,
-            Role::RequiredOrByClass | Role::OptionalOrByClass => true,
+            Role::RequiredOrByClass | Role::OptionalOrByClass | Role::SearchedOrByClass => true,
             Role::Required | Role::Optional => false,
         });
         Node { properties: barred.map(|key| (key.name, Admission::NEVER)).collect(), ..Node::default() }
@@ -99,7 +99,7 @@ fn value(key: &Key) -> Node {
     let mut node = shape(&key.shape);
     node.description = Some(key.about);
     node.examples = example(key).into_iter().collect();
-    if matches!(key.role, Role::Required | Role::RequiredOrByClass) {
+    if key.role.is_filled() {
         match key.shape {
             Shape::List(_) => node.least_items = Some(1),
             Shape::Map(_) => node.least_properties = Some(1),
@@ -124,6 +124,10 @@ fn shape(shape: &Shape) -> Node {
         Shape::List(item) => list(self::shape(item)),
         Shape::OneOrMore(item) => either([self::shape(item), list(self::shape(item))]),
         Shape::Map(value) => map(self::shape(value)),
+        Shape::Kinds(keys, other) => Node {
+            properties: keys.iter().map(|key| (key.name, Admission::by(value(key)))).collect(),
+            ..map(self::shape(other))
+        },
         Shape::Parameters => {
             let value = Node { kinds: &["number", "string", "null"], ..Node::default() };
             either([map(value), list(self::shape(&Shape::Text))])

@@ -45,7 +45,7 @@ pub(super) fn syntax(error: &ScanError) -> Diagnostic {
 /// The text has no values.
 pub(super) fn empty() -> Diagnostic {
     Diagnostic::error(Code::EmptyFile, Span::default(), "the model file is empty")
-        .help("write at least the keys model, x, y, f_x and phi")
+        .help("write at least the keys model, x, y, f_x and f_y")
 }
 
 /// The text has too many values.

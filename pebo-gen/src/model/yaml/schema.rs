@@ -2,8 +2,8 @@
 //!
 //! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
-use crate::model::CascadeClass;
 use crate::model::observer::Estimator;
+use crate::model::{Baseline, CascadeClass, Class};
 
 /// The shape that a value must have.
 #[derive(Debug)]
@@ -26,6 +26,8 @@ pub(super) enum Shape {
     Parameters,
     /// A formula, or a map from start times to formulas.
     Signal,
+    /// A map from names to values, of one shape but for these names.
+    Kinds(&'static [Key], &'static Shape),
     /// A map with these keys.
     Record(&'static [Key]),
     /// A matrix of formulas: rows, or a plain list, or a single one; what these stand for depends on
@@ -46,6 +48,15 @@ pub(super) enum Role {
     RequiredOrByClass,
     /// It may be there unless a class is, which gives it.
     OptionalOrByClass,
+    /// It is searched for if it is not there, unless a class is, which gives it.
+    SearchedOrByClass,
+}
+
+impl Role {
+    /// Whether its value has at least one entry, if it is there.
+    pub(super) fn is_filled(self) -> bool {
+        matches!(self, Self::Required | Self::RequiredOrByClass | Self::SearchedOrByClass)
+    }
 }
 
 /// A key of a record.
@@ -76,6 +87,8 @@ const TEXTS: Shape = Shape::List(&Shape::Text);
 const NUMBERS: Shape = Shape::List(&Shape::Number);
 /// For each unknown, or one number for all.
 const ONE_OR_EACH: Shape = Shape::OneOrMore(&Shape::Number);
+/// A number above zero for each name.
+const DEVIATIONS: Shape = Shape::Map(&Shape::Number);
 const FORMULAS: Shape = Shape::List(&Shape::Formula);
 const RATES: Shape = Shape::Map(&Shape::Formula);
 
@@ -128,7 +141,12 @@ pub(super) const MODEL: &[Key] = &[
         RATES,
         ("g_y: {V: E - R*i1}", "The values of outputs, in the states, the inputs and the other outputs"),
     ),
-    key(Role::RequiredOrByClass, "phi", FORMULAS, ("phi: [i1, i3]", "The components of the transform z = phi(x, y)")),
+    key(
+        Role::SearchedOrByClass,
+        "phi",
+        FORMULAS,
+        ("phi: [i1, i3]", "The components of the transform z = phi(x, y); if left out, it is searched for"),
+    ),
     optional(
         "phi_left",
         RATES,
@@ -137,6 +155,12 @@ pub(super) const MODEL: &[Key] = &[
     ),
     optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]", "Expressions that are zero by physics"),
     optional("angles", RATES, "angles: {q: 2*pi}", "States that are angles, with their periods"),
+    optional(
+        "units",
+        Shape::Map(&Shape::Text),
+        "units: {i1: A, v2: V}",
+        "The units of parameters and signals, for the emitted documentation and the axes of the figure",
+    ),
     optional(
         "observer",
         Shape::Record(OBSERVER),
@@ -151,7 +175,7 @@ pub(super) const MODEL: &[Key] = &[
     ),
     key(
         Role::Class,
-        "lti",
+        Class::LTI,
         Shape::Record(LTI),
         (
             "lti: {A11: [[-1]], A21: [[2]]}",
@@ -160,7 +184,7 @@ pub(super) const MODEL: &[Key] = &[
     ),
     key(
         Role::Class,
-        "mechanical",
+        Class::MECHANICAL,
         Shape::Record(MECHANICAL),
         (
             "mechanical: {M: [[m]], V: m*g*q, T: [[1]]}",
@@ -169,7 +193,7 @@ pub(super) const MODEL: &[Key] = &[
     ),
     key(
         Role::Class,
-        "electromechanical",
+        Class::ELECTROMECHANICAL,
         Shape::Record(ELECTROMECHANICAL),
         (
             "electromechanical: {L: [[L]], mu: [c*q], R: [r], speed: omega}",
@@ -210,7 +234,12 @@ const MECHANICAL: &[Key] = &[
         "G: [[1], [0]]",
         "The input matrix, from the inputs to the rates of the momenta; zero if left out",
     ),
-    required("T", Shape::Matrix, "T: [[1, 0], [0, 1]]", "The frame T(q) of the transform z = T(q)' p"),
+    optional(
+        "T",
+        Shape::Matrix,
+        "T: [[1, 0], [0, 1]]",
+        "The frame T(q) of the transform z = T(q)' p; if left out, the transform is searched for",
+    ),
 ];
 
 /// Inductances, magnets, resistances, and the mass that the coils move.
@@ -264,6 +293,12 @@ const OBSERVER: &[Key] = &[
     ),
     optional("forgetting", Shape::Number, "forgetting: 100", "The rate of forgetting in 1/s; 0 if left out"),
     optional(
+        "process_noise",
+        ONE_OR_EACH,
+        "process_noise: [0, 1]",
+        "By how much the covariance of least squares grows in a second; 0 if left out",
+    ),
+    optional(
         "normalisation",
         Shape::Number,
         "normalisation: 1",
@@ -277,6 +312,12 @@ const OBSERVER: &[Key] = &[
         "Seconds after which finite-time DREM starts again, so that it tracks jumps; never if left out",
     ),
     optional("bounds", Shape::Record(BOUNDS), "bounds: {lower: [-1, 0], upper: 5}", "Bounds of the unknowns"),
+    optional(
+        "within",
+        Shape::Record(WITHIN),
+        "within: {lower: 0, upper: [10, 5]}",
+        "Bounds of the recovered states: an estimate beyond them is moved to the bound",
+    ),
     optional("filter", Shape::Number, "filter: 500", "The corner frequency of the filter of the regression, in rad/s"),
     optional(
         "window",
@@ -291,6 +332,12 @@ const OBSERVER: &[Key] = &[
         "What the samples stand for between two instants",
     ),
     optional(
+        "rebase",
+        Shape::Number,
+        "rebase: 1",
+        "Samples after which the extension starts again from the estimate, with all memory carried over; never if left out",
+    ),
+    optional(
         "extension",
         NUMBERS,
         "extension: [0, 0]",
@@ -303,6 +350,11 @@ const BOUNDS: &[Key] = &[
     optional("upper", ONE_OR_EACH, "upper: 5", "The upper bound: one for each unknown, or one for all"),
 ];
 
+const WITHIN: &[Key] = &[
+    optional("lower", ONE_OR_EACH, "lower: 0", "The lower bound: one for each recovered state, or one for all"),
+    optional("upper", ONE_OR_EACH, "upper: [10, 5]", "The upper bound: one for each recovered state, or one for all"),
+];
+
 const SIMULATION: &[Key] = &[
     optional("duration", Shape::Number, "duration: 0.1", "How long to simulate, in seconds"),
     optional("step", Shape::Number, "step: 1e-6", "The sampling period of observer and control law, in seconds"),
@@ -312,6 +364,18 @@ const SIMULATION: &[Key] = &[
         Shape::Map(&Shape::Signal),
         "signals: {V_d: {0: 25, 0.2: 30}}",
         "Signals in time: a formula in t and parameters, or a map from start times to formulas",
+    ),
+    optional(
+        "noise",
+        DEVIATIONS,
+        "noise: {v2: 0.1, v4: 0.1}",
+        "The standard deviation of each output's samples, in the unit of the output; 0 if left out",
+    ),
+    optional(
+        "plant",
+        Shape::Map(&Shape::Signal),
+        "plant: {E: {0: 12, 0.5: 13}}",
+        "True values where the model errs: of parameters, and of states whose rate is 0, in t and parameters",
     ),
     optional("define", RATES, "define: {p: V_d*hat(i1)}", "Names for parts of the formulas of the simulation"),
     optional(
@@ -328,9 +392,9 @@ const SIMULATION: &[Key] = &[
     ),
     optional(
         "baselines",
-        Shape::Map(&Shape::Record(BASELINE)),
-        "baselines: {copy: {state: {a: -a}, estimate: {i1: a}}}",
-        "Other observers to compare with",
+        Shape::Kinds(BASELINES, &Shape::Record(BASELINE)),
+        "baselines: {kalman: {sensors: {v2: 0.1}}, copy: {state: {a: -a}, estimate: {i1: a}}}",
+        "Other observers to compare with: kalman, ekf, luenberger, or ones given by their equations",
     ),
     optional(
         "panels",
@@ -339,6 +403,62 @@ const SIMULATION: &[Key] = &[
         "The panels of the figure",
     ),
 ];
+
+/// Baselines that are given by their name.
+const BASELINES: &[Key] = &[
+    optional(
+        Baseline::KALMAN,
+        Shape::Record(KALMAN),
+        "kalman: {sensors: {v2: 0.1}, disturbance: {i1: 1}}",
+        "The Kalman filter of a plant that is affine in its states and outputs",
+    ),
+    optional(
+        Baseline::EXTENDED,
+        Shape::Record(KALMAN),
+        "ekf: {sensors: {v2: 0.1}, disturbance: {i1: 1}}",
+        "The extended Kalman filter, which linearises the plant at its estimate",
+    ),
+    optional(
+        Baseline::LUENBERGER,
+        Shape::Record(LUENBERGER),
+        "luenberger: {poles: [-100, -110]}",
+        "Luenberger's observer, of the plant as linearised at its estimate",
+    ),
+];
+
+const KALMAN: &[Key] = &[
+    optional(
+        "sensors",
+        DEVIATIONS,
+        "sensors: {v2: 0.1}",
+        "The standard deviation of each output's samples; that of `noise` if left out",
+    ),
+    optional(
+        "start",
+        DEVIATIONS,
+        "start: {i1: 1}",
+        "How wrong each unmeasured state is at the start, a standard deviation; its very error if left out",
+    ),
+    optional(
+        "disturbance",
+        DEVIATIONS,
+        "disturbance: {i1: 0.1}",
+        "By how much a state or output drifts besides its rate, in its unit per root second; 0 if left out",
+    ),
+    optional("initial", RATES, "initial: {i1: 1}", START),
+];
+
+const LUENBERGER: &[Key] = &[
+    required(
+        "poles",
+        NUMBERS,
+        "poles: [-100, -110]",
+        "Poles of the error in 1/s, negative: one for each state and each output that has a rate, dealt to the outputs in turn",
+    ),
+    optional("initial", RATES, "initial: {i1: 1}", START),
+];
+
+const START: &str = "The estimates of the unmeasured states at the start, in parameters and outputs; zero if left out";
 
 const BASELINE: &[Key] = &[
     required("state", RATES, "state: {a: -a + v2}", "The states of the baseline observer with their rates"),

@@ -53,6 +53,13 @@ impl Fitter<'_> {
             (Shape::Map(shape), Content::Map(entries)) => Some(sequence(
                 entries.iter().map(|(key, node)| Some(entry(&key.text, key.span, self.fit(node, shape)?))),
             )),
+            (Shape::Kinds(keys, other), Content::Map(entries)) => {
+                let shape = |name: &str| keys.iter().find(|key| key.name == name).map_or(*other, |key| &key.shape);
+                let entries = entries.iter();
+                Some(sequence(
+                    entries.map(|(key, node)| Some(entry(&key.text, key.span, self.fit(node, shape(&key.text))?))),
+                ))
+            }
             (Shape::Parameters, Content::Map(entries)) => Some(sequence(entries.iter().map(|(key, node)| {
                 let value = match node.content {
                     Content::Null => None,
@@ -152,10 +159,9 @@ impl Fitter<'_> {
                 continue;
             };
             self.example = key.example;
-            let needed = matches!(key.role, Role::Required | Role::RequiredOrByClass);
             if let Some(class) = class.filter(|class| key.excludes(name, class)) {
                 self.diagnostics.push(in_class(name, class));
-            } else if needed && is_empty(node) {
+            } else if key.role.is_filled() && is_empty(node) {
                 let message = format!("`{}` is empty", key.name);
                 self.diagnostics.push(
                     Diagnostic::error(Code::EmptyList, node.span, message)
@@ -169,7 +175,7 @@ impl Fitter<'_> {
         let missing = |key: &&Key| match key.role {
             Role::Required => true,
             Role::RequiredOrByClass => class.is_none(),
-            Role::Optional | Role::OptionalOrByClass | Role::Class => false,
+            Role::Optional | Role::OptionalOrByClass | Role::SearchedOrByClass | Role::Class => false,
         };
         for key in keys.iter().filter(missing) {
             if !entries.iter().any(|(name, _)| name.text == key.name) {
@@ -211,7 +217,7 @@ fn describe(shape: &Shape) -> String {
         Shape::Choice(words) => format!("one of {}", listed(words.iter().copied())),
         Shape::List(item) => format!("a list of {}", plural(item)),
         Shape::OneOrMore(item) => format!("{} or a list of {}", describe(item), plural(item)),
-        Shape::Map(value) => format!("a map from names to {}", plural(value)),
+        Shape::Map(value) | Shape::Kinds(_, value) => format!("a map from names to {}", plural(value)),
         Shape::Parameters => "a map from names to numbers, or a list of names".to_owned(),
         Shape::Signal => "a formula, or a map from start times to formulas".to_owned(),
         Shape::Record(keys) => {
@@ -247,7 +253,7 @@ impl Key {
     fn excludes(&self, name: &tree::Key, class: &tree::Key) -> bool {
         match self.role {
             Role::Class => name.span != class.span,
-            Role::RequiredOrByClass | Role::OptionalOrByClass => true,
+            Role::RequiredOrByClass | Role::OptionalOrByClass | Role::SearchedOrByClass => true,
             Role::Required | Role::Optional => false,
         }
     }

@@ -6,7 +6,8 @@
 //!
 //! With v = q' the force of inertia is `-d/dq (p' M^-1 p / 2) = v' (dM/dq) v / 2`. Everything is inverted
 //! through W = T' M T, which is simple where T is worth its name: `M^-1 = T W^-1 T'`, and the velocities
-//! are `v = (T' M)^-1 z = T W^-1 z` (Ortega et al. 2015, Section 5.1).
+//! are `v = (T' M)^-1 z = T W^-1 z` (Ortega et al. 2015, Section 5.1). Where W is not simple, its inverse is not written
+//! out: formulas hold it as cofactors over the determinant, and are shown in the velocities.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +15,8 @@ use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::oriented::oriented;
 use crate::cas::rational::half;
-use crate::cas::{Expr, Symbol};
+use crate::cas::zero::{Answer, decide, refute};
+use crate::cas::{Arena, Expr, Symbol};
 use crate::model::{Formula as Written, Mechanical as WrittenClass};
 use crate::plant::Matrix;
 use crate::plant::matrix::dot;
@@ -43,8 +45,39 @@ pub struct Mechanical {
     pub h: Vec<Expr>,
     /// The energy H.
     pub energy: Expr,
+    /// What is shown where the inverse of T' M T is too long to be written out.
+    pub in_velocities: Option<InVelocities>,
     /// Where T stands.
     pub span: Span,
+}
+
+/// Formulas in symbols for the velocities.
+#[derive(Clone, Debug)]
+pub struct InVelocities {
+    /// The symbols, one for each position.
+    pub velocities: Vec<Expr>,
+    /// The energy H.
+    pub energy: Expr,
+    /// The rates of the momenta.
+    pub rates: Vec<Expr>,
+}
+
+impl InVelocities {
+    fn of(arena: &Arena, names: &Names<'_>, inertia: &Matrix, (potential, external): (Expr, &[Expr])) -> Self {
+        let symbol = |q: &Symbol| arena.of_symbol(arena.generated(&format!("{}'", arena.name(*q))));
+        let velocities: Vec<Expr> = names.y.iter().map(symbol).collect();
+        let rates = names.y.iter().zip(external);
+        let rates = rates.map(|(q, external)| arena.add(inertial(arena, inertia, *q, &velocities), *external));
+        let rates = rates.collect();
+        let kinetic = arena.scale(dot(arena, &velocities, &inertia.apply(arena, &velocities)), &half());
+        Self { velocities, energy: arena.add(kinetic, potential), rates }
+    }
+}
+
+/// The force of inertia along a position: `v' (dM/dq) v / 2`.
+fn inertial(arena: &Arena, inertia: &Matrix, q: Symbol, v: &[Expr]) -> Expr {
+    let slope = inertia.derivative(arena, q);
+    arena.scale(dot(arena, v, &slope.apply(arena, v)), &half())
 }
 
 pub(super) fn expand(
@@ -53,9 +86,10 @@ pub(super) fn expand(
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
-    let (arena, facts) = (place.arena, &place.domain.facts);
-    let n = names.y.len();
-    let (Some(m), Some(t)) = (&written.m, &written.t) else { return Err(Stop::Reported) };
+    let (arena, facts, n) = (place.arena, &place.domain.facts, names.y.len());
+    let Some(m) = &written.m else { return Err(Stop::Reported) };
+    // Without a frame the momenta themselves: any will do to write the equations.
+    let t = written.t.as_ref().unwrap_or(m);
     if names.x.len() != n {
         let span = place.model.x.first().map_or(m.span, |first| first.span);
         let message = format!("{} momenta in x for {n} positions in y", names.x.len());
@@ -70,7 +104,10 @@ pub(super) fn expand(
     };
     let inertia = read("M", &written.m, (n, n), true, "positions x positions");
     let forces = read("G", &written.g, (n, names.u.len()), false, "positions x inputs");
-    let frame = read("T", &written.t, (n, n), true, "positions x positions");
+    let frame = match &written.t {
+        Some(_) => read("T", &written.t, (n, n), true, "positions x positions"),
+        None => Some(Matrix::identity(arena, n)),
+    };
     let potential = match &written.v {
         Some(v) => problems.keep(place.formula(v, &on_q, "V(q)")),
         None => Some(arena.zero()),
@@ -85,35 +122,35 @@ pub(super) fn expand(
     let metric = metric.normal(arena, facts).map_err(open("M", m.span))?;
     let inverse_frame = frame.inverse(arena, facts).map_err(open("the inverse of T", t.span))?;
     let inverse_frame = inverse_frame.ok_or_else(|| singular("T", t.span))?;
-    let inverse_metric = metric.inverse(arena, facts).map_err(open("the inverse of M", m.span))?;
-    let inverse_metric = inverse_metric.ok_or_else(|| singular("M", m.span))?;
+    let inverse =
+        inverse_metric(place, (&inertia, &frame), &metric, names).map_err(open("the inverse of M", m.span))?;
+    let (inverse_metric, is_implicit) = inverse.ok_or_else(|| singular("M", m.span))?;
     // Not in normal form: where W is simple, what the author wrote for T is shorter.
     let velocity = frame.mul(arena, &inverse_metric);
-    let mut conditions = Vec::new();
-    for (matrix, span) in [(&frame, t.span), (&metric, m.span)] {
-        let determinant = matrix.determinant(arena, facts).map_err(open("a determinant", span))?;
-        if arena.as_number(determinant).is_none() {
-            conditions.push(Assumption { expr: determinant, relation: Relation::NonZero, span });
-        }
-    }
+    // Where the inverse is not written out, neither is what must not vanish: the rates have no value there.
+    let metric = (!is_implicit).then_some((&metric, m.span));
+    let conditions = determinants(place, [(&frame, t.span)].into_iter().chain(metric))?;
 
     let symbols = |list: &[Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (p, u) = (symbols(names.x), symbols(names.u));
     let z: Vec<Expr> = place.z.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
-    let rates = collected(place, &velocity.mul(arena, &transposed), &p).map_err(open("M^-1 p", m.span))?;
-    let velocities = collected(place, &velocity, &z).map_err(open("the velocity", m.span))?;
+    let over_one = |matrix: &Matrix, vector: &[Expr]| collected(place, matrix, vector, is_implicit);
+    let on_positions = arena.symbols_of(&inverse_metric.rows().concat());
+    let rates = over_one(&velocity.mul(arena, &transposed), &p).map_err(open("M^-1 p", m.span))?;
+    let velocities = if names.y.iter().any(|position| on_positions.contains(position)) {
+        over_one(&velocity, &z).map_err(open("the velocity", m.span))?
+    } else {
+        velocity.apply(arena, &z)
+    };
     let force = |index: usize| {
         let slope = arena.neg(arena.derivative(potential, names.y[index]));
         if u.is_empty() { slope } else { arena.add(slope, dot(arena, &forces.rows()[index], &u)) }
     };
-    let inertial = |index: usize| {
-        let slope = inertia.derivative(arena, names.y[index]);
-        arena.scale(dot(arena, &rates, &slope.apply(arena, &rates)), &half())
-    };
     let external: Vec<Expr> = (0..n).map(force).collect();
+    let in_velocities = is_implicit.then(|| InVelocities::of(arena, names, &inertia, (potential, &external)));
     let states = names.x.iter().enumerate().map(|(i, symbol)| State {
         symbol: *symbol,
-        rate: Formula { expr: arena.add(inertial(i), external[i]), span: m.span },
+        rate: Formula { expr: arena.add(inertial(arena, &inertia, names.y[i], &rates), external[i]), span: m.span },
     });
     let outputs = names.y.iter().zip(&place.model.y).enumerate().map(|(i, (symbol, name))| Output {
         symbol: *symbol,
@@ -121,11 +158,13 @@ pub(super) fn expand(
         value: None,
         span: name.span,
     });
-    let phi = (0..n).map(|i| Formula { expr: dot(arena, &frame.column(i), &p), span: column(t, i) });
+    let given = written.t.is_some();
+    let phi = (0..n).filter(|_| given).map(|i| Formula { expr: dot(arena, &frame.column(i), &p), span: column(t, i) });
     // T^-T = M T W^-1, where the inverse of a large T has grown out of proportion.
     let inverse = inverse_frame.transpose().apply(arena, &z);
     let product = inertia.mul(arena, &frame).mul(arena, &inverse_metric).apply(arena, &z);
-    let momenta = [inverse, product].into_iter().flat_map(|z| names.x.iter().copied().zip(z));
+    let product = (!is_implicit).then_some(product);
+    let momenta = [Some(inverse), product].into_iter().flatten().flat_map(|z| names.x.iter().copied().zip(z));
     let proposal = Proposal {
         phi_left: momenta.collect(),
         rates: names.y.iter().zip(velocity.rows()).map(|(s, row)| (*s, (arena.zero(), row.clone()))).collect(),
@@ -135,25 +174,97 @@ pub(super) fn expand(
         x: states.collect(),
         y: outputs.collect(),
         phi: phi.collect(),
-        proposal,
+        proposal: if given { proposal } else { Proposal::default() },
         conditions,
-        class: Some(Class::Mechanical(Mechanical {
-            q: names.y.to_vec(),
-            h: transposed.apply(arena, &external),
-            inertia,
-            frame,
-            inverse_frame,
-            inverse_metric,
-            velocities,
-            energy,
-            span: t.span,
-        })),
+        // What the class knows is of its own frame.
+        class: given.then(|| {
+            Class::Mechanical(Mechanical {
+                q: names.y.to_vec(),
+                h: transposed.apply(arena, &external),
+                inertia,
+                frame,
+                inverse_frame,
+                inverse_metric,
+                velocities,
+                energy,
+                in_velocities,
+                span: t.span,
+            })
+        }),
     })
 }
 
-/// The product with a vector, each component over one denominator.
-fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+/// That determinants do not vanish, where they are no numbers.
+fn determinants<'a>(
+    place: &Place<'_>,
+    matrices: impl Iterator<Item = (&'a Matrix, Span)>,
+) -> Result<Vec<Assumption>, Stop> {
+    let mut conditions = Vec::new();
+    for (matrix, span) in matrices {
+        let determinant = matrix.determinant(place.arena, &place.domain.facts);
+        let expr = determinant.map_err(|obstacle| Stop::from(unresolved("a determinant", span, &obstacle)))?;
+        if place.arena.as_number(expr).is_none() {
+            conditions.push(Assumption { expr, relation: Relation::NonZero, span });
+        }
+    }
+    Ok(conditions)
+}
+
+/// `L_X M = sum over k of X_k dM/dq_k + (dX)' M + M dX`: zero where M does not change along X, a Killing field of M.
+pub fn change_along(arena: &Arena, m: &Matrix, field: &[Expr], q: &[Symbol]) -> Matrix {
+    let n = field.len();
+    let jacobian = Matrix::build(n, n, |j, k| arena.derivative(field[j], q[k]));
+    let drag = m.mul(arena, &jacobian);
+    let mut total = drag.add(arena, &drag.transpose());
+    for (component, q) in field.iter().zip(q) {
+        if !arena.is_zero(*component) {
+            total = total.add(arena, &m.derivative(arena, *q).map(|e| arena.mul(*component, e)));
+        }
+    }
+    total
+}
+
+/// `W^-1`, and whether it is not written out; none if W has no inverse.
+fn inverse_metric(
+    place: &Place<'_>,
+    parts: (&Matrix, &Matrix),
+    metric: &Matrix,
+    names: &Names<'_>,
+) -> Result<Option<(Matrix, bool)>, Obstacle> {
+    if let Some(inverse) = implicit_inverse(place, parts, metric, names)? {
+        return Ok(Some((inverse, true)));
+    }
+    Ok(metric.inverse(place.arena, &place.domain.facts)?.map(|inverse| (inverse, false)))
+}
+
+/// `W^-1` as cofactors over the determinant, where its normal form would be out of proportion: if a column of T is no Killing
+/// field of M, so that the cascade is refused and nothing is to be proved of the inverse but that it exists.
+fn implicit_inverse(
+    place: &Place<'_>,
+    (inertia, frame): (&Matrix, &Matrix),
+    metric: &Matrix,
+    names: &Names<'_>,
+) -> Result<Option<Matrix>, Obstacle> {
+    let arena = place.arena;
+    if !metric.is_long_to_invert(arena, &place.domain.facts)? {
+        return Ok(None);
+    }
+    let changes = |column: usize| change_along(arena, inertia, &frame.column(column), names.y).entries();
+    let differs = |entry: &Expr| matches!(decide(arena, *entry, place.domain), Answer::NonZero(_));
+    if !(0..frame.width()).any(|column| changes(column).iter().any(differs)) {
+        return Ok(None);
+    }
+    let (adjugate, determinant) = metric.adjugate(arena);
+    let exists = refute(arena, determinant, place.domain).is_some();
+    Ok(exists.then(|| adjugate.map(|cofactor| arena.div(cofactor, determinant))))
+}
+
+/// The product with a vector, each component over one denominator, but for what is not written out.
+fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr], is_implicit: bool) -> Result<Vec<Expr>, Obstacle> {
     let products = matrix.apply(place.arena, vector);
+    if is_implicit {
+        return Ok(products);
+    }
     let field = Field::over(place.arena, &place.domain.facts, &products)?;
     let over_one = |e: &Expr| Ok(oriented(place.arena, place.domain, field.show(&field.fraction(*e)?)));
     products.iter().map(over_one).collect()

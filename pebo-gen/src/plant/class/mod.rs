@@ -27,7 +27,7 @@ use super::resolve::confined;
 
 pub use electromechanical::Electromechanical;
 pub use linear::Linear;
-pub use mechanical::Mechanical;
+pub use mechanical::{InVelocities, Mechanical, change_along};
 
 /// What is known of a plant that was written by class.
 #[derive(Clone, Debug)]
@@ -41,12 +41,18 @@ pub enum Class {
 }
 
 impl Class {
+    /// The key of a linear plant in a model file.
+    pub(crate) const LTI: &str = model::Class::LTI;
+
+    /// The key of a mechanical plant.
+    pub(crate) const MECHANICAL: &str = model::Class::MECHANICAL;
+
     /// The key of the class in a model file.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Linear(_) => "lti",
-            Self::Mechanical(_) => "mechanical",
-            Self::Electromechanical(_) => "electromechanical",
+            Self::Linear(_) => model::Class::LTI,
+            Self::Mechanical(_) => model::Class::MECHANICAL,
+            Self::Electromechanical(_) => model::Class::ELECTROMECHANICAL,
         }
     }
 }

@@ -6,6 +6,7 @@
 
 mod axis;
 mod line;
+mod page;
 mod plot;
 mod svg;
 
@@ -13,26 +14,9 @@ use super::label::Label;
 use super::scenario::Scenario;
 use super::trace::Trace;
 use axis::Axis;
+use page::{BOTTOM, HEADING, LEFT, MARGIN, PLOT_WIDTH, TEXT, TITLE, TOP};
 use plot::Plot;
 use svg::{Anchor, Drawing, width};
-
-/// Width of the plots; the legends make the figure about a third wider. All lengths are in points of
-/// a figure that is printed at the width of a page.
-const PLOT_WIDTH: f64 = 420.0;
-const PLOT_HEIGHT: f64 = 106.0;
-const LEFT: f64 = 56.0;
-/// Above the first plot: the title.
-const TOP: f64 = 24.0;
-/// Above each plot: its heading.
-const HEADING: f64 = 24.0;
-/// Below the last plot: the time axis.
-const BOTTOM: f64 = 38.0;
-const MARGIN: f64 = 10.0;
-
-/// Size of the title's letters.
-const TITLE: f64 = 13.0;
-/// Size of all other letters.
-const TEXT: f64 = 12.0;
 
 /// Draws the panels of a scenario with the curves of its run.
 pub fn draw(trace: &Trace, scenario: &Scenario) -> String {

@@ -4,8 +4,8 @@ use super::super::label::Label;
 use super::super::panel::Panel;
 use super::axis::Axis;
 use super::line::thinned;
+use super::page::{LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
 use super::svg::{Anchor, Drawing};
-use super::{LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
 use crate::model::Scale;
 
 /// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008), each with dashes

@@ -1,7 +1,7 @@
 //! The elements of the drawing as SVG text.
 
 use super::super::label::{Height, Label};
-use super::TEXT;
+use super::page::TEXT;
 
 /// A place or a size.
 pub(super) type Point = (f64, f64);

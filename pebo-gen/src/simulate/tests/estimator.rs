@@ -8,8 +8,9 @@ use pebo_runtime::{
 
 use super::{CUK_CASE_2, resolve, run};
 use crate::simulate::Overrides;
-use crate::simulate::estimator::{Chosen, MOST_MIXED, padded};
+use crate::simulate::estimator::Chosen;
 use crate::simulate::settings::{self, Covariance, Extension};
+use crate::simulate::sizes::{MOST_MIXED, padded};
 use crate::simulate::window::Window;
 use crate::source::Code;
 
@@ -95,7 +96,7 @@ fn padded_square(factor: &SMatrix<f64, 3, 2>) -> SMatrix<f64, MOST_MIXED, MOST_M
 fn padding_changes_no_estimate() {
     let gain = vec![2.0, 3.0];
     let gains = Vector2::new(2.0, 3.0);
-    let covariance = || Covariance { start: vec![4.0, 5.0], forgetting: 0.5 };
+    let covariance = || Covariance { start: vec![4.0, 5.0], forgetting: 0.5, process_noise: None };
     let gradient = Gradient::diagonal(&gains).unwrap();
     let squares = LeastSquares::diagonal(&Vector2::new(4.0, 5.0), 0.5).unwrap();
     let memory = Kreisselmeier::new(&Vector2::new(4.0, 5.0), 0.5).unwrap();
@@ -128,8 +129,9 @@ fn a_window_of_any_length_is_that_of_the_runtime() {
                 }
             };
             let dt = 0.1 + 0.01 * f64::from(k % 3);
-            constant.advance([&side(k), &side(k + 1)], dt);
-            any.advance([&side(k), &side(k + 1)], dt);
+            let sides = [&side(k), &side(k + 1)];
+            constant.take(constant.step(sides, dt));
+            any.take(any.step(sides, dt));
             assert_eq!((constant.regressand(), constant.regressor()), (any.regressand(), any.regressor()));
             if k == 20 {
                 constant.shift(&Vector2::new(1.0, -3.0));

@@ -54,6 +54,22 @@ fn the_usual_panels_and_odd_titles_are_drawn() {
 }
 
 #[test]
+fn units_stand_with_the_axis_or_beside_the_curves() {
+    let drawn = |units: &str| {
+        let text = with(SPRING, "model: spring", &format!("model: spring\nunits: {units}"));
+        let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+        svg.split('<').filter_map(|part| Some(part.split_once('>')?.1)).collect::<String>()
+    };
+    assert!(drawn("{q: m}").contains("Outputs in m"));
+    assert!(!drawn("{v: m/s}").contains("Outputs in"));
+    // The model's own panels without their units: those of the curves, unless one has none.
+    let text = super::CUK.replace(", unit: A", "").replace(", unit: V", "");
+    let svg = figure(&resolve(&text, &Overrides { duration: Some(1e-3), ..Overrides::default() }).unwrap());
+    let said: String = svg.split('<').filter_map(|part| Some(part.split_once('>')?.1)).collect();
+    assert!(said.contains("Estimation errors in A") && !said.contains("reference in"), "{said}");
+}
+
+#[test]
 fn a_curve_of_many_samples_stays_small() {
     // Noise: every span of time has its own extremes.
     let panel =

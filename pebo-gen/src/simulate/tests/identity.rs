@@ -40,8 +40,14 @@ struct Loop {
 }
 
 impl Loop {
+    /// Without re-basing, which gives up the identity at every sample for another, and without the steps of a plant, of
+    /// which no transform knows.
     fn of(text: &str) -> Self {
-        let model = read(text).unwrap();
+        let mut model = read(text).unwrap();
+        model.observer.rebase = None;
+        for course in model.simulation.iter_mut().flat_map(|simulation| &mut simulation.plant) {
+            course.value.truncate(1);
+        }
         let plant = Plant::resolve(&model).unwrap();
         let derivation = Derivation::derive(&plant);
         Self { plant, derivation, model }
@@ -83,8 +89,10 @@ impl Loop {
         let scenario = self.scenario(overrides);
         let (plant, arena, layout) = (&self.plant, &self.plant.arena, &scenario.layout);
         let (extension, moves, start) = self.extension(&scenario.design.settings.chi_0);
-        let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
-        let mut rates: Vec<Expr> = states.iter().map(|s| plant.rates()[s]).collect();
+        let known = plant.rates();
+        let outputs = plant.y.iter().map(|output| output.symbol).filter(|output| known.contains_key(output));
+        let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs).collect();
+        let mut rates: Vec<Expr> = states.iter().map(|state| known[state]).collect();
         rates.extend(moves);
         let outside: Vec<Symbol> = layout.u.clone().chain(layout.signals.clone()).map(|i| layout.symbols[i]).collect();
         let symbols = [vec![time(arena)], states.clone(), extension.clone(), outside].concat();
@@ -93,8 +101,10 @@ impl Loop {
 
         let mut machine = Machine::start(&scenario).unwrap();
         let mut table = vec![0.0; symbols.len()];
-        let measured = 1..=states.len();
-        table[measured.clone()].copy_from_slice(&machine.table[layout.x.start..layout.y.end]);
+        for (state, place) in states.iter().zip(1..) {
+            let position = layout.symbols.iter().position(|symbol| symbol == state).unwrap();
+            table[place] = machine.table[position];
+        }
         table[states.len() + 1..state.end].copy_from_slice(&start);
         let inputs = state.end..state.end + layout.u.len();
         let signals: Vec<_> = (inputs.end..).zip(&scenario.signals).collect();

@@ -5,7 +5,9 @@ mod figure;
 mod flow;
 mod identity;
 mod refusal;
+mod rival;
 mod run;
+mod truth;
 
 use crate::analysis::Derivation;
 use crate::model::Model;

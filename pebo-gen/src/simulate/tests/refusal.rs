@@ -36,6 +36,8 @@ const MISTAKES: &[(&str, &str, &str, Code, &str, &str)] = &[
     (SPRING, "gain: 50", "estimator: least-squares, covariance: [1, 2]", Code::WrongShape, "2 values", "1, 2"),
     (SPRING, "gain: 50", "gain: 50, bounds: {lower: [1, 2]}", Code::WrongShape, "2 values", "1, 2"),
     (SPRING, "gain: 50", "gain: 50, bounds: {lower: 2, upper: 1}", Code::NumberOutOfRange, "unknown 1", "2"),
+    (SPRING, "gain: 50", "gain: 50, within: {lower: [1, 2]}", Code::WrongShape, "2 values", "1, 2"),
+    (SPRING, "gain: 50", "gain: 50, within: {lower: 2, upper: 1}", Code::NumberOutOfRange, "recovered state 1", "2"),
     (SPRING, "filter: 5", "window: 1025", Code::SimulationUnsupported, "1025 samples", "1025"),
     (SPRING, "filter: 5", "window: 1e300", Code::SimulationUnsupported, "1e300 samples", "1e300"),
     (CUK, "d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: d", Code::UnknownName, "`d`", "d"),

@@ -130,6 +130,19 @@ observer: {gain: 1, filter: 5}
 simulation: {duration: 20, step: 0.01, initial: {a: 1, b: -2, q: 0}, control: {omega: 2 + sin(t)}}
 ";
 
+#[test]
+fn estimates_stay_within_what_the_states_are() {
+    let bounded = with(ROTATION, "filter: 5}", "filter: 5, within: {lower: [0.5, -9], upper: [3, -0.5]}}");
+    let (bounded, free) = (run(&bounded, &short(1.0)), run(ROTATION, &short(1.0)));
+    let column = |trace: &Trace, name: &str| trace.column(name).unwrap();
+    for (name, least, greatest) in [("a_hat", 0.5, 3.0), ("b_hat", -9.0, -0.5)] {
+        let (bounded, free) = (column(&bounded, name), column(&free, name));
+        assert!(free.iter().any(|x| !(least..=greatest).contains(x)), "{name} is never beyond");
+        let clamped: Vec<f64> = free.iter().map(|x| x.clamp(least, greatest)).collect();
+        assert_eq!(bounded, clamped);
+    }
+}
+
 /// A motor, whose angle is known modulo its period only.
 const ROTOR: &str = "
 model: rotor

@@ -5,22 +5,24 @@ use nalgebra::{SMatrix, SVector};
 use super::RegressorExtension;
 use crate::decay::Decay;
 use crate::sum::Sum;
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// Kreisselmeier's regressor extension.
 ///
 /// ```text
 /// Q' = -l Q + Phi^T Phi        q' = -l q + Phi^T vartheta        Q eta = q
-/// matrix = Gamma Q / (1 + tr(Gamma Q))        vector = Gamma q / (1 + tr(Gamma Q))
+/// matrix = W Q        vector = W q        W = diag(1/(1/gamma_i + Q_ii))
 /// ```
 ///
 /// Holds when: always, `eta` constant. `Q` is positive definite once the last `1/l` seconds were exciting; with `l = 0`
 /// it remembers for ever, and interval excitation suffices. After a jump of `eta` the two sides disagree by `e^(-l t)`.
 ///
-/// Method: exact for the regressor held over the step; the normalisation keeps the determinant from overflow and makes
-/// it free of units.
+/// Method: exact for the regressor held over the step. Each row is divided by its own entry of the diagonal, so the
+/// determinant is that of the correlations: between 0 and 1 (Hadamard's inequality), the same in any units of the
+/// unknowns, and 1 where each unknown is seen by itself, however many there are.
 ///
-/// Units of `Gamma`: as in [`Gradient`](crate::Gradient); it says at which `Q` there is information enough.
+/// Units of `gamma_i`: as in [`Gradient`](crate::Gradient); it says at which `Q_ii` there is information enough: well
+/// above `1/gamma_i`.
 ///
 /// Source: Kreisselmeier, *Adaptive observers with exponential rate of convergence*, IEEE TAC, 1977; its
 /// use in DREM: Aranovskiy, Ushirobira, Korotina, Vedyakov, *On preserving-excitation properties of Kreisselmeier's
@@ -38,9 +40,9 @@ impl<S: Real, const NE: usize> Kreisselmeier<S, NE> {
     /// The diagonal of `Gamma`, and the rate `l` in 1/s at which the past is forgotten; 0 forgets nothing.
     ///
     /// # Errors
-    /// [`Fault::Gain`] unless each gain is positive and finite and the rate finite and not negative.
+    /// [`Fault::Gain`] unless each gain and its inverse is positive and finite and the rate finite and not negative.
     pub fn new(gains: &SVector<S, NE>, forgetting: S) -> Result<Self, Fault> {
-        if gains.iter().all(|&gain| gain > S::zero() && Real::is_finite(gain)) {
+        if gains.iter().all(|&gain| gain > S::zero() && Real::is_finite(gain) && Real::is_finite(S::one() / gain)) {
             let (gramian, correlation) = (Sum::new(SMatrix::zeros()), Sum::new(SVector::zeros()));
             Ok(Self { gains: *gains, forgetting: Decay::new(forgetting)?, gramian, correlation })
         } else {
@@ -48,11 +50,9 @@ impl<S: Real, const NE: usize> Kreisselmeier<S, NE> {
         }
     }
 
-    /// `1/(1 + tr(Gamma Q))`.
-    fn scale(&self) -> S {
-        let trace =
-            self.gains.iter().enumerate().fold(S::zero(), |sum, (i, &gain)| sum + gain * self.gramian.value()[(i, i)]);
-        S::one() / (S::one() + trace)
+    /// `1/(1/gamma_i + Q_ii)`.
+    fn row_weights(&self) -> SVector<S, NE> {
+        self.gains.zip_map(&self.gramian.value().diagonal(), |gain, entry| S::one() / (S::one() / gain + entry))
     }
 }
 
@@ -68,17 +68,21 @@ impl<S: Real, const NR: usize, const NE: usize> RegressorExtension<S, NR, NE> fo
     }
 
     fn matrix(&self) -> SMatrix<S, NE, NE> {
-        let scale = self.scale();
-        SMatrix::from_fn(|i, j| self.gramian.value()[(i, j)] * (self.gains[i] * scale))
+        let weights = self.row_weights();
+        SMatrix::from_fn(|i, j| self.gramian.value()[(i, j)] * weights[i])
     }
 
     fn vector(&self) -> SVector<S, NE> {
-        let scale = self.scale();
-        self.correlation.value().zip_map(&self.gains, |entry, gain| entry * (gain * scale))
+        self.correlation.value().component_mul(&self.row_weights())
     }
 
     fn shift(&mut self, shift: &SVector<S, NE>) {
         self.correlation.add(&(self.gramian.value() * shift));
+    }
+
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.gramian.add(&turn.of_gramian(self.gramian.value()));
+        self.correlation.add(&turn.of_correlation(self.correlation.value()));
     }
 
     fn reset(&mut self) {
@@ -87,7 +91,6 @@ impl<S: Real, const NR: usize, const NE: usize> RegressorExtension<S, NR, NE> fo
     }
 
     fn is_finite(&self) -> bool {
-        // A trace that overflows would make all of the regression 0.
-        self.gramian.is_finite() && self.correlation.is_finite() && self.scale() > S::zero()
+        self.gramian.is_finite() && self.correlation.is_finite()
     }
 }

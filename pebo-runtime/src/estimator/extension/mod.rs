@@ -8,12 +8,13 @@ pub use response::Response;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Fault, Real};
+use crate::{Fault, Real, Turn};
 
 /// A regressor extension: keeps a square regression `vector = matrix * eta` that follows from all data so far.
 ///
-/// `matrix` has no unit and eigenvalues between 0 and 1, 0 before any excitation; then its determinant is a measure of
-/// excitation of the same kind.
+/// The determinant of `matrix` is a measure of excitation: it has no unit and is between 0, before any excitation, and
+/// about 1, where every unknown is seen well by itself. An entry of `matrix` has the unit of its row's unknown over that of its
+/// column's.
 pub trait RegressorExtension<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Advances by `dt` seconds, at whose end `regressand = regressor * eta` holds.
     ///
@@ -29,6 +30,9 @@ pub trait RegressorExtension<S: Real, const NR: usize, const NE: usize>: Clone {
 
     /// Follows a move of the unknown from `eta` to `eta + shift`.
     fn shift(&mut self, shift: &SVector<S, NE>);
+
+    /// Follows a change of the unknown from `eta` to `T eta`, see [`Estimator::turn`](crate::Estimator::turn).
+    fn turn(&mut self, turn: &Turn<S, NE>);
 
     /// Starts again with no memory of the past.
     fn reset(&mut self);

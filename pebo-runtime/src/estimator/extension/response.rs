@@ -4,8 +4,8 @@ use nalgebra::{SMatrix, SVector};
 
 use super::RegressorExtension;
 use crate::estimator::Estimator;
-use crate::sum::{Sum, all_finite};
-use crate::{Fault, Real};
+use crate::sum::Sum;
+use crate::{Fault, Real, Turn};
 
 /// The response of an estimator as an extended regression.
 ///
@@ -22,9 +22,9 @@ use crate::{Fault, Real};
 /// [`NormalisedGradient`](crate::NormalisedGradient), [`LeastSquares`](crate::LeastSquares) are; a projected one is
 /// not) and `eta` is constant. `I - F` is regular as soon as the data determine `eta` (interval excitation).
 ///
-/// Method: column `i` of `I - F` is the estimate of the same estimator, started at 0, when the unknown is the unit
-/// vector
-/// `i`: no identity is subtracted, so little excitation keeps all its digits. The cost is that of `NE + 1` estimators.
+/// Method: column `i` of `I - F` is the estimate of the same estimator, started at 0 with the same memory, when the
+/// unknown is the unit vector `i`: no identity is subtracted, so little excitation keeps all its digits. The cost is that
+/// of `NE + 1` estimators.
 ///
 /// Source: Ortega, Romero, Aranovskiy, *A new least squares parameter estimator for nonlinear regression equations with
 /// relaxed excitation conditions and forgetting factor*, Systems & Control Letters, 2022 (least squares; Proposition 1
@@ -46,7 +46,7 @@ pub struct Response<S: Real, E, const NR: usize, const NE: usize> {
     /// Copies that estimate the unit vectors from 0.
     #[cfg_attr(feature = "serde", serde(with = "crate::array"))]
     units: [E; NE],
-    /// The copies before any data.
+    /// The estimator without any memory, at 0.
     fresh: E,
 }
 
@@ -59,13 +59,18 @@ where
     /// # Errors
     /// [`Fault::Start`] unless the estimator's state is finite.
     pub fn new(estimator: E) -> Result<Self, Fault> {
-        let start = estimator.estimate();
-        if !all_finite(&start) || !estimator.is_finite() {
+        if !estimator.is_finite() {
             return Err(Fault::Start);
         }
+        let start = estimator.estimate();
         let mut fresh = estimator;
         fresh.reset(&SVector::zeros());
-        Ok(Self { start: Sum::new(start), estimator, units: [fresh; NE], fresh })
+        // What it has seen so far decides how it takes what is to come: only the estimate goes to 0. The second shift
+        // takes what a sum carries beyond its rounded value.
+        let mut unit = estimator;
+        unit.shift(&-start);
+        unit.shift(&-unit.estimate());
+        Ok(Self { start: Sum::new(start), estimator, units: [unit; NE], fresh })
     }
 
     /// The estimator.
@@ -101,6 +106,20 @@ where
     fn shift(&mut self, shift: &SVector<S, NE>) {
         self.start.add(shift);
         self.estimator.shift(shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<S, NE>) {
+        self.start.add(&turn.of_unknown(self.start.value()));
+        self.estimator.turn(turn);
+        // I - F becomes T (I - F) T^-1: each copy turns, and its estimate is then moved to the column of its unit vector.
+        let before = self.matrix();
+        let turned = before + turn.of_map(&before);
+        for (unit, column) in self.units.iter_mut().zip(turned.column_iter()) {
+            unit.turn(turn);
+            unit.shift(&(column - unit.estimate()));
+        }
+        self.fresh.turn(turn);
+        self.fresh.reset(&SVector::zeros());
     }
 
     fn reset(&mut self) {

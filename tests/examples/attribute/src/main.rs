@@ -53,7 +53,7 @@ fn error() -> Result<f64, Fault> {
         // The same functions are the simulated plant.
         x.p += dt * pendulum::f_x(y, u).p;
         y.q += dt * pendulum::f_y(x).q;
-        estimate = observer.step(&SVector::from([y.q]), &SVector::from([u.tau]), dt)?[0];
+        estimate = observer.step(y, u, dt)?.p;
     }
     Ok(estimate - x.p)
 }

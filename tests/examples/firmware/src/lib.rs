@@ -28,7 +28,7 @@ mod tests {
     #[test]
     fn a_sample_is_taken() {
         let mut observer = observer().expect("positive gains");
-        let estimate = observer.step(&SVector::from([10.0, -12.0]), &SVector::from([0.68]), 1e-5);
-        assert_eq!(estimate, Ok(SVector::zeros()));
+        let estimate = observer.step(cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.68 }, 1e-5);
+        assert_eq!(estimate, Ok(cuk::X { i1: 0.0, i3: 0.0 }));
     }
 }

@@ -5,7 +5,7 @@
 //! magnitudes never grows where no column has a positive sum. It dies out if one loses more than it feeds: the discs of
 //! Gershgorin touch the imaginary axis at zero alone, and zero is no eigenvalue then (Taussky 1949).
 
-use super::Fate;
+use super::fate::Fate;
 use crate::cas::field::{Field, Fraction, Obstacle};
 
 pub(super) fn fate(field: &Field<'_>, entries: &[Vec<Fraction>], block: &[usize]) -> Result<Fate, Obstacle> {
@@ -15,15 +15,15 @@ pub(super) fn fate(field: &Field<'_>, entries: &[Vec<Fraction>], block: &[usize]
         for &to in block {
             let entry = &entries[to][from];
             // One that is not zero must be positive for all values of the parameters: else the components may be apart.
-            if to != from && !entry.is_zero() && !field.is_positive(entry)? {
+            if to != from && !entry.is_zero() && !field.signs().is_positive(entry)? {
                 return Ok(Fate::Open);
             }
             gain = field.add(&gain, entry)?;
         }
         let loss = gain.opposite();
-        if field.is_positive(&loss)? {
+        if field.signs().is_positive(&loss)? {
             fate = Fate::Fades;
-        } else if !field.is_not_negative(&loss)? {
+        } else if !field.signs().is_not_negative(&loss)? {
             return Ok(Fate::Open);
         }
     }

@@ -43,11 +43,11 @@ impl Field<'_> {
         Ok((square == poly.scale(&multiple)).then_some((root, multiple)))
     }
 
-    /// The cosine and sine kernels of the angles that occur.
+    /// The cosine and sine kernels of the angles of which both occur: over one alone the relation hides no square.
     fn angles_in(&self, poly: &Poly) -> Vec<(u32, u32)> {
         let count = self.round.kernels.borrow().count();
         let pairs = (0..count).filter_map(|cos| Some((cos, self.sine_beside(cos)?)));
-        pairs.filter(|(cos, sin)| poly.degree(*cos) > 0 || poly.degree(*sin) > 0).collect()
+        pairs.filter(|(cos, sin)| poly.degree(*cos) > 0 && poly.degree(*sin) > 0).collect()
     }
 
     /// The numerator over `(1 + t^2)^(2 half)`, with t in place of the sine.

@@ -238,6 +238,26 @@ mod tests {
     use crate::cas::Arena;
 
     #[test]
+    fn an_argument_is_the_sum_of_its_pieces() {
+        use crate::cas::facts::Facts;
+
+        let arena = Arena::new();
+        let y = arena.variable("y");
+        let below = arena.add(arena.scale(y, &Rational::from(3)), arena.one());
+        let cases = [
+            (arena.add(arena.mul(y, y), y), vec!["y^2", "y"]),
+            (arena.div(arena.mul(y, y), below), vec!["y/3", "-1/9", "1/(9*(3*y + 1))"]),
+            (arena.div(arena.one(), below), vec!["1/(3*y + 1)"]),
+        ];
+        for (argument, expected) in cases {
+            let field = Field::over(&arena, &Facts::new(), &[argument]).unwrap();
+            let pieces = field.pieces(&field.fraction(argument).unwrap()).unwrap();
+            let shown: Vec<String> = pieces.iter().map(|piece| arena.print(field.show(piece))).collect();
+            assert_eq!(shown, expected);
+        }
+    }
+
+    #[test]
     fn units_become_as_fine_as_their_multiples_ask() {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));

@@ -142,7 +142,7 @@ fn minimal_polynomial(variable: u32, m: u32, field: &Field<'_>) -> Result<Poly, 
 }
 
 fn is_residue(k: u32, p: u32) -> bool {
-    (1..p).any(|i| u64::from(i) * u64::from(i) % u64::from(p) == u64::from(k))
+    (1..=p / 2).any(|i| u64::from(i) * u64::from(i) % u64::from(p) == u64::from(k))
 }
 
 fn lcm(a: u32, b: u32) -> Option<u32> {
@@ -194,12 +194,36 @@ mod tests {
                 }),
             )
         };
-        for (n, expected) in
-            [(0, "0"), (2, "1/2"), (3, "sqrt(2)/2"), (4, "sqrt(3)/2"), (6, "1"), (8, "sqrt(3)/2"), (14, "-1/2")]
-        {
+        for (n, expected) in [
+            (0, "0"),
+            (1, "sqrt(2)*(sqrt(3) - 1)/4"),
+            (2, "1/2"),
+            (3, "sqrt(2)/2"),
+            (4, "sqrt(3)/2"),
+            (5, "sqrt(2)*(sqrt(3) + 1)/4"),
+            (6, "1"),
+            (8, "sqrt(3)/2"),
+            (14, "-1/2"),
+        ] {
             assert_eq!(sine(n), (expected.to_owned(), false), "{n}");
         }
         assert!((1..24).all(|n| !sine(n).1), "no sine or cosine is left");
+    }
+
+    #[test]
+    fn what_is_shown_of_a_multiple_of_pi_has_its_value() {
+        let arena = Arena::new();
+        for (n, d) in [(1, 7), (2, 5), (3, 8), (5, 9)] {
+            let angle = arena.scale(arena.pi(), &Rational::new(n, d).unwrap());
+            for function in [Function::Sin, Function::Cos] {
+                let call = arena.call(function, &[angle]);
+                let field = Field::over(&arena, &Facts::new(), &[call]).unwrap();
+                let shown = field.show(&field.fraction(call).unwrap());
+                let difference = arena.sub(shown, call);
+                let apart = arena.separated_from_zero(difference, &crate::cas::enclosure::Point::new());
+                assert!(apart.is_none(), "{n}/{d}: {}", arena.print(shown));
+            }
+        }
     }
 
     #[test]

@@ -238,4 +238,14 @@ mod tests {
         let squares = field.add(&field.pow(&half_sin, 2).unwrap(), &field.pow(&half_cos, 2).unwrap()).unwrap();
         assert!(squares.is_one());
     }
+
+    #[test]
+    fn angles_with_the_same_sine_and_cosine_may_differ_by_a_turn() {
+        let arena = Arena::new();
+        let field = Field::over(&arena, &Facts::new(), &[]).unwrap();
+        let half_turn = (Fraction::zero(), negated(&Fraction::one()));
+        let guess = Guess { own: 1, shares: Vec::new(), twelfths: 12 };
+        let is_half_turn = |n: i32| field.holds(&guess, &half_turn, &Range::point(ratio(n, 1)), &[]).unwrap();
+        assert!(is_half_turn(1) && !is_half_turn(-1) && !is_half_turn(3));
+    }
 }

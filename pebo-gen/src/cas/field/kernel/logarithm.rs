@@ -7,12 +7,11 @@
 use crate::cas::expr::Node;
 use crate::cas::facts::Relation as Compared;
 use crate::cas::function::Function;
-use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 
-use crate::cas::field::fraction::{Fraction, primitive};
-use crate::cas::field::sign::Sign;
+use crate::cas::field::fraction::Fraction;
+use crate::cas::field::kernel::elements::Unsigned;
 use crate::cas::field::{Field, Obstacle};
 
 impl Field<'_> {
@@ -21,50 +20,28 @@ impl Field<'_> {
         if argument.is_zero() {
             return Err(Obstacle::DivisionByZero);
         }
-        let mut total = Fraction::zero();
-        let mut negative = false;
-        let mut unknown: Vec<(Poly, i64)> = Vec::new();
-        let add = |total: &Fraction, log: &Fraction, times: i64| -> Result<Fraction, Obstacle> {
-            self.add(total, &self.scale(log, &Rational::from(times))?)
+        let with = |total: &Fraction, part: &Poly, times: i64| {
+            self.add(total, &self.scale(&self.log_of_part(part)?, &Rational::from(times))?)
         };
-        for (poly, direction) in [(&argument.num, 1), (&argument.den, -1)] {
-            let (content, rest) = primitive(poly);
-            for (prime, times) in prime_powers(&content) {
-                let log = self.log_kernel(&Poly::constant(prime));
-                total = add(&total, &log, direction * i64::from(times))?;
-            }
-            let product = self.product_of(&rest)?;
-            negative ^= product.negative;
-            for (prime, times) in prime_powers(&product.divisor) {
-                let log = self.log_kernel(&Poly::constant(prime));
-                total = add(&total, &log, -direction * i64::from(times))?;
-            }
-            for (part, times) in product.powers {
-                let times = direction * i64::from(times);
-                match self.sign_of_part(&part)? {
-                    Some(sign) => {
-                        let below = sign == Sign::Negative;
-                        negative ^= below && times % 2 != 0;
-                        total = add(&total, &self.log_of_part(&if below { -&part } else { part })?, times)?;
-                    }
-                    None => unknown.push((part, times)),
-                }
-            }
-        }
+        let mut total = Fraction::zero();
+        let Unsigned { negative, parts: unknown } = self.elements_of(argument, &mut |part, times| {
+            total = with(&total, part, times)?;
+            Ok(())
+        })?;
         let odd: Vec<usize> = (0..unknown.len()).filter(|&index| unknown[index].1 % 2 != 0).collect();
         if odd.is_empty() && negative {
             let shown = self.arena.print(self.show(argument));
             return Err(Obstacle::Kernel(format!("the logarithm of {shown}, which is not positive")));
         }
         for (index, (part, times)) in unknown.iter().enumerate() {
-            let log = if odd == [index] {
+            let size = if odd == [index] {
                 let size = if negative { -part } else { part.clone() };
-                self.learn_from_existence(&size, Compared::Positive)?;
-                self.log_of_part(&size)?
+                self.signs().learn_from_existence(&size, Compared::Positive)?;
+                size
             } else {
-                self.log_of_part(&self.size(part)?.num)?
+                self.size(part)?.num
             };
-            total = add(&total, &log, *times)?;
+            total = with(&total, &size, *times)?;
         }
         Ok(total)
     }
@@ -95,26 +72,28 @@ impl Field<'_> {
     }
 }
 
-/// The prime factors of a positive integer, small ones by trial; what remains counts as one.
-pub(in crate::cas::field) fn prime_powers(number: &Integer) -> Vec<(Integer, u32)> {
-    const LARGEST: i64 = 1000;
-    let mut rest = number.abs();
-    let mut powers = Vec::new();
-    let mut candidate = 2;
-    while candidate <= LARGEST && !rest.is_one() && !rest.is_zero() {
-        let prime = Integer::from(candidate);
-        let mut times = 0;
-        while let Some(quotient) = rest.div_exact(&prime) {
-            rest = quotient;
-            times += 1;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+    use crate::cas::facts::Facts;
+
+    /// Where x^2*y has a logarithm, y is positive, and nothing is known of x.
+    #[test]
+    fn a_single_odd_part_is_positive() {
+        let arena = Arena::new();
+        let [x, y, z] = ["x", "y", "z"].map(|name| arena.variable(name));
+        let square = arena.mul(x, x);
+        for (argument, shown, learned) in [
+            (square, "2*log(abs(x))", 0),
+            (arena.mul(square, y), "2*log(abs(x)) + log(y)", 1),
+            (arena.neg(arena.mul(square, y)), "2*log(abs(x)) + log(-y)", 1),
+            (arena.product([square, y, z]), "2*log(abs(x)) + log(abs(y)) + log(abs(z))", 0),
+        ] {
+            let field = Field::over(&arena, &Facts::new(), &[x, y, z]).unwrap();
+            let log = field.logarithm(&field.fraction(argument).unwrap()).unwrap();
+            assert_eq!(arena.print(field.show(&log)), shown);
+            assert_eq!(field.signs().count_learned(), learned, "{shown}");
         }
-        if times > 0 {
-            powers.push((prime, times));
-        }
-        candidate += 1;
     }
-    if !rest.is_one() && !rest.is_zero() {
-        powers.push((rest, 1));
-    }
-    powers
 }

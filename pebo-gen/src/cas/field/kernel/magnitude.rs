@@ -18,7 +18,7 @@ impl Field<'_> {
 
     /// `|poly|`: by its sign where that is known, else part by part.
     fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
-        match self.sign(poly)? {
+        match self.signs().of_polynomial(poly)? {
             Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
             Some(_) => return Ok(Fraction::polynomial(-poly)),
             None => {}
@@ -35,12 +35,12 @@ impl Field<'_> {
 
     /// `|part|`: by its sign where that is known, else a kernel whose square is known.
     pub(in crate::cas::field) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
-        match self.sign_of_part(part)? {
+        match self.signs().of_part(part)? {
             Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(part.clone())),
             Some(Sign::Negative) => return Ok(Fraction::polynomial(-part)),
             _ => {}
         }
-        self.round.signs.undecided.borrow_mut().insert(part.clone());
+        self.signs().leave_open(part);
         let kernel = self.arena.call(Function::Abs, &[self.show_polynomial(part)]);
         let value = self.reduce(&part.mul(part, self.limit())?)?;
         Ok(self.entered(kernel, Some(Relation { degree: 2, value }), false))

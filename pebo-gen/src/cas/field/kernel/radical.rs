@@ -15,9 +15,9 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::{Rational, half};
 
-use crate::cas::field::fraction::{Fraction, primitive};
+use crate::cas::field::fraction::Fraction;
 use crate::cas::field::kernel::Relation;
-use crate::cas::field::kernel::logarithm::prime_powers;
+use crate::cas::field::kernel::elements::Unsigned;
 use crate::cas::field::sign::Sign;
 use crate::cas::field::{Family, Field, Obstacle};
 
@@ -37,33 +37,10 @@ impl Field<'_> {
             return if exponent.is_negative() { Err(Obstacle::DivisionByZero) } else { Ok(Fraction::zero()) };
         }
         let mut total = Fraction::one();
-        let mut negative = false;
-        let mut unknown: Vec<(Poly, i64)> = Vec::new();
-        for (poly, direction) in [(&base.num, 1), (&base.den, -1)] {
-            let (content, rest) = primitive(poly);
-            for (prime, times) in prime_powers(&content) {
-                let share = &Rational::from(direction * i64::from(times)) * exponent;
-                total = self.mul(&total, &self.power_of_number(&prime, &share)?)?;
-            }
-            let product = self.product_of(&rest)?;
-            negative ^= product.negative;
-            for (prime, times) in prime_powers(&product.divisor) {
-                let share = &Rational::from(-direction * i64::from(times)) * exponent;
-                total = self.mul(&total, &self.power_of_number(&prime, &share)?)?;
-            }
-            for (part, times) in product.powers {
-                let times = direction * i64::from(times);
-                match self.sign_of_part(&part)? {
-                    Some(sign) => {
-                        let below = sign == Sign::Negative;
-                        negative ^= below && times % 2 != 0;
-                        let size = if below { -&part } else { part };
-                        total = self.mul(&total, &self.power_of(&size, &(&Rational::from(times) * exponent))?)?;
-                    }
-                    None => unknown.push((part, times)),
-                }
-            }
-        }
+        let Unsigned { negative, parts: unknown } = self.elements_of(base, &mut |part, times| {
+            total = self.mul(&total, &self.power_of(part, &(&Rational::from(times) * exponent))?)?;
+            Ok(())
+        })?;
         if unknown.is_empty() {
             return if negative { Err(self.negative_root(base)) } else { Ok(total) };
         }
@@ -104,7 +81,7 @@ impl Field<'_> {
         if let [(part, times)] = odd.as_slice() {
             // The part itself has the sign that the root needs.
             let size = if negative { -part } else { part.clone() };
-            self.learn_from_existence(&size, Compared::NonNegative)?;
+            self.signs().learn_from_existence(&size, Compared::NonNegative)?;
             let power = self.power_of(&size, &(&Rational::from(*times) * exponent))?;
             return self.mul(&total, &power);
         }
@@ -121,9 +98,9 @@ impl Field<'_> {
             value = value.mul(&part.pow(times, self.limit())?, self.limit())?;
         }
         for (part, _) in &powers {
-            self.round.signs.undecided.borrow_mut().insert(part.clone());
+            self.signs().leave_open(part);
         }
-        self.learn_from_existence(&value, Compared::NonNegative)?;
+        self.signs().learn_from_existence(&value, Compared::NonNegative)?;
         if let Some(root) = self.over_earlier_roots(negative, &powers, degree)? {
             return Ok(root);
         }
@@ -173,11 +150,6 @@ impl Field<'_> {
             }
         }
         Ok(None)
-    }
-
-    /// `prime ^ exponent`
-    fn power_of_number(&self, prime: &Integer, exponent: &Rational) -> Result<Fraction, Obstacle> {
-        self.power_of(&Poly::constant(prime.clone()), exponent)
     }
 
     /// `|part| ^ exponent`
@@ -254,7 +226,7 @@ impl Field<'_> {
             }
             let squares = &a.mul(&a, self.limit())? - &b.mul(&b, self.limit())?.mul(&c, self.limit())?;
             let Some(d) = self.reduce(&squares)?.sqrt_exact(self.limit())? else { continue };
-            let d = match self.sign(&d)? {
+            let d = match self.signs().of_polynomial(&d)? {
                 Some(Sign::Negative) => -&d,
                 _ => d,
             };
@@ -264,14 +236,14 @@ impl Field<'_> {
             }
             let mut roots = Vec::new();
             for value in &halves {
-                if !self.sign(value)?.is_some_and(Sign::is_positive_or_zero) {
+                if !self.signs().of_polynomial(value)?.is_some_and(Sign::is_positive_or_zero) {
                     break;
                 }
                 roots.push(self.root(&self.scale(&Fraction::polynomial(value.clone()), &half())?, &half())?);
             }
             let [first, second] = roots.as_slice() else { continue };
-            match self.sign(&b)? {
-                Some(Sign::Negative) if self.sign(&d)?.is_some_and(Sign::is_positive_or_zero) => {
+            match self.signs().of_polynomial(&b)? {
+                Some(Sign::Negative) if self.signs().of_polynomial(&d)?.is_some_and(Sign::is_positive_or_zero) => {
                     return Ok(Some(self.sub(first, second)?));
                 }
                 Some(sign) if sign.is_positive_or_zero() => return Ok(Some(self.add(first, second)?)),
@@ -326,8 +298,61 @@ mod tests {
         {
             let root = arena.sqrt(product);
             let field = Field::over(&arena, &Facts::new(), &[root, product]).unwrap();
+            let own = field.fraction(root).unwrap();
+            let square = field.pow(&own, 2).unwrap();
+            assert_eq!(square, field.fraction(product).unwrap(), "{}", arena.print(product));
+            assert!(arena.print(field.show(&own)).contains("sqrt("), "{}", arena.print(field.show(&own)));
+        }
+    }
+
+    /// Not over two earlier ones that leave a part to an odd power.
+    #[test]
+    fn roots_of_products_are_told_apart_by_their_parts() {
+        let arena = Arena::new();
+        let [w, x, y, z] = ["w", "x", "y", "z"].map(|name| arena.variable(name));
+        let products = [arena.mul(x, y), arena.mul(y, z), arena.mul(x, z), arena.mul(x, w)];
+        let roots = products.map(|product| arena.sqrt(product));
+        let field = Field::over(&arena, &Facts::new(), &roots).unwrap();
+        for (root, product) in roots.into_iter().zip(products) {
             let square = field.pow(&field.fraction(root).unwrap(), 2).unwrap();
             assert_eq!(square, field.fraction(product).unwrap(), "{}", arena.print(product));
+        }
+    }
+
+    /// Else the kernels would be another root of the same, and roots of exponentials.
+    #[test]
+    fn roots_of_kernels_are_powers_of_what_these_are_made_of() {
+        let arena = Arena::new();
+        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+        let mut facts = Facts::new();
+        facts.assume(y, Compared::Positive);
+        let exp = arena.call(Function::Exp, &[x]);
+        let next = arena.add(y, arena.one());
+        let root = arena.sqrt(next);
+        for (inside, shown) in
+            [([exp, arena.mul(exp, y)], "sqrt(y + 1)*exp(x/2)"), ([root, arena.mul(root, y)], "(y + 1)^(3/4)")]
+        {
+            let whole = arena.sqrt(arena.sum(inside));
+            let field = Field::over(&arena, &facts, &[whole]).unwrap();
+            let fraction = field.fraction(whole).unwrap();
+            assert_eq!(arena.print(field.show(&fraction)), shown);
+            assert!(!field.round.finer.get(), "{shown} needs no other kernels");
+        }
+    }
+
+    /// Without a sign being learned of x.
+    #[test]
+    fn an_even_power_has_the_root_of_its_magnitude() {
+        let arena = Arena::new();
+        let x = arena.variable("x");
+        for (power, degree, expected) in
+            [(2, 4, "sqrt(abs(x))"), (6, 4, "abs(x)^(3/2)"), (2, 3, "abs(x)^(2/3)"), (4, 2, "x^2"), (2, 2, "abs(x)")]
+        {
+            let field = Field::over(&arena, &Facts::new(), &[x]).unwrap();
+            let whole = field.pow(&field.fraction(x).unwrap(), power).unwrap();
+            let root = field.root(&whole, &Rational::new(1, degree).unwrap()).unwrap();
+            assert_eq!(arena.print(field.show(&root)), expected);
+            assert_eq!(field.signs().count_learned(), 0);
         }
     }
 

@@ -108,7 +108,7 @@ impl Field<'_> {
         function: Function,
         arguments: &[Expr],
     ) -> Result<Range, Obstacle> {
-        let first = self.sign_of(&self.fraction(arguments[0])?)?;
+        let first = self.signs().of(&self.fraction(arguments[0])?)?;
         let by_sign = |sign: Option<Sign>, positive: Range, zero: Range, negative: Range, any: Range| match sign {
             Some(Sign::Positive) => positive,
             Some(Sign::NonNegative | Sign::Zero) => zero,
@@ -149,7 +149,7 @@ impl Field<'_> {
                     range(-2, false, 2, true),
                 );
                 let second = match arguments.get(1) {
-                    Some(argument) => self.sign_of(&self.fraction(*argument)?)?,
+                    Some(argument) => self.signs().of(&self.fraction(*argument)?)?,
                     None => None,
                 };
                 let by_x = match second {
@@ -164,8 +164,7 @@ impl Field<'_> {
 
     /// The range of an angle by the facts, if they bound it by right angles.
     pub(in crate::cas::field) fn range_of_angle(&self, angle: &Fraction) -> Result<Option<Range>, Obstacle> {
-        self.learn()?;
-        if self.round.signs.facts.borrow().is_empty() {
+        if !self.signs().has_facts()? {
             return Ok(None);
         }
         let Some(low) = self.greatest_bound(angle)? else { return Ok(None) };
@@ -178,7 +177,7 @@ impl Field<'_> {
         let pi = self.fraction(self.arena.pi())?;
         for number in (-2..=1).rev() {
             let bound = self.scale(&pi, &Rational::new(number, 2).unwrap_or(Rational::ZERO))?;
-            match self.sign_of(&self.sub(angle, &bound)?)? {
+            match self.signs().of(&self.sub(angle, &bound)?)? {
                 Some(Sign::Positive) => return Ok(Some((number, false))),
                 Some(Sign::NonNegative | Sign::Zero) => return Ok(Some((number, true))),
                 _ => {}
@@ -216,6 +215,12 @@ mod tests {
     const ABOVE: Option<(Relation, i64)> = Some((Relation::Positive, 1));
     const NOT_BELOW: Option<(Relation, i64)> = Some((Relation::NonNegative, 1));
     const BELOW: Option<(Relation, i64)> = Some((Relation::Positive, -1));
+
+    #[test]
+    fn an_arccosine_is_none_of_more_than_half_a_turn() {
+        let upper = |high: i64| Range::halves((0, true), (high, true)).is_principal(Function::Acos);
+        assert!(upper(1) && upper(2) && !upper(3));
+    }
 
     #[test]
     fn inverse_functions_have_the_ranges_that_their_arguments_leave() {

@@ -3,27 +3,27 @@
 use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 
-use crate::cas::field::sign::Sign;
-use crate::cas::field::{Field, Obstacle};
+use crate::cas::field::Obstacle;
+use crate::cas::field::sign::{Sign, Signs};
 
-impl Field<'_> {
+impl Signs<'_, '_> {
     /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
     /// out.
-    pub(in crate::cas::field) fn sign_by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         const MOST_TERMS: usize = 40;
         const DEEPEST: u32 = 3;
         // Each step asks for the signs of polynomials in one variable less.
-        let depth = self.round.signs.depth.get();
+        let depth = self.known.round.depth.get();
         if poly.term_count() > MOST_TERMS || depth == DEEPEST {
             return Ok(None);
         }
-        self.round.signs.depth.set(depth + 1);
-        let sign = self.sign_as_quadratic(poly);
-        self.round.signs.depth.set(depth);
+        self.known.round.depth.set(depth + 1);
+        let sign = self.as_quadratic(poly);
+        self.known.round.depth.set(depth);
         sign
     }
 
-    fn sign_as_quadratic(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    fn as_quadratic(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         for &variable in poly.variables() {
             // Also in a power of the variable.
             let degree = poly.degree(variable);
@@ -43,18 +43,15 @@ impl Field<'_> {
             if b.is_zero() || c.is_zero() {
                 continue;
             }
-            let Some(upward) = self.sign(&a)? else { continue };
-            if upward == Sign::Negative {
-                (a, c) = (-&a, -&c);
-            }
+            let Some(upward) = self.of_polynomial(&a)? else { continue };
             let four = Integer::from(4);
-            let below = &a.mul(&c, self.limit())?.scale(&four) - &b.mul(&b, self.limit())?;
+            let below = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
             // 4 a poly = (2 a v^k + b)^2 + below; where a is zero, b is not unless below is zero.
-            let least = match self.sign(&below)? {
+            let least = match self.of_polynomial(&below)? {
                 Some(Sign::Positive) => Sign::Positive,
                 Some(Sign::NonNegative | Sign::Zero)
                     if matches!(upward, Sign::Positive | Sign::Negative)
-                        || self.sign(&c)?.is_some_and(Sign::is_positive_or_zero) =>
+                        || self.of_polynomial(&c)?.is_some_and(Sign::is_positive_or_zero) =>
                 {
                     Sign::NonNegative
                 }

@@ -11,65 +11,76 @@ use crate::cas::facts::Relation as Compared;
 use crate::cas::function::Function;
 use crate::cas::poly::Poly;
 
-use crate::cas::field::sign::Sign;
-use crate::cas::field::{Field, Obstacle};
+use crate::cas::field::Obstacle;
+use crate::cas::field::sign::{Sign, Signs};
 
 /// How many facts may be combined to show a sign.
 const MOST_FACTS: usize = 3;
 
-impl Field<'_> {
+impl Signs<'_, '_> {
     /// Takes in the facts that can be used: polynomial ones, those about functions that occur in the
     /// question, and what was learned in earlier rounds.
     ///
     /// Most questions ask for no sign, so this waits for the first that does.
-    pub(in crate::cas::field) fn learn(&self) -> Result<(), Obstacle> {
-        if self.round.signs.read.replace(true) {
+    pub(super) fn learn(&self) -> Result<(), Obstacle> {
+        if self.known.round.read.replace(true) {
             return Ok(());
         }
-        let occurring: BTreeSet<Expr> = self.arena.postorder(&self.roots).into_iter().collect();
-        for (expr, compared) in self.domain.facts.iter() {
-            let foreign = |e: &Expr| match self.arena.node(*e) {
+        let occurring: BTreeSet<Expr> = self.field.arena.postorder(&self.field.roots).into_iter().collect();
+        for (expr, compared) in self.field.domain.facts.iter() {
+            let foreign = |e: &Expr| match self.field.arena.node(*e) {
                 Node::Call(..) => !occurring.contains(e),
                 Node::Product(product) => {
                     product.factors.iter().any(|(_, exponent)| !exponent.is_integer()) && !occurring.contains(e)
                 }
                 _ => false,
             };
-            if self.arena.postorder(&[expr]).iter().any(foreign) {
+            if self.field.arena.postorder(&[expr]).iter().any(foreign) {
                 continue;
             }
             self.learn_sign(expr, compared)?;
         }
-        let learned = self.learned.borrow().clone();
+        let learned = self.known.learned.borrow().clone();
         for (expr, compared) in learned {
             self.learn_sign(expr, compared)?;
         }
         Ok(())
     }
 
+    /// Whether there is any fact to tell a sign by.
+    pub(in crate::cas::field) fn has_facts(&self) -> Result<bool, Obstacle> {
+        self.learn()?;
+        Ok(!self.known.round.facts.borrow().is_empty())
+    }
+
+    /// Something is made of a part because its sign is not known.
+    pub(in crate::cas::field) fn leave_open(&self, part: &Poly) {
+        self.known.round.undecided.borrow_mut().insert(part.clone());
+    }
+
     fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
-        let fraction = self.fraction(expr)?;
+        let fraction = self.field.fraction(expr)?;
         if fraction.den.is_constant() {
-            self.round.signs.facts.borrow_mut().push((fraction.num, compared));
+            self.known.round.facts.borrow_mut().push((fraction.num, compared));
             return Ok(());
         }
         // n/d > 0 has the sign of n*d. But a denominator may have been cleared of roots by a factor that vanishes where
         // the fact holds: then n*d is zero there.
-        let cleared = self.has_relations(&fraction);
+        let cleared = self.field.has_relations(&fraction);
         let compared = match compared {
             Compared::Positive | Compared::NonNegative if cleared => Compared::NonNegative,
             Compared::NonZero if cleared => return Ok(()),
             exact => exact,
         };
-        let product = fraction.num.mul(&fraction.den, self.limit())?;
-        self.round.signs.facts.borrow_mut().push((product, compared));
+        let product = fraction.num.mul(&fraction.den, self.field.limit())?;
+        self.known.round.facts.borrow_mut().push((product, compared));
         Ok(())
     }
 
     /// Learns the sign of what must have it for the expressions to have values. Where something was
     /// already made of an unknown sign, the field starts again.
     pub(in crate::cas::field) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
-        let known = self.sign(poly)?;
+        let known = self.of_polynomial(poly)?;
         let enough = match compared {
             Compared::Positive => known == Some(Sign::Positive),
             _ => known.is_some_and(Sign::is_positive_or_zero),
@@ -77,24 +88,24 @@ impl Field<'_> {
         if enough || known == Some(Sign::Negative) {
             return Ok(());
         }
-        let entry = (self.show_polynomial(poly), compared);
-        if !self.learned.borrow().contains(&entry) {
-            self.learned.borrow_mut().push(entry);
-            if !self.round.signs.undecided.borrow().is_empty() {
-                self.round.finer.set(true);
+        let entry = (self.field.show_polynomial(poly), compared);
+        if !self.known.learned.borrow().contains(&entry) {
+            self.known.learned.borrow_mut().push(entry);
+            if !self.known.round.undecided.borrow().is_empty() {
+                self.field.round.finer.set(true);
             }
         }
-        self.round.signs.facts.borrow_mut().push((poly.clone(), compared));
+        self.known.round.facts.borrow_mut().push((poly.clone(), compared));
         Ok(())
     }
 
     /// As a positive combination of facts plus what is not negative, or the negation of that; also after
     /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
-    pub(in crate::cas::field) fn sign_by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         let facts = self.facts_about(poly);
         let mut found = None;
-        for form in [Some(poly.clone()), self.with_sines(poly)?].into_iter().flatten() {
-            if let Some(sign) = self.plain_sign(&form) {
+        for form in [Some(poly.clone()), self.field.with_sines(poly)?].into_iter().flatten() {
+            if let Some(sign) = self.by_terms(&form) {
                 return Ok(Some(sign));
             }
             match self.above_facts(&form, &facts, MOST_FACTS) {
@@ -112,9 +123,9 @@ impl Field<'_> {
 
     /// The facts, and that no sine or cosine exceeds one.
     fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Compared)> {
-        let mut facts = self.round.signs.facts.borrow().clone();
+        let mut facts = self.known.round.facts.borrow().clone();
         for &variable in poly.variables() {
-            if let Node::Call(Function::Sin | Function::Cos, _) = self.arena.node(self.kernel(variable)) {
+            if let Node::Call(Function::Sin | Function::Cos, _) = self.field.arena.node(self.field.kernel(variable)) {
                 let value = Poly::variable(variable);
                 facts.push((&Poly::one() - &value, Compared::NonNegative));
                 facts.push((&Poly::one() + &value, Compared::NonNegative));
@@ -132,7 +143,7 @@ impl Field<'_> {
                 continue;
             }
             let effort = poly.term_count() * fact.term_count();
-            if self.limit().spend(effort as u64).is_err() {
+            if self.field.limit().spend(effort as u64).is_err() {
                 continue;
             }
             for (monomial, wanted) in fact.terms() {
@@ -142,7 +153,7 @@ impl Field<'_> {
                 }
                 // |wanted| * poly - |present| * fact
                 let rest = &poly.scale(&wanted.abs()) - &fact.scale(&present.abs());
-                let mut sign = self.plain_sign(&rest);
+                let mut sign = self.by_terms(&rest);
                 if sign.is_none() && most > 1 && rest.term_count() <= poly.term_count() {
                     sign = self.above_facts(&rest, facts, most - 1);
                 }

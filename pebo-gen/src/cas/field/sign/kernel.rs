@@ -7,19 +7,18 @@ use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 use crate::cas::rational::half;
 
-use crate::cas::field::Field;
-use crate::cas::field::sign::Sign;
+use crate::cas::field::sign::{Sign, Signs};
 
-impl Field<'_> {
+impl Signs<'_, '_> {
     /// The sign of a kernel: by its function or by a fact about it alone.
-    pub(in crate::cas::field) fn kernel_sign(&self, variable: u32) -> Option<Sign> {
-        if self.round.kernels.borrow()[variable].positive {
+    pub(in crate::cas::field) fn of_kernel(&self, variable: u32) -> Option<Sign> {
+        if self.field.round.kernels.borrow()[variable].positive {
             return Some(Sign::Positive);
         }
-        if let Some(sign) = self.sign_by_function(variable) {
+        if let Some(sign) = self.by_function(variable) {
             return Some(sign);
         }
-        for (fact, compared) in self.round.signs.facts.borrow().iter() {
+        for (fact, compared) in self.known.round.facts.borrow().iter() {
             if fact.variables() != [variable] {
                 continue;
             }
@@ -46,57 +45,55 @@ impl Field<'_> {
 
     /// Roots and absolute values are not negative; a root of something positive is positive. A cosine
     /// is positive where its angle is within the right half, a sine where it is within the upper one.
-    fn sign_by_function(&self, variable: u32) -> Option<Sign> {
+    fn by_function(&self, variable: u32) -> Option<Sign> {
         let (expr, radicand) = {
-            let kernels = self.round.kernels.borrow();
+            let kernels = self.field.round.kernels.borrow();
             let kernel = &kernels[variable];
             (kernel.expr, kernel.relation.as_ref().map(|relation| relation.value.clone()))
         };
-        let root = self.is_plain_root(expr);
-        if !root && !matches!(self.arena.node(expr), Node::Call(..)) {
+        let root = self.field.is_plain_root(expr);
+        if !root && !matches!(self.field.arena.node(expr), Node::Call(..)) {
             return None;
         }
         // A fact may have the kernel itself in it: then its form is all that is known.
         let by_form =
-            (root || matches!(self.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
-        let state = (variable, self.round.signs.facts.borrow().len());
-        let memo = &self.round.signs.memo;
+            (root || matches!(self.field.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
+        let state = (variable, self.known.round.facts.borrow().len());
+        let memo = &self.known.round.memo;
         if let Some(sign) = memo.borrow().answer(state) {
             return *sign;
         }
         if !memo.borrow_mut().begin(variable) {
             return by_form;
         }
-        let sign = self.sign_by_arguments(expr, radicand).or(by_form);
-        memo.borrow_mut().end(state, sign, self.round.signs.depth.get() == 0);
+        let sign = self.by_arguments(expr, radicand).or(by_form);
+        memo.borrow_mut().end(state, sign, self.known.round.depth.get() == 0);
         sign
     }
 
-    fn sign_by_arguments(&self, expr: Expr, radicand: Option<Poly>) -> Option<Sign> {
-        match self.arena.node(expr) {
-            Node::Call(function @ (Function::Sin | Function::Cos), arguments) => {
-                self.sign_by_angle(function, arguments[0])
-            }
+    fn by_arguments(&self, expr: Expr, radicand: Option<Poly>) -> Option<Sign> {
+        match self.field.arena.node(expr) {
+            Node::Call(function @ (Function::Sin | Function::Cos), arguments) => self.by_angle(function, arguments[0]),
             Node::Call(function @ (Function::Asin | Function::Acos | Function::Atan | Function::Atan2), arguments) => {
-                self.range_of_inverse(function, &arguments).ok()?.sign()
+                self.field.range_of_inverse(function, &arguments).ok()?.sign()
             }
             Node::Call(..) => None,
-            _ => self.sign(&radicand?).ok()?.filter(|sign| *sign == Sign::Positive),
+            _ => self.of_polynomial(&radicand?).ok()?.filter(|sign| *sign == Sign::Positive),
         }
     }
 
     /// The sign of a sine or cosine by the range of its angle.
-    fn sign_by_angle(&self, function: Function, angle: Expr) -> Option<Sign> {
-        if self.round.signs.facts.borrow().is_empty() {
+    fn by_angle(&self, function: Function, angle: Expr) -> Option<Sign> {
+        if self.known.round.facts.borrow().is_empty() {
             return None;
         }
-        let right = self.scale(&self.fraction(self.arena.pi()).ok()?, &half()).ok()?;
-        let angle = self.fraction(angle).ok()?;
+        let right = self.field.scale(&self.field.fraction(self.field.arena.pi()).ok()?, &half()).ok()?;
+        let angle = self.field.fraction(angle).ok()?;
         // From the middle of where the function is positive.
-        let angle = if function == Function::Sin { self.sub(&angle, &right).ok()? } else { angle };
+        let angle = if function == Function::Sin { self.field.sub(&angle, &right).ok()? } else { angle };
         let mut strict = true;
-        for distance in [self.sub(&right, &angle).ok()?, self.add(&right, &angle).ok()?] {
-            match self.sign_of(&distance).ok()?? {
+        for distance in [self.field.sub(&right, &angle).ok()?, self.field.add(&right, &angle).ok()?] {
+            match self.of(&distance).ok()?? {
                 Sign::Positive => {}
                 Sign::NonNegative => strict = false,
                 _ => return None,
@@ -110,13 +107,37 @@ impl Field<'_> {
     pub fn never_zero(&self, poly: &Poly) -> bool {
         let never = |variable: &u32| {
             let (positive, radicand) = {
-                let kernel = &self.round.kernels.borrow()[*variable];
-                let root = kernel.relation.as_ref().filter(|_| self.is_plain_root(kernel.expr));
+                let kernel = &self.field.round.kernels.borrow()[*variable];
+                let root = kernel.relation.as_ref().filter(|_| self.field.is_plain_root(kernel.expr));
                 (kernel.positive, root.map(|relation| relation.value.clone()))
             };
-            let rooted = |radicand: Poly| self.sign(&radicand).is_ok_and(|sign| sign == Some(Sign::Positive));
+            let rooted = |radicand: Poly| self.of_polynomial(&radicand).is_ok_and(|sign| sign == Some(Sign::Positive));
             positive || radicand.is_some_and(rooted)
         };
         poly.term_count() == 1 && poly.variables().iter().all(never)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::facts::Facts;
+    use crate::cas::field::Field;
+    use crate::cas::{Arena, Expr};
+
+    #[test]
+    fn exponentials_and_roots_of_what_is_positive_are_zero_nowhere() {
+        let arena = Arena::new();
+        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+        let mut facts = Facts::new();
+        facts.assume(x, Compared::Positive);
+        let exp = arena.call(Function::Exp, &[y]);
+        let never = |expr: Expr| {
+            let field = Field::over(&arena, &facts, &[expr]).unwrap();
+            field.signs().never_zero(field.fraction(expr).unwrap().numerator())
+        };
+        assert!(never(arena.number(2)) && never(exp) && never(arena.mul(exp, arena.sqrt(x))));
+        assert!(!never(y) && !never(arena.sqrt(y)) && !never(arena.mul(exp, y)));
+        assert!(!never(arena.sub(exp, arena.one())), "a sum may vanish");
     }
 }

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use crate::cas::facts::Relation as Compared;
 use crate::cas::poly::Poly;
 
-use crate::cas::field::sign::{Sign, sign_of_terms};
-use crate::cas::field::{Field, Obstacle};
+use crate::cas::field::Obstacle;
+use crate::cas::field::sign::{Sign, Signs, sign_of_terms};
 
 /// How many ways of shifting are tried.
 const MOST_TRIES: u32 = 12;
@@ -22,13 +22,13 @@ const MOST_DEGREE: u64 = 12;
 /// Variables that stand for a distance from a bound, with the sign of that.
 type Distances = BTreeMap<u32, Sign>;
 
-impl Field<'_> {
+impl Signs<'_, '_> {
     /// The sign after variables are measured from their bounds.
-    pub(in crate::cas::field) fn sign_by_shift(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+    pub(in crate::cas::field) fn by_shift(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         if poly.term_count() > MOST_TERMS || poly.total_degree() > MOST_DEGREE {
             return Ok(None);
         }
-        let facts = self.round.signs.facts.borrow().clone();
+        let facts = self.known.round.facts.borrow().clone();
         let mut tries = MOST_TRIES;
         self.shifted(poly, &facts, &Distances::new(), &mut tries)
     }
@@ -56,7 +56,7 @@ impl Field<'_> {
                 let mut distances = distances.clone();
                 let distance = if *compared == Compared::Positive { Sign::Positive } else { Sign::NonNegative };
                 distances.insert(variable, distance);
-                let of = |v: u32| distances.get(&v).copied().or_else(|| self.kernel_sign(v));
+                let of = |v: u32| distances.get(&v).copied().or_else(|| self.of_kernel(v));
                 let mut sign = sign_of_terms(&moved, of);
                 if sign.is_none() && moved.term_count() <= 4 * MOST_TERMS {
                     sign = self.shifted(&moved, facts, &distances, tries)?;
@@ -88,8 +88,11 @@ impl Field<'_> {
         let degree = poly.degree(variable);
         let mut total = Poly::zero();
         for (power, coefficient) in poly.coefficients_in(variable) {
-            let scale = Poly::constant(slope.abs()).pow(degree - power, self.limit())?;
-            let term = value.pow(power, self.limit())?.mul(&coefficient, self.limit())?.mul(&scale, self.limit())?;
+            let scale = Poly::constant(slope.abs()).pow(degree - power, self.field.limit())?;
+            let term = value
+                .pow(power, self.field.limit())?
+                .mul(&coefficient, self.field.limit())?
+                .mul(&scale, self.field.limit())?;
             total = &total + &term;
         }
         Ok(Some(total))
@@ -217,7 +220,7 @@ mod tests {
             let question = question(&arena, symbols);
             let field = Field::over(&arena, &assumed, &[question]).expect("polynomials");
             let fraction = field.fraction(question).expect("a polynomial");
-            assert_eq!(field.sign_of(&fraction).expect("little work"), *expected, "{what}");
+            assert_eq!(field.signs().of(&fraction).expect("little work"), *expected, "{what}");
         }
     }
 }

@@ -103,6 +103,18 @@ fn undefined_where_the_function_is() {
 }
 
 #[test]
+fn straight_pieces_are_exact() {
+    let zero = number(0);
+    let (low, high) = (number(-2).hull(&number(1)), zero.hull(&number(3)));
+    assert_eq!(low.min(&high), number(-2).hull(&number(1)));
+    assert_eq!(low.max(&high), zero.hull(&number(3)));
+    assert_eq!(low.sat(), number(-1).hull(&number(1)));
+    assert_eq!(number(5).sat(), number(1));
+    assert_eq!((number(-5).sign(), number(5).sign()), (Some(number(-1)), Some(number(1))));
+    assert!(zero.sign().is_none() && low.sign().is_none(), "a sign is asked for off zero");
+}
+
+#[test]
 fn magnitudes_are_bounded() {
     let p = bits(64);
     let million = number(1_048_576);

@@ -18,7 +18,7 @@ struct Unary {
     domain: (i64, i64),
 }
 
-const FUNCTIONS: [Unary; 14] = [
+const FUNCTIONS: [Unary; 15] = [
     row("sin", Interval::sin, f64::sin, (-1000, 1000)),
     row("cos", Interval::cos, f64::cos, (-1000, 1000)),
     row("tan", Interval::tan, f64::tan, (-1, 1)),
@@ -32,6 +32,7 @@ const FUNCTIONS: [Unary; 14] = [
     row("log", Interval::log, f64::ln, (0, 1000)),
     row("sqrt", Interval::sqrt, f64::sqrt, (0, 1000)),
     row("abs", |x, _| Some(x.abs()), f64::abs, (-1000, 1000)),
+    row("sat", |x, _| Some(x.sat()), |x| x.clamp(-1.0, 1.0), (-3, 3)),
     row("cube", |x, p| x.powi(3, p), |x| x * x * x, (-1000, 1000)),
 ];
 

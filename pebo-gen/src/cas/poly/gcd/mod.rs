@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! integer and monomial contents -> shared variables -> degree bounds -> sparse interpolation
+//!                                        one variable -> a divisor of integers
 //! ```
 //!
 //! Each step either ends it or leaves a smaller problem of the same kind. The interpolation is
@@ -10,6 +11,7 @@
 
 mod degrees;
 mod dense;
+mod heuristic;
 mod image;
 mod modular;
 mod newton;
@@ -24,6 +26,9 @@ use points::Points;
 
 /// Images in one variable have a coefficient for every power: degrees above this are refused.
 const MAX_DEGREE: u32 = 1 << 20;
+
+/// Terms from which on it pays to look first whether there is a divisor at all.
+const LONG: usize = 16;
 
 impl Poly {
     /// The greatest common divisor, with a positive leading coefficient; zero of two zeros.
@@ -88,10 +93,27 @@ fn gcd_primitive(a: &Poly, b: &Poly, work: &Work) -> Result<Poly, TooLarge> {
         a.variables().iter().copied().filter(|v| !b.variables().contains(v)).collect()
     };
     let (only_a, only_b) = (lacking(a, b), lacking(b, a));
+    let long = a.term_count().min(b.term_count()) >= LONG;
+    if long && (!only_a.is_empty() || !only_b.is_empty()) && are_coprime(a, b, work)? {
+        return Ok(Poly::one());
+    }
     if !only_a.is_empty() || !only_b.is_empty() {
         return without(a, &only_a, b, &only_b, work);
     }
     gcd_same_variables(a, b, work)
+}
+
+/// Whether two polynomials in different variables provably have no factor in common: cheap, where the coefficients with
+/// respect to what only one of them has would be many.
+fn are_coprime(a: &Poly, b: &Poly, work: &Work) -> Result<bool, TooLarge> {
+    let layout = a.layout.union(&b.layout);
+    let over = |poly: &Poly| Poly {
+        keys: poly.layout.convert(&poly.keys, &layout),
+        coefficients: poly.coefficients.clone(),
+        layout: layout.clone(),
+    };
+    let bounds = degrees::bounds(&PrimeField::MERSENNE, &mut Points::new(), &over(a), &over(b), work)?;
+    Ok(bounds.iter().all(|bound| *bound == 0))
 }
 
 /// The greatest common divisor, which is known not to have the given variables: that of all
@@ -106,6 +128,9 @@ fn gcd_same_variables(a: &Poly, b: &Poly, work: &Work) -> Result<Poly, TooLarge>
     let degrees = (a.degrees(), b.degrees());
     if degrees.0.iter().chain(&degrees.1).any(|degree| *degree > MAX_DEGREE) {
         return Err(TooLarge);
+    }
+    if let Some(divisor) = heuristic::divisor(a, b, work)? {
+        return Ok(divisor);
     }
     let mut points = Points::new();
     let bounds = degrees::bounds(&PrimeField::MERSENNE, &mut points, a, b, work)?;

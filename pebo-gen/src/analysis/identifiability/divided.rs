@@ -1,0 +1,133 @@
+//! Identifiability where formulas bend: part by part.
+//!
+//! In: how the question is answered where all formulas are analytic. Out: the answer on the whole domain. A rank that is seen
+//! at a point, and a direction that is not seen there, are so almost everywhere in the part of the point alone: with
+//! `p*max(q, 0)` p is seen while q is positive; with `a + b*sign(w)` both are seen once w has had both signs.
+
+use crate::cas::Expr;
+use crate::cas::domain::Domain;
+use crate::cas::field::Obstacle;
+use crate::cas::parts::Part;
+use crate::cas::rank::full_rank_together;
+use crate::plant::Plant;
+use crate::source::Diagnostic;
+
+use super::motion::seen;
+use crate::analysis::design::{Blind, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
+
+/// An answer where all formulas are analytic.
+pub(super) struct Decided {
+    /// The verdict.
+    pub(super) claim: Claim<Identifiability>,
+    /// The directions of the unknowns that are never seen.
+    pub(super) hidden: Vec<Vec<Expr>>,
+    /// The rows of the regressor, with the derivatives that were looked at.
+    pub(super) rows: Vec<Vec<Expr>>,
+}
+
+impl Decided {
+    fn kind(&self) -> Option<Excitation> {
+        self.claim.result.as_ref().map(|result| result.kind)
+    }
+}
+
+impl From<Claim<Identifiability>> for Decided {
+    fn from(claim: Claim<Identifiability>) -> Self {
+        Self { claim, hidden: Vec::new(), rows: Vec::new() }
+    }
+}
+
+/// What may bend.
+pub(super) struct Formulas {
+    /// The regressor.
+    pub(super) regressor: Vec<Expr>,
+    /// All rates.
+    pub(super) rates: Vec<Expr>,
+}
+
+/// Answers on the whole domain; an obstacle where that is open.
+pub(super) fn decide(
+    plant: &Plant,
+    domain: &Domain,
+    regression: &Regression,
+    formulas: Formulas,
+    found: &mut Vec<Diagnostic>,
+    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+) -> Result<Claim<Identifiability>, Obstacle> {
+    let arena = &plant.arena;
+    let varies = |expr: Expr| {
+        arena.symbols_of(&[expr]).iter().any(|symbol| plant.parameters.iter().all(|known| known.symbol != *symbol))
+    };
+    let mut told = Vec::new();
+    let whole = on(domain, &mut told);
+    let Formulas { regressor, rates } = formulas;
+    let instant = |part: &Part| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
+    if whole.kind() == Some(Excitation::Instant) {
+        let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
+        let everywhere = || {
+            let parts = domain.parts(arena, &regressor, varies)?;
+            Ok::<bool, Obstacle>(parts.len() == 1 || parts.iter().all(instant))
+        };
+        if listed || everywhere()? {
+            found.extend(told);
+            return Ok(whole.claim);
+        }
+    }
+    let parts = domain.parts(arena, &[regressor, rates].concat(), varies)?;
+    if parts.len() == 1 {
+        found.extend(told);
+        return Ok(whole.claim);
+    }
+    let mut blind = Vec::new();
+    let mut rows = Vec::new();
+    let mut constants: Vec<Expr> = Vec::new();
+    let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
+    for part in &parts {
+        let mut told = Vec::new();
+        let decided = on(&part.domain, &mut told);
+        match decided.kind() {
+            None => {
+                found.extend(told);
+                return Ok(decided.claim);
+            }
+            Some(Excitation::Instant | Excitation::Excitation) => {}
+            Some(Excitation::Never) => {
+                let (seen, hidden) = (seen(arena, symbols, &decided.hidden), decided.hidden.clone());
+                blind.push(Blind { place: Place::Part(part.sides.clone()), seen, hidden });
+            }
+        }
+        rows.extend(decided.rows);
+        for constant in decided.claim.result.into_iter().flat_map(|result| result.constants) {
+            if !constants.contains(&constant) {
+                constants.push(constant);
+            }
+        }
+    }
+    if blind.len() == parts.len() {
+        // One direction that no part sees: said of the whole domain, it must be the same in all.
+        let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
+        if whole.kind() == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
+            found.extend(told);
+            return Ok(whole.claim);
+        }
+        // A fundamental matrix is another at every moment, so that rows of two moments do not compare.
+        let domains: Vec<Domain> = parts.into_iter().map(|part| part.domain).collect();
+        let by_psi = arena.symbols_of(&rows.concat()).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
+        if by_psi || !full_rank_together(arena, &domains, &rows, regression.eta.len()) {
+            return Err(Obstacle::NoWitness);
+        }
+    }
+    let motion = Motion { by_itself: None, at_rest: false, blind };
+    Ok(Claim {
+        verdict: Verdict::Proved,
+        result: Some(Identifiability {
+            kind: Excitation::Excitation,
+            singular_where: Vec::new(),
+            everywhere_else: false,
+            constants,
+            direction: None,
+            motion: Some(motion),
+            gram: None,
+        }),
+    })
+}

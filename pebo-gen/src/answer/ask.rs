@@ -1,0 +1,151 @@
+//! What is asked of a model in one call.
+
+use std::fmt;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+
+use crate::cas::budget::Budget;
+use crate::emit::Scalar;
+#[cfg(feature = "simulate")]
+use crate::simulate::Overrides;
+
+/// Is told where a call is, and says whether to go on.
+type Watch = dyn Fn(Stage) -> ControlFlow<()>;
+
+/// What to do with a model beside checking it, and what that may take: nothing and the usual budget, unless it says
+/// otherwise.
+#[derive(Clone)]
+pub struct Ask {
+    pub(super) name: Option<String>,
+    pub(super) seconds: f64,
+    pub(super) watch: Option<Rc<Watch>>,
+    pub(super) scalar: Option<Scalar>,
+    pub(super) mathml: bool,
+    pub(super) certificate: bool,
+    pub(super) page: bool,
+    #[cfg(feature = "simulate")]
+    pub(super) run: Option<AskRun>,
+}
+
+/// Where a call is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// It proves, or checks what it wrote.
+    Proof,
+    /// It runs the closed loop.
+    Run {
+        /// Which part of the run is done, 0 to 1.
+        done: f64,
+        /// The samples of the whole run.
+        samples: u64,
+    },
+}
+
+/// What to keep of a run of the closed loop beside the errors of its estimates.
+#[cfg(feature = "simulate")]
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AskRun {
+    /// Settings that go before those of the file.
+    pub overrides: Overrides,
+    /// Whether to keep the table of all signals.
+    pub trace: bool,
+    /// Whether to draw the figure.
+    pub figure: bool,
+}
+
+impl Ask {
+    /// To check the model, and no more.
+    pub fn new() -> Self {
+        Self {
+            name: None,
+            seconds: Budget::SECONDS,
+            watch: None,
+            scalar: None,
+            mathml: false,
+            certificate: false,
+            page: false,
+            #[cfg(feature = "simulate")]
+            run: None,
+        }
+    }
+
+    /// What to call a model that is too malformed to say its name: the stem of the source's name, unless this is called.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// How much work the proofs may take, in seconds of a machine of today: counted in steps, and not by the clock.
+    #[must_use]
+    pub fn limit(mut self, seconds: f64) -> Self {
+        self.seconds = seconds;
+        self
+    }
+
+    /// Who is asked every few milliseconds of a proof, and some hundred times in a run, whether to go on. What a caller
+    /// stops is undecided, of a run: not there, and a diagnostic says so.
+    #[must_use]
+    pub fn watch(mut self, watch: impl Fn(Stage) -> ControlFlow<()> + 'static) -> Self {
+        self.watch = Some(Rc::new(watch));
+        self
+    }
+
+    /// To write the observer too, if everything is proved.
+    #[must_use]
+    pub fn emit(mut self, scalar: Scalar) -> Self {
+        self.scalar = Some(scalar);
+        self
+    }
+
+    /// To typeset what was derived too.
+    #[must_use]
+    pub fn mathml(mut self) -> Self {
+        self.mathml = true;
+        self
+    }
+
+    /// To write a script that proves the claims again, if everything is proved.
+    #[must_use]
+    pub fn certificate(mut self) -> Self {
+        self.certificate = true;
+        self
+    }
+
+    /// To write a page that explains what was proved, or what stands against it; with the code for `f64` and the closed
+    /// loop, if the model is accepted and describes one.
+    #[must_use]
+    pub fn page(mut self) -> Self {
+        self.page = true;
+        self
+    }
+
+    /// To run the closed loop too, if everything is proved.
+    #[cfg(feature = "simulate")]
+    #[must_use]
+    pub fn run(mut self, run: AskRun) -> Self {
+        self.run = Some(run);
+        self
+    }
+
+    /// The budget of the proofs, which begin now.
+    pub(super) fn budget(&self) -> Budget {
+        match self.watch.clone() {
+            Some(watch) => Budget::watched(self.seconds, move || watch(Stage::Proof).is_break()),
+            None => Budget::of_seconds(self.seconds),
+        }
+    }
+}
+
+impl Default for Ask {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl fmt::Debug for Ask {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Ask").field("seconds", &self.seconds).field("scalar", &self.scalar).finish_non_exhaustive()
+    }
+}

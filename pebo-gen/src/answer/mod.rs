@@ -1,0 +1,166 @@
+//! The whole answer on a model in one call, as a value that serialises.
+//!
+//! ```text
+//! Source, Ask -> derive -> report, emit, run -> Answer
+//! ```
+//!
+//! In: a source, and what is asked beside the verdict. Out: the verdict as programs and as people read it, every
+//! diagnostic with its places in bytes, and what was asked for. Holds after: if something that was asked for is not
+//! there, a diagnostic says why. The command line is this call between reading and writing files; a page or an editor
+//! makes the same call. Front ends that need tokens alone call its parts, [`derive_within`] and
+//! [`Derived::admitted`](crate::Derived::admitted).
+
+mod ask;
+mod filled;
+mod framed;
+mod page;
+#[cfg(feature = "simulate")]
+mod run;
+mod solve;
+mod standing;
+mod typeset;
+
+#[cfg(feature = "simulate")]
+pub use ask::AskRun;
+pub use ask::{Ask, Stage};
+#[cfg(feature = "simulate")]
+pub use run::{FinalError, Run};
+pub use solve::{Solution, solve};
+pub use standing::Standing;
+pub use typeset::Typeset;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::analysis::Outcome;
+use crate::certificate::certificate;
+use crate::derived::{Derived, derive_within};
+use crate::emit::Emitted;
+use crate::report::{self, Report};
+use crate::source::{Diagnostic, Source};
+
+/// All there is to say of a model. Fields are only ever added.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Answer {
+    /// How the call ended.
+    pub standing: Standing,
+    /// The object of `check --format json`.
+    pub report: Report,
+    /// The verdict in a few lines for people; empty where no plant was made.
+    pub summary: String,
+    /// What there is to tell, the report's diagnostics first, with places in bytes.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The observer as Rust, if it was asked for and everything is proved.
+    pub emitted: Option<Emitted>,
+    /// What was derived as `MathML`, if that was asked for.
+    pub mathml: Option<Typeset>,
+    /// A Python script that proves the claims again with `SymPy`, if it was asked for and everything is proved.
+    pub certificate: Option<String>,
+    /// A page of HTML that explains the proof, if it was asked for and a plant was made, accepted or not.
+    pub page: Option<String>,
+    /// What came of the closed loop, if a run was asked for and everything is proved.
+    #[cfg(feature = "simulate")]
+    pub run: Option<Run>,
+}
+
+/// Checks a model, and does what is asked beside.
+///
+/// ```
+/// use pebo_gen::emit::Scalar;
+/// use pebo_gen::source::Source;
+/// use pebo_gen::{Ask, Standing, answer};
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\nphi: [p]\n";
+/// let source = Source::new("m.yaml", text).expect("a short text");
+/// let answer = answer(&source, &Ask::new().emit(Scalar::F32));
+/// assert_eq!(answer.standing, Standing::Accepted);
+/// assert!(answer.report.line().starts_with(r#"{"schema":1,"model":"m","verdict":"accepted""#));
+/// assert!(answer.emitted.expect("it is accepted").text.contains("pub struct M"));
+/// ```
+pub fn answer(source: &Source, ask: &Ask) -> Answer {
+    let derived = match derive_within(source, ask.budget()) {
+        Ok(derived) => derived,
+        Err(diagnostics) => {
+            let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            return Answer::of_unread(&ask.name.clone().or_else(stem).unwrap_or_default(), diagnostics, source);
+        }
+    };
+    let mut answer = Answer::of(&derived, source);
+    answer.mathml = ask.mathml.then(|| Typeset::of(&derived));
+    if derived.derivation.outcome == Outcome::Accepted {
+        answer.add(&derived, ask);
+    }
+    if ask.page {
+        let (page, refusal) = page::page(&derived, source, ask, (&answer.diagnostics, answer.emitted.as_ref()));
+        answer.page = Some(page);
+        if let Some((standing, found)) = refusal {
+            answer.refuse(standing, found);
+        }
+    }
+    answer
+}
+
+impl Answer {
+    /// Adds what was asked for of an accepted model.
+    fn add(&mut self, derived: &Derived, ask: &Ask) {
+        if ask.certificate {
+            self.certificate = certificate(&derived.model, &derived.plant, &derived.derivation);
+        }
+        if let Some(scalar) = ask.scalar {
+            match derived.admitted(scalar) {
+                Ok(emitted) => self.emitted = Some(emitted),
+                Err(found) => self.refuse(Standing::of_emission(&found), found),
+            }
+        }
+        #[cfg(feature = "simulate")]
+        if let Some(wanted) = &ask.run {
+            match run::run(derived, ask, wanted) {
+                Ok(run) => self.run = Some(run),
+                Err((standing, found)) => self.refuse(standing, found),
+            }
+        }
+    }
+
+    /// The verdict alone.
+    fn of(derived: &Derived, source: &Source) -> Self {
+        let Derived { plant, derivation, .. } = derived;
+        let diagnostics = derived.advised();
+        Self {
+            standing: derivation.outcome.into(),
+            report: Report::of(plant, derivation, &diagnostics, source),
+            summary: report::summary(plant, derivation),
+            diagnostics,
+            emitted: None,
+            mathml: None,
+            certificate: None,
+            page: None,
+            #[cfg(feature = "simulate")]
+            run: None,
+        }
+    }
+
+    /// On a model of which no plant was made, perhaps because there is no text of it; `source` is what its diagnostics
+    /// are about.
+    pub fn of_unread(name: &str, diagnostics: Vec<Diagnostic>, source: &Source) -> Self {
+        Self {
+            standing: Standing::of_unread(&diagnostics),
+            report: Report::of_unread(name, &diagnostics, source),
+            summary: String::new(),
+            diagnostics,
+            emitted: None,
+            mathml: None,
+            certificate: None,
+            page: None,
+            #[cfg(feature = "simulate")]
+            run: None,
+        }
+    }
+
+    /// Something that was asked for is not there.
+    fn refuse(&mut self, standing: Standing, found: Vec<Diagnostic>) {
+        self.standing = self.standing.max(standing);
+        self.diagnostics.extend(found);
+    }
+}

@@ -1,0 +1,66 @@
+//! What a page is made of: the verdict, the code for `f64`, and the closed loop where the model describes one.
+
+use crate::analysis::Outcome;
+use crate::derived::Derived;
+use crate::emit::{Emitted, Scalar};
+use crate::page::{self, Subject};
+use crate::source::{Diagnostic, Source};
+
+use super::ask::Ask;
+#[cfg(feature = "simulate")]
+use super::ask::AskRun;
+#[cfg(feature = "simulate")]
+use super::run::{self, Run};
+use super::standing::Standing;
+
+/// Why something that the page would have is not there.
+type Refusal = (Standing, Vec<Diagnostic>);
+
+/// Writes the page, with what is known already: the diagnostics, and the code where it was asked for.
+pub(super) fn page(
+    derived: &Derived,
+    source: &Source,
+    ask: &Ask,
+    (known, emitted): (&[Diagnostic], Option<&Emitted>),
+) -> (String, Option<Refusal>) {
+    let mut refusal = None;
+    let emitted = match emitted.filter(|_| ask.scalar == Some(Scalar::F64)) {
+        Some(emitted) => Some(emitted.clone()),
+        None if derived.derivation.outcome == Outcome::Accepted && ask.scalar != Some(Scalar::F64) => {
+            let admitted = derived.admitted(Scalar::F64);
+            admitted.map_err(|found| refusal = Some((Standing::of_emission(&found), found))).ok()
+        }
+        None => None,
+    };
+    #[cfg(feature = "simulate")]
+    let run = emitted.as_ref().and_then(|_| {
+        let run = described(derived, ask)?;
+        run.map_err(|failed| refusal = Some(failed)).ok()
+    });
+    let diagnostics: Vec<Diagnostic> =
+        known.iter().chain(refusal.iter().flat_map(|(_, found)| found)).cloned().collect();
+    let page = page::page(&Subject {
+        source,
+        plant: &derived.plant,
+        derivation: &derived.derivation,
+        diagnostics: &diagnostics,
+        emitted: emitted.as_ref(),
+        #[cfg(feature = "simulate")]
+        run: run.as_ref().and_then(of_run),
+    });
+    (page, refusal)
+}
+
+/// Runs the closed loop that the model describes, if it describes one.
+#[cfg(feature = "simulate")]
+fn described(derived: &Derived, ask: &Ask) -> Option<Result<Run, Refusal>> {
+    derived.model.simulation.as_ref()?;
+    Some(run::run(derived, ask, &AskRun { figure: true, ..AskRun::default() }))
+}
+
+#[cfg(feature = "simulate")]
+fn of_run(run: &Run) -> Option<page::Loop<'_>> {
+    let errors =
+        run.errors.iter().map(|error| page::Errors { state: &error.state, start: error.start, end: error.end });
+    Some(page::Loop { figure: run.figure.as_deref()?, end: run.end, errors: errors.collect() })
+}

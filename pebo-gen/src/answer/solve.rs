@@ -1,0 +1,83 @@
+//! The transforms of a plant in one call.
+//!
+//! In: a source, and the class of cascade that is asked for. Out: what the search came to as programs and as people read
+//! it, and the model with the best transform written into it.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::analysis::Class;
+use crate::model::Model;
+use crate::plant::Plant;
+use crate::report::{SearchReport, search_summary};
+use crate::search::{self, Found};
+use crate::source::{Diagnostic, Source};
+
+use super::ask::Ask;
+use super::filled::filled;
+use super::standing::Standing;
+
+/// What there is to say of the transforms of a plant. Fields are only ever added.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Solution {
+    /// How the call ended: accepted if a transform was found.
+    pub standing: Standing,
+    /// The object of `solve --format json`.
+    pub report: SearchReport,
+    /// The same in a few lines for people; empty where no plant was made.
+    pub summary: String,
+    /// What there is to tell, with places in bytes.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The text of the model with the best transform for its own, if one was found.
+    pub filled: Option<String>,
+}
+
+/// Searches for transforms of a model's plant, whether or not the model has one; of one class of cascade, or of the one
+/// that the model asks for, or of any.
+///
+/// ```
+/// use pebo_gen::source::Source;
+/// use pebo_gen::{Ask, Standing, solve};
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\n";
+/// let solution = solve(&Source::new("m.yaml", text).expect("a short text"), None, &Ask::new());
+/// assert_eq!(solution.standing, Standing::Accepted);
+/// assert!(solution.report.line().starts_with(r#"{"schema":1,"model":"m","verdict":"found""#));
+/// assert_eq!(solution.filled.expect("it was found"), format!("{text}phi: [p]\n"));
+/// ```
+pub fn solve(source: &Source, class: Option<Class>, ask: &Ask) -> Solution {
+    let read = Model::parse(source).and_then(|model| Ok((Plant::resolve_within(&model, ask.budget())?, model)));
+    let (plant, model) = match read {
+        Ok(read) => read,
+        Err(diagnostics) => {
+            let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            let name = ask.name.clone().or_else(stem).unwrap_or_default();
+            return Solution::of_unread(&name, diagnostics, source);
+        }
+    };
+    let search = search::solve(&plant, class.or(plant.asked));
+    let best = search.candidates.first().filter(|_| search.verdict == Found::Found);
+    Solution {
+        standing: if best.is_some() { Standing::Accepted } else { Standing::Refused },
+        report: SearchReport::of(&plant, &search),
+        summary: search_summary(&plant, &search),
+        diagnostics: Vec::new(),
+        filled: best.and_then(|best| filled(source, &model, &best.plant)),
+    }
+}
+
+impl Solution {
+    /// On a model of which no plant was made, perhaps because there is no text of it; `source` is what its diagnostics
+    /// are about.
+    pub fn of_unread(name: &str, diagnostics: Vec<Diagnostic>, source: &Source) -> Self {
+        Self {
+            standing: Standing::of_unread(&diagnostics),
+            report: SearchReport::of_unread(name, &diagnostics, source),
+            summary: String::new(),
+            diagnostics,
+            filled: None,
+        }
+    }
+}

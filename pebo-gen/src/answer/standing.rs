@@ -1,0 +1,43 @@
+//! How a call ended.
+
+use serde::Serialize;
+
+use crate::analysis::Outcome;
+use crate::source::{Code, Diagnostic};
+
+/// How a call ended, from best to worst: what programs return as their exit status.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Standing {
+    /// Every claim is proved, and what was asked for is there.
+    Accepted = 0,
+    /// The model was read, but a claim is refuted or undecided, or something that was asked for could not be made.
+    Refused = 1,
+    /// The input or the call is malformed.
+    Malformed = 2,
+}
+
+impl Standing {
+    /// Of a model of which no plant was made.
+    pub(super) fn of_unread(diagnostics: &[Diagnostic]) -> Self {
+        match Outcome::of_unread(diagnostics) {
+            Outcome::Undecided => Self::Refused,
+            Outcome::Accepted | Outcome::Rejected => Self::Malformed,
+        }
+    }
+
+    /// Of an accepted model that is not emitted: its code cannot be made, or its section `observer` is wrong.
+    pub(super) fn of_emission(found: &[Diagnostic]) -> Self {
+        let of_code = |diagnostic: &Diagnostic| matches!(diagnostic.code, Code::CannotEmit | Code::LimitReached);
+        if found.iter().all(of_code) { Self::Refused } else { Self::Malformed }
+    }
+}
+
+impl From<Outcome> for Standing {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Accepted => Self::Accepted,
+            Outcome::Rejected | Outcome::Undecided => Self::Refused,
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! `pebo-gen report`: the verdict to standard error, the page to a file or standard output.
+//!
+//! A model that is refused has a page too, which explains why; the exit status is that of the verdict.
+
+use std::path::Path;
+
+use pebo_gen::Standing;
+
+use super::arguments::{Limit, ReportOptions};
+use super::{files, progress, terminal};
+
+pub(super) fn run(options: &ReportOptions, limit: Option<Limit>) -> Standing {
+    let (source, answer) = files::answer(&options.model, progress::ask(limit).page());
+    terminal::say(&answer.summary);
+    terminal::report(&answer.diagnostics, &source);
+    let Some(page) = answer.page else { return answer.standing };
+    match files::write(options.output.as_deref().unwrap_or(Path::new("-")), &page) {
+        Ok(()) => answer.standing,
+        Err(diagnostic) => {
+            terminal::report(&[diagnostic], &source);
+            Standing::Malformed
+        }
+    }
+}

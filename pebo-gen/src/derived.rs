@@ -1,0 +1,156 @@
+//! From a source to what is proved of it, and from there to code and to a closed loop.
+//!
+//! In: a source, or a model that somebody read. Out: a [`Derived`], whose claims all have a verdict; a transform that the
+//! model does not have is searched for. Nothing more is worked out before it is asked for.
+
+use crate::analysis::{Derivation, Outcome};
+use crate::cas;
+use crate::cas::budget::Budget;
+use crate::cas::rational::Rational;
+use crate::emit::{self, EmitError, Emitted, Scalar};
+use crate::model::{Decimal, Model};
+use crate::plant::settings::cannot_rebase;
+use crate::plant::{Class, Plant, Settings, TransformOrigin};
+use crate::search::{self, Found};
+#[cfg(feature = "yaml")]
+use crate::source::Source;
+use crate::source::{Code, Diagnostic, Diagnostics};
+
+/// A model with everything that was derived of it.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Derived {
+    /// What was written.
+    pub model: Model,
+    /// What it means; with the transform that was found, where the model has none.
+    pub plant: Plant,
+    /// The claims, each with its verdict.
+    pub derivation: Derivation,
+}
+
+/// Derives the observer of a model file within the usual budget of steps; the errors are those of a file that could
+/// not be read, or whose class could not be expanded.
+///
+/// ```
+/// use pebo_gen::analysis::Outcome;
+/// use pebo_gen::source::Source;
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\nphi: [p]\n";
+/// let derived = pebo_gen::derive(&Source::new("m.yaml", text).expect("a short text")).expect("a model");
+/// assert_eq!(derived.derivation.outcome, Outcome::Accepted);
+/// let cascade = derived.derivation.cascade.result.expect("it is proved");
+/// assert_eq!(derived.plant.arena.print(cascade.h[0]), "v - sin(q)");
+/// ```
+#[cfg(feature = "yaml")]
+pub fn derive(source: &Source) -> Result<Derived, Vec<Diagnostic>> {
+    derive_within(source, Budget::default())
+}
+
+/// The same within a budget, from which all that is asked of the model later draws too.
+#[cfg(feature = "yaml")]
+pub fn derive_within(source: &Source, budget: Budget) -> Result<Derived, Vec<Diagnostic>> {
+    Derived::within(Model::parse(source)?, budget)
+}
+
+impl Derived {
+    /// Derives the observer of a model, whoever read it, within the usual budget of steps.
+    pub fn of(model: Model) -> Result<Self, Vec<Diagnostic>> {
+        Self::within(model, Budget::default())
+    }
+
+    /// The same within a budget, from which all that is asked of the model later draws too.
+    pub fn within(model: Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
+        let plant = Plant::resolve_within(&model, budget)?;
+        if !plant.phi.is_empty() {
+            let derivation = Derivation::derive(&plant);
+            return Ok(Self { model, plant, derivation });
+        }
+        let mut search = search::solve(&plant, plant.asked);
+        if search.verdict == Found::Found && !search.candidates.is_empty() {
+            let best = search.candidates.swap_remove(0);
+            return Ok(Self { model, plant: best.plant, derivation: best.derivation });
+        }
+        let derivation = Derivation::without_transform(vec![search.refusal(&plant)]);
+        Ok(Self { model, plant, derivation })
+    }
+
+    /// What there is to tell of the claims; a refusal of a transform is followed by what a search for another found.
+    pub fn advised(&self) -> Vec<Diagnostic> {
+        let mut diagnostics = self.derivation.diagnostics.clone();
+        let searched = match self.plant.origin {
+            TransformOrigin::Given => true,
+            // Of linear plants and coils the class knows what there is.
+            TransformOrigin::Class => matches!(self.plant.class, Some(Class::Mechanical(_))),
+            TransformOrigin::Found => false,
+        };
+        let refused = searched && self.derivation.outcome == Outcome::Rejected;
+        let open = diagnostics.iter_mut().find(|d| search::settles(d.code, &self.derivation)).filter(|_| refused);
+        if let Some(diagnostic) = open {
+            let budget = self.plant.arena.budget();
+            let search = budget.share(2, || search::solve(&self.plant, self.plant.asked));
+            *diagnostic = search.advise(&self.plant, diagnostic.clone());
+        }
+        diagnostics
+    }
+
+    /// Writes the observer as Rust, and proves that the written code computes what was derived.
+    pub fn emit(&self, scalar: Scalar) -> Result<Emitted, EmitError> {
+        let domain = self.plant.domain();
+        let is_zero = |arena: &cas::Arena, expr| cas::zero::decide(arena, expr, &domain).is_zero();
+        emit::emit(&self.plant, &self.derivation, self.settings().0.as_ref(), scalar, is_zero)
+    }
+
+    /// What the section `observer` says of the observer, if that is all it needs; `simulate` reports what is missing.
+    /// With it what is wrong with the section.
+    fn settings(&self) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
+        let mut problems = Diagnostics::default();
+        let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+        let results = (self.derivation.regression.result.as_ref()).zip(self.derivation.left_inverse.result.as_ref());
+        let settings = results.and_then(|(regression, inverse)| {
+            let sizes = (regression.eta.len(), self.plant.phi.len(), inverse.x.len());
+            Settings::resolve(&self.model.observer, sizes, read, &mut problems)
+        });
+        if let Some(rebase) = &self.model.observer.rebase
+            && !self.derivation.can_rebase(&self.plant)
+        {
+            problems.push(cannot_rebase(&self.plant.name, rebase.span));
+        }
+        (settings.filter(|_| !problems.has_errors()), problems.into_vec())
+    }
+
+    /// The same for a front end: where there is no code, diagnostics say why, be it a claim or the code itself.
+    pub fn admitted(&self, scalar: Scalar) -> Result<Emitted, Vec<Diagnostic>> {
+        if self.derivation.admit().is_err() {
+            return Err(self.advised());
+        }
+        let (_, problems) = self.settings();
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        self.emit(scalar).map_err(|error| vec![self.refusal(&error, scalar)])
+    }
+
+    /// Why an accepted derivation is not emitted, said of the model's name.
+    fn refusal(&self, error: &EmitError, scalar: Scalar) -> Diagnostic {
+        let span = self.model.name.span;
+        let help = match error {
+            EmitError::LimitReached => return Diagnostic::limit_reached("the check of the emitted code", span),
+            EmitError::OutOfRange { .. } if scalar == Scalar::F32 => {
+                "write for f64, or choose units in which the number is nearer to 1"
+            }
+            EmitError::OutOfRange { .. } => "choose units in which the number is nearer to 1",
+            _ => "the model may be right: this is a defect of pebo-gen",
+        };
+        Diagnostic::error(Code::CannotEmit, span, format!("`{}` cannot be emitted: {error}", self.plant.name))
+            .help(help)
+    }
+
+    /// The closed loop that the model file describes, ready to be run.
+    #[cfg(feature = "simulate")]
+    pub fn scenario(
+        &self,
+        overrides: &crate::simulate::Overrides,
+    ) -> Result<crate::simulate::Scenario, Vec<Diagnostic>> {
+        crate::simulate::Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides)
+    }
+}

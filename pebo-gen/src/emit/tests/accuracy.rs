@@ -1,0 +1,73 @@
+//! What is measured of the emitted functions.
+
+use super::fixtures::{CUK, PENDULUM, Sketch, vanishes};
+use crate::emit::{Accuracy, EmitError, Scalar, emit};
+
+/// `(sqrt(1 + v2^2) - 1)/v2` loses its digits where `v2` is small; its other form does not.
+const LOSING: &str = "(Real::sqrt(1.0 + v2*v2) - 1.0)/v2";
+const KEEPING: &str = "v2/(Real::sqrt(1.0 + v2*v2) + 1.0)";
+
+/// The outputs are not zero: both sides of 0 are looked at.
+fn with_h(formula: &'static str, rate: &'static str) -> Sketch {
+    let leak = |text: &'static str| -> &'static [&'static str] { Box::leak(Box::new([text, "0.0"])) };
+    let states: &'static [(&str, &str)] = Box::leak(Box::new([("i1", rate), ("i3", "0.0")]));
+    Sketch { h: leak(formula), x: states, assume: &["L1", "C2", "L3", "C4", "d", "1.0 - d", "v2"], ..CUK }
+}
+
+fn accuracy(sketch: Sketch, scalar: Scalar) -> Result<Accuracy, EmitError> {
+    let (plant, derivation) = sketch.build();
+    emit(&plant, &derivation, None, scalar, vanishes).map(|emitted| emitted.accuracy)
+}
+
+#[test]
+fn a_form_that_loses_digits_is_refused_unless_the_author_wrote_it() {
+    for scalar in Scalar::ALL {
+        let refused = accuracy(with_h(LOSING, KEEPING), scalar).unwrap_err();
+        let EmitError::Inaccurate { function, place, scalar: name, .. } = &refused else { panic!("{refused}") };
+        assert_eq!((function.as_str(), *name), ("flow", scalar.name()));
+        assert!(place.contains("v2 = 0.0000610"), "{place}");
+        assert!(refused.to_string().contains("`phi_left`"), "{refused}");
+        let own = accuracy(with_h(LOSING, LOSING), scalar).unwrap();
+        let (_, worst) = own.of(scalar).find(|(function, _)| *function == "flow").unwrap();
+        assert!(worst.as_written && worst.units > 1e3, "{worst:?}");
+        let kept = accuracy(with_h(KEEPING, KEEPING), scalar).unwrap();
+        assert!(kept.of(scalar).all(|(_, worst)| worst.units < 4.0), "{kept:?}");
+    }
+}
+
+#[test]
+fn a_value_that_is_not_finite_is_refused() {
+    // exp(100)^2 is beyond f32, the quotient is not.
+    let overflowing = "Real::exp(100.0*d)*Real::exp(100.0*d)/(1.0 + Real::exp(200.0*d))";
+    let sketch = || with_h(overflowing, "0.0");
+    assert!(
+        matches!(accuracy(sketch(), Scalar::F32), Err(EmitError::Inaccurate { function, .. }) if function == "flow")
+    );
+    let double = accuracy(sketch(), Scalar::F64).unwrap();
+    let (_, worst) = double.of(Scalar::F32).find(|(function, _)| *function == "flow").unwrap();
+    assert!(worst.units.is_infinite());
+}
+
+#[test]
+fn functions_of_a_few_operations_lose_a_few_roundings() {
+    for sketch in [CUK, PENDULUM] {
+        let found = accuracy(sketch, Scalar::F64).unwrap();
+        assert!(found.places > 12, "{}", found.places);
+        for scalar in Scalar::ALL {
+            // Some operations, a rounding each.
+            assert!(found.of(scalar).all(|(_, worst)| worst.units < 8.0), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_loss_of_the_author_hides_no_other() {
+    // The author's own rate loses digits beside v2 = 0, more than the second entry of h does beside v4 = 0.
+    let ours = "(Real::sqrt(1.0 + 100.0*v4*v4) - 1.0)/v4";
+    let h: &'static [&'static str] = Box::leak(Box::new([LOSING, ours]));
+    let x: &'static [(&str, &str)] = &[("i1", LOSING), ("i3", "0.0")];
+    let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "v2", "v4"];
+    let refused = accuracy(Sketch { x, assume, h, ..CUK }, Scalar::F64).unwrap_err();
+    let EmitError::Inaccurate { place, .. } = &refused else { panic!("{refused}") };
+    assert!(place.contains("v4 = 0.0000610"), "{place}");
+}

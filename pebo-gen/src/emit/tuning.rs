@@ -1,0 +1,248 @@
+//! The constructor of the observer, read from tokens: the settings that it sets.
+//!
+//! Its statements bind names to what calls of the runtime's constructors return. Nothing of the emitter is used.
+
+use std::collections::BTreeMap;
+
+use quote::ToTokens;
+use syn::{Expr as Syntax, ImplItem, ItemImpl, Pat, Stmt};
+
+use super::error::EmitError;
+use super::value::{self, Value, unreadable};
+use crate::cas::Arena;
+use crate::cas::rational::Rational;
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, Settings};
+
+/// The constant with the length of a window.
+pub(super) const WINDOW: &str = "NW";
+
+/// What a name is bound to.
+#[derive(Clone, Debug)]
+enum Made {
+    /// The model with its parameters, and bounds of its states.
+    Model([Option<Vec<Rational>>; 2]),
+    Number(Rational),
+    List(Vec<Rational>),
+    /// A vector of infinities, above or below all numbers.
+    Infinite {
+        above: bool,
+    },
+    Estimator(Estimator<Rational>),
+    Bounded(Estimator<Rational>, [Option<Vec<Rational>>; 2]),
+    Extension(Extension<Rational>),
+    /// Whether samples are joined by straight lines.
+    Hold(bool),
+    Operator(Operator<Rational>, bool),
+    Observer(Settings<Rational>),
+}
+
+/// Whether these are the constructors beside `new`.
+pub(super) fn is_constructors(item: &ItemImpl) -> bool {
+    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if function.sig.ident == "try_new" || function.sig.ident == "observer");
+    item.trait_.is_none() && !item.items.is_empty() && item.items.iter().all(named)
+}
+
+/// What the constructor of the observer sets, where there is one; the other checks parameters before it takes them.
+pub(super) fn read(
+    arena: &Arena,
+    item: &ItemImpl,
+    window: Option<&Syntax>,
+    globals: &value::Scope,
+) -> Result<Option<Settings<Rational>>, EmitError> {
+    let mut settings = None;
+    for entry in &item.items {
+        let ImplItem::Fn(function) = entry else { return Err(unreadable(entry)) };
+        if function.sig.ident == "try_new" {
+            let body = function.block.stmts.iter().map(compact).collect::<String>();
+            if body != "parameters.check()?;Ok(Self::new(parameters))" {
+                return Err(unreadable(&function.block));
+            }
+            continue;
+        }
+        let mut reader = Reader { arena, globals, window, made: BTreeMap::new() };
+        for statement in &function.block.stmts {
+            match statement {
+                Stmt::Local(local) => {
+                    let (Pat::Ident(name), Some(init)) = (&local.pat, &local.init) else {
+                        return Err(unreadable(statement));
+                    };
+                    let made = reader.expression(&init.expr)?;
+                    reader.made.insert(name.ident.to_string(), made);
+                }
+                Stmt::Expr(last, None) => match reader.expression(last)? {
+                    Made::Observer(made) => settings = Some(made),
+                    _ => return Err(unreadable(last)),
+                },
+                other => return Err(unreadable(other)),
+            }
+        }
+    }
+    Ok(settings)
+}
+
+struct Reader<'a> {
+    arena: &'a Arena,
+    globals: &'a value::Scope,
+    window: Option<&'a Syntax>,
+    made: BTreeMap<String, Made>,
+}
+
+impl Reader<'_> {
+    fn expression(&self, syntax: &Syntax) -> Result<Made, EmitError> {
+        let unknown = || unreadable(syntax);
+        match syntax {
+            Syntax::Try(attempt) => self.expression(&attempt.expr),
+            Syntax::Reference(reference) => self.expression(&reference.expr),
+            Syntax::Call(call) => match compact(&call.func).as_str() {
+                "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => Ok(Made::Model([None, None])),
+                "SVector::from" => self.list(syntax),
+                "SVector::repeat" => match compact(&call.args).as_str() {
+                    "f64::INFINITY" | "f32::INFINITY" => Ok(Made::Infinite { above: true }),
+                    "f64::NEG_INFINITY" | "f32::NEG_INFINITY" => Ok(Made::Infinite { above: false }),
+                    _ => Err(unknown()),
+                },
+                function => {
+                    let arguments = call.args.iter().map(|argument| self.expression(argument));
+                    let arguments = arguments.collect::<Result<Vec<_>, _>>()?;
+                    self.call(function, arguments).ok_or_else(unknown)
+                }
+            },
+            Syntax::MethodCall(call) => {
+                let receiver = self.expression(&call.receiver)?;
+                let arguments = call.args.iter().map(|argument| self.expression(argument));
+                let arguments = arguments.collect::<Result<Vec<_>, _>>()?;
+                method(&call.method.to_string(), receiver, arguments).ok_or_else(unknown)
+            }
+            // A number of samples; numbers of the scalar have a point.
+            Syntax::Lit(syn::ExprLit { lit: syn::Lit::Int(samples), .. }) => {
+                Rational::from_decimal(samples.base10_digits()).map(Made::Number).map_err(|_| unknown())
+            }
+            Syntax::Path(_) => match compact(syntax).as_str() {
+                "Hold::First" => Ok(Made::Hold(true)),
+                "Hold::Zero" => Ok(Made::Hold(false)),
+                name => self.made.get(name).cloned().map_or_else(|| self.number(syntax), Ok),
+            },
+            _ => self.number(syntax),
+        }
+    }
+
+    fn number(&self, syntax: &Syntax) -> Result<Made, EmitError> {
+        match value::expression(self.arena, syntax, self.globals)? {
+            Value::Scalar(value) => self.arena.as_number(value).map(Made::Number),
+            _ => None,
+        }
+        .ok_or_else(|| unreadable(syntax))
+    }
+
+    fn list(&self, syntax: &Syntax) -> Result<Made, EmitError> {
+        let columns = value::expression(self.arena, syntax, self.globals)?.columns();
+        let entries = columns.iter().flatten().flatten().map(|&entry| self.arena.as_number(entry));
+        let entries = entries.collect::<Option<Vec<Rational>>>().ok_or_else(|| unreadable(syntax))?;
+        Ok(Made::List(entries))
+    }
+
+    /// What a constructor of the runtime makes of its arguments.
+    fn call(&self, function: &str, arguments: Vec<Made>) -> Option<Made> {
+        use Made::{Bounded, Hold, List, Model, Number};
+        let mut arguments = arguments.into_iter();
+        let given = [arguments.next(), arguments.next(), arguments.next(), arguments.next()];
+        Some(match (function, given) {
+            ("Gradient::diagonal", [Some(List(gain)), None, None, None]) => Made::Estimator(Estimator::Gradient(gain)),
+            (
+                "NormalisedGradient::new",
+                [Some(Made::Estimator(Estimator::Gradient(gain))), Some(Number(mu)), None, None],
+            ) => Made::Estimator(Estimator::NormalisedGradient { gain, mu }),
+            ("LeastSquares::diagonal", [Some(List(start)), Some(Number(forgetting)), None, None]) => {
+                Made::Estimator(Estimator::LeastSquares(Covariance { start, forgetting, process_noise: None }))
+            }
+            ("Kreisselmeier::new", [Some(List(gain)), Some(Number(forgetting)), None, None]) => {
+                Made::Extension(Extension::Kreisselmeier { gain, forgetting, finite_time: None })
+            }
+            ("Response::new", [Some(Made::Estimator(estimator)), None, None, None]) => {
+                Made::Extension(match estimator {
+                    Estimator::Gradient(gain) => Extension::Gradient(gain),
+                    Estimator::LeastSquares(covariance) => Extension::LeastSquares(covariance),
+                    _ => return None,
+                })
+            }
+            ("Drem::new", [Some(Made::Extension(extension)), Some(List(gain)), None, None]) => {
+                Made::Estimator(Estimator::Drem { gain, extension })
+            }
+            ("FiniteTime::once", [Some(Made::Estimator(drem)), Some(Number(clip)), None, None]) => {
+                finite(drem, FiniteTime { clip, period: None })?
+            }
+            ("FiniteTime::tracking", [Some(Made::Estimator(drem)), Some(Number(clip)), Some(Number(period)), None]) => {
+                finite(drem, FiniteTime { clip, period: Some(period) })?
+            }
+            ("Bounded::new", [Some(Made::Estimator(estimator)), Some(lower), Some(upper), None]) => {
+                Bounded(estimator, [bound(lower, false).ok()?, bound(upper, true).ok()?])
+            }
+            ("Within::new", [Some(Model([None, None])), Some(lower), Some(upper), None]) => {
+                Model([bound(lower, false).ok()?, bound(upper, true).ok()?])
+            }
+            ("Filter::new", [Some(Number(alpha)), Some(Hold(straight)), None, None]) => {
+                Made::Operator(Operator::Filter(alpha), straight)
+            }
+            ("WindowedRegression::new", [Some(Hold(straight)), None, None, None]) => {
+                let samples = Rational::from_decimal(&compact(self.window?)).ok()?;
+                Made::Operator(Operator::Window(samples), straight)
+            }
+            (
+                "Tuned::new" | "Tuned::with_regression",
+                [Some(Model(within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
+            ) => {
+                let filtered = matches!(operator, Operator::Filter(_));
+                let (estimator, [lower, upper]) = match estimator {
+                    Made::Estimator(estimator) => (estimator, [None, None]),
+                    Bounded(estimator, bounds) => (estimator, bounds),
+                    _ => return None,
+                };
+                if filtered != (function == "Tuned::new") {
+                    return None;
+                }
+                Made::Observer(Settings { operator, straight, estimator, lower, upper, within, rebase: None, chi_0 })
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// What a method of the runtime's types makes of its receiver and argument.
+fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
+    let mut arguments = arguments.into_iter();
+    Some(match (name, receiver, arguments.next(), arguments.next()) {
+        ("with_process_noise", Made::Estimator(Estimator::LeastSquares(covariance)), Some(Made::List(noise)), None) => {
+            let process_noise = Some(noise);
+            Made::Estimator(Estimator::LeastSquares(Covariance { process_noise, ..covariance }))
+        }
+        ("rebasing", Made::Observer(settings), Some(Made::Number(samples)), None) => {
+            Made::Observer(Settings { rebase: Some(samples), ..settings })
+        }
+        _ => return None,
+    })
+}
+
+/// A bound: a vector, or none where it is infinite on its own side.
+fn bound(made: Made, side: bool) -> Result<Option<Vec<Rational>>, ()> {
+    match made {
+        Made::List(values) => Ok(Some(values)),
+        Made::Infinite { above } if above == side => Ok(None),
+        _ => Err(()),
+    }
+}
+
+/// DREM that is exact after a finite time.
+fn finite(drem: Estimator<Rational>, finite_time: FiniteTime<Rational>) -> Option<Made> {
+    let Estimator::Drem { gain, extension: Extension::Kreisselmeier { gain: inner, forgetting, finite_time: None } } =
+        drem
+    else {
+        return None;
+    };
+    let extension = Extension::Kreisselmeier { gain: inner, forgetting, finite_time: Some(finite_time) };
+    Some(Made::Estimator(Estimator::Drem { gain, extension }))
+}
+
+/// Tokens without spaces.
+fn compact(tokens: &impl ToTokens) -> String {
+    tokens.to_token_stream().to_string().split_whitespace().collect()
+}

@@ -1,0 +1,96 @@
+//! A page that explains what was proved of a model to a reader who knows control, and not this project.
+//!
+//! In: a plant and what was derived of it, with its code and the figure of its closed loop where these are there. Out:
+//! one HTML page that is also well-formed XML: it needs no other file, holds no script, folds, prints, and is readable on
+//! a narrow screen and in the dark. A model that is refused has a page too, with what stands against it: a refusal needs
+//! an explanation more than a proof does. It has no code.
+
+mod cascade;
+mod code;
+mod formula;
+mod html;
+mod identifiability;
+mod left_inverse;
+mod plant;
+mod regression;
+#[cfg(feature = "simulate")]
+mod run;
+mod subject;
+mod transform;
+mod usage;
+mod verdict;
+
+use formula::Setter;
+use html::Html;
+
+pub(crate) use subject::Subject;
+#[cfg(feature = "simulate")]
+pub(crate) use subject::{Errors, Loop};
+
+/// The style of every page.
+const STYLE: &str = include_str!("page.css");
+
+/// Writes the page.
+pub(crate) fn page(subject: &Subject<'_>) -> String {
+    let setter = Setter::new(&subject.plant.arena);
+    let mut html = Html::default();
+    html.markup("<!DOCTYPE html>\n");
+    html.block("html", &[("lang", "en")], |html| {
+        html.block("head", &[], |html| head(html, subject));
+        html.block("body", &[], |html| {
+            html.block("header", &[], |html| verdict::header(html, subject));
+            html.block("main", &[], |html| {
+                verdict::diagnostics(html, subject);
+                idea(html);
+                plant::section(html, &setter, subject);
+                transform::section(html, &setter, subject);
+                cascade::section(html, &setter, subject);
+                left_inverse::section(html, &setter, subject);
+                regression::section(html, &setter, subject);
+                identifiability::section(html, &setter, subject);
+                usage::sections(html, &setter, subject);
+                #[cfg(feature = "simulate")]
+                run::section(html, subject);
+                code::section(html, subject);
+            });
+            html.block("footer", &[], |html| {
+                let version = env!("CARGO_PKG_VERSION");
+                html.paragraph(&format!("Written by pebo-gen {version}: `pebo-gen report`."));
+            });
+        });
+    });
+    html.finish()
+}
+
+fn head(html: &mut Html, subject: &Subject<'_>) {
+    html.void("meta", &[("charset", "utf-8")]);
+    html.void("meta", &[("name", "viewport"), ("content", "width=device-width, initial-scale=1")]);
+    html.line("title", &[], |html| html.text(&format!("{}: the proof of its observer", subject.title())));
+    html.line("style", &[], |html| html.markup(STYLE));
+}
+
+/// What the claims are for.
+fn idea(html: &mut Html) {
+    html.section("idea", "The idea", |html| {
+        html.line("p", &[], |html| {
+            html.text("A parameter-estimation-based observer turns the estimation of a moving state ");
+            html.formula("<mi>x</mi>");
+            html.text(" into that of a constant. It needs a transform ");
+            html.formula(
+                "<mi>z</mi><mo>=</mo><mi>φ</mi><mrow><mo>(</mo><mi>x</mi><mo>,</mo><mi>y</mi><mo>)</mo></mrow>",
+            );
+            html.text(
+                " that moves by known signals: the outputs y and the inputs u. An integrator that is fed with these \
+                 follows z but for a constant, ",
+            );
+            html.formula("<mi>z</mi><mo>=</mo><mi>χ</mi><mo>+</mo><mi>θ</mi>");
+            html.text(
+                ", which depends on where the plant began. An estimator finds θ from the outputs, and x is read off z.",
+            );
+        });
+        html.paragraph(
+            "Four claims make this right. Each is shown below with its derivation. Proved means: by exact algebra, for all \
+             values of the signals and of the parameters that the assumptions and the conditions below allow. A point over a signal is its rate.",
+        );
+    });
+}

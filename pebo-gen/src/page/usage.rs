@@ -1,0 +1,49 @@
+//! What the proofs rest on, and what to know in use.
+
+use crate::analysis::Outcome;
+use crate::report::remarks;
+
+use super::formula::{Setter, Steps};
+use super::html::Html;
+use super::plant::listed;
+use super::subject::Subject;
+
+pub(super) fn sections(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_>) {
+    let (plant, derivation) = (subject.plant, subject.derivation);
+    html.section("conditions", "Conditions", |html| {
+        let conditions: Vec<String> =
+            derivation.conditions.iter().map(|(expr, relation)| setter.compared(*expr, *relation)).collect();
+        match (derivation.outcome, conditions.is_empty()) {
+            (Outcome::Accepted, true) => {
+                html.paragraph("None: what the formulas ask to have values follows from the assumptions.");
+            }
+            (_, true) => html.paragraph("No claim is proved under conditions."),
+            (_, false) => {
+                listed(html, "The proofs need these to hold, and the assumptions do not grant them:", &conditions);
+            }
+        }
+    });
+    html.section("use", "In use", |html| {
+        let remarks = remarks::of(plant, derivation);
+        if remarks.is_empty() {
+            html.paragraph("There is nothing to remark: the remarks rest on a proved cascade.");
+        }
+        for remark in remarks {
+            html.line("h3", &[], |html| html.text(&capitalised(remark.name)));
+            if !remark.values.is_empty() {
+                let mut steps = Steps::default();
+                for (symbol, value) in &remark.values {
+                    steps.add(&setter.symbol(*symbol), &setter.expr(*value), "");
+                }
+                html.display(&steps.finish());
+            }
+            html.list(&remark.lines);
+        }
+    });
+}
+
+/// With a capital first letter.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,112 @@
+//! Sines and cosines of sums, from those of the summands: six operations instead of two calls.
+//!
+//! In: the expressions that are lowered together. Out: which arguments of sines and cosines are the
+//! sum or difference of two others, so that only the rest is called for. Near a zero of the value the
+//! error is a rounding of the two angles, which is what the sum of the angles has lost already.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::lower::{Lowering, Signed};
+use super::straight::{Operand, Operation};
+use crate::cas::{Arena, Expr, Function, Node};
+
+/// Two angles that make up another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Parts {
+    first: Expr,
+    second: Expr,
+    /// Whether the second is taken away.
+    minus: bool,
+}
+
+/// How each angle is made up; one that is not here is called for.
+#[derive(Debug, Default)]
+pub(super) struct Angles {
+    parts: FxHashMap<Expr, Parts>,
+}
+
+/// More angles are called for one by one: pairs are searched.
+const MOST_ANGLES: usize = 64;
+
+impl Angles {
+    /// The angles in all expressions that the roots consist of.
+    pub(super) fn of(arena: &Arena, roots: &[Expr]) -> Self {
+        let mut angles: Vec<Expr> = Vec::new();
+        for expr in arena.postorder(roots) {
+            if let Node::Call(Function::Sin | Function::Cos, arguments) = arena.node(expr)
+                && !angles.contains(&arguments[0])
+                && angles.len() <= MOST_ANGLES
+            {
+                angles.push(arguments[0]);
+            }
+        }
+        if angles.len() > MOST_ANGLES {
+            return Self::default();
+        }
+        // An angle is made of simpler ones; a sort that is stable keeps the order of first use among equals.
+        angles.sort_by_key(|&angle| summands(arena, angle));
+        let mut parts = FxHashMap::default();
+        let mut known: FxHashSet<Expr> = FxHashSet::default();
+        let mut simpler: Vec<Expr> = Vec::new();
+        for angle in angles {
+            let found = simpler.iter().find_map(|&first| {
+                let rest = arena.sub(angle, first);
+                if known.contains(&rest) {
+                    return Some(Parts { first, second: rest, minus: false });
+                }
+                let rest = arena.neg(rest);
+                known.contains(&rest).then_some(Parts { first, second: rest, minus: true })
+            });
+            if let Some(found) = found {
+                parts.insert(angle, found);
+            }
+            simpler.push(angle);
+            known.insert(angle);
+        }
+        Self { parts }
+    }
+}
+
+/// How many summands an angle has.
+fn summands(arena: &Arena, angle: Expr) -> usize {
+    match arena.node(angle) {
+        Node::Sum(sum) => sum.terms.len() + usize::from(!sum.constant.is_zero()),
+        _ => 1,
+    }
+}
+
+impl Lowering<'_> {
+    /// The sine and cosine of an angle.
+    fn sine_and_cosine(&mut self, angle: Expr) -> [Operand; 2] {
+        [Function::Sin, Function::Cos].map(|function| self.trigonometric(function, angle))
+    }
+
+    /// The sine or cosine of an angle.
+    pub(super) fn trigonometric(&mut self, function: Function, angle: Expr) -> Operand {
+        let Some(&Parts { first, second, minus }) = self.angles.parts.get(&angle) else {
+            let argument = self.lowered(angle);
+            return self.operation(Operation::Unary(function, argument));
+        };
+        let [sin_a, cos_a] = self.sine_and_cosine(first);
+        let [sin_b, cos_b] = self.sine_and_cosine(second);
+        let (left, right, takes) = match function {
+            Function::Sin => ((sin_a, cos_b), (cos_a, sin_b), minus),
+            _ => ((cos_a, cos_b), (sin_a, sin_b), !minus),
+        };
+        let left = self.operation(Operation::Mul(left.0, left.1));
+        let right = self.operation(Operation::Mul(right.0, right.1));
+        self.operation(if takes { Operation::Sub(left, right) } else { Operation::Add(left, right) })
+    }
+
+    /// The value of an expression that need not have been met yet.
+    pub(super) fn lowered(&mut self, expr: Expr) -> Operand {
+        for part in self.arena.postorder(&[expr]) {
+            if !self.known.contains_key(&part) {
+                let value: Signed = self.value(part);
+                self.known.insert(part, value);
+            }
+        }
+        let value = self.known[&expr];
+        self.plain(value)
+    }
+}

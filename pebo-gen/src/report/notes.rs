@@ -1,0 +1,82 @@
+//! What there is to say of a claim beside its formulas, in a sentence each: the same in text and on a page.
+
+use crate::analysis::{Derivation, Excitation, Gram, Motion, Outcome, Positive, Regression, RegressionKind, Verdict};
+use crate::plant::Plant;
+use crate::source::listed;
+
+/// Of the model: what its verdict means.
+pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
+    match derivation.outcome {
+        Outcome::Accepted if derivation.conditions.is_empty() => "all four claims are proved",
+        Outcome::Accepted => "all four claims are proved where the conditions below hold",
+        Outcome::Rejected => "a claim is refuted",
+        Outcome::Undecided => "a claim could not be decided",
+    }
+}
+
+/// Of the left inverse: what it does not recover, and what it asks of estimates.
+pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
+    let Some(inverse) = &derivation.left_inverse.result else { return Vec::new() };
+    let arena = &plant.arena;
+    let mut lines = Vec::new();
+    let missing: Vec<String> = plant
+        .x
+        .iter()
+        .filter(|s| inverse.x.iter().all(|(symbol, _)| *symbol != s.symbol))
+        .map(|s| arena.name(s.symbol))
+        .collect();
+    if !missing.is_empty() && derivation.left_inverse.verdict == Verdict::Proved {
+        lines
+            .push(format!("a partial observer, which does not recover {}", listed(missing.iter().map(String::as_str))));
+    }
+    let asked = super::conditions(arena, &derivation.asked_of_estimates(plant));
+    if !asked.is_empty() {
+        let asked = listed(asked.iter().map(String::as_str));
+        lines.push(format!("needs estimates with {asked}: `step` refuses a sample whose estimate is not finite"));
+    }
+    lines
+}
+
+/// Of the regression: what more unknowns than theta has mean.
+pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Option<String> {
+    let (unknowns, components) = (regression.eta.len(), plant.theta.len());
+    (unknowns > components).then(|| {
+        format!("eta has {unknowns} components and theta has {components}: all components of eta have to be excited")
+    })
+}
+
+/// Of identifiability: what shows the unknowns, where they are not seen, and what has to move.
+pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<String> {
+    let Some(result) = &derivation.identifiability.result else { return Vec::new() };
+    let implicit = derivation.regression.result.as_ref().is_some_and(|r| r.kind == RegressionKind::Implicit);
+    let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
+    let mut lines = vec![match result.kind {
+        Excitation::Instant => format!("{}: {regressor} has full column rank", result.kind.word()),
+        Excitation::Excitation if result.motion.as_ref().is_some_and(Motion::is_divided) => {
+            format!("over time: {regressor} has full column rank over the parts of the domain together")
+        }
+        Excitation::Excitation => format!("over time: {regressor} and its derivatives have full column rank"),
+        Excitation::Never => {
+            format!("{}: the outputs do not depend on one direction of the unknowns", result.kind.word())
+        }
+    }];
+    if !result.singular_where.is_empty() {
+        let places = listed(result.singular_where.iter().map(String::as_str));
+        lines.push(format!("except where {places}: do not operate the plant there for long"));
+    }
+    if result.kind == Excitation::Instant && !result.everywhere_else {
+        lines.push("this holds at almost every point; the points where the rank drops were not all found".to_owned());
+    }
+    lines.extend(result.motion.iter().flat_map(|motion| motion.lines(plant)));
+    lines
+}
+
+/// Of the determinant of `Phi_1' Phi_1`: that it is positive, and what shows it.
+pub(crate) fn positive(gram: &Gram) -> Option<&'static str> {
+    gram.positive.map(|positive| match positive {
+        Positive::Assumed => "the determinant is positive wherever the assumptions hold: every input excites",
+        Positive::Divided => {
+            "the determinant is positive throughout the assumed box at the given parameter values: every input excites"
+        }
+    })
+}

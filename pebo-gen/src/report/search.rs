@@ -1,0 +1,162 @@
+//! The JSON object of `solve --format json`, and the same for people.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use super::printed;
+use crate::cas::Arena;
+use crate::plant::Plant;
+use crate::search::words::assumed;
+use crate::search::{Bound, Candidate, Search};
+use crate::source::{Diagnostic, Located, Source};
+
+/// The object of one search.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct SearchReport {
+    schema: u32,
+    /// The model's name, or what stands for it.
+    pub model: String,
+    /// `found`, `none` or `undecided`.
+    pub verdict: &'static str,
+    candidates: Vec<CandidateReport>,
+    /// What would be accepted if some states were positive, where nothing is as it is.
+    assumed: Option<AssumedReport>,
+    bound: Option<BoundReport>,
+    /// The same of transforms affine in x, where it is small.
+    bound_affine: Option<BoundReport>,
+    /// The same of transforms affine in x with a generalised cascade.
+    bound_generalised: Option<BoundReport>,
+    tried: Vec<String>,
+    diagnostics: Vec<Located>,
+}
+
+/// Signs of states, and the transform that would be accepted with them.
+#[derive(Clone, Debug, Serialize)]
+struct AssumedReport {
+    assume: Vec<String>,
+    phi: Vec<String>,
+}
+
+/// How large the rank of dphi/dx can be at a point, of transforms of a class with a plain cascade.
+#[derive(Clone, Debug, Serialize)]
+struct BoundReport {
+    states: usize,
+    rank: usize,
+    class: &'static str,
+    proved: bool,
+    /// How many independent transforms of the class there are but for functions of y, where that is decided.
+    transforms: Option<usize>,
+    point: IndexMap<String, String>,
+    certificate: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct CandidateReport {
+    class: &'static str,
+    phi: Vec<String>,
+    h: Vec<String>,
+    lambda: Option<Vec<Vec<String>>>,
+    verdict: &'static str,
+    /// The parameterisation, and the kind of the regression where it is not dynamic.
+    regression: Option<&'static str>,
+    kind: Option<&'static str>,
+    identifiability: Option<&'static str>,
+    left_inverse: IndexMap<String, String>,
+    /// What must hold and is not assumed.
+    conditions: Vec<String>,
+}
+
+impl SearchReport {
+    /// The object of a search.
+    pub fn of(plant: &Plant, search: &Search) -> Self {
+        Self {
+            schema: 1,
+            model: plant.name.clone(),
+            verdict: search.verdict.word(),
+            candidates: search.candidates.iter().map(candidate).collect(),
+            assumed: search.assumed.as_ref().map(|(candidate, signs)| AssumedReport {
+                assume: signs.iter().map(|state| format!("{} > 0", plant.arena.name(*state))).collect(),
+                phi: candidate.formulas(),
+            }),
+            bound: search.bound.as_ref().map(|found| bound(&plant.arena, found)),
+            bound_affine: search.affine.as_ref().map(|found| bound(&plant.arena, found)),
+            bound_generalised: search.generalised.as_ref().map(|found| bound(&plant.arena, found)),
+            tried: search.tried.iter().map(crate::search::Tried::sentence).collect(),
+            diagnostics: Vec::new(),
+        }
+    }
+
+    /// The object of a model of which no plant was made.
+    pub fn of_unread(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Self {
+        Self {
+            schema: 1,
+            model: name.to_owned(),
+            verdict: crate::search::Found::Undecided.word(),
+            candidates: Vec::new(),
+            assumed: None,
+            bound: None,
+            bound_affine: None,
+            bound_generalised: None,
+            tried: Vec::new(),
+            diagnostics: diagnostics.iter().map(|d| Located::new(d, source)).collect(),
+        }
+    }
+
+    /// The object as a line, without the line's end.
+    pub fn line(&self) -> String {
+        // Strings, numbers and maps with string keys always serialise.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+fn bound(arena: &Arena, bound: &Bound) -> BoundReport {
+    BoundReport {
+        states: bound.states,
+        rank: bound.rank,
+        class: bound.class.word(),
+        proved: bound.proved,
+        transforms: bound.transforms(),
+        point: bound.point.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect(),
+        certificate: bound.certificate(arena),
+    }
+}
+
+fn candidate(candidate: &Candidate) -> CandidateReport {
+    let Candidate { plant, derivation, .. } = candidate;
+    let arena = &plant.arena;
+    let cascade = derivation.cascade.result.as_ref();
+    let regression = derivation.regression.result.as_ref();
+    let inverse = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.x);
+    CandidateReport {
+        class: derivation.class.name(),
+        phi: candidate.formulas(),
+        h: cascade.map(|c| printed(arena, &c.h)).unwrap_or_default(),
+        lambda: cascade.and_then(|c| Some(c.lambda.as_ref()?.iter().map(|row| printed(arena, row)).collect())),
+        verdict: derivation.outcome.word(),
+        regression: regression.map(|r| r.parameterisation(plant)),
+        kind: regression.map(|r| r.kind.word()),
+        identifiability: derivation.identifiability.result.as_ref().map(|r| r.kind.word()),
+        left_inverse: inverse.map(|(state, e)| (arena.name(*state), arena.print(*e))).collect(),
+        conditions: super::conditions(arena, &derivation.conditions),
+    }
+}
+
+/// A few lines for people: the verdict, then each candidate with what is proved of it.
+pub fn search_summary(plant: &Plant, search: &Search) -> String {
+    let mut text = format!("{}: {}\n", plant.name, search.verdict.word());
+    for candidate in &search.candidates {
+        text.extend([super::text::summary(&candidate.plant, &candidate.derivation).as_str()]);
+    }
+    if let Some((candidate, signs)) = &search.assumed {
+        text.extend([format!("  {}\n", assumed(candidate, signs))]);
+    }
+    for bound in search.bounds() {
+        text.extend([format!("  bound: {}\n", bound.sentence(&plant.arena))]);
+        text.extend(bound.certificate(&plant.arena).iter().map(|line| format!("  certificate: {line}\n")));
+    }
+    for tried in &search.tried {
+        text.extend([format!("  tried: {}\n", tried.sentence())]);
+    }
+    text
+}

@@ -1,0 +1,337 @@
+//! Transforms that make a plant's state observation an estimation of constants: the search for phi.
+//!
+//! ```text
+//! Plant, class -> candidates -> claims, proved by `analysis` -> Search
+//! ```
+//!
+//! In: a plant; a transform that it has is not looked at. Out: the transforms that were found, in order of merit, each with
+//! all that is proved of it, and what was tried. Holds after: *found* is said only of a transform whose claims are all
+//! proved. Everything before that proof only directs the search: values modulo a prime, null spaces, rules for integrals.
+//!
+//! It is linear: the rate of `phi = sum of c_k b_k` is linear in the `c_k`, and in dphi, however nonlinear the plant is
+//! (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015, eq. 3). Attempts go from simple forms to large ones; the first whose outputs
+//! are affine in z ends the search.
+
+mod ansatz;
+mod bound;
+mod candidate;
+mod choice;
+mod closure;
+mod completion;
+mod connection;
+mod decision;
+mod driven;
+mod found;
+mod frame;
+mod functions;
+mod largest;
+mod quadrature;
+mod question;
+mod sample;
+mod series;
+#[cfg(all(test, feature = "yaml"))]
+mod tests;
+pub(crate) mod words;
+
+use std::collections::BTreeSet;
+
+use crate::analysis::{Class, Derivation, Verdict};
+use crate::cas::facts::Relation;
+use crate::cas::field::Obstacle;
+use crate::cas::{Expr, Symbol};
+use crate::plant::{Plant, TransformOrigin};
+
+use ansatz::{Ansatz, Rate};
+use bound::LARGEST_ORDER;
+pub use bound::{Bound, BoundClass, Evidence};
+pub use candidate::Candidate;
+use connection::Connection;
+pub use found::{Form, Found, Search, Tried};
+pub use frame::Block;
+#[cfg(feature = "yaml")]
+pub(crate) use frame::blocks;
+use question::Question;
+pub(crate) use words::settles;
+
+/// Searches for a transform of the plant, of one class of cascade or of any.
+#[must_use]
+pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
+    let question = Question::of(plant);
+    let mut hunt = Hunt {
+        question: &question,
+        candidates: Vec::new(),
+        tried: Vec::new(),
+        affine: None,
+        bound: None,
+        later: Vec::new(),
+        seen: BTreeSet::new(),
+    };
+    if class != Some(Class::Gpebo) {
+        hunt.plain();
+    }
+    if class != Some(Class::Pebo) && !hunt.is_over() {
+        hunt.generalised();
+    }
+    hunt.rest();
+    hunt.of_class();
+    let (mut candidates, tried) = (std::mem::take(&mut hunt.candidates), std::mem::take(&mut hunt.tried));
+    if let Some(class) = class {
+        candidates.retain(|candidate| candidate.derivation.class == class);
+    }
+    candidates.sort_by_cached_key(Candidate::merit);
+    let found = candidates.first().is_some_and(Candidate::is_full);
+    let plain = found && candidates.first().is_some_and(|c| c.derivation.class == Class::Pebo);
+    let (affine, bound) = if plain || class == Some(Class::Gpebo) {
+        (None, None)
+    } else {
+        let affine = hunt.affine.take().or_else(|| largest::affine(&question, 0));
+        (affine, hunt.bound.take().or_else(|| largest::smooth_to(&question, LARGEST_ORDER, 0)))
+    };
+    let affine = affine.filter(|affine| affine.rank < affine.states);
+    let bound = match bound {
+        Some(smooth) if smooth.rank < smooth.states => Some(smooth),
+        smooth => affine.clone().or(smooth),
+    };
+    let smooth = bound.as_ref().is_some_and(|bound| bound.class == BoundClass::Smooth && bound.excludes());
+    let generalised = if found || !smooth || class.is_some() {
+        None
+    } else {
+        bound::bound(&question, BoundClass::AffineRate, (LARGEST_ORDER, 0)).filter(|bound| bound.rank < bound.states)
+    };
+    let excluded = smooth && (class == Some(Class::Pebo) || generalised.as_ref().is_some_and(Bound::excludes));
+    // A transform may fail at single points, which are then listed: two points that were drawn are not both of them.
+    let again = || {
+        let smooth = largest::smooth(&question, largest::affine(&question, 1).as_ref(), 1)
+            .filter(Bound::excludes)
+            .or_else(|| largest::smooth_to(&question, LARGEST_ORDER, 1));
+        let generalised = || bound::bound(&question, BoundClass::AffineRate, (LARGEST_ORDER, 1));
+        smooth.is_some_and(|bound| bound.excludes())
+            && (class.is_some() || generalised().is_some_and(|bound| bound.excludes()))
+    };
+    let excluded = excluded && again();
+    let verdict = match (found, excluded) {
+        (true, _) => Found::Found,
+        (false, true) => Found::None,
+        (false, false) => Found::Undecided,
+    };
+    let assumed = if found { None } else { with_signs(&question, &candidates) };
+    Search { verdict, candidates, assumed, bound, affine, generalised, tried }
+}
+
+/// The first transform that recovers the states if those without a known sign are positive.
+fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Candidate, Vec<Symbol>)> {
+    let arena = question.arena;
+    let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
+    let candidate = candidates.iter().filter(|c| c.derivation.cascade.verdict == Verdict::Proved).find(lost)?;
+    let unknown = |state: &Symbol| {
+        let state = arena.of_symbol(*state);
+        ![state, arena.neg(state)].iter().any(|e| question.domain.implies(arena, *e, Relation::Positive))
+    };
+    let signs: Vec<Symbol> = question.x.iter().copied().filter(unknown).collect();
+    if signs.is_empty() || !question.goes_on() {
+        return None;
+    }
+    let plant = question.plant.with_positive(&signs);
+    let question = Question::of(&plant);
+    let budget = arena.budget();
+    let candidate = budget.share(2, || Candidate::of(&question, &candidate.plant.transform()));
+    candidate.is_full().then_some((candidate, signs))
+}
+
+/// The order of series that costs less than another form of transforms.
+const LOW_ORDER: usize = 2;
+
+struct Hunt<'a> {
+    question: &'a Question<'a>,
+    candidates: Vec<Candidate>,
+    tried: Vec<Tried>,
+    /// What is decided of the transforms affine in x with a plain cascade.
+    affine: Option<Bound>,
+    /// What excludes further transforms with a plain cascade.
+    bound: Option<Bound>,
+    /// Transforms in which the outputs are not affine: they are proved if nothing better is found.
+    later: Vec<Vec<Expr>>,
+    /// The transforms that were met.
+    seen: BTreeSet<Vec<Expr>>,
+}
+
+impl Hunt<'_> {
+    /// Whether there is nothing better to be expected.
+    fn is_over(&self) -> bool {
+        !self.question.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear())
+    }
+
+    /// Whether a look at transforms affine in x, or at series of low order, shows that no smooth transform has a plain
+    /// cascade and a left inverse.
+    fn is_excluded(&mut self) -> bool {
+        self.affine = largest::affine(self.question, 0);
+        self.bound = largest::smooth(self.question, self.affine.as_ref(), 0)
+            .filter(Bound::excludes)
+            .or_else(|| largest::smooth_to(self.question, LOW_ORDER, 0))
+            .filter(Bound::excludes);
+        self.bound.is_some()
+    }
+
+    /// The transform of the plant's class, where nothing else recovers the states: coils have their fluxes.
+    fn of_class(&mut self) {
+        let plant = self.question.plant;
+        if plant.origin == TransformOrigin::Class
+            && !plant.phi.is_empty()
+            && !self.candidates.iter().any(Candidate::is_full)
+        {
+            let derivation = Derivation::derive(plant);
+            self.candidates.push(Candidate { plant: plant.clone(), derivation });
+        }
+    }
+
+    /// Transforms with a plain cascade.
+    fn plain(&mut self) {
+        let question = self.question;
+        let arena = question.arena;
+        let states: Vec<(Expr, usize)> = question.x.iter().map(|x| (arena.of_symbol(*x), 1)).collect();
+        let affine = [&[(arena.one(), 0)], states.as_slice()].concat();
+        let mut outputs = functions::of_outputs(question);
+        self.attempt(Form::Affine(0), |_| Ok(Ansatz { of_x: states.clone(), of_y: vec![(arena.one(), 0)], weight: 1 }));
+        for degree in 1..=3 {
+            if self.is_over() || (degree == 2 && self.is_excluded()) {
+                return;
+            }
+            if self.affine.as_ref().is_some_and(Bound::excludes) {
+                break;
+            }
+            // What the formulas do not hold comes in where they were not enough.
+            if degree == 2 {
+                let roots = functions::roots(question, &outputs);
+                outputs.extend(roots);
+                // There are transforms, perhaps of what turns with an angle that no formula holds.
+                if self.affine.as_ref().is_some_and(|affine| affine.transforms().is_some()) {
+                    outputs.extend(functions::waves(question));
+                }
+            }
+            if degree == 2
+                && let Ok(connection) = Connection::of(question, Rate::Free)
+            {
+                let factors = connection.factors(question);
+                let shifts = connection.shifts(question, &[&[arena.one()], factors.as_slice(), &outputs].concat());
+                for function in factors.into_iter().chain(shifts) {
+                    if !outputs.contains(&function) {
+                        outputs.push(function);
+                    }
+                }
+            }
+            let pool = outputs.clone();
+            self.attempt(Form::Affine(degree), |question| {
+                let of_y = functions::products(question, &pool, degree + usize::from(degree == 1))?;
+                Ok(Ansatz { of_x: affine.clone(), of_y, weight: degree + 1 })
+            });
+        }
+        let mut of_states = functions::of_states(question);
+        let logarithms = functions::logarithms(question, &[of_states.as_slice(), &outputs].concat());
+        for logarithm in logarithms {
+            let list = if arena.depends_on(logarithm, &question.hidden) { &mut of_states } else { &mut outputs };
+            if !list.contains(&logarithm) {
+                list.push(logarithm);
+            }
+        }
+        for (first, second) in [(1, 1), (2, 1), (2, 2), (3, 2)] {
+            if self.is_over() {
+                return;
+            }
+            let (of_x, of_y) = (of_states.clone(), outputs.clone());
+            self.attempt(Form::Nonlinear(first, second), |question| {
+                let of_x = functions::products(question, &of_x, first)?;
+                let of_y = functions::products(question, &of_y, second)?;
+                Ok(Ansatz { of_x, of_y, weight: first + second })
+            });
+        }
+    }
+
+    /// Transforms with a generalised cascade.
+    fn generalised(&mut self) {
+        let question = self.question;
+        let arena = question.arena;
+        let states: Vec<Expr> = question.x.iter().map(|x| arena.of_symbol(*x)).collect();
+        let rates: Vec<Expr> = question.x.iter().filter_map(|x| question.rates.get(x).copied()).collect();
+        if matches!(sample::is_affine_in(question, &rates, &states), Ok(true)) {
+            self.judge(Form::States, 0, Ok(states.clone()));
+        }
+        for start in [question.output_rates(), [question.output_rates(), states.clone()].concat(), states.clone()] {
+            if self.is_over() {
+                return;
+            }
+            let closed = closure::closure(question, &start).map(Option::unwrap_or_default);
+            self.judge(Form::Closure, 0, closed);
+        }
+        let mut outputs = functions::of_outputs(question);
+        if let Ok(connection) = Connection::of(question, Rate::Affine) {
+            outputs.extend(connection.factors(question));
+        }
+        for degree in 1..=2 {
+            if self.is_over() {
+                return;
+            }
+            let ansatz = || {
+                let of_x = [(arena.one(), 0)].into_iter().chain(states.iter().map(|x| (*x, 1))).collect();
+                Ok(Ansatz { of_x, of_y: functions::products(question, &outputs, degree)?, weight: degree + 1 })
+            };
+            self.attempt_with(Form::Frame(degree), Rate::Affine, ansatz());
+        }
+    }
+
+    fn attempt(&mut self, form: Form, ansatz: impl FnOnce(&Question<'_>) -> Result<Ansatz, Obstacle>) {
+        let ansatz = ansatz(self.question);
+        self.attempt_with(form, Rate::Free, ansatz);
+    }
+
+    fn attempt_with(&mut self, form: Form, rate: Rate, ansatz: Result<Ansatz, Obstacle>) {
+        let question = self.question;
+        let columns = ansatz.as_ref().map_or(0, |ansatz| ansatz.width(question));
+        let solutions = ansatz.and_then(|ansatz| ansatz.solutions(question, rate));
+        self.judge(form, columns, solutions);
+    }
+
+    /// Has the claims of what was found proved or refuted.
+    fn judge(&mut self, form: Form, columns: usize, solutions: Result<Vec<Expr>, Obstacle>) {
+        let count = solutions.as_ref().map_or(0, Vec::len);
+        // A closure is one transform, which would not close without a part of it.
+        let choose = if form == Form::Closure { choice::whole } else { choice::choose };
+        let choice = solutions.and_then(|solutions| choose(self.question, &solutions));
+        let (choice, obstacle) = match choice {
+            Ok(choice) => (choice, None),
+            Err(obstacle) => (choice::Choice::default(), Some(obstacle)),
+        };
+        self.tried.push(Tried { form, columns, solutions: count, rank: choice.rank, obstacle });
+        if choice.rank < self.question.x.len() {
+            return;
+        }
+        for (index, phi) in choice.transforms.into_iter().enumerate() {
+            if self.is_over() || !self.seen.insert(phi.clone()) {
+                continue;
+            }
+            if index == 0 && choice.affine {
+                self.prove(&phi);
+            } else {
+                self.later.push(phi);
+            }
+        }
+    }
+
+    /// Proves what was put off: transforms in which the outputs do not look affine.
+    fn rest(&mut self) {
+        for phi in std::mem::take(&mut self.later) {
+            if self.candidates.iter().any(Candidate::is_full) || !self.question.goes_on() {
+                return;
+            }
+            self.prove(&phi);
+        }
+    }
+
+    /// Has the claims proved or refuted, with a third of what is left: what is open then does not end the search.
+    fn prove(&mut self, phi: &[Expr]) {
+        if !phi.iter().all(|component| self.question.exists(*component)) {
+            return;
+        }
+        let candidate = self.question.arena.budget().share(3, || Candidate::of(self.question, phi));
+        self.candidates.push(candidate);
+    }
+}

@@ -1,0 +1,145 @@
+//! What is decided of plants that are made from their transforms: none of them may be excluded.
+
+use proptest::prelude::*;
+
+use super::bound::{Bound, BoundClass};
+use super::decision::decided;
+use super::largest;
+use super::question::Question;
+use crate::model::Model;
+use crate::plant::Plant;
+use crate::source::Source;
+
+fn plant(lines: &str) -> Plant {
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
+    let model = Model::parse(&source).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message));
+    Plant::resolve(&model).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message))
+}
+
+/// What is decided of one class, for two values of the parameters.
+fn both(lines: &str, class: BoundClass) -> Vec<Bound> {
+    let plant = plant(lines);
+    let question = Question::of(&plant);
+    (0..2).filter_map(|others| decided(&question, class, others)).collect()
+}
+
+/// A function of these, with small coefficients.
+fn function(symbols: &'static [&'static str]) -> impl Strategy<Value = String> {
+    let leaf = prop_oneof![
+        prop::sample::select(symbols).prop_map(str::to_owned),
+        prop::sample::select(symbols).prop_map(|s| format!("sin({s})")),
+        prop::sample::select(symbols).prop_map(|s| format!("cos({s})")),
+        prop::sample::select(symbols).prop_map(|s| format!("{s}^2")),
+        prop::sample::select(symbols).prop_map(|s| format!("exp({s})")),
+        prop::sample::select(symbols).prop_map(|s| format!("1/(1 + {s}^2)")),
+    ];
+    let term = (-3..=3_i32, prop::collection::vec(leaf, 1..=2))
+        .prop_map(|(factor, factors)| format!("({factor})*{}", factors.join("*")));
+    prop::collection::vec(term, 1..=2).prop_map(|terms| terms.join(" + "))
+}
+
+/// The derivative of a formula, as a formula.
+fn slope(formula: &str, by: &str) -> String {
+    let names = "x: [a, b]\ny: [p, q]\nu: [u, v]\nf_x: {a: 0, b: 0}";
+    let plant = plant(&format!("{names}\nf_y: {{p: {formula}, q: 0}}"));
+    let arena = &plant.arena;
+    let rate = plant.y[0].rate.expect("a rate").expr;
+    let by = plant.x.iter().map(|x| x.symbol).chain(plant.y.iter().map(|y| y.symbol)).find(|s| arena.name(*s) == by);
+    arena.print(arena.derivative(rate, by.expect("a signal")))
+}
+
+/// The plant in which `(m a + s, n b + t + k a)` have rates free of x.
+fn made(m: &str, k: &str, shifts: [&str; 2], rates: [&str; 2], outputs: [&str; 2]) -> String {
+    let along = |formula: &str| {
+        format!("(({})*({}) + ({})*({}))", slope(formula, "p"), outputs[0], slope(formula, "q"), outputs[1])
+    };
+    // z1 = e^m a + s, z2 = b + t + k a
+    let first = format!("exp(-({m}))*({} - {}) - a*{}", rates[0], along(shifts[0]), along(m));
+    let second = format!("{} - {} - a*{} - ({k})*({first})", rates[1], along(shifts[1]), along(k));
+    let [p, q] = outputs;
+    format!("x: [a, b]\ny: [p, q]\nu: [u, v]\nf_x: {{a: {first}, b: {second}}}\nf_y: {{p: {p}, q: {q}}}")
+}
+
+const Y: &[&str] = &["p", "q"];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// A transform affine in x is neither excluded among the affine ones nor among the smooth ones.
+    #[test]
+    fn what_has_a_transform_affine_in_x_is_not_excluded(
+        m in function(Y), k in function(Y), s in function(Y), t in function(Y), h in function(&["p", "q", "u", "v"]),
+        c in function(&["p", "u"]), d in function(&["q", "v"]),
+    ) {
+        let lines = made(&m, &k, [&s, &t], [&h, "v"], [&format!("a + ({c})*b"), &format!("b*({d}) + u")]);
+        for class in [BoundClass::Affine, BoundClass::Smooth] {
+            for bound in both(&lines, class) {
+                prop_assert_eq!(bound.rank, 2, "{}", lines);
+                prop_assert!(bound.transforms().is_none_or(|count| count >= 2), "{}", lines);
+            }
+        }
+        let plant = plant(&lines);
+        let question = Question::of(&plant);
+        let smooth = largest::smooth(&question, largest::affine(&question, 0).as_ref(), 0);
+        prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
+    }
+
+    /// A transform that is not affine in x is not excluded among the smooth ones.
+    #[test]
+    fn what_has_a_smooth_transform_is_not_excluded(
+        g in function(&["b", "q"]), t in function(Y), h in function(&["p", "q", "u"]), c in function(&["b", "p"]),
+    ) {
+        // z1 = a + g(b, q), z2 = b + t(p, q)
+        let (p, q) = (format!("a + {c}"), "b*u".to_owned());
+        let along = |by: &str, of: &str| format!("({})*({of})", slope(&t, by));
+        let second = format!("v - {} - {}", along("p", &p), along("q", &q));
+        let first = format!("{h} - ({})*({second}) - ({})*({q})", slope(&g, "b"), slope(&g, "q"));
+        let lines =
+            format!("x: [a, b]\ny: [p, q]\nu: [u, v]\nf_x: {{a: {first}, b: {second}}}\nf_y: {{p: {p}, q: {q}}}");
+        for bound in both(&lines, BoundClass::Smooth) {
+            prop_assert_eq!(bound.rank, 2, "{}", lines);
+        }
+        let plant = plant(&lines);
+        let question = Question::of(&plant);
+        let smooth = largest::smooth(&question, largest::affine(&question, 0).as_ref(), 0)
+            .or_else(|| largest::smooth_to(&question, 2, 0));
+        prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
+    }
+}
+
+/// Surfaces of which the Killing fields are known: of constant curvature three, of revolution one.
+#[test]
+fn the_number_of_killing_fields_is_that_of_the_surface() {
+    let surfaces = [
+        // A plane in polar coordinates, a sphere, a cone, a torus, and a surface without symmetry.
+        ("1", "r^2", 2, 3),
+        ("1", "sin(r)^2", 2, 3),
+        ("2", "r^2", 2, 3),
+        ("1", "(2 + cos(r))^2", 1, 1),
+        ("1 + t^2", "1 + r^2*t", 0, 0),
+    ];
+    for (first, second, rank, count) in surfaces {
+        let lines = format!(
+            "x: [a, b]\ny: [r, t]\nu: [u, v]\nassume: [r > 0, t > 0]\nmechanical: {{M: [[{first}, 0], [0, {second}]], \
+             V: 0, G: [[1, 0], [0, 1]]}}"
+        );
+        let bounds = both(&lines, BoundClass::Affine);
+        assert_eq!(bounds.len(), 2, "{lines}");
+        for bound in bounds {
+            assert_eq!((bound.rank, bound.transforms()), (rank, Some(count)), "{lines}");
+            assert_eq!(bound.relations.len(), 2 - rank, "{lines}");
+        }
+    }
+}
+
+/// Ball and beam in its momenta: the beam's is the one that there is, among all smooth functions.
+#[test]
+fn ball_and_beam_has_one_killing_field() {
+    let lines = "parameters: [m, J, g]\nx: [p1, p2]\ny: [r, th]\nu: [tau]\nassume: [m > 0, J > 0, g > 0]\n\
+                 f_x: {p1: m*r*p2^2/(J + m*r^2)^2 - m*g*sin(th), p2: tau - m*g*r*cos(th)}\n\
+                 f_y: {r: p1/m, th: p2/(J + m*r^2)}";
+    for class in [BoundClass::Affine, BoundClass::Smooth] {
+        let bounds = both(lines, class);
+        assert!(bounds.len() == 2 && bounds.iter().all(|bound| bound.excludes() && bound.transforms() == Some(1)));
+    }
+}

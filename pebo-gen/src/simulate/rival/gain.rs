@@ -1,0 +1,107 @@
+//! How a baseline corrects its prediction: Kalman's gain and Luenberger's.
+//!
+//! In: what a step did, and the derivatives of the outputs. Out: the correction of the states. Sizes are padded with zeros,
+//! in which neither moves anything.
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+
+use super::linearised::Step;
+
+/// The outputs of a sample.
+#[derive(Clone, Debug)]
+pub(super) struct Sample<const N: usize> {
+    /// Measured less predicted.
+    pub(super) innovation: SVector<f64, N>,
+    /// The derivatives of the outputs by the states.
+    pub(super) slopes: SMatrix<f64, N, N>,
+}
+
+/// A rule by which predictions are corrected.
+#[derive(Clone, Debug)]
+pub(super) enum Gain<const N: usize> {
+    Kalman(Kalman<N>),
+    Luenberger(Luenberger<N>),
+}
+
+impl<const N: usize> Gain<N> {
+    /// The correction of the states at the end of a step of `dt` seconds; nothing where there is none.
+    pub(super) fn correct(&mut self, step: &Step<N>, sample: &Sample<N>, dt: f64) -> Option<SVector<f64, N>> {
+        match self {
+            Self::Kalman(filter) => Some(filter.correct(step, sample, dt)),
+            Self::Luenberger(observer) => observer.correct(step, sample),
+        }
+    }
+}
+
+/// The covariance of a Kalman filter.
+#[derive(Clone, Debug)]
+pub(super) struct Kalman<const N: usize> {
+    /// Of the states' errors.
+    pub(super) covariance: SMatrix<f64, N, N>,
+    /// By how much a variance grows in a second.
+    pub(super) intensity: SVector<f64, N>,
+    /// The variances of the outputs' samples.
+    pub(super) sensors: Vec<f64>,
+}
+
+impl<const N: usize> Kalman<N> {
+    /// Method: the integral of the disturbance by Simpson's rule, of fourth order in the step and never indefinite; the
+    /// outputs one by one, which independent sensors allow, in Joseph's form.
+    fn correct(&mut self, step: &Step<N>, sample: &Sample<N>, dt: f64) -> SVector<f64, N> {
+        let intensity = SMatrix::from_diagonal(&self.intensity);
+        let carried =
+            |motion: &SMatrix<f64, N, N>, covariance: SMatrix<f64, N, N>| motion * covariance * motion.transpose();
+        let disturbed = intensity + carried(&step.half, intensity * 4.0) + carried(&step.whole, intensity);
+        self.covariance = carried(&step.whole, self.covariance) + disturbed * (dt / 6.0);
+        let mut correction = SVector::zeros();
+        for (row, &variance) in self.sensors.iter().enumerate() {
+            let slope = sample.slopes.row(row).transpose();
+            let shared = self.covariance * slope;
+            let gain = shared / (slope.dot(&shared) + variance);
+            correction += gain * (sample.innovation[row] - slope.dot(&correction));
+            let kept = SMatrix::identity() - gain * slope.transpose();
+            self.covariance = carried(&kept, self.covariance) + gain * gain.transpose() * variance;
+        }
+        correction
+    }
+}
+
+/// The poles of a Luenberger observer, and its gain.
+#[derive(Clone, Debug)]
+pub(super) struct Luenberger<const N: usize> {
+    /// Of a step: `e^(p dt)`.
+    pub(super) poles: Vec<f64>,
+    /// The number of outputs.
+    pub(super) outputs: usize,
+    /// The last motion and outputs with the gain that belongs to them: where the inputs rest it is worked out once.
+    pub(super) known: Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>)>,
+}
+
+impl<const N: usize> Luenberger<N> {
+    fn correct(&mut self, step: &Step<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
+        let known = self.known.filter(|(motion, slopes, _)| (motion, slopes) == (&step.whole, &sample.slopes));
+        let gain = match known {
+            Some((.., gain)) => gain,
+            None => self.gain(&step.whole, &(sample.slopes * step.whole))?,
+        };
+        self.known = Some((step.whole, sample.slopes, gain));
+        Some(gain * sample.innovation)
+    }
+
+    /// The gain `L` with which `motion - L seen` has the poles.
+    ///
+    /// Method: rows `x_i (motion - f_i) = g_i seen` with any `g_i` make `X motion - F X = G seen`, so that with
+    /// `L = X^-1 G` the matrix `motion - L seen = X^-1 F X` has the poles `F`. Source: Luenberger, *Observing the state of a
+    /// linear system*, IEEE Trans. Military Electronics, 1964. Here each `g_i` takes one output, in turn, so that outputs of
+    /// unequal units are not mixed: `X` has an inverse where each output shows the states that its poles are for.
+    fn gain(&self, motion: &SMatrix<f64, N, N>, seen: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
+        let (mut rows, mut mixing) = (SMatrix::<f64, N, N>::identity(), SMatrix::<f64, N, N>::zeros());
+        for (row, pole) in self.poles.iter().enumerate() {
+            mixing[(row, row % self.outputs)] = 1.0;
+            let shifted = motion - SMatrix::identity() * *pole;
+            let right = seen.transpose() * mixing.row(row).transpose();
+            rows.set_row(row, &(shifted.transpose().try_inverse()? * right).transpose());
+        }
+        Some(rows.try_inverse()? * mixing)
+    }
+}

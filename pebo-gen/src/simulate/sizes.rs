@@ -1,0 +1,25 @@
+//! What the simulator has room for. An observer has the size of its model; here it is padded to one of a few sizes, so
+//! that they are compiled once.
+
+use pebo_runtime::nalgebra::SVector;
+
+/// The most states, outputs, inputs or unknowns.
+pub(super) const LARGEST: usize = 16;
+
+/// The most unknowns of DREM, to which fewer are padded.
+pub(super) const MOST_MIXED: usize = 6;
+
+/// The longest window in samples: an observer copies it at every step.
+pub(super) const LONGEST: usize = 1024;
+
+/// The values, and zeros up to the size.
+pub(super) fn pad<const N: usize>(values: &[f64]) -> SVector<f64, N> {
+    padded(values, 0.0)
+}
+
+/// The values, and behind them as many of another as there is room for.
+pub(super) fn padded<const N: usize>(values: &[f64], other: f64) -> SVector<f64, N> {
+    let mut vector = SVector::<f64, N>::repeat(other);
+    vector.as_mut_slice()[..values.len()].copy_from_slice(values);
+    vector
+}

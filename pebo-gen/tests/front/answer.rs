@@ -1,0 +1,214 @@
+//! One call gives the whole answer: what the command line prints and the build script writes, as a value.
+#![cfg(all(feature = "cli", feature = "simulate"))]
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::rc::Rc;
+
+use pebo_gen::analysis::Outcome;
+use pebo_gen::emit::Scalar;
+use pebo_gen::simulate::Overrides;
+use pebo_gen::source::{Code, Source};
+use pebo_gen::{Answer, Ask, AskRun, Builder, Stage, Standing, answer};
+use serde_json::Value;
+
+const CUK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/cuk.yaml");
+
+const REFUTED: &str = "model: m\nx: [a]\ny: [b]\nu: [c]\nf_x: {a: c - a^2}\nf_y: {b: a}\nphi: [a]\n";
+
+fn source(path: &str) -> Source {
+    Source::new(path, std::fs::read_to_string(path).expect("a model file")).expect("a text")
+}
+
+fn asked(text: &str, ask: &Ask) -> Answer {
+    answer(&Source::new("folder/plant.yaml", text).expect("a text"), ask)
+}
+
+fn program(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pebo-gen"))
+        .args(arguments)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the program runs")
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("a text")
+}
+
+/// A short run of the converter.
+fn short() -> AskRun {
+    let overrides = Overrides { step: Some(1e-4), every: Some(0.25), ..Overrides::default() };
+    AskRun { overrides, trace: true, figure: true }
+}
+
+#[test]
+fn the_command_line_and_the_builder_say_what_the_answer_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["cuk", "motor_flux", "pendulum"] {
+        let path = PathBuf::from(CUK).with_file_name(format!("{name}.yaml")).display().to_string();
+        let answer = answer(&source(&path), &Ask::new().emit(Scalar::F32));
+        let emitted = answer.emitted.expect("accepted");
+        let check = program(&["check", &path, "--format", "json"]);
+        assert_eq!(text(&check.stdout), answer.report.line() + "\n");
+        assert_eq!(text(&program(&["check", &path]).stdout), answer.summary);
+        let generate = program(&[&path, "--scalar", "f32"]);
+        assert_eq!((text(&generate.stdout), text(&generate.stderr)), (emitted.text.as_str(), answer.summary.as_str()));
+        let builder = Builder::new().out_dir(folder.path()).emit_rerun_if_changed(false).scalar(Scalar::F32);
+        let built = builder.compile(&[&path]).expect("accepted");
+        assert_eq!(std::fs::read_to_string(&built[0].path).expect("a file"), emitted.text);
+        assert_eq!(built[0].type_name, emitted.type_name);
+    }
+}
+
+#[test]
+fn a_run_has_its_final_errors_and_what_was_asked_for() {
+    let answer = answer(&source(CUK), &Ask::new().run(short()));
+    assert_eq!(answer.standing, Standing::Accepted);
+    let run = answer.run.expect("a run");
+    let states: Vec<&str> = run.errors.iter().map(|error| error.state.as_str()).collect();
+    assert_eq!((states, run.end), (vec!["i1", "i3"], 1.0));
+    assert!(run.errors.iter().all(|error| error.start.abs() > 0.1 && error.end.abs() < 0.01), "{:?}", run.errors);
+    let csv = std::env::temp_dir().join(format!("pebo-answer-{}.csv", std::process::id()));
+    let path = csv.display().to_string();
+    let output = program(&["simulate", CUK, "--step", "1e-4", "--every", "0.25", "--csv", &path]);
+    let written = std::fs::read_to_string(&csv).expect("a table");
+    std::fs::remove_file(&csv).expect("it was written");
+    assert_eq!(written, run.trace.as_ref().expect("asked for").csv());
+    let lines = run.errors.iter().map(|error| {
+        format!("{}_error: {:.3e} at the start, {:.3e} at t = 1 s\n", error.state, error.start, error.end)
+    });
+    assert_eq!(text(&output.stderr), lines.collect::<String>());
+    assert!(run.figure.expect("asked for").starts_with("<svg"));
+}
+
+/// A plant that is accepted, with something behind it.
+fn with(section: &str) -> Source {
+    let plant = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\nphi: [p]\n";
+    Source::new("m.yaml", format!("{plant}{section}\n")).expect("a short text")
+}
+
+#[test]
+fn a_list_of_wrong_length_under_observer_is_told_before_code_is_written() {
+    let source = with("observer: {estimator: gradient, gain: [1, 2, 3], filter: 10}");
+    let refused = answer(&source, &Ask::new().emit(Scalar::F64));
+    assert_eq!((refused.standing, refused.diagnostics[0].code), (Standing::Malformed, Code::WrongShape));
+    assert!(refused.emitted.is_none());
+    assert_eq!(answer(&source, &Ask::new()).standing, Standing::Accepted, "the claims do not depend on it");
+}
+
+#[test]
+fn an_input_under_signals_is_sent_to_the_control_law() {
+    let source = with("simulation: {duration: 1, step: 1e-3, initial: {p: 1}, signals: {v: 1}}");
+    let refused = answer(&source, &Ask::new());
+    assert_eq!((refused.standing, refused.diagnostics.len()), (Standing::Malformed, 1));
+    assert!(refused.diagnostics[0].help.as_deref().is_some_and(|help| help.contains("under `control`")));
+}
+
+/// What a page or an editor reads: places in bytes, labels, notes, and no more than was asked for.
+#[test]
+fn the_answer_serialises_with_places_labels_and_notes() {
+    let answer = asked(REFUTED, &Ask::new().emit(Scalar::F64));
+    assert_eq!((answer.standing, answer.report.verdict), (Standing::Refused, Outcome::Rejected));
+    let json: Value = serde_json::to_value(&answer).expect("it serialises");
+    assert_eq!(json["standing"], "refused");
+    assert_eq!(json["report"], serde_json::from_str::<Value>(&answer.report.line()).expect("a line of JSON"));
+    let diagnostic = &json["diagnostics"][0];
+    assert_eq!((&diagnostic["code"], &diagnostic["severity"]), (&"cascade-refuted".into(), &"error".into()));
+    let place = |span: &Value| {
+        let [start, end] = ["start", "end"].map(|key| usize::try_from(span[key].as_u64().expect("a byte")).unwrap());
+        &REFUTED[start..end]
+    };
+    assert_eq!(place(&diagnostic["primary"]["span"]), "a");
+    assert!(
+        diagnostic["secondary"]
+            .as_array()
+            .is_some_and(|labels| labels.iter().any(|l| place(&l["span"]) == "-a^2" || place(&l["span"]) == "a^2")),
+        "{diagnostic}"
+    );
+    assert!(diagnostic["notes"].as_array().is_some_and(|notes| !notes.is_empty()), "{diagnostic}");
+    for key in ["emitted", "mathml", "run"] {
+        assert_eq!(json[key], Value::Null, "{key}");
+    }
+    let json: Value = serde_json::to_value(self::answer(&source(CUK), &Ask::new().emit(Scalar::F64).run(short())))
+        .expect("it serialises");
+    assert_eq!(json["emitted"]["type_name"], "Cuk");
+    assert!(json["emitted"]["text"].as_str().is_some_and(|text| text.contains("pub struct Cuk")));
+    assert_eq!(json["run"]["trace"]["columns"][0], "t");
+    assert_eq!(json["run"]["errors"][0]["state"], "i1");
+}
+
+#[test]
+fn what_was_derived_is_typeset_when_that_is_asked_for() {
+    let model = "model: m\nparameters: [L_1]\nx: [p]\ny: [q]\nu: [v]\nassume: [L_1 > 0]\nf_x: {p: v/L_1}\nf_y: {q: p*q}\nphi: [p]\n";
+    assert_eq!(asked(model, &Ask::new()).mathml, None);
+    let mathml = asked(model, &Ask::new().mathml()).mathml.expect("asked for");
+    assert_eq!(
+        mathml.h,
+        ["<math><mfrac><mrow><mi>v</mi></mrow><mrow><msub><mi>L</mi><mn>1</mn></msub></mrow></mfrac></math>"]
+    );
+    assert_eq!(mathml.phi_left["p"], "<math><msub><mi>z</mi><mn>1</mn></msub></math>");
+    assert_eq!(
+        (mathml.phi_0.len(), mathml.phi_1, mathml.lambda.len()),
+        (1, vec![vec!["<math><mi>q</mi></math>".to_owned()]], 0)
+    );
+}
+
+#[test]
+fn the_caller_stops_a_proof_and_a_run() {
+    let stopped = |ask: &Ask, path: &str| {
+        let answer = answer(&source(path), ask);
+        assert_eq!(answer.standing, Standing::Refused);
+        assert_eq!(answer.diagnostics.last().map(|diagnostic| diagnostic.code), Some(Code::LimitReached));
+        answer
+    };
+    let asked = Rc::new(Cell::new(0.0));
+    let seen = Rc::clone(&asked);
+    let ask = Ask::new().run(short()).watch(move |stage| match stage {
+        Stage::Run { done, samples } => {
+            assert_eq!(samples, 10_000);
+            seen.set(done);
+            if done < 0.5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        }
+        _ => ControlFlow::Continue(()),
+    });
+    let answer = stopped(&ask, CUK);
+    assert_eq!((answer.report.verdict, answer.run.is_none(), asked.get()), (Outcome::Accepted, true, 0.5));
+    // Long enough that somebody is asked.
+    let tangents = (0..18).fold("q".to_owned(), |inner, _| format!("tan({inner} + v)"));
+    let model = format!("model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {{p: \"v*{tangents}\"}}\nf_y: {{q: p}}\nphi: [p]\n");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("m.yaml");
+    std::fs::write(&path, model).expect("a file");
+    let answer = stopped(&Ask::new().limit(1e9).watch(|_| ControlFlow::Break(())), &path.display().to_string());
+    assert_eq!(answer.report.verdict, Outcome::Undecided);
+}
+
+/// What was asked for and is not there has a diagnostic.
+#[test]
+fn what_is_not_there_is_explained() {
+    let model = "model: m\nparameters: {a: 1e300}\nx: [p]\ny: [q]\nf_x: {p: a*q}\nf_y: {q: p}\nphi: [p]\n";
+    let answer = asked(model, &Ask::new().emit(Scalar::F32));
+    let [refused] = answer.diagnostics.as_slice() else { panic!("{:?}", answer.diagnostics) };
+    assert_eq!((refused.code, answer.standing, answer.emitted.is_none()), (Code::CannotEmit, Standing::Refused, true));
+    assert_eq!(&model[refused.primary.span.range()], "m");
+    assert!(asked(model, &Ask::new().emit(Scalar::F64)).emitted.is_some());
+    let no_loop = asked(model, &Ask::new().run(AskRun::default()));
+    assert_eq!((no_loop.standing, no_loop.run.is_none()), (Standing::Malformed, true));
+    assert_eq!(no_loop.diagnostics[0].code, Code::SimulationMissing);
+}
+
+#[test]
+fn a_model_that_is_no_model_is_called_as_its_file() {
+    let named = |ask: &Ask| asked("model: [", ask);
+    assert_eq!(
+        (named(&Ask::new()).report.model, named(&Ask::new()).standing),
+        ("plant".to_owned(), Standing::Malformed)
+    );
+    assert_eq!(named(&Ask::new().named("-")).report.model, "-");
+    let output = program(&["check", "--format", "json", &Path::new("no").join("file.yaml").display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stdout).starts_with(r#"{"schema":1,"model":"file","verdict":"rejected""#));
+}

@@ -1,0 +1,73 @@
+//! Certificates state the plant in its author's words, and there is none without a proof. That they prove and that they
+//! fail when a claim is false, `tests/oracle/certificates.py` shows with `SymPy`, of every shipped model.
+
+use pebo_gen::source::Source;
+use pebo_gen::{Ask, Standing, answer};
+
+fn certificate(text: &str) -> (Standing, Option<String>) {
+    let source = Source::new("m.yaml", text).unwrap();
+    let answer = answer(&source, &Ask::new().certificate());
+    (answer.standing, answer.certificate)
+}
+
+/// What stands before the part that every script has.
+fn stated(text: &str) -> String {
+    let script = certificate(text).1.expect("it is accepted");
+    let (stated, checker) = script.split_once("\nimport random\n").expect("a checker");
+    assert!(checker.contains("sys.exit"));
+    stated.to_owned()
+}
+
+#[test]
+fn the_plant_is_restated_as_its_author_wrote_it() {
+    let stated = stated(
+        "model: m\ntitle: A \"first\" plant\nparameters: {k: 10e-3, c: null}\nx: [p]\ny: [q]\nu: [v]\nassume: [k > 0, 0 < q < 2]\n\
+         define: {s: k*(q+1)}\nf_x: {p: v - s**2/(2*c)}\nf_y: {q: p/k/2}\nphi: [p]\n",
+    );
+    for line in [
+        "\"\"\"Certificate of `m`: A  first  plant",
+        "    \"parameters\": {\"k\": \"10e-3\", \"c\": None},",
+        "    \"define\": {\"s\": \"k*(q + 1)\"},",
+        "    \"assume\": [\"k > 0\", \"0 < q < 2\"],",
+        "    \"f_x\": {\"p\": \"v - s^2/(2*c)\"},",
+        "    \"f_y\": {\"q\": \"p/k/2\"},",
+        "    \"phi\": [\"p\"],",
+        "    \"y'\": [\"q\"],",
+        "    \"conditions\": [\"c != 0\"],",
+    ] {
+        assert!(stated.lines().any(|have| have == line), "{line}\n{stated}");
+    }
+}
+
+#[test]
+fn a_class_is_restated_by_its_matrices() {
+    let stated = stated(
+        "model: m\nparameters: [a, k, m1]\nassume: [m1 > 0]\nx: [p]\ny: [q]\nu: [f]\n\
+         mechanical: {M: m1, V: k*q^2/2, G: [1], T: 1}\n",
+    );
+    let line = "    \"mechanical\": {\"M\": \"m1\", \"G\": [\"1\"], \"V\": \"k*q^2/2\"},";
+    assert!(stated.lines().any(|have| have == line) && !stated.contains("f_x"), "{stated}");
+}
+
+#[test]
+fn there_is_none_of_a_model_that_is_not_accepted() {
+    let wrong = "model: m\nx: [p]\ny: [q]\nf_x: {p: -p^2 + q*sin(p)}\nf_y: {q: p}\nphi: [p]\n";
+    let (standing, script) = certificate(wrong);
+    assert!(standing == Standing::Refused && script.is_none(), "{standing:?}");
+    assert_eq!(certificate("model: m\nx: [p]\n").1, None);
+}
+
+#[test]
+fn every_shipped_model_has_one() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models");
+    let mut models = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "yaml") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(certificate(&text).1.is_some(), "{}", path.display());
+            models += 1;
+        }
+    }
+    assert!(models > 10);
+}

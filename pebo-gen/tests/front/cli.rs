@@ -1,0 +1,406 @@
+//! The command line: exit status, what goes to which stream, files whole or not at all, and hostile input.
+#![cfg(all(feature = "cli", feature = "simulate"))]
+
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const CUK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/cuk.yaml");
+
+/// What a person would call a hang, on a machine however busy.
+const HANG: Duration = Duration::from_secs(120);
+
+/// A folder that goes with the test.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        let path = self.path(name);
+        std::fs::write(&path, content).expect("a file");
+        path.display().to_string()
+    }
+}
+
+fn run(arguments: &[&str]) -> Output {
+    let started = Instant::now();
+    let output = Command::new(env!("CARGO_BIN_EXE_pebo-gen"))
+        .args(arguments)
+        .env("NO_COLOR", "1")
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program runs");
+    assert!(started.elapsed() < HANG, "{arguments:?} took {:?}", started.elapsed());
+    output
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A small model with one line replaced.
+fn model(key: &str, line: &str) -> String {
+    let base = [
+        ("model", "model: m"),
+        ("parameters", "parameters: {a: 2}"),
+        ("x", "x: [x1]"),
+        ("y", "y: [y1]"),
+        ("u", "u: [u1]"),
+        ("f_x", "f_x: {x1: u1}"),
+        ("f_y", "f_y: {y1: a*x1}"),
+        ("phi", "phi: [x1]"),
+    ];
+    base.iter().map(|(k, l)| if *k == key { line } else { *l }).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+#[test]
+fn emits_to_standard_output_and_the_verdict_to_standard_error() {
+    let output = run(&[CUK]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("pub struct Cuk"));
+    assert!(text(&output.stderr).starts_with("cuk: accepted"));
+}
+
+#[test]
+fn output_is_the_same_every_time() {
+    assert_eq!(run(&[CUK]).stdout, run(&[CUK]).stdout);
+    assert_eq!(run(&["check", CUK, "--format", "json"]).stdout, run(&["check", CUK, "--format", "json"]).stdout);
+}
+
+#[test]
+fn several_models_are_written_into_a_folder() {
+    let folder = Folder::new();
+    let small = folder.file("m.yaml", model("model", "model: small"));
+    let out = folder.0.path().display().to_string();
+    assert_eq!(run(&[CUK, &small, "-o", &out]).status.code(), Some(0));
+    assert!(folder.path("cuk.rs").exists() && folder.path("small.rs").exists());
+    let output = run(&[CUK, &small]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("help: make it, and name it with `-o FOLDER`"));
+}
+
+#[test]
+fn describes_itself() {
+    for (arguments, part) in [
+        (&["--help"][..], "Examples:"),
+        (&["--version"], env!("CARGO_PKG_VERSION")),
+        (&["completions", "bash"], "complete -F"),
+        (&["completions", "fish"], "complete -c pebo-gen"),
+        (&["man"], ".TH pebo-gen"),
+        (&["schema"], "The verdict on one model"),
+        (&["schema", "check"], "The verdict on one model"),
+        (&["schema", "model"], "A model file of pebo-gen"),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+        assert!(text(&output.stdout).contains(part), "{arguments:?}: {}", text(&output.stdout));
+    }
+}
+
+#[test]
+fn a_certificate_goes_to_a_file_and_the_verdict_to_standard_error() {
+    let folder = Folder::new();
+    let script = folder.path("cuk.py").display().to_string();
+    let output = run(&["certificate", CUK, "-o", &script]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(output.stdout.is_empty() && text(&output.stderr).starts_with("cuk: accepted"));
+    assert!(std::fs::read_to_string(&script).unwrap().starts_with("#!/usr/bin/env python3\n"));
+    let wrong = folder.file("m.yaml", model("phi", "phi: [x1, x1^2]"));
+    let output = run(&["certificate", &wrong]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn a_page_goes_to_a_file_and_a_refused_model_has_one_too() {
+    let folder = Folder::new();
+    let page = folder.path("cuk.html").display().to_string();
+    let output = run(&["report", CUK, "-o", &page]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(output.stdout.is_empty() && text(&output.stderr).starts_with("cuk: accepted"));
+    assert!(std::fs::read_to_string(&page).unwrap().starts_with("<!DOCTYPE html>\n"));
+    let wrong = folder.file("m.yaml", model("phi", "phi: [x1, x1^2]"));
+    let output = run(&["report", &wrong]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("id=\"diagnostics\""));
+    let malformed = folder.file("n.yaml", "model: n\n");
+    let output = run(&["report", &malformed, "-o", &folder.path("n.html").display().to_string()]);
+    assert_eq!((output.status.code(), folder.path("n.html").exists()), (Some(2), false));
+}
+
+#[test]
+fn long_lines_are_cut_to_the_terminal() {
+    let folder = Folder::new();
+    let long = folder.file("m.yaml", model("phi", &format!("phi: [x1{}, y2]", " + 0*y1".repeat(60))));
+    let widest = |columns: &str| {
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_pebo-gen")).args(["check", &long]).env("COLUMNS", columns).output();
+        let said = text(&output.expect("the program runs").stderr);
+        said.lines().filter(|line| line.contains('|')).map(|line| line.chars().count()).max().unwrap_or(0)
+    };
+    let (narrow, wide) = (widest("60"), widest("1000"));
+    assert!(narrow <= 80 && wide > 300, "{narrow} and {wide}");
+}
+
+#[test]
+fn a_refused_model_exits_with_1_and_writes_nothing() {
+    let folder = Folder::new();
+    let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));
+    let target = folder.path("out.rs");
+    let output = run(&[&refused, "-o", &target.display().to_string()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!target.exists());
+    assert!(output.stdout.is_empty());
+    assert!(text(&output.stderr).contains("error[cascade-refuted]"));
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_file() {
+    let folder = Folder::new();
+    let target = folder.path("no-such-folder").join("out.rs");
+    let output = run(&[CUK, "-o", &target.display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("error[cannot-write]"), "{}", text(&output.stderr));
+}
+
+/// A full disk, for whatever is written to standard output.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_in_a_diagnostic() {
+    for arguments in [
+        &[CUK][..],
+        &["check", CUK],
+        &["check", CUK, "--format", "json"],
+        &["simulate", CUK, "--step", "1e-4", "--csv", "-"],
+        &["explain", "cannot-read"],
+        &["completions", "bash"],
+        &["man"],
+        &["schema"],
+        &["--help"],
+        &["--version"],
+    ] {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("a device that is full");
+        let output = Command::new(env!("CARGO_BIN_EXE_pebo-gen")).args(arguments).stdout(full).output();
+        let output = output.expect("the program runs");
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains("error[cannot-write]") && said.contains("help:"), "{arguments:?}: {said}");
+        assert!(said.contains("no space left on device"), "{arguments:?}: {said}");
+    }
+}
+
+/// What the call sets is refused as the call's: no line of the model file is at fault.
+#[test]
+fn settings_of_the_call_are_refused_without_the_file() {
+    for (arguments, code, message, help) in [
+        (&["--step", "0"][..], "number-out-of-range", "`step` of the call is 0", "above zero"),
+        (&["--step", "-1"], "number-out-of-range", "`step` of the call is -1", "above zero"),
+        (&["--every", "-1"], "number-out-of-range", "`every` of the call is -1", "above zero"),
+        (&["--every", "NaN"], "number-out-of-range", "`every` of the call is NaN", "above zero"),
+        (&["--step", "2"], "number-out-of-range", "longer than the duration of 1 s", "a shorter `step`"),
+        (&["--step", "1e-30"], "simulation-too-long", "`step` of the call, 1e-30 s", "a longer step"),
+        (&["--step", "1e-8", "--every", "1e-8"], "simulation-too-long", "rows", "a larger `--every`"),
+        (&["--feedback", "trueth"], "wrong-choice", "the call", "did you mean `truth`?"),
+    ] {
+        let output = run(&[&["simulate", CUK], arguments].concat());
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        for part in [&format!("error[{code}]"), message, help] {
+            assert!(said.contains(part), "{arguments:?}: no {part} in {said}");
+        }
+        assert!(!said.contains("cuk.yaml"), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn colour_is_for_terminals() {
+    let folder = Folder::new();
+    let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));
+    let escapes = |variable: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_pebo-gen")).args(["check", &refused]).env(variable, "1").output();
+        text(&output.expect("the program runs").stderr).contains('\u{1b}')
+    };
+    // Here the stream is a pipe.
+    assert!(!escapes("UNRELATED") && !escapes("NO_COLOR"));
+    assert!(escapes("CLICOLOR_FORCE"));
+}
+
+#[test]
+fn several_models_in_one_call_end_with_the_worst_status() {
+    let folder = Folder::new();
+    let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));
+    let output = run(&["check", CUK, &refused, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let lines = text(&output.stdout);
+    let verdicts: Vec<&str> =
+        lines.lines().filter_map(|l| l.split("\"verdict\":\"").nth(1)?.split('"').next()).collect();
+    assert_eq!(verdicts, ["accepted", "rejected"]);
+}
+
+#[test]
+fn json_tells_what_drifts_and_where_the_plant_rests() {
+    let printed = text(&run(&["check", CUK, "--format", "json"]).stdout);
+    for part in [
+        r#""drift":["chi1","chi2"]"#,
+        r#""operating_point":{"verdict":"proved","values":{"i1":"G*E*d^2/(1 - d)^2","i3":"-G*E*d/(1 - d)","#,
+        r#""still":true,"rank":[1,0],"reason":null}"#,
+    ] {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+}
+
+#[test]
+fn json_has_an_object_for_a_malformed_model_too() {
+    let folder = Folder::new();
+    let malformed = folder.file("m.yaml", "model: [");
+    let output = run(&["check", &malformed, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stdout).starts_with("{\"schema\":1,\"model\":\"m\",\"verdict\":\"rejected\""));
+}
+
+#[test]
+fn explains_every_code() {
+    let output = run(&["explain", "cascade-refuted"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).contains("Claim C1"));
+    let output = run(&["explain", "cascade-refused"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("did you mean `cascade-refuted`?"));
+}
+
+/// Mistakes and attacks: what is written, the code, and what the message must name.
+#[test]
+fn hostile_input_ends_in_a_diagnostic() {
+    let folder = Folder::new();
+    let deep = format!("phi: [{}x1{}]", "(".repeat(10_000), ")".repeat(10_000));
+    let bomb = "a: &a [1,1,1,1,1,1,1,1]\nb: &b [*a,*a,*a,*a,*a,*a,*a,*a]\nc: &c [*b,*b,*b,*b,*b,*b,*b,*b]\nmodel: *c\n";
+    let table: Vec<(&str, Vec<u8>, &str, &str)> = vec![
+        ("unknown key", model("u", "u: [u1]\nphi_lefd: {x1: z1}").into(), "unknown-key", "phi_left"),
+        ("duplicate key", model("u", "u: [u1]\nx: [x1]").into(), "duplicate-key", "x"),
+        ("unknown name", model("f_y", "f_y: {y1: a*x2}").into(), "unknown-name", "did you mean `x1`?"),
+        ("huge power", model("f_y", "f_y: {y1: x1^1000000000}").into(), "exponent-too-large", "64"),
+        ("huge number", model("parameters", "parameters: {a: 1e999999999}").into(), "number-too-large", "308"),
+        ("huge number in a formula", model("f_y", "f_y: {y1: 1e999999999*x1}").into(), "number-too-large", "308"),
+        ("parentheses", model("phi", &deep).into(), "formula-too-deep", ""),
+        ("alias bomb", bomb.into(), "yaml-feature", ""),
+        ("empty", Vec::new(), "empty-file", ""),
+        ("binary", vec![0, 159, 146, 150, 255], "not-text", "UTF-8"),
+        ("ten megabytes", vec![b'a'; 10 << 20], "file-too-large", ""),
+        ("division by zero", model("f_y", "f_y: {y1: x1/(a - a)}").into(), "division-by-zero", "zero"),
+        ("reserved", model("x", "x: [z1]").into(), "reserved-name", "z1"),
+        ("missing rate", model("x", "x: [x1, x2]").into(), "missing-entry", "x2"),
+        ("empty map", model("f_x", "f_x: {}").into(), "empty-list", "f_x"),
+        ("control characters", b"model: m\x00\x01\n".to_vec(), "yaml-syntax", ""),
+        ("no yaml", b"{{{{{{".to_vec(), "yaml-syntax", ""),
+    ];
+    for (what, content, code, named) in table {
+        let path = folder.file("m.yaml", content);
+        let output = run(&["check", &path]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{what}: {message}");
+        assert!(message.contains(&format!("error[{code}]")), "{what}: {message}");
+        assert!(message.contains(named), "{what} does not name {named}: {message}");
+        assert!(message.contains("help: "), "{what} has no help: {message}");
+        assert!(!message.contains("panicked"), "{what}: {message}");
+    }
+    let output = run(&["check", &folder.path("none.yaml").display().to_string()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("error[cannot-read]"));
+}
+
+/// The models that take long are the library's to test (`limit.rs`): here, what the program makes of it.
+#[test]
+fn what_takes_too_long_is_undecided_and_names_the_phase() {
+    let folder = Folder::new();
+    let tangents = (0..18).fold("q".to_owned(), |inner, _| format!("tan({inner} + u1)"));
+    let content = "model: m\nx: [p]\ny: [q]\nu: [u1]\nf_y: {q: p}\nphi: [p]\n".to_owned()
+        + &format!("f_x: {{p: \"u1*{tangents}\"}}\n");
+    let path = folder.file("m.yaml", content);
+    for command in [["check", &path, "--limit", "0.1"], ["simulate", &path, "--limit", "0.1"]] {
+        let output = run(&command);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{command:?}: {message}");
+        assert!(message.contains("error[limit-reached]"), "{command:?}: {message}");
+        assert!(message.contains("reached in the cascade"), "{command:?}: {message}");
+    }
+    assert_eq!(run(&[&path, "--limit", "0.1"]).status.code(), Some(1));
+}
+
+/// Options of every command stand where their writer put them.
+#[test]
+fn a_limit_may_stand_before_the_command() {
+    let json = run(&["--limit", "20", "check", CUK, "--format", "json"]);
+    assert_eq!(json.status.code(), Some(0), "{}", text(&json.stderr));
+    assert_eq!(json.stdout, run(&["check", CUK, "--format", "json", "--limit", "20"]).stdout);
+    assert_eq!(run(&["--limit=20", CUK]).stdout, run(&[CUK]).stdout);
+    let short = run(&["--limit", "1e-6", "check", CUK]);
+    assert_eq!(short.status.code(), Some(1), "{}", text(&short.stderr));
+    // What belongs to one command alone does not stand before another.
+    for option in [["--output", "file.rs"], ["--scalar", "f32"]] {
+        let output = run(&[option[0], option[1], "check", CUK]);
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains(&format!("`{}` belongs to `pebo-gen MODEL`", option[0])));
+    }
+    // Behind a model, a command's name is a file's.
+    let output = run(&[CUK, "check"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("several models need a folder"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn a_limit_is_a_positive_number_of_seconds() {
+    for limit in ["0", "-1", "NaN", "ten", ""] {
+        let output = run(&["check", CUK, &format!("--limit={limit}")]);
+        assert_eq!(output.status.code(), Some(2), "{limit}: {}", text(&output.stderr));
+    }
+    for limit in ["inf", "1e300", "1000"] {
+        let output = run(&["check", CUK, "--limit", limit]);
+        assert_eq!(output.status.code(), Some(0), "{limit}: {}", text(&output.stderr));
+    }
+}
+
+/// Shared parts are printed wherever they are used: what would fill the memory is not printed in full.
+#[test]
+fn a_formula_that_no_page_holds_is_not_printed_in_full() {
+    let folder = Folder::new();
+    let level = |i: usize| format!("  a{i}: \"sin(a{0})*a{0} + 1\"\n", i - 1);
+    let chain: String = (1..60).map(level).collect();
+    let content = format!(
+        "model: m\nx: [p]\ny: [q]\nu: [v]\ndefine:\n  a0: q\n{chain}f_x: {{p: v*a59}}\nf_y: {{q: p + q}}\nphi: [p]\n"
+    );
+    let output = run(&["check", &folder.file("m.yaml", content)]);
+    assert!(output.status.code().is_some_and(|code| code < 2), "{}", text(&output.stderr));
+    assert!(output.stdout.len() + output.stderr.len() < 1_000_000, "{} bytes", output.stdout.len());
+}
+
+/// Names that other tools stumble over are just names.
+#[test]
+fn difficult_names_are_accepted() {
+    let folder = Folder::new();
+    for (what, content) in [
+        (
+            "a parameter named like a function",
+            "model: m\nparameters: {sin: 2}\nx: [x1]\ny: [y1]\nf_x: {x1: sin(sin*y1)}\nf_y: {y1: sin*x1}\nphi: [x1]\n",
+        ),
+        ("a state named E", "model: m\nx: [E]\ny: [I]\nf_x: {E: I^2}\nf_y: {I: E + I}\nphi: [E]\n"),
+        (
+            "a Rust keyword",
+            "model: type\nparameters: {fn: 2}\nx: [match]\ny: [self]\nu: [gen]\nf_x: {match: gen}\nf_y: {self: fn*match}\nphi: [match]\n",
+        ),
+        (
+            "names that differ in case",
+            "model: m\nparameters: {l: 2, L: 3}\nx: [x]\ny: [X]\nf_x: {x: X/l}\nf_y: {X: L*x}\nphi: [x]\n",
+        ),
+    ] {
+        let path = folder.file("m.yaml", content);
+        let output = run(&[&path]);
+        assert_eq!(output.status.code(), Some(0), "{what}: {}", text(&output.stderr));
+    }
+}

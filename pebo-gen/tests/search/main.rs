@@ -1,0 +1,37 @@
+//! Transforms that are searched for: found and proved, bounded, or said to be neither.
+#![cfg(feature = "yaml")]
+
+mod filled;
+mod literature;
+mod plants;
+mod refusals;
+
+use pebo_gen::analysis::{Class, Outcome};
+use pebo_gen::model::Model;
+use pebo_gen::plant::Plant;
+use pebo_gen::search::{Found, Search, solve};
+use pebo_gen::source::Source;
+
+/// The plant of these lines, and what a search for its transform came to.
+fn search(lines: &str, class: Option<Class>) -> (Plant, Search) {
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
+    let model = Model::parse(&source).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message));
+    let plant = Plant::resolve(&model).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message));
+    let search = solve(&plant, class);
+    (plant, search)
+}
+
+/// Says of a transform that was found what has to hold of it: every claim is proved of the model with it written in, as
+/// of any other that its author has given.
+fn written(lines: &str, search: &Search) -> (Class, usize) {
+    let best = search.candidates.first().expect("a candidate");
+    assert_eq!(search.verdict, Found::Found, "{lines}");
+    let phi: Vec<String> = best.formulas().iter().map(|formula| format!("\"{formula}\"")).collect();
+    let text = format!("model: m\n{lines}\nphi: [{}]\n", phi.join(", "));
+    let derived = pebo_gen::derive(&Source::new("m.yaml", text.as_str()).expect("a text"));
+    let derived = derived.unwrap_or_else(|d| panic!("{text}: {}", d[0].message));
+    assert_eq!(derived.derivation.outcome, Outcome::Accepted, "{text}");
+    let recovered = derived.derivation.left_inverse.result.expect("a left inverse").x.len();
+    assert_eq!(recovered, derived.plant.x.len(), "{text}");
+    (derived.derivation.class, derived.plant.phi.len())
+}

@@ -1,0 +1,169 @@
+//! Plants from the literature without their transform.
+
+use pebo_gen::analysis::Class;
+use pebo_gen::search::Found;
+use pebo_gen::source::Source;
+use pebo_gen::{Ask, solve};
+
+use super::{search, written};
+
+/// A plant, where it is from, and the class and the size of the transform that is to be found at the latest.
+struct Case {
+    from: &'static str,
+    lines: &'static str,
+    class: Class,
+    most: usize,
+}
+
+const CASES: &[Case] = &[
+    Case {
+        from: "boost converter: the inductor current",
+        lines: "parameters: {L: 1e-3, C: 1e-4, R: 50, E: 12}\nx: [i]\ny: [v]\nu: [d]\n\
+                f_x: {i: (E - (1 - d)*v)/L}\nf_y: {v: ((1 - d)*i - v/R)/C}",
+        class: Class::Pebo,
+        most: 1,
+    },
+    Case {
+        from: "Lotka 1920, Volterra 1926: the prey from its predator; the sum of phi holds a logarithm of y",
+        lines: "parameters: [a, b, c, d]\nx: [x]\ny: [y]\nu: [u]\nassume: [x > 0, y > 0, d > 0]\n\
+                f_x: {x: a*x - b*x*y}\nf_y: {y: -c*y + d*x*y + u}",
+        class: Class::Gpebo,
+        most: 1,
+    },
+    Case {
+        from: "Lotka 1920 without an input: a plain cascade with an integral over y",
+        lines: "parameters: [a, b, c, d]\nx: [x]\ny: [y]\nassume: [x > 0, y > 0, d > 0]\n\
+                f_x: {x: a*x - b*x*y}\nf_y: {y: -c*y + d*x*y}",
+        class: Class::Pebo,
+        most: 1,
+    },
+    Case {
+        from: "Euler's equations of a rigid body in a plane frame that turns: velocities of the body from positions",
+        lines: "parameters: [m, J]\nx: [a, b, r]\ny: [px, py, psi]\nu: [fa, fb, tr]\n\
+                f_x: {a: r*b + fa/m, b: -r*a + fb/m, r: tr/J}\n\
+                f_y: {px: cos(psi)*a - sin(psi)*b, py: sin(psi)*a + cos(psi)*b, psi: r}",
+        class: Class::Pebo,
+        most: 3,
+    },
+    Case {
+        from: "levitated ball: its position from the current; affine in two functions of one state",
+        lines: "parameters: [k, c, R]\nx: [q]\ny: [i]\nu: [U, v]\nassume: [k > 0, c - q > 0, i > 0]\n\
+                f_x: {q: v}\nf_y: {i: (c - q)/k*(U - R*i) - v*i/(c - q)}",
+        class: Class::Pebo,
+        most: 2,
+    },
+    Case {
+        from: "falling body in an atmosphere that thins out: an integrating factor",
+        lines: "parameters: [k, H, g]\nx: [v]\ny: [a]\nu: [F]\n\
+                f_x: {v: \"-g + F + k*exp(-a/H)*v^2\"}\nf_y: {a: v}",
+        class: Class::Pebo,
+        most: 1,
+    },
+    Case {
+        from: "pendulum on a cart in its momenta (Acosta, Ortega, Astolfi, Mahindrakar 2005): a root of det M",
+        lines: "parameters: {a: 9.8, b: 0.8, c: 1.5}\nx: [p1, p2]\ny: [q1, q2]\nu: [u]\n\
+                assume: [c > 0, b > 0, b^2 < c]\n\
+                f_x: {p1: \"a*sin(q1) - b*sin(q1)*(p1*c - b*cos(q1)*p2)*(p2 - b*cos(q1)*p1)/(c - b^2*cos(q1)^2)^2\", p2: u}\n\
+                f_y: {q1: \"(c*p1 - b*cos(q1)*p2)/(c - b^2*cos(q1)^2)\", q2: \"(p2 - b*cos(q1)*p1)/(c - b^2*cos(q1)^2)\"}",
+        class: Class::Pebo,
+        most: 2,
+    },
+    Case {
+        from: "Cuk converter, three states from one voltage: a generalised cascade alone",
+        lines: "parameters: [L1, C2, L3, C4, G, E]\nx: [i1, i3, v4]\ny: [v2]\nu: [u]\n\
+                assume: [L1 > 0, C2 > 0, L3 > 0, C4 > 0]\n\
+                f_x: {i1: -(1 - u)*v2/L1 + E/L1, i3: -u*v2/L3 - v4/L3, v4: (i3 - G*v4)/C4}\n\
+                f_y: {v2: ((1 - u)*i1 + u*i3)/C2}",
+        class: Class::Gpebo,
+        most: 3,
+    },
+    Case {
+        from: "Van der Pol 1926, Lienard's form: the damping is an integral over y",
+        lines: "parameters: [mu]\nx: [v]\ny: [y]\nu: [u]\nf_x: {v: mu*(1 - y^2)*v - y + u}\nf_y: {y: v}",
+        class: Class::Pebo,
+        most: 1,
+    },
+    Case {
+        from: "Susceptible, infected (Kermack, McKendrick 1927): the susceptible from the infected",
+        lines: "parameters: [beta, g]\nx: [S]\ny: [I]\nassume: [S > 0, I > 0, beta > 0]\n\
+                f_x: {S: -beta*S*I}\nf_y: {I: beta*S*I - g*I}",
+        class: Class::Pebo,
+        most: 1,
+    },
+    Case {
+        from: "stirred tank (Bastin, Dochain 1990): substrate from biomass with a known growth rate",
+        lines: "parameters: [k]\nx: [S]\ny: [X]\nu: [D, Sin]\nassume: [k > 0, X > 0]\n\
+                f_x: {S: -k*S*X + D*(Sin - S)}\nf_y: {X: S*X - D*X}",
+        class: Class::Gpebo,
+        most: 1,
+    },
+    Case {
+        from: "unicycle that sees its position: the heading under a known rate of turn",
+        lines: "x: [th]\ny: [px, py]\nu: [v, w]\nangles: {th: 2*pi}\n\
+                f_x: {th: w}\nf_y: {px: v*cos(th), py: v*sin(th)}",
+        class: Class::Gpebo,
+        most: 2,
+    },
+    Case {
+        from: "rotor flux of an induction motor in a fixed frame, currents and speed measured",
+        lines: "parameters: [Rr, Lr, M, s, Rs]\nx: [la, lb]\ny: [ia, ib, w]\nu: [va, vb]\nassume: [Lr > 0, M > 0, s > 0]\n\
+                f_x: {la: -Rr/Lr*la - w*lb + Rr*M/Lr*ia, lb: -Rr/Lr*lb + w*la + Rr*M/Lr*ib}\n\
+                f_y: {ia: (va - Rs*ia + M*Rr/Lr^2*la + M/Lr*w*lb)/s, ib: (vb - Rs*ib + M*Rr/Lr^2*lb - M/Lr*w*la)/s}",
+        class: Class::Gpebo,
+        most: 2,
+    },
+];
+
+#[test]
+fn plants_have_their_transform_found_and_proved() {
+    for Case { from, lines, class, most } in CASES {
+        let (_, found) = search(lines, None);
+        let tried: Vec<String> = found.tried.iter().map(pebo_gen::search::Tried::sentence).collect();
+        assert!(!found.candidates.is_empty(), "{from}: {}", tried.join("\n"));
+        let (got, components) = written(lines, &found);
+        assert!(components <= *most, "{from}: {:?}", found.candidates[0].formulas());
+        assert!(got == Class::Pebo || *class == Class::Gpebo, "{from}: {:?}", found.candidates[0].formulas());
+        println!("{from}: {got:?} {:?}", found.candidates[0].formulas());
+    }
+}
+
+#[test]
+fn an_autonomous_plant_is_found_the_same_every_time() {
+    let lines = CASES[1].lines;
+    let formulas =
+        || search(lines, None).1.candidates.iter().map(pebo_gen::search::Candidate::formulas).collect::<Vec<_>>();
+    assert_eq!(formulas(), formulas());
+}
+
+#[test]
+fn a_mechanical_plant_needs_no_frame() {
+    let lines = "parameters: {a: 9.8, b: 0.8, c: 1.5}\nx: [p1, p2]\ny: [q1, q2]\nu: [u]\nassume: [c > 0, b > 0, b^2 < c]\n\
+                 mechanical: {M: [[1, b*cos(q1)], [b*cos(q1), c]], V: a*cos(q1), G: [[0], [1]]}";
+    let (_, found) = search(lines, None);
+    assert!(found.candidates[0].is_full() && found.candidates[0].derivation.class == Class::Pebo);
+    assert_eq!(found.candidates[0].plant.phi.len(), 2);
+}
+
+#[test]
+fn coils_have_their_fluxes_where_nothing_better_is_found() {
+    // The speed is not measured, and only a relation among the fluxes, which no affine output is, identifies them.
+    let lines = "parameters: {R: 8.875, L: 0.04, n: 5, m: 0.2}\nx: [q]\ny: [i1, i2]\nu: [v1, v2]\nw: [omega]\n\
+                 assume: [L > 0, m > 0, n > 0]\nangles: {q: 2*pi/n}\nelectromechanical:\n  L: [[L, 0], [0, L]]\n  \
+                 mu: [m*cos(n*q), m*sin(n*q)]\n  R: [R, R]\n  speed: omega";
+    let (_, found) = search(lines, None);
+    assert_eq!(found.verdict, Found::Found);
+    assert_eq!(found.candidates[0].formulas(), ["m*cos(n*q) + L*i1", "m*sin(n*q) + L*i2"]);
+    // There is nothing to be written into the model.
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
+    assert_eq!(solve(&source, None, &Ask::new()).filled.as_deref(), Some(source.text()));
+}
+
+#[test]
+fn of_more_solutions_than_states_those_that_hold_everywhere_are_taken() {
+    // Of the three momenta of a plane in polar coordinates, the two of the fixed frame.
+    let lines = "parameters: [m]\nx: [pr, pt]\ny: [r, th]\nu: [ur, ut]\nassume: [m > 0, r > 0]\n\
+                 f_x: {pr: pt^2/(m*r^3) + ur, pt: ut}\nf_y: {r: pr/m, th: pt/(m*r^2)}";
+    let (_, found) = search(lines, None);
+    let best = &found.candidates[0];
+    assert!(best.is_full() && best.derivation.conditions.is_empty(), "{:?}", best.formulas());
+}

@@ -1,0 +1,161 @@
+//! What a search says where there is no transform, or none that is found.
+
+use pebo_gen::analysis::Class;
+use pebo_gen::search::{BoundClass, Found};
+use pebo_gen::source::{Code, Source};
+use pebo_gen::{Ask, Standing, answer, solve};
+
+use super::search;
+
+const ARM: &str = "parameters: [c1, c2, c3]\nx: [p1, p2]\ny: [q1, q2]\nu: [u1, u2]\n\
+    define: {ma: c1 + c2 + 2*c3*cos(q2), mb: c2 + c3*cos(q2), md: c1*c2 - c3^2*cos(q2)^2}\n\
+    f_x: {p1: u1, p2: u2 - (c3*sin(q2)*p1*p2 - c3*sin(q2)*p2^2)/md + \
+    (c2*p1^2 - 2*mb*p1*p2 + ma*p2^2)*c3^2*cos(q2)*sin(q2)/md^2}\n\
+    f_y: {q1: (c2*p1 - mb*p2)/md, q2: (ma*p2 - mb*p1)/md}";
+
+#[test]
+fn a_two_link_arm_has_no_transform_and_a_certificate_says_so() {
+    let (plant, found) = search(ARM, None);
+    assert_eq!(found.verdict, Found::None);
+    let bound = found.bound.expect("a bound");
+    assert_eq!((bound.states, bound.rank, bound.class, bound.proved), (2, 1, BoundClass::Smooth, true));
+    assert!(bound.sentence(&plant.arena).ends_with("proved"));
+    assert_eq!(bound.relations.len(), 1);
+    assert!(
+        found.generalised.is_some_and(|bound| bound.excludes()),
+        "none of a generalised cascade affine in x either"
+    );
+}
+
+/// Bounds of plants of which the transforms are known.
+#[test]
+fn bounds_are_those_of_the_transforms_that_there_are() {
+    let cuk = "parameters: {L1: 0.01, C2: 22e-6, L3: 0.01, C4: 22.9e-6, G: 0.0447, E: 12}\nx: [i1, i3, v4]\ny: [v2]\nu: [u]\n\
+        f_x: {i1: -(1 - u)*v2/L1 + E/L1, i3: -u*v2/L3 - v4/L3, v4: (i3 - G*v4)/C4}\nf_y: {v2: ((1 - u)*i1 + u*i3)/C2}";
+    let resistive = "parameters: {L: 1e-3, C: 1e-4, R: 50, E: 12, r: 0.5}\nx: [i]\ny: [v]\nu: [d]\n\
+        f_x: {i: (-r*i - (1 - d)*v + E)/L}\nf_y: {v: ((1 - d)*i - v/R)/C}";
+    let free = "parameters: [a1, a2, a, b]\nx: [x1, x2]\ny: [y]\nf_x: {x1: a1*x1, x2: a2*x2}\nf_y: {y: a*x1 + b*x2}";
+    for (lines, states, rank, class) in
+        [(cuk, 3, 1, BoundClass::Smooth), (resistive, 1, 0, BoundClass::Smooth), (free, 2, 1, BoundClass::Affine)]
+    {
+        let (_, found) = search(lines, Some(Class::Pebo));
+        let bound = found.bound.expect("a bound");
+        assert_eq!((bound.states, bound.rank, bound.class, bound.proved), (states, rank, class, true), "{lines}");
+        assert_eq!(bound.relations.len(), states - rank, "{lines}");
+        // Of affine transforms it excludes nothing else: on x > 0 the logarithms of x1 and x2 are one.
+        let expected = if class == BoundClass::Smooth { Found::None } else { Found::Undecided };
+        assert_eq!(found.verdict, expected, "{lines}");
+    }
+}
+
+#[test]
+fn nothing_is_said_of_smooth_transforms_without_inputs() {
+    // Every autonomous plant has local ones: the flow box.
+    let (_, found) = search("x: [a]\ny: [b]\nf_x: {a: a^3}\nf_y: {b: a^2}", Some(Class::Pebo));
+    assert!(found.bound.is_none_or(|bound| bound.class != BoundClass::Smooth));
+}
+
+#[test]
+fn a_function_of_the_states_that_jumps_is_no_component() {
+    // p, |p| and sign(p) have affine rates but where p passes zero: there theta would jump with sign(p).
+    let (_, found) = search("x: [p]\ny: [q]\nu: [f]\nf_x: {p: \"f*min(p, 2*p) + q\"}\nf_y: {q: p}", None);
+    assert_eq!(found.verdict, Found::Undecided);
+    let (_, found) =
+        search("x: [p]\ny: [q]\nu: [f]\nassume: [p > 0]\nf_x: {p: \"f*min(p, 2*p) + q\"}\nf_y: {q: p}", None);
+    assert_eq!(found.verdict, Found::Found);
+}
+
+#[test]
+fn a_transform_whose_domain_is_not_shown_is_not_found() {
+    // Logarithms of x are the only plain cascade; they have values where x is positive.
+    let lines = "parameters: [a1, a2, a, b]\nx: [x1, x2]\ny: [y]\nf_x: {x1: a1*x1, x2: a2*x2}\nf_y: {y: a*x1 + b*x2}";
+    let logarithms = |found: &pebo_gen::search::Search| {
+        found.candidates.iter().any(|c| c.formulas().iter().any(|formula| formula.contains("log(x")))
+    };
+    let (_, open) = search(lines, Some(Class::Pebo));
+    assert!(open.verdict == Found::Undecided && !logarithms(&open));
+    let (_, signed) = search(&format!("{lines}\nassume: [x1 > 0, x2 > 0, a > 0, b > 0]"), Some(Class::Pebo));
+    assert!(logarithms(&signed));
+}
+
+#[test]
+fn a_sign_that_would_do_is_named() {
+    let lines = "parameters: [k]\nx: [v]\ny: [q]\nu: [F]\nf_x: {v: (F - k*q)/v - k*v}\nf_y: {q: v^2}";
+    let (_, found) = search(lines, None);
+    assert_eq!(found.verdict, Found::Undecided);
+    let (candidate, signs) = found.assumed.expect("an assumption");
+    assert_eq!((signs.len(), candidate.plant.phi.len()), (1, 1));
+    let (_, found) = search(&format!("{lines}\nassume: [v > 0]"), None);
+    assert_eq!(found.verdict, Found::Found);
+}
+
+fn answered(text: &str) -> pebo_gen::Answer {
+    answer(&Source::new("m.yaml", text).expect("a text"), &Ask::new())
+}
+
+#[test]
+fn a_model_without_phi_is_answered_with_the_one_that_was_found() {
+    let found = answered("model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - q*p}\nf_y: {q: p}\n");
+    assert_eq!(found.standing, Standing::Accepted);
+    assert!(found.report.line().contains(r#""phi":{"origin":"found","z":["p + q^2/2"]}"#), "{}", found.report.line());
+    let given = answered("model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nf_y: {q: p}\nphi: [p]\n");
+    assert!(given.report.line().contains(r#""phi":{"origin":"given","z":["p"]}"#));
+    let open = answered("model: m\nx: [a]\ny: [b]\nu: [c]\nf_x: {a: c - a^3}\nf_y: {b: c*a}\n");
+    assert_eq!((open.standing, open.diagnostics[0].code), (Standing::Refused, Code::TransformNotFound));
+}
+
+#[test]
+fn a_refusal_is_followed_by_what_was_found() {
+    let refused = [
+        // The rate of x is not affine in x, that of x plus an integral over y is free of it.
+        ("x: [x]\ny: [y]\nf_x: {x: -x*y}\nf_y: {y: x}\nphi: [x^2]", Code::CascadeRefuted),
+        ("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: a}\nf_y: {y: b}\nphi: [a]", Code::LeftInverseUnderivable),
+        ("x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^5 + exp(-x^2)*0 + x}\nphi: [exp(x)]", Code::CascadeRefuted),
+    ];
+    for (lines, code) in refused {
+        let answer = answered(&format!("model: m\n{lines}\n"));
+        let diagnostic = &answer.diagnostics[0];
+        let help = diagnostic.help.as_deref().unwrap_or_default();
+        assert!(help.contains("which is accepted"), "{lines}: {code:?} {:?} {help}", diagnostic.code);
+    }
+}
+
+#[test]
+fn the_transform_is_written_into_the_model_and_nothing_else_changes() {
+    let head =
+        "model: m          # a comment\nx: [p]\ny: [q]\nu: [v]\nf_x:\n  p: v - q*p      # friction\nf_y: {q: p}\n";
+    let tail = "\n# the end\nassume: [q > 0]\n";
+    let solution = solve(&Source::new("m.yaml", format!("{head}{tail}")).expect("a text"), None, &Ask::new());
+    assert_eq!(solution.filled.expect("a model"), format!("{head}phi: [p + q^2/2]\n{tail}"));
+    let given = format!("{head}phi: [p]\nphi_left: {{p: z1}}\n{tail}");
+    let solution = solve(&Source::new("m.yaml", given).expect("a text"), None, &Ask::new());
+    assert_eq!(solution.filled.expect("a model"), format!("{head}phi: [p + q^2/2]\n{tail}"));
+}
+
+#[test]
+fn a_refused_frame_is_told_how_many_killing_fields_there_are() {
+    let lines = "parameters: [m, J, g]\nx: [p1, p2]\ny: [r, th]\nu: [tau]\nassume: [m > 0, J > 0, g > 0]\n\
+                 mechanical: {M: [[m, 0], [0, J + m*r^2]], V: m*g*r*sin(th), G: [[0], [1]], T: [[1, 0], [0, 1]]}";
+    let answer = answered(&format!("model: m\nclass: pebo\n{lines}\n"));
+    let diagnostic = &answer.diagnostics[0];
+    assert_eq!(diagnostic.code, Code::CascadeRefuted);
+    let help = diagnostic.help.as_deref().unwrap_or_default();
+    assert!(help.starts_with("M has just 1 Killing field, and T needs 2"), "{help}");
+    assert!(diagnostic.notes.iter().any(|note| note.contains("no smooth phi")), "{:?}", diagnostic.notes);
+    let (_, found) = search(lines, Some(Class::Pebo));
+    assert_eq!(found.verdict, Found::None);
+    assert_eq!(found.affine.and_then(|affine| affine.transforms()), Some(1));
+}
+
+#[test]
+fn nobody_is_told_to_choose_a_phi_where_there_is_none() {
+    let lines = "parameters: [R, L, K]\nx: [i]\ny: [w]\nu: [V]\nassume: [R > 0, L > 0, K > 0]\n\
+                 f_x: {i: (V - R*i - K*w)/L}\nf_y: {w: (K + V)*i}\nphi: [i]";
+    let answer = answered(&format!("model: m\nclass: pebo\n{lines}\n"));
+    let help = answer.diagnostics[0].help.as_deref().unwrap_or_default();
+    assert_eq!(
+        (answer.diagnostics[0].code, help.split(',').next()),
+        (Code::CascadeRefuted, Some("leave out `class: pebo`"))
+    );
+    assert_eq!(answered(&format!("model: m\n{lines}\n")).standing, Standing::Accepted);
+}

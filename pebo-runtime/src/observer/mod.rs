@@ -1,0 +1,393 @@
+//! Samples of output and input in, the estimate of the unmeasured state out.
+
+mod rebasing;
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::extension::Extension;
+use crate::regression::{Outcome as _, Sides};
+use crate::sum::{all_finite, blemish};
+use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator};
+use rebasing::End;
+
+/// A parameter-estimation-based observer.
+///
+/// # Sampling
+///
+/// ```text
+/// sample      y_0          y_1          y_2
+/// input        |--- u_0 ---|--- u_1 ---|
+/// call     step(y_0,_,_) step(y_1,u_0,dt) step(y_2,u_1,dt)
+/// ```
+///
+/// A call gets the output at the *end* of an interval and the input that was held *during* it. The first call has no
+/// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no
+/// effect.
+/// `dt` is the time since the last sample that was accepted; it need not be constant.
+///
+/// For an input that runs straight between samples rather than being held, call [`step_straight`](Self::step_straight).
+///
+/// # Faults
+///
+/// A call that returns a [`Fault`] has changed nothing, to the last bit. The next good sample goes on from the last
+/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, a [`Gap`](crate::Gap) says with
+/// what input. Samples that are finite but out of range or saturated are for [`Limits`](crate::Limits) to find before
+/// they get here. The whole state can be saved and restored: [`state`](Self::state).
+///
+/// # Re-basing
+///
+/// `z = xi + Psi theta` says less and less of `z` as `Psi` dies out, and cannot be held as it grows. [`rebasing`](Self::rebasing)
+/// makes the extension start again from the estimate: exact, for every estimator, and for any `Lambda`.
+#[derive(Clone, Debug)]
+pub struct Observer<
+    M,
+    E,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+    R = FilteredRegression<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>,
+> where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
+{
+    model: M,
+    state: State<M::Scalar, M::Extension, R, E, NY>,
+    /// What the model's functions need of the last accepted sample; there if and only if that sample is.
+    terms: Option<M::Terms>,
+    /// How often the extension starts again from the estimate, if it does, and the end of a step that does so. That end is
+    /// compiled where re-basing was asked for alone, and what remains of a step without it has no second caller.
+    rebasing: Option<(u32, End<Self, M, R, NX, NY, NU, NZ, NR, NE>)>,
+}
+
+/// Everything that a step of an [`Observer`] changes, gains and filter included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct State<S: Real, X, R, E, const NY: usize> {
+    /// The last accepted sample.
+    y: Option<SVector<S, NY>>,
+    extension: X,
+    regression: R,
+    estimator: E,
+    /// Samples since the extension started again, where it does.
+    since: u32,
+}
+
+impl<M, E, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE>,
+{
+    /// An observer before its first sample: extension at `chi_0`, filters at rest, estimator as given.
+    ///
+    /// # Errors
+    /// [`Fault::Start`] unless `chi_0` and the estimator's state are finite.
+    pub fn new(
+        model: M,
+        estimator: E,
+        filter: Filter<M::Scalar>,
+        chi_0: SVector<M::Scalar, NZ>,
+    ) -> Result<Self, Fault> {
+        Self::with_regression(model, estimator, FilteredRegression::new(filter), chi_0)
+    }
+}
+
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
+{
+    /// An observer whose regression goes through another operator than a filter, as
+    /// [`WindowedRegression`](crate::WindowedRegression).
+    ///
+    /// # Errors
+    /// [`Fault::Start`] unless `chi_0` and the estimator's state are finite.
+    pub fn with_regression(
+        model: M,
+        estimator: E,
+        regression: R,
+        chi_0: SVector<M::Scalar, NZ>,
+    ) -> Result<Self, Fault> {
+        if !all_finite(&chi_0) || !estimator.is_finite() {
+            return Err(Fault::Start);
+        }
+        let extension = M::Extension::new(chi_0);
+        let state = State { y: None, extension, regression, estimator, since: 0 };
+        Ok(Self { model, state, terms: None, rebasing: None })
+    }
+
+    /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
+    /// returns the estimate of the state at that end. See [`Observer`] for the first call.
+    ///
+    /// # Errors
+    /// A [`Fault`]; the observer is then exactly as before.
+    pub fn step(&mut self, y: impl Into<M::Y>, u: impl Into<M::U>, dt: M::Scalar) -> Result<M::X, Fault> {
+        let (y, u) = (y.into().into(), u.into().into());
+        check(&y, &u, dt)?;
+        self.advance(&y, [&u, &u], dt).map(M::X::from)
+    }
+
+    /// [`step`](Self::step) for an input that runs straight from the first to the second over the interval.
+    ///
+    /// # Errors
+    /// A [`Fault`]; the observer is then exactly as before.
+    pub fn step_straight(&mut self, y: impl Into<M::Y>, u: [impl Into<M::U>; 2], dt: M::Scalar) -> Result<M::X, Fault> {
+        let (y, u) = (y.into().into(), u.map(|u| u.into().into()));
+        check(&y, &u[0], dt)?;
+        check(&y, &u[1], dt)?;
+        self.advance(&y, u.each_ref(), dt).map(M::X::from)
+    }
+
+    /// Starts again before the first sample, as after an outage that no `dt` can bridge: extension at `chi_0`, filters
+    /// at rest, estimator at `eta` with its gains kept.
+    ///
+    /// # Errors
+    /// [`Fault::Start`] unless both are finite; the observer is then exactly as before.
+    pub fn restart(&mut self, chi_0: SVector<M::Scalar, NZ>, eta: &SVector<M::Scalar, NE>) -> Result<(), Fault> {
+        if !all_finite(&chi_0) || !all_finite(eta) {
+            return Err(Fault::Start);
+        }
+        self.state.y = None;
+        self.terms = None;
+        self.state.extension = M::Extension::new(chi_0);
+        self.state.regression.reset();
+        self.state.estimator.reset(eta);
+        self.state.since = 0;
+        Ok(())
+    }
+
+    /// Everything that a step changes, to be saved; with the feature `serde` it can be written and read.
+    pub fn state(&self) -> &State<M::Scalar, M::Extension, R, E, NY> {
+        &self.state
+    }
+
+    /// Goes on from a saved state, bit for bit as the observer that it was taken from. A reset in flight is answered
+    /// so, with the time since the state was saved as the next `dt`.
+    ///
+    /// # Errors
+    /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Whether it is undamaged is
+    /// for a checksum to say.
+    pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY>) -> Result<(), Fault> {
+        if !state.is_finite() || state.y.as_ref().is_some_and(|y| !all_finite(y)) {
+            return Err(Fault::State);
+        }
+        self.terms = state.y.as_ref().map(|y| self.model.terms(y));
+        self.state = state;
+        Ok(())
+    }
+
+    /// The estimate of the state at the last accepted sample; none before the first.
+    pub fn estimate(&self) -> Option<M::X> {
+        self.terms.as_ref().map(|terms| self.estimate_with(terms).into())
+    }
+
+    /// The estimate of the state that goes with an output `y`, as before the first sample.
+    pub fn estimate_at(&self, y: impl Into<M::Y>) -> M::X {
+        self.estimate_with(&self.model.terms(&y.into().into())).into()
+    }
+
+    /// The estimate of `theta`.
+    pub fn theta(&self) -> SVector<M::Scalar, NZ> {
+        self.model.theta(&self.state.estimator.estimate())
+    }
+
+    /// The estimate of the regression's unknown.
+    pub fn eta(&self) -> SVector<M::Scalar, NE> {
+        self.state.estimator.estimate()
+    }
+
+    /// What the model's functions need of the last accepted output; none before the first sample.
+    pub fn terms(&self) -> Option<&M::Terms> {
+        self.terms.as_ref()
+    }
+
+    /// The dynamic extension.
+    pub fn extension(&self) -> &M::Extension {
+        &self.state.extension
+    }
+
+    /// The regression that the estimator was given last.
+    pub fn regression(&self) -> &R {
+        &self.state.regression
+    }
+
+    /// The estimator.
+    pub fn estimator(&self) -> &E {
+        &self.state.estimator
+    }
+
+    /// The model.
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+
+    /// Takes a good sample, for an input that runs straight from the first to the second.
+    #[inline]
+    fn advance(
+        &mut self,
+        y: &SVector<M::Scalar, NY>,
+        u: [&SVector<M::Scalar, NU>; 2],
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let terms = self.model.terms(y);
+        let Some(before) = &self.terms else {
+            return self.begin(terms, y);
+        };
+        let (extension, regression) = self.propagate([before, &terms], u, dt)?;
+        // Handed over as a copy, so that both may stay in registers where there is no re-basing.
+        if let Some((every, end)) = self.rebasing {
+            return end(self, every, (extension, regression), (terms, y), dt);
+        }
+        let mut estimator = self.state.estimator.clone();
+        estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
+        self.accept(Next { extension, regression, estimator }, terms, y)
+    }
+
+    /// Takes the first sample, which has no interval behind it.
+    fn begin(&mut self, terms: M::Terms, y: &SVector<M::Scalar, NY>) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let estimate = self.estimate_with(&terms);
+        if !all_finite(&estimate) {
+            return Err(Fault::Estimate);
+        }
+        self.state.y = Some(*y);
+        self.terms = Some(terms);
+        Ok(estimate)
+    }
+
+    /// Keeps what an interval led to if all of it and its estimate are finite.
+    #[inline]
+    fn accept(
+        &mut self,
+        next: Next<M::Extension, R::Step, E>,
+        terms: M::Terms,
+        y: &SVector<M::Scalar, NY>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        // One branch for all.
+        if !is_none(next.extension.blemish() + next.regression.blemish() + next.estimator.blemish()) {
+            return Err(Fault::State);
+        }
+        let theta = self.model.theta(&next.estimator.estimate());
+        let estimate = self.model.recover(&next.extension.coordinates(&theta), &terms);
+        if !all_finite(&estimate) {
+            return Err(Fault::Estimate);
+        }
+        self.state.y = Some(*y);
+        self.state.extension = next.extension;
+        self.state.regression.take(next.regression);
+        self.state.estimator = next.estimator;
+        self.terms = Some(terms);
+        Ok(estimate)
+    }
+
+    /// Keeps a moved state if all of it and its estimate are finite.
+    fn keep(
+        &mut self,
+        mut moved: State<M::Scalar, M::Extension, R, E, NY>,
+        terms: M::Terms,
+        y: &SVector<M::Scalar, NY>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        if !moved.is_finite() {
+            return Err(Fault::State);
+        }
+        let theta = self.model.theta(&moved.estimator.estimate());
+        let estimate = self.model.recover(&moved.extension.coordinates(&theta), &terms);
+        if !all_finite(&estimate) {
+            return Err(Fault::Estimate);
+        }
+        moved.y = Some(*y);
+        self.state = moved;
+        self.terms = Some(terms);
+        Ok(estimate)
+    }
+
+    /// Extension and regression at the end of an interval, from the terms and inputs at both ends.
+    #[inline]
+    fn propagate(
+        &self,
+        [before, after]: [&M::Terms; 2],
+        [u_before, u_after]: [&SVector<M::Scalar, NU>; 2],
+        dt: M::Scalar,
+    ) -> Result<(M::Extension, R::Step), Fault> {
+        let model = &self.model;
+        let start = &self.state.extension;
+        let mut end = *start;
+        end.advance(&model.flow(before, u_before), &model.flow(after, u_after), dt)?;
+
+        let mut sides = [model.regression(start, before, u_before), model.regression(&end, after, u_after)];
+        if M::REGRESSION == Regression::Dynamic {
+            let held = [model.primitive(start, before), model.primitive(&end, after)];
+            let known_rate = (held[1].known - held[0].known) / dt;
+            for Sides { known, .. } in &mut sides {
+                *known = known_rate - *known;
+            }
+            let factor_change = held[1].factor - held[0].factor;
+            // Where there is no such primitive the compiler knows so, and no division is left.
+            if factor_change != SMatrix::<M::Scalar, NR, NE>::zeros() {
+                for Sides { factor, .. } in &mut sides {
+                    *factor -= factor_change / dt;
+                }
+            }
+        }
+        Ok((end, self.state.regression.step(sides.each_ref(), dt)))
+    }
+
+    /// The estimate of the state that goes with an output.
+    fn estimate_with(&self, terms: &M::Terms) -> SVector<M::Scalar, NX> {
+        self.model.recover(&self.state.extension.coordinates(&self.theta()), terms)
+    }
+}
+
+/// What an interval leads to, before it is accepted.
+struct Next<X, R, E> {
+    extension: X,
+    regression: R,
+    estimator: E,
+}
+
+impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
+    /// Whether every number of the state is finite.
+    fn is_finite<const NZ: usize, const NR: usize, const NE: usize>(&self) -> bool
+    where
+        X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NE>,
+        E: Estimator<S, NR, NE>,
+    {
+        self.extension.is_finite() && self.regression.is_finite() && self.estimator.is_finite()
+    }
+}
+
+/// Whether a blemish says that all numbers are finite.
+#[inline]
+fn is_none<S: Real>(blemish: S) -> bool {
+    blemish == S::zero()
+}
+
+/// A sample must be finite, and its time positive too.
+#[inline]
+fn check<S: Real, const NY: usize, const NU: usize>(
+    y: &SVector<S, NY>,
+    u: &SVector<S, NU>,
+    dt: S,
+) -> Result<(), Fault> {
+    let finite = is_none(blemish(y) + blemish(u) + dt * S::zero());
+    if finite && dt > S::zero() { Ok(()) } else { Err(what_is_wrong(y, u)) }
+}
+
+/// The fault of a sample that has one.
+#[cold]
+fn what_is_wrong<S: Real, const NY: usize, const NU: usize>(y: &SVector<S, NY>, u: &SVector<S, NU>) -> Fault {
+    let bad = |&element: &S| !Real::is_finite(element);
+    if let Some(index) = y.iter().position(bad) {
+        Fault::Output { index }
+    } else if let Some(index) = u.iter().position(bad) {
+        Fault::Input { index }
+    } else {
+        Fault::Step
+    }
+}

@@ -1,0 +1,214 @@
+//! The same state in other coordinates: what the extension holds of `z`, and what is left to the unknown.
+//!
+//! `z = xi + Psi theta` holds as well with `xi + Psi c` for `xi` and `theta - c` for `theta`, and with the identity for
+//! `Psi` and `Psi theta` for `theta`. Estimator and regression follow either change, so nothing is lost but rounding.
+
+use nalgebra::SVector;
+
+use super::{Next, Observer, State, check};
+use crate::regression::Outcome as _;
+use crate::sum::all_finite;
+use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator};
+
+/// The end of a step of an observer `O` that starts its extension again: from the samples between two starts, extension and
+/// regression at the end of the interval, terms and output of the sample, and the interval's time.
+pub(super) type End<
+    O,
+    M,
+    R,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+> = fn(
+    &mut O,
+    u32,
+    (<M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>),
+    (<M as Model<NX, NY, NU, NZ, NR, NE>>::Terms, &SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY>),
+    <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar,
+) -> Result<SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NX>, Fault>;
+
+type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
+
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NZ, R>
+where
+    M: Rebase<NX, NY, NU, NZ, NR>,
+    E: Estimator<M::Scalar, NR, NZ>,
+    R: RegressionOperator<M::Scalar, NR, NZ>,
+{
+    /// The same observer, which starts its extension again from the estimate at every `every`-th sample:
+    ///
+    /// ```text
+    /// xi <- xi + Psi theta_hat        Psi <- I        theta_hat <- 0
+    /// ```
+    ///
+    /// with the memory of estimator and regression carried over. That changes no estimate by more than rounding, with two
+    /// exceptions, which are the purpose: a gain, a floor of the information and process noise are those of `z` itself
+    /// from then on, and not of what `z` was at the start; and neither a `Psi` that dies out nor one that grows is ever
+    /// held. [`Gradient::carrying_its_gain`](crate::Gradient::carrying_its_gain) and least squares without forgetting
+    /// take their memory along in full.
+    ///
+    /// A filter or window holds regressors of the past, which are carried over by what the model says happened since. Where
+    /// `Psi` dies out, take a bandwidth well above its rate or a window well below its time, or the
+    /// [output form](crate::OutputForm), which holds nothing: what is left of an older past is the model's word alone.
+    ///
+    /// With [`LeastSquares`](crate::LeastSquares), [process noise](crate::LeastSquares::with_process_noise) and every
+    /// sample this is a Kalman filter of the transformed plant. In `f32`, at `|Lambda| dt` below 1e-5, take every
+    /// hundredth sample or so: what a turn changes must be seen beside the identity.
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] if `every` is 0.
+    pub fn rebasing(self, every: u32) -> Result<Self, Fault> {
+        if every == 0 {
+            return Err(Fault::Gain);
+        }
+        Ok(Self { rebasing: Some((every, Self::end_rebasing)), ..self })
+    }
+
+    /// Moves `shift` from the extension into the estimated `theta`; the estimate of the state, now and later, stays the
+    /// same up to rounding.
+    ///
+    /// The remedy against the drift of the open integrator (the paper, remark R5): when `chi` has grown, re-base by
+    /// `chi`, and it starts again from 0. [`step_without_drift`](Self::step_without_drift) does so by itself.
+    ///
+    /// # Errors
+    /// [`Fault::Start`] if the shift is not finite, [`Fault::State`] if the moved state would not be; the observer is
+    /// then exactly as before.
+    pub fn rebase(&mut self, shift: &SVector<M::Scalar, NZ>) -> Result<(), Fault> {
+        if !all_finite(shift) {
+            return Err(Fault::Start);
+        }
+        let mut next = self.state.clone();
+        next.shift(shift);
+        if !next.is_finite() {
+            return Err(Fault::State);
+        }
+        self.state = next;
+        Ok(())
+    }
+
+    /// [`step`](Self::step) with an extension that cannot run away: see [`Drift`] for the forms and what each costs. In
+    /// place of [`rebasing`](Self::rebasing), which such a step does not heed.
+    ///
+    /// # Errors
+    /// A [`Fault`]; the observer is then exactly as before.
+    pub fn step_without_drift(
+        &mut self,
+        y: impl Into<M::Y>,
+        u: impl Into<M::U>,
+        dt: M::Scalar,
+        drift: Drift<M::Scalar>,
+    ) -> Result<M::X, Fault> {
+        let (y, u) = (y.into().into(), u.into().into());
+        check(&y, &u, dt)?;
+        self.advance_without_drift(&y, &u, dt, drift).map(M::X::from)
+    }
+
+    /// Takes a good sample, and moves a shift where the form asks for one.
+    fn advance_without_drift(
+        &mut self,
+        y: &SVector<M::Scalar, NY>,
+        u: &SVector<M::Scalar, NU>,
+        dt: M::Scalar,
+        drift: Drift<M::Scalar>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let terms = self.model.terms(y);
+        let next = match &self.terms {
+            Some(before) => {
+                let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
+                let mut estimator = self.state.estimator.clone();
+                estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
+                Some(Next { extension, regression, estimator })
+            }
+            None => None,
+        };
+        let extension = next.as_ref().map_or(&self.state.extension, |next| &next.extension);
+        if !drift.is_due(extension.offset())? {
+            return match next {
+                Some(next) => self.accept(next, terms, y),
+                None => self.begin(terms, y),
+            };
+        }
+        let mut moved = self.state.clone();
+        if let Some(next) = next {
+            moved.extension = next.extension;
+            moved.regression.take(next.regression);
+            moved.estimator = next.estimator;
+        }
+        moved.turn()?;
+        moved.shift(&drift.shift(moved.extension.offset(), dt));
+        self.keep(moved, terms, y)
+    }
+
+    /// The end of a step of an observer that starts its extension again. The coordinates change before the estimator's step,
+    /// so process noise is that of the moment.
+    fn end_rebasing(
+        &mut self,
+        every: u32,
+        (extension, regression): (M::Extension, R::Step),
+        (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let mut moved = State { extension, since: self.state.since.saturating_add(1), ..self.state.clone() };
+        moved.regression.take(regression);
+        if moved.since >= every {
+            moved.onto_estimate()?;
+            moved.since = 0;
+            // A regression whose past dies out more slowly than `Psi` grows without end in the coordinates of the moment.
+            // Started again it holds as well.
+            let most = largest_regressor::<M::Scalar>();
+            if moved.regression.regressor().iter().any(|&entry| Real::abs(entry) > most) {
+                moved.regression.reset();
+            }
+        }
+        moved.estimator.advance(&moved.regression.regressor(), &moved.regression.regressand(), dt)?;
+        self.keep(moved, terms, y)
+    }
+}
+
+impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
+    /// Moves a shift from the extension into the unknown.
+    fn shift<const NZ: usize, const NR: usize>(&mut self, shift: &SVector<S, NZ>)
+    where
+        X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NZ>,
+        E: Estimator<S, NR, NZ>,
+    {
+        self.extension.rebase(shift);
+        self.regression.shift(shift);
+        self.estimator.shift(shift);
+    }
+
+    /// Moves the fundamental matrix from the extension into the unknown.
+    fn turn<const NZ: usize, const NR: usize>(&mut self) -> Result<(), Fault>
+    where
+        X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NZ>,
+        E: Estimator<S, NR, NZ>,
+    {
+        if let Some(turn) = self.extension.take_turn()? {
+            self.regression.turn(&turn);
+            self.estimator.turn(&turn);
+        }
+        Ok(())
+    }
+
+    /// Moves the estimate into the extension, which starts again from there.
+    fn onto_estimate<const NZ: usize, const NR: usize>(&mut self) -> Result<(), Fault>
+    where
+        X: Extension<S, NZ>,
+        R: RegressionOperator<S, NR, NZ>,
+        E: Estimator<S, NR, NZ>,
+    {
+        self.shift(&-self.estimator.estimate());
+        self.turn()
+    }
+}
+
+/// Beyond this a regressor of the past is not carried over: its square would have no value.
+fn largest_regressor<S: Real>() -> S {
+    S::max_value().map_or(S::one() / S::EPSILON, |largest| Real::sqrt(largest) * S::EPSILON)
+}

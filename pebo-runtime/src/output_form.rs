@@ -1,0 +1,115 @@
+//! A model in, the same plant with its outputs as the regressand out: nothing is differentiated.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::{Extension, Flow, Fundamental, Model, Rebase, Regression, Sides};
+
+/// The output form of a model with a dynamic regression.
+///
+/// `d/dt [p_0 + p_1 z] = A + B z` and `z' = Lambda z + h` are together a generalised cascade in `(w, z)` with
+/// `w = p_0(y) + p_1(y) z`, and what is measured is a static regression in it:
+///
+/// ```text
+/// w' = A + B z        z' = Lambda z + h        p_0(y) = w - p_1(y) z
+/// ```
+///
+/// With `p_0 = y` and `p_1 = 0`, as in most models, this is `y = y_0 + xi_y + Psi_y theta` with `y_0` among the unknowns:
+/// `xi_y' = phi_0` and `Psi_y' = phi_1` along the run. Nothing is differentiated, so white noise of the sensors stays
+/// white, and with [`SampledRegression`](crate::SampledRegression), [`LeastSquares`](crate::LeastSquares) with process
+/// noise and [re-basing](crate::Observer::rebasing) at each sample the observer is a Kalman filter of the transformed
+/// plant. Where `A`, `B`, `Lambda` and `h` are free of the outputs it is *the* continuous-discrete Kalman filter; where
+/// they are not, the filter in which measured outputs drive the model.
+///
+/// Sizes: `NW = NR + NZ` unknowns, those of `w` first. The unknown of the start is `(w, z)` there less `chi_0`, of this
+/// length.
+///
+/// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based, the
+/// Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputForm<M, const NZ: usize> {
+    model: M,
+}
+
+impl<M, const NZ: usize> OutputForm<M, NZ> {
+    /// The output form of a model, whose regression must be dynamic.
+    pub fn new<const NX: usize, const NY: usize, const NU: usize, const NR: usize>(model: M) -> Self
+    where
+        M: Rebase<NX, NY, NU, NZ, NR>,
+    {
+        const {
+            assert!(matches!(M::REGRESSION, Regression::Dynamic), "a static regression has no rate to integrate");
+        }
+        Self { model }
+    }
+
+    /// The model within.
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+}
+
+impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NW: usize>
+    Model<NX, NY, NU, NW, NR, NW> for OutputForm<M, NZ>
+where
+    M: Rebase<NX, NY, NU, NZ, NR>,
+{
+    type Scalar = M::Scalar;
+    type Extension = Fundamental<M::Scalar, NW>;
+    type X = M::X;
+    type Y = M::Y;
+    type U = M::U;
+    type Terms = M::Terms;
+    const REGRESSION: Regression = Regression::Static;
+
+    fn terms(&self, y: &SVector<M::Scalar, NY>) -> M::Terms {
+        self.model.terms(y)
+    }
+
+    fn flow(&self, terms: &M::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
+        const { assert!(NW == NR + NZ, "the unknowns are those of the outputs and those of z") };
+        let inner = self.model.flow(terms, u);
+        // At the extension's start `z = theta`: the regression is then known as a function of z.
+        let rate = self.model.regression(&M::Extension::new(SVector::zeros()), terms, u);
+        let plain = inner.lambda;
+        let lambda = SMatrix::from_fn(|i, j| match (i.checked_sub(NR), j.checked_sub(NR)) {
+            (_, None) => nalgebra::zero(),
+            (None, Some(j)) => rate.factor[(i, j)],
+            (Some(i), Some(j)) => plain[(i, j)],
+        });
+        let h = SVector::from_fn(|i, _| match i.checked_sub(NR) {
+            None => rate.known[i],
+            Some(i) => inner.h[i],
+        });
+        Flow { lambda, h }
+    }
+
+    fn regression(
+        &self,
+        extension: &Self::Extension,
+        terms: &M::Terms,
+        _: &SVector<M::Scalar, NU>,
+    ) -> Sides<M::Scalar, NR, NW> {
+        let held = self.model.primitive(&M::Extension::new(SVector::zeros()), terms);
+        let through = SMatrix::<M::Scalar, NR, NW>::from_fn(|i, j| match j.checked_sub(NR) {
+            None if i == j => nalgebra::one(),
+            None => nalgebra::zero(),
+            Some(j) => -held.factor[(i, j)],
+        });
+        Sides { known: held.known - through * extension.xi(), factor: through * extension.psi() }
+    }
+
+    fn theta(&self, eta: &SVector<M::Scalar, NW>) -> SVector<M::Scalar, NW> {
+        *eta
+    }
+
+    fn recover(&self, z: &SVector<M::Scalar, NW>, terms: &M::Terms) -> SVector<M::Scalar, NX> {
+        self.model.recover(&SVector::from_fn(|i, _| z[NR + i]), terms)
+    }
+}
+
+impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NW: usize>
+    Rebase<NX, NY, NU, NW, NR> for OutputForm<M, NZ>
+where
+    M: Rebase<NX, NY, NU, NZ, NR>,
+{
+}
