@@ -14,6 +14,8 @@ from driver.jobs import CASCADES, Shelf  # noqa: E402
 from driver.systems import whole  # noqa: E402
 
 IDENTITIES = ("SymEngine", "SymPy", "symplex")
+CHECKS = {"cuk": (1, 2, 4, 8), "lti": (12, 24, 60), "symbolic": (2, 4), "arm": (3, 4, 5, 6, 7),
+          "compartments": (6, 12), "grid": (8, 16, 32), "terms": (50, 201, 400)}
 POLYNOMIALS = ("FLINT", "SymEngine", "SymPy", "symplex")
 
 
@@ -68,6 +70,8 @@ def polynomials(shelf, ours, others, timeout):
         ("p(1 + p), p = (1+x+y+z)^20", shelf.trinomial(20)),
         (f"sparse, 6 variables, 340 x 340 to {spread[1]} terms", spread[0]),
         (f"sparse, 6 variables, 1000 x 1000 to {crowded[1]} terms", crowded[0]),
+        (f"dense, 1 variable, 500 x 500 to {shelf.product(1, 500, 560)[1]} terms", shelf.product(1, 500, 560)[0]),
+        ("gcd, 1 variable", shelf.gcd(1, 60, 80)),
         ("gcd, 3 variables", shelf.gcd(3, 40, 8)),
         ("gcd, 5 variables", shelf.gcd(5, 40, 4)),
         ("gcd, 7 variables", shelf.gcd(7, 40, 3)),
@@ -79,7 +83,7 @@ def polynomials(shelf, ours, others, timeout):
     rows.show("(b) Polynomials over the integers", head, table)
 
 
-def growth(shelf, ours, timeout):
+def growth(shelf, ours, program, timeout):
     """(c) How our time grows."""
 
     def series(title, entries):
@@ -101,6 +105,14 @@ def growth(shelf, ours, timeout):
     rotations = [(f"det of {k} rotations, {2 * k} kernels", shelf.rotations(k)) for k in (2, 4, 6, 8, 10)]
     roots = [(f"1/sum of {k} roots", shelf.roots(k)) for k in (2, 3, 4, 5)]
     series("(c) Kernels", rotations + roots)
+    checks = []
+    for family, sizes in CHECKS.items():
+        for size in sizes:
+            command = [program, "check", "--limit", "20", shelf.family(family, size)]
+            # Arms are rejected: the exit status is 1.
+            asks = {"ours": lambda limit, command=command: whole(command, limit, decided=(0, 1))}
+            checks.append((f"{family} {size}", rows.measure(asks, timeout)))
+    rows.show("(c) Families of models (models.py): a whole process, all claims", ["ours"], checks)
 
 
 def main():
@@ -123,7 +135,7 @@ def main():
         if "b" in chosen:
             polynomials(shelf, ours, others, options.timeout)
         if "c" in chosen:
-            growth(shelf, ours, options.timeout)
+            growth(shelf, ours, program, options.timeout)
     finally:
         for system in [ours, *others]:
             system.close()

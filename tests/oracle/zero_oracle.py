@@ -21,7 +21,8 @@ mpmath.mp.dps = 50
 TINY = mpmath.mpf(10) ** -30
 NAMES = "x y z a b p q r t w".split()
 SYMBOLS = {name: sympy.Symbol(name, real=True) for name in NAMES}
-LOCALS = SYMBOLS | {"abs": sympy.Abs, "atan2": sympy.atan2, "pi": sympy.pi}
+LOCALS = SYMBOLS | {"abs": sympy.Abs, "atan2": sympy.atan2, "pi": sympy.pi, "min": sympy.Min, "max": sympy.Max}
+LOCALS |= {"sat": lambda a: sympy.Max(-1, sympy.Min(a, 1))}
 
 
 def real(function, allowed=None):
@@ -47,6 +48,10 @@ def power(base, exponent):
 
 FUNCTIONS = {name: getattr(mpmath, name) for name in "sin cos tan sinh cosh tanh exp atan atan2".split()} | {
     "abs": abs,
+    "min": min,
+    "max": max,
+    "sat": lambda a: max(-1, min(a, 1)),
+    "sign": real(mpmath.sign, lambda a: a != 0),
     "pi": mpmath.pi,
     "sqrt": real(mpmath.sqrt, lambda a: a >= 0),
     "log": real(mpmath.log, lambda a: a > 0),

@@ -2,6 +2,8 @@
 import json
 from pathlib import Path
 
+import models
+
 from . import chain, identities, polynomials
 
 # The right sides of the cascades of the model files, from the papers.
@@ -94,6 +96,11 @@ class Shelf:
 
     def roots(self, count):
         return self._put(f"roots {count}", {"kind": "zero", **identities.roots(count)})
+
+    def family(self, name, size):
+        path = self.directory / f"{name}{size}.yaml"
+        path.write_text(models.FAMILIES[name](size), encoding="utf-8")
+        return str(path)
 
     def trinomial(self, power):
         return self._put(f"trinomial {power}", polynomials.trinomial_square(power))

@@ -24,7 +24,7 @@ pub const MODULES: [Module; 4] = [
         name: "analysis",
         package: "pebo-gen",
         sources: &["pebo-gen/src/analysis"],
-        tests: &[("lib", "analysis::"), ("claims", ""), ("lib", "emit::"), ("classes", "")],
+        tests: &[("lib", "analysis::"), ("claims", ""), ("lib", "emit::"), ("classes", ""), ("places", "")],
     },
     Module {
         name: "program",

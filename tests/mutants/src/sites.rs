@@ -1,5 +1,6 @@
 //! Where a small fault can be put, and what it is: an operator exchanged, a condition or a number off.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +18,8 @@ pub struct Fault {
     /// Below the root.
     pub file: PathBuf,
     pub line: usize,
+    /// The function that it is in.
+    pub function: String,
     /// What is replaced, in bytes of the file.
     pub place: Range<usize>,
     /// What stands there instead; `@` is where the switch's number goes, [`ORIGINAL`] what stood there.
@@ -28,6 +31,8 @@ pub struct Fault {
 pub const ORIGINAL: &str = "\u{1}";
 
 /// A sample of the faults of each module, none within another, numbered in all.
+///
+/// Those of the least hashes are drawn, so that a seed keeps its sample but for what changes in the sources.
 pub fn draw(root: &Path, modules: &[&'static Module], sample: usize, seed: u64) -> Result<Vec<Fault>, String> {
     let mut drawn: Vec<Fault> = Vec::new();
     for module in modules {
@@ -35,14 +40,11 @@ pub fn draw(root: &Path, modules: &[&'static Module], sample: usize, seed: u64) 
         for source in module.sources {
             collect(root, &PathBuf::from(source), module.name, &mut found)?;
         }
-        let mut state = seed;
         let mut taken: Vec<Fault> = Vec::new();
-        while taken.len() < sample && !found.is_empty() {
-            // SplitMix64.
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mixed = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb) >> 16;
-            let fault: Fault = found.swap_remove((mixed % found.len() as u64) as usize);
+        for fault in hashed(found, seed) {
+            if taken.len() == sample {
+                break;
+            }
             let apart = |other: &Fault| {
                 other.file != fault.file || other.place.end <= fault.place.start || fault.place.end <= other.place.start
             };
@@ -56,6 +58,31 @@ pub fn draw(root: &Path, modules: &[&'static Module], sample: usize, seed: u64) 
         fault.number = number;
     }
     Ok(drawn)
+}
+
+/// The faults by the hash of where they are: file, function, what is exchanged, and which of those that are the same
+/// in these it is.
+fn hashed(faults: Vec<Fault>, seed: u64) -> impl Iterator<Item = Fault> {
+    let mut same: BTreeMap<String, usize> = BTreeMap::new();
+    let mut all: Vec<(u64, Fault)> = Vec::new();
+    for fault in faults {
+        let place = format!("{}\n{}\n{}", fault.file.display(), fault.function, fault.what);
+        let count = same.entry(place.clone()).or_default();
+        all.push((hash(&format!("{seed}\n{place}\n{count}")), fault));
+        *count += 1;
+    }
+    all.sort_by_key(|(hash, _)| *hash);
+    all.into_iter().map(|(_, fault)| fault)
+}
+
+/// FNV-1a, whose low bits depend on few, mixed as SplitMix64 does; the same on every machine and with every compiler.
+fn hash(text: &str) -> u64 {
+    let sum = text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |sum: u64, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    let mixed = (sum ^ sum >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ mixed >> 31
 }
 
 fn collect(root: &Path, path: &Path, module: &'static str, found: &mut Vec<Fault>) -> Result<(), String> {
@@ -77,7 +104,7 @@ fn collect(root: &Path, path: &Path, module: &'static str, found: &mut Vec<Fault
     }
     let text = std::fs::read_to_string(&whole).map_err(|error| problem(&error))?;
     let file = syn::parse_file(&text).map_err(|error| problem(&error))?;
-    let mut sites = Sites { text: &text, path, module, found };
+    let mut sites = Sites { text: &text, path, module, function: String::new(), found };
     sites.visit_file(&file);
     Ok(())
 }
@@ -86,6 +113,8 @@ struct Sites<'a> {
     text: &'a str,
     path: &'a Path,
     module: &'static str,
+    /// The function that is being looked at.
+    function: String,
     found: &'a mut Vec<Fault>,
 }
 
@@ -106,10 +135,19 @@ impl<'a> Sites<'a> {
             module: self.module,
             file: self.path.to_owned(),
             line: span.start().line,
+            function: self.function.clone(),
             place,
             instead,
             what,
         });
+    }
+
+    /// The faults of a function.
+    fn inside(&mut self, signature: &syn::Signature, block: &syn::Block) {
+        let outer = std::mem::replace(&mut self.function, signature.ident.to_string());
+        self.body(signature, block);
+        self.visit_block(block);
+        self.function = outer;
     }
 
     /// What a function gives at once.
@@ -213,15 +251,13 @@ impl<'ast> Visit<'ast> for Sites<'_> {
 
     fn visit_item_fn(&mut self, node: &'ast syn::ItemFn) {
         if node.sig.constness.is_none() && !is_test(&node.attrs) {
-            self.body(&node.sig, &node.block);
-            self.visit_block(&node.block);
+            self.inside(&node.sig, &node.block);
         }
     }
 
     fn visit_impl_item_fn(&mut self, node: &'ast syn::ImplItemFn) {
         if node.sig.constness.is_none() && !is_test(&node.attrs) {
-            self.body(&node.sig, &node.block);
-            self.visit_block(&node.block);
+            self.inside(&node.sig, &node.block);
         }
     }
 

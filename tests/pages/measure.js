@@ -1,0 +1,110 @@
+// Measures the pages in frames of two widths, light and dark, and writes what is wrong with them into the document.
+"use strict";
+
+const WIDTHS = [360, 1400];
+const SCHEMES = ["light", "dark"];
+// WCAG 2.2, 1.4.3: the least contrast of text with what is behind it.
+const CONTRAST = 4.5;
+
+function channels(colour) {
+  return colour.match(/[\d.]+/g).map(Number);
+}
+
+function luminance([red, green, blue]) {
+  const linear = (value) => {
+    const share = value / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  };
+  return 0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue);
+}
+
+function contrast(one, other) {
+  const [low, high] = [luminance(one), luminance(other)].sort((a, b) => a - b);
+  return (high + 0.05) / (low + 0.05);
+}
+
+// The nearest background that is there.
+function behind(element, view) {
+  for (let at = element; at; at = at.parentElement) {
+    const colour = channels(view.getComputedStyle(at).backgroundColor);
+    if (colour.length === 3 || colour[3] > 0) return colour;
+  }
+  return [255, 255, 255];
+}
+
+function wrong(frame, scheme) {
+  const [view, page] = [frame.contentWindow, frame.contentDocument];
+  const found = [];
+  page.querySelectorAll("details").forEach((folded) => (folded.open = true));
+  if (!view.matchMedia(`(prefers-color-scheme: ${scheme})`).matches) found.push(`it is not shown ${scheme}`);
+  const width = page.documentElement.scrollWidth;
+  if (width > view.innerWidth) found.push(`it is ${width} wide`);
+  for (const box of page.querySelectorAll(".wide, pre, p, table, h1, h2, h3, ul, figure")) {
+    const scrolls = box.parentElement.closest(".wide, pre");
+    const right = box.getBoundingClientRect().right;
+    if (!scrolls && right > view.innerWidth) found.push(`${box.tagName} ends at ${right}: ${box.textContent.slice(0, 60)}`);
+  }
+  for (const math of page.querySelectorAll("math")) {
+    const { width, height } = math.getBoundingClientRect();
+    if (!(width > 0 && height > 0)) found.push(`a formula has no size: ${math.textContent.slice(0, 60)}`);
+  }
+  for (const fraction of page.querySelectorAll("mfrac")) {
+    const [above, below] = [...fraction.children].map((part) => part.getBoundingClientRect());
+    if (!(above.bottom <= below.top + 1)) found.push(`a fraction is no fraction: ${fraction.textContent.slice(0, 60)}`);
+  }
+  let level = 0;
+  for (const heading of page.querySelectorAll("h1, h2, h3, h4, h5, h6")) {
+    const next = Number(heading.tagName[1]);
+    if (next > level + 1 || (next === 1 && level > 0)) found.push(`heading out of order: ${heading.textContent}`);
+    level = next;
+  }
+  for (const link of page.querySelectorAll("a[href]")) {
+    const target = link.getAttribute("href");
+    if (!target.startsWith("#") || !page.getElementById(target.slice(1))) found.push(`a link leads nowhere: ${target}`);
+  }
+  for (const figure of page.querySelectorAll("svg, img")) {
+    const name = figure.querySelector("title")?.textContent || figure.getAttribute("alt");
+    if (!name || (figure.tagName === "svg" && figure.getAttribute("role") !== "img")) found.push("a figure has no name");
+  }
+  for (const table of page.querySelectorAll("table")) {
+    if (!table.caption) found.push("a table has no caption");
+  }
+  if (page.querySelector("script, link, img, iframe, [onclick], [src]")) found.push("it has a script, or needs another file");
+  if (!page.documentElement.lang || !page.title) found.push("it has no language, or no title");
+  for (const element of page.body.querySelectorAll("*:not(svg, svg *)")) {
+    const words = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
+    if (!words) continue;
+    const colour = channels(view.getComputedStyle(element).color);
+    const ratio = contrast(colour, behind(element, view));
+    if (ratio < CONTRAST) found.push(`contrast ${ratio.toFixed(1)}: ${element.textContent.slice(0, 60)}`);
+  }
+  return found;
+}
+
+function shown(text, width, scheme) {
+  return new Promise((resolve) => {
+    const frame = document.createElement("iframe");
+    frame.style.cssText = `width: ${width}px; height: 900px; border: 0; color-scheme: ${scheme}`;
+    frame.onload = () => {
+      const found = wrong(frame, scheme);
+      frame.remove();
+      resolve(found);
+    };
+    frame.srcdoc = text;
+    document.body.append(frame);
+  });
+}
+
+async function measure(pages) {
+  const results = {};
+  for (const [name, text] of Object.entries(pages)) {
+    results[name] = {};
+    for (const width of WIDTHS) {
+      for (const scheme of SCHEMES) results[name][`${width} px, ${scheme}`] = await shown(text, width, scheme);
+    }
+  }
+  const output = document.createElement("pre");
+  output.id = "results";
+  output.textContent = JSON.stringify(results);
+  document.body.append(output);
+}
