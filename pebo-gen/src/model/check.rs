@@ -244,7 +244,9 @@ impl Pass<'_> {
             (&simulation.jitter, 0.5, "`jitter`", "write it as a share of the step, as `jitter: 0.3` for 30 %"),
             (&simulation.dropped, 1.0, "`dropped`", "write a probability, as `dropped: 0.2` for every fifth sample"),
         ] {
-            let Some(share) = share.as_ref().filter(|share| !(0.0..end).contains(&share.value.to_f64())) else { continue };
+            let Some(share) = share.as_ref().filter(|share| !(0.0..end).contains(&share.value.to_f64())) else {
+                continue;
+            };
             let message = format!("{what} must be 0 or more, and below {end}");
             self.diagnostics.push(Diagnostic::error(Code::NumberOutOfRange, share.span, message).help(help));
         }

@@ -12,9 +12,11 @@
 //!
 //! Holds: the same scenario gives the same trace, to the last bit.
 
+mod advice;
 mod control;
 mod curve;
 mod derived;
+mod ensemble;
 mod estimator;
 mod excitation;
 mod failure;
@@ -48,6 +50,7 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+pub use ensemble::{Ensemble, Quantiles, Spread};
 pub use excitation::Excitation;
 pub use failure::Failure;
 pub use faults::Faults;

@@ -74,7 +74,8 @@ impl Scenario {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
-        let rated = |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
+        let rated =
+            |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
         Ok(Summary {
             end: machine.table[TIME],
             samples,
@@ -232,7 +233,10 @@ impl<'a> Machine<'a> {
             self.stepping.miss(u, step);
             return Ok(());
         }
-        self.stepping.arrive(y, u, step, hat).map_err(|fault| Failure::Refused { at: before[TIME], fault })
+        match self.stepping.arrive(y, u, step, hat) {
+            Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
+            _ => Ok(()),
+        }
     }
 
     /// Whether the values at these positions are finite.

@@ -51,7 +51,9 @@ impl Fitter<'_> {
             }
             (Shape::OneOrMore(item), Content::Scalar(_)) => Some(sequence([self.fit(node, item)])),
             (Shape::AllOrEach, Content::Scalar(text)) => Some(fields([("all", self.number(text, node.span)?)])),
-            (Shape::AllOrEach, Content::Map(_)) => Some(fields([("each", self.fit(node, &Shape::Map(&Shape::Number))?)])),
+            (Shape::AllOrEach, Content::Map(_)) => {
+                Some(fields([("each", self.fit(node, &Shape::Map(&Shape::Number))?)]))
+            }
             (Shape::Map(shape), Content::Map(entries)) => Some(sequence(
                 entries.iter().map(|(key, node)| Some(entry(&key.text, key.span, self.fit(node, shape)?))),
             )),

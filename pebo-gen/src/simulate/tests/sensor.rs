@@ -138,7 +138,8 @@ fn the_same_seed_has_the_same_bits_with_everything_at_once() {
 #[test]
 fn sensors_do_not_disturb_one_another() {
     let noisy = |more: &str| {
-        let text = with(CUK_CASE_2, "step: 1e-5", &format!("noise: {{i3: 0.01{more}}}\n  feedback: truth\n  step: 1e-5"));
+        let text =
+            with(CUK_CASE_2, "step: 1e-5", &format!("noise: {{i3: 0.01{more}}}\n  feedback: truth\n  step: 1e-5"));
         let text = text.replace("  feedback: observer", "  #");
         let text = text.replace("d: V_d/(V_d + E) + lambda*s/(1 + s^2)", "d: V_d/(V_d + E)");
         column(&run(&text, &Overrides { duration: Some(1e-3), ..Overrides::default() }), "i3")
