@@ -14,6 +14,9 @@ pub const SETTLED: f64 = 0.01;
 /// The part of a run that errors are taken from where they have not settled: its end.
 const END: f64 = 0.1;
 
+/// The part of a run whose errors are compared with those of as long a part before.
+const TREND: f64 = 0.25;
+
 /// Errors that differ by less than this are one: the larger one, at the later instant.
 const ALIKE: f64 = 1.005;
 
@@ -37,7 +40,7 @@ pub struct Score {
     pub rms: f64,
     /// The largest of their magnitudes.
     pub worst: f64,
-    /// The root mean square in the last tenth of the run, over that in the tenth before.
+    /// The root mean square in the last quarter of the run, over that in the quarter before.
     pub trend: f64,
 }
 
@@ -142,7 +145,7 @@ impl Scoring {
             Some(t) if t > start => self.stairs.iter().find(|stair| stair.0 > t).map_or(after.largest, |stair| stair.1),
             _ => after.largest,
         };
-        let trend = rms(over(ending(END), end)) / rms(over(ending(2.0 * END), ending(END)));
+        let trend = rms(over(ending(TREND), end)) / rms(over(ending(2.0 * TREND), ending(TREND)));
         Score { first, last, settled, since, rms: rms(after), worst, trend }
     }
 }
@@ -177,7 +180,7 @@ mod tests {
                 "{count} {} {expected}",
                 score.rms
             );
-            assert!((score.trend - (-1.0_f64).exp()).abs() < 0.1, "{}", score.trend);
+            assert!((score.trend - (-2.5_f64).exp()).abs() < 0.03, "{}", score.trend);
         }
     }
 
