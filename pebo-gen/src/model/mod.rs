@@ -32,7 +32,7 @@ pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
 pub use spanned::{Entry, Spanned};
 pub use written::{
-    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
+    Baseline, CascadeClass, Delay, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
 };
 
 #[cfg(feature = "yaml")]

@@ -48,7 +48,7 @@ impl Loop {
     fn of(text: &str) -> Self {
         let mut model = read(text).unwrap();
         model.observer.rebase = None;
-        for simulation in &mut model.simulation {
+        if let Some(simulation) = &mut model.simulation {
             simulation.baselines.clear();
             simulation.panels.clear();
         }
@@ -171,7 +171,9 @@ impl Loop {
             machine.control().unwrap();
             machine.advance(sample).unwrap();
             z_of.run(&machine.table[..symbols.len()], &mut z);
-            for ((z, other), (off, scale)) in z.iter().zip(machine.observer.coordinates(&theta)).zip(&mut worst) {
+            for ((z, other), (off, scale)) in
+                z.iter().zip(machine.stepping.observer.coordinates(&theta)).zip(&mut worst)
+            {
                 *off = off.max((z - other).abs());
                 *scale = scale.max(z.abs()).max(1e-3);
             }
