@@ -1,11 +1,12 @@
 //! Reading and writing: a file is written whole or not at all.
 
-use std::io::{Read as _, Write as _};
-use std::path::Path;
+use std::io::{BufWriter, Read as _, Stdout, Write};
+use std::path::{Path, PathBuf};
 
 use pebo_gen::analysis::Class;
 use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
-use pebo_gen::{Answer, Ask, Solution};
+use pebo_gen::{Answer, Ask, Solution, Tape};
+use tempfile::NamedTempFile;
 
 use super::standard::{self, reason};
 
@@ -41,6 +42,22 @@ pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Sol
     }
 }
 
+/// The answer on a model file and a recording, with the text that its diagnostics are about.
+pub(super) fn replay(path: &Path, ask: Ask, tape: Tape<'_>) -> (Source, Answer) {
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    match read(path) {
+        Ok(source) => {
+            let answer = pebo_gen::replay(&source, &ask.named(stem), tape);
+            (source, answer)
+        }
+        Err(unread) => {
+            let (source, diagnostic) = *unread;
+            let answer = Answer::of_unread(&stem, vec![diagnostic], &source);
+            (source, answer)
+        }
+    }
+}
+
 /// Reads a model file, or standard input for `-`; the error comes with a source to show it beside.
 fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
     let name = if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() };
@@ -70,17 +87,79 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     if is_standard(path) {
         return standard::write(text.as_bytes());
     }
-    replace(path, text).map_err(|error| {
-        let message = format!("cannot write {}: {}", path.display(), reason(&error));
-        Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
-            .help("check that the folder exists and can be written to")
-    })
+    replace(path, text).map_err(|error| unwritten(path, &error))
+}
+
+/// A file that is written part by part, and is there when it is whole; or standard output for `-`.
+pub(super) enum Growing {
+    Named(PathBuf, BufWriter<NamedTempFile>),
+    Standard(BufWriter<Stdout>),
+}
+
+impl Growing {
+    pub(super) fn create(path: &Path) -> Result<Self, Diagnostic> {
+        if is_standard(path) {
+            return Ok(Self::Standard(BufWriter::new(std::io::stdout())));
+        }
+        let file = beside(path).map_err(|error| unwritten(path, &error))?;
+        Ok(Self::Named(path.to_owned(), BufWriter::new(file)))
+    }
+
+    /// Nothing more will be written.
+    pub(super) fn finish(self) -> Result<(), Diagnostic> {
+        match self {
+            Self::Named(path, file) => {
+                let whole = file.into_inner().map_err(std::io::IntoInnerError::into_error);
+                whole.and_then(|file| put(file, &path)).map_err(|error| unwritten(&path, &error))
+            }
+            Self::Standard(mut output) => match output.flush() {
+                Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(standard::unwritten(&error)),
+                _ => Ok(()),
+            },
+        }
+    }
+}
+
+impl Write for Growing {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Self::Named(_, file) => file.write(bytes),
+            // A reader that went away is no error of ours.
+            Self::Standard(output) => match output.write(bytes) {
+                Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+                written => written,
+            },
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Named(_, file) => file.flush(),
+            Self::Standard(output) => output.flush(),
+        }
+    }
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> Diagnostic {
+    let message = format!("cannot write {}: {}", path.display(), reason(error));
+    Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
+        .help("check that the folder exists and can be written to")
 }
 
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    let mut file = beside(path)?;
     file.write_all(text.as_bytes())?;
+    put(file, path)
+}
+
+/// A file without a name of its own yet.
+fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    NamedTempFile::new_in(folder)
+}
+
+/// Gives a whole file its name.
+fn put(file: NamedTempFile, path: &Path) -> std::io::Result<()> {
     file.as_file().sync_all()?;
     #[cfg(unix)]
     {

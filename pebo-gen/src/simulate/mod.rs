@@ -12,11 +12,13 @@
 //!
 //! Holds: the same scenario gives the same trace, to the last bit.
 
+mod asked;
 mod control;
 mod curve;
 mod derived;
 mod estimator;
 mod failure;
+mod faults;
 pub mod figure;
 mod flow;
 mod label;
@@ -25,13 +27,16 @@ mod noise;
 mod observer;
 mod overrides;
 mod panel;
+pub mod replay;
 mod rival;
 mod run;
 mod scenario;
 mod scope;
+mod score;
 mod settings;
 mod signal;
 mod sizes;
+mod stepping;
 mod timing;
 mod trace;
 mod truth;

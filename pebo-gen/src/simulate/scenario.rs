@@ -128,7 +128,7 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names, derivation, &numbers, problems);
+        let design = Design::resolve(&names.asked(), derivation, &numbers, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
@@ -249,7 +249,12 @@ fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range
 }
 
 /// Estimate less truth; for an angle, the difference that is least in magnitude.
-fn errors(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> Vec<Expr> {
+pub(super) fn errors(
+    plant: &Plant,
+    derivation: &Derivation,
+    numbers: &BTreeMap<Symbol, Expr>,
+    hats: &Estimates,
+) -> Vec<Expr> {
     use crate::cas::Function::{Atan2, Cos, Sin};
     let arena = &plant.arena;
     let modulo = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.modulo);

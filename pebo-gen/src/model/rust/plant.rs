@@ -112,6 +112,7 @@ pub(super) fn read(
         units: arguments.units,
         observer: Observer::default(),
         simulation: None,
+        recording: None,
     })
 }
 

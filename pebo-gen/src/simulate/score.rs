@@ -1,0 +1,148 @@
+//! How good the estimate of a state is, from its errors one after the other.
+//!
+//! In: at each instant the error, and how large the state is. Out: when the error fell for good below a hundredth of the
+//! state's largest magnitude, and how large it is from then on. Knows nothing of plants or observers, and keeps some
+//! thousand numbers however long the run is: which error counts as small is known only at its end.
+
+use serde::Serialize;
+
+use super::timing::real;
+
+/// The share of a state's largest magnitude that an estimate has settled to.
+pub const SETTLED: f64 = 0.01;
+
+/// The part of a run that errors are taken from where they have not settled: its end.
+const END: f64 = 0.1;
+
+/// Errors that differ by less than this are one: the larger one, at the later instant.
+const ALIKE: f64 = 1.005;
+
+/// Spans of time in which errors are added up: as many, or half of that and more.
+const SPANS: usize = 512;
+
+/// How good an estimate is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Score {
+    /// From when on, in seconds, the error stays below a hundredth of the state's largest magnitude (of an angle: of its
+    /// period; of a state that is always 0: of its largest error); none if it does not.
+    pub settled: Option<f64>,
+    /// From when on the errors are told, in seconds: from when they have settled, else over the last tenth.
+    pub since: f64,
+    /// Their root mean square, in the unit of the state.
+    pub rms: f64,
+    /// The largest of their magnitudes.
+    pub worst: f64,
+    /// The root mean square in the last tenth of the run, over that in the tenth before.
+    pub trend: f64,
+}
+
+/// The errors of an estimate so far.
+#[derive(Clone, Debug)]
+pub(super) struct Scoring {
+    /// What a hundredth is meant of, if that is no magnitude of the state.
+    period: Option<f64>,
+    largest: f64,
+    /// Magnitudes of errors with their instants: each larger than all that came after it.
+    stairs: Vec<(f64, f64)>,
+    spans: Vec<Span>,
+    /// Samples in a span that is full.
+    width: u64,
+    /// The last instant.
+    end: f64,
+    /// The first instant.
+    start: Option<f64>,
+}
+
+/// Errors of some samples in a row.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    /// The last instant.
+    end: f64,
+    samples: u64,
+    squares: f64,
+    largest: f64,
+}
+
+impl Span {
+    fn and(self, later: Self) -> Self {
+        Self {
+            end: later.end,
+            samples: self.samples + later.samples,
+            squares: self.squares + later.squares,
+            largest: self.largest.max(later.largest),
+        }
+    }
+}
+
+impl Scoring {
+    /// Before the first sample; an angle has its period.
+    pub(super) fn new(period: Option<f64>) -> Self {
+        Self { period, largest: 0.0, stairs: Vec::new(), spans: Vec::new(), width: 1, end: 0.0, start: None }
+    }
+
+    /// Takes the error at an instant, at which the state has this value.
+    pub(super) fn add(&mut self, t: f64, error: f64, truth: f64) {
+        let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
+        self.start.get_or_insert(t);
+        self.end = t;
+        self.largest = self.largest.max(truth.abs());
+        self.step(t, error);
+        let sample = Span { end: t, samples: 1, squares: error * error, largest: error };
+        match self.spans.last_mut() {
+            Some(last) if last.samples < self.width => *last = last.and(sample),
+            _ => {
+                if self.spans.len() == SPANS {
+                    self.spans =
+                        self.spans.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |a, b| a.and(*b))).collect();
+                    self.width *= 2;
+                }
+                self.spans.push(sample);
+            }
+        }
+    }
+
+    fn step(&mut self, t: f64, error: f64) {
+        while self.stairs.last().is_some_and(|last| last.1 <= error) {
+            self.stairs.pop();
+        }
+        match self.stairs.last_mut() {
+            Some(last) if last.1 <= error * ALIKE => last.0 = t,
+            _ => self.stairs.push((t, error)),
+        }
+    }
+
+    /// What came of it.
+    pub(super) fn finish(&self) -> Score {
+        let scale = match self.period {
+            Some(period) => period,
+            None if self.largest > 0.0 => self.largest,
+            None => self.stairs.first().map_or(0.0, |first| first.1),
+        };
+        let start = self.start.unwrap_or_default();
+        let last_above = self.stairs.iter().rev().find(|stair| stair.1 > SETTLED * scale);
+        let settled = last_above.map_or(Some(start), |stair| Some(stair.0).filter(|t| *t < self.end));
+        let ending = |share: f64| self.end - share * (self.end - start);
+        let since = settled.unwrap_or_else(|| ending(END));
+        let over = |from: f64, to: f64| {
+            let spans = self.spans.iter().filter(|span| span.end > from && span.end <= to);
+            spans.copied().reduce(Span::and).or_else(|| self.spans.last().copied()).unwrap_or_default()
+        };
+        let rms = |span: Span| (span.squares / real(span.samples.max(1))).sqrt();
+        // The span in which it settled has larger errors too.
+        let first = self.spans.iter().position(|span| span.end > since).unwrap_or_default();
+        let whole = if settled.is_some_and(|t| t > start) {
+            self.spans.get(first).map_or(since, |span| span.end)
+        } else {
+            since
+        };
+        let after = over(whole, self.end);
+        let worst = match settled {
+            // Exact but for what counts as alike.
+            Some(t) if t > start => self.stairs.iter().find(|stair| stair.0 > t).map_or(after.largest, |stair| stair.1),
+            _ => after.largest,
+        };
+        let trend = rms(over(ending(END), self.end)) / rms(over(ending(2.0 * END), ending(END)));
+        Score { settled, since, rms: rms(after), worst, trend }
+    }
+}
