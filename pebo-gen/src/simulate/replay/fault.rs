@@ -61,7 +61,7 @@ impl Faults {
             Kind::Timeless => "rows skipped that have no time".to_owned(),
             Kind::Backwards => "rows skipped whose time is not later than that of the row before".to_owned(),
             Kind::Gap => "gaps, where the time steps by more than one and a half periods".to_owned(),
-            Kind::Cut => "last row dropped, which breaks off with the file".to_owned(),
+            Kind::Cut => "last row dropped, as it breaks off with the file".to_owned(),
             Kind::Input(input) => format!("rows without a value of `{}`: the value before was held", inputs[input]),
             Kind::Refused(Fault::Output { index }) => format!("samples refused: `{}` is not finite", outputs[index]),
             Kind::Refused(fault) => format!("samples refused: {fault}"),
@@ -74,7 +74,7 @@ impl Faults {
 
 impl fmt::Display for FaultCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}, first in line {}", self.count, self.what, self.line)
+        write!(f, "{}: {}, first in line {}", self.what, self.count, self.line)
     }
 }
 
@@ -82,7 +82,7 @@ impl fmt::Display for FaultCount {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct FaultCount {
-    /// What was wrong, in words that follow a number.
+    /// What was wrong, in words.
     pub what: String,
     /// How often.
     pub count: u64,

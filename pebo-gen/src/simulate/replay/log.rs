@@ -5,11 +5,9 @@
 
 use std::fmt;
 use std::io::{BufRead as _, BufReader, Read};
-use std::rc::Rc;
 
-use csv::{ByteRecord, Reader, ReaderBuilder};
+use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
-use super::meter::{Meter, Metered};
 use crate::source::quoted;
 
 /// What parts the columns: that of these which the header has most of.
@@ -18,15 +16,107 @@ const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
 /// Bytes that are asked for at once.
 const BUFFER: usize = 1 << 16;
 
+/// The most bytes of a row: a file of another kind may have no lines.
+pub(super) const LONGEST: usize = 1 << 20;
+
+/// What some programs write before UTF-8 text.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// A recording of which the header is read.
 pub struct Log<'a> {
     name: String,
     columns: Vec<String>,
-    reader: Reader<BufReader<Metered<Box<dyn Read + 'a>>>>,
-    meter: Rc<Meter>,
-    /// Lines before the first row.
-    before: u64,
-    record: ByteRecord,
+    lines: Lines<'a>,
+    row: Row,
+}
+
+/// Lines that are neither comments nor blank.
+struct Lines<'a> {
+    bytes: BufReader<Box<dyn Read + 'a>>,
+    /// The line that was read, with its end.
+    line: Vec<u8>,
+    /// Its number, from 1.
+    number: u64,
+    /// The bytes that have been read.
+    read: u64,
+}
+
+impl Lines<'_> {
+    /// Reads a line; whether there is one.
+    fn advance(&mut self) -> Result<bool, Unreadable> {
+        loop {
+            self.line.clear();
+            let most = u64::try_from(LONGEST).unwrap_or(u64::MAX).saturating_add(1);
+            let count =
+                self.bytes.by_ref().take(most).read_until(b'\n', &mut self.line).map_err(Unreadable::Refused)?;
+            self.number += 1;
+            self.read += u64::try_from(count).unwrap_or(u64::MAX);
+            if count > LONGEST {
+                let what = format!("the line has more than {LONGEST} bytes");
+                let help = "give CSV text with a line for each sample";
+                return Err(Unreadable::Malformed(Malformed { line: self.number, column: None, what, help }));
+            }
+            if count == 0 {
+                return Ok(false);
+            }
+            if self.number == 1 && self.line.starts_with(MARK) {
+                self.line.drain(..MARK.len());
+            }
+            let text = self.line.trim_ascii_start();
+            if !text.is_empty() && !text.starts_with(b"#") {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// Whether the line has its end; the last of a file may have none.
+    fn is_whole(&self) -> bool {
+        self.line.ends_with(b"\n")
+    }
+}
+
+/// The cells of a line.
+struct Row {
+    reader: Reader,
+    text: Vec<u8>,
+    ends: Vec<usize>,
+    count: usize,
+}
+
+impl Row {
+    fn new(delimiter: u8) -> Self {
+        let reader = ReaderBuilder::new().delimiter(delimiter).build();
+        Self { reader, text: Vec::new(), ends: Vec::new(), count: 0 }
+    }
+
+    /// Takes the cells of a line; whether all its quotes are closed.
+    fn split(&mut self, line: &[u8]) -> bool {
+        // No cell is longer than the line, nor are there more cells than letters.
+        if self.text.len() <= line.len() {
+            self.text.resize(line.len() + 1, 0);
+            self.ends.resize(line.len() + 2, 0);
+        }
+        self.reader.reset();
+        let (mut result, read, written, count) = self.reader.read_record(line, &mut self.text, &mut self.ends);
+        self.count = count;
+        if result == ReadRecordResult::InputEmpty && read == line.len() {
+            // The end of the line, or of the file.
+            let (text, ends) = (&mut self.text[written..], &mut self.ends[count..]);
+            let (ended, _, _, more) = self.reader.read_record(b"\n", text, ends);
+            result = ended;
+            self.count += more;
+        }
+        result == ReadRecordResult::Record
+    }
+
+    fn cell(&self, place: usize) -> &[u8] {
+        let start = place.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.text[start..self.ends[place]].trim_ascii()
+    }
+
+    fn cells(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.count).map(|place| self.cell(place))
+    }
 }
 
 /// A cell that holds no finite number.
@@ -75,40 +165,20 @@ pub struct Malformed {
 impl<'a> Log<'a> {
     /// Reads the header of a recording; `name` is what messages call it.
     pub fn open(name: impl Into<String>, bytes: impl Read + 'a) -> Result<Self, Unreadable> {
-        let meter = Rc::<Meter>::default();
         let bytes: Box<dyn Read + 'a> = Box::new(bytes);
-        let mut bytes = BufReader::with_capacity(BUFFER, Metered { inner: bytes, meter: Rc::clone(&meter) });
-        let mut before = 0;
-        let header = loop {
-            let mut line = Vec::new();
-            let limit = u64::try_from(Meter::LONGEST).unwrap_or(u64::MAX);
-            let count = bytes.by_ref().take(limit).read_until(b'\n', &mut line).map_err(Unreadable::Refused)?;
-            before += 1;
-            meter.row();
-            if count == 0 || count == Meter::LONGEST {
-                return Err(Unreadable::Nameless);
-            }
-            let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line).trim_ascii();
-            if !line.is_empty() && !line.starts_with(b"#") {
-                break line.to_vec();
-            }
-        };
-        let delimiter = delimiter(&header);
-        let reader = |bytes| rows(delimiter).from_reader(bytes);
-        let mut names = ByteRecord::new();
-        rows(delimiter).from_reader(header.as_slice()).read_byte_record(&mut names).map_err(refused)?;
-        let numbers = names.iter().filter(|name| number(name).is_some()).count();
-        if numbers == names.len() {
+        let bytes = BufReader::with_capacity(BUFFER, bytes);
+        let mut lines = Lines { bytes, line: Vec::new(), number: 0, read: 0 };
+        if !lines.advance()? {
             return Err(Unreadable::Nameless);
         }
-        Ok(Self {
-            name: name.into(),
-            columns: names.iter().enumerate().map(|(place, name)| spelled(place, name)).collect(),
-            reader: reader(bytes),
-            meter,
-            before,
-            record: ByteRecord::new(),
-        })
+        let header = lines.line.trim_ascii();
+        let mut row = Row::new(delimiter(header));
+        let is_closed = row.split(header);
+        if !is_closed || row.cells().all(|name| number(name).is_some()) {
+            return Err(Unreadable::Nameless);
+        }
+        let columns = row.cells().enumerate().map(|(place, name)| spelled(place, name)).collect();
+        Ok(Self { name: name.into(), columns, lines, row })
     }
 
     /// What messages call it.
@@ -123,7 +193,7 @@ impl<'a> Log<'a> {
 
     /// The bytes that have been read.
     pub fn bytes(&self) -> u64 {
-        self.meter.bytes.get()
+        self.lines.read
     }
 
     /// Reads a row: the numbers of the `wanted` columns, NaN where there is none; `blank` is told of each of these.
@@ -131,50 +201,48 @@ impl<'a> Log<'a> {
         &mut self,
         wanted: &[usize],
         numbers: &mut [f64],
-        mut blank: impl FnMut(usize, Blank, u64),
+        blank: impl FnMut(usize, Blank, u64),
     ) -> Result<Next, Unreadable> {
-        self.meter.row();
-        let more = self.reader.read_byte_record(&mut self.record);
-        // The reader counts the lines behind the header, and those of comments.
-        let line = self.before + self.record.position().map_or(1, csv::Position::line);
-        if self.meter.is_over() {
-            let what = format!("the row has more than {} bytes", Meter::LONGEST);
-            return Err(Unreadable::Malformed(Malformed { line, column: None, what, help: "close the quotes in it" }));
-        }
-        if !more.map_err(refused)? {
+        if !self.lines.advance()? {
             return Ok(Next::End);
         }
-        let Err(malformed) = self.row(line, wanted, numbers, &mut blank) else { return Ok(Next::Row(line)) };
-        // A log that ends with the power supply ends within a row.
-        let is_last = !self.reader.read_byte_record(&mut self.record).map_err(refused)?;
-        let is_cut = is_last && !self.meter.ends_a_line();
-        if is_cut { Ok(Next::Cut(line)) } else { Err(Unreadable::Malformed(malformed)) }
+        let line = self.lines.number;
+        match self.take(line, wanted, numbers, blank) {
+            Ok(()) => Ok(Next::Row(line)),
+            // A log that ends with the power supply ends within a row.
+            Err(_) if !self.lines.is_whole() => Ok(Next::Cut(line)),
+            Err(malformed) => Err(Unreadable::Malformed(malformed)),
+        }
     }
 
-    fn row(
-        &self,
+    fn take(
+        &mut self,
         line: u64,
         wanted: &[usize],
         numbers: &mut [f64],
-        blank: &mut impl FnMut(usize, Blank, u64),
+        mut blank: impl FnMut(usize, Blank, u64),
     ) -> Result<(), Malformed> {
-        let (found, columns) = (self.record.len(), self.columns.len());
+        let columns = self.columns.len();
+        if !self.row.split(&self.lines.line) {
+            let what = "a quote is not closed".to_owned();
+            return Err(Malformed { line, column: None, what, help: "close it, in the same line" });
+        }
+        let found = self.row.count;
         // Some loggers write a comma behind the last cell too.
-        let is_wide = self.record.iter().skip(columns).any(|cell| !cell.trim_ascii().is_empty());
-        if found < columns || is_wide {
+        if found < columns || self.row.cells().skip(columns).any(|cell| !cell.is_empty()) {
             let what = format!("the row has {found} cells and the header {columns}");
             let help = "complete the row or remove it; a value that is not known is an empty cell";
             return Err(Malformed { line, column: Some(found.min(columns) + 1), what, help });
         }
         for (value, &column) in numbers.iter_mut().zip(wanted) {
-            let cell = &self.record[column];
+            let cell = self.row.cell(column);
             *value = match number(cell) {
                 Some(value) if value.is_finite() => value,
                 Some(_) => {
                     blank(column, Blank::NotFinite, line);
                     f64::NAN
                 }
-                None if cell.trim_ascii().is_empty() => {
+                None if cell.is_empty() => {
                     blank(column, Blank::Empty, line);
                     f64::NAN
                 }
@@ -186,11 +254,11 @@ impl<'a> Log<'a> {
 
     fn no_number(&self, line: u64, column: usize, cell: &[u8]) -> Malformed {
         let text = String::from_utf8_lossy(cell);
-        let what = format!("{} in the column `{}` is not a number", quoted(text.trim()), self.columns[column]);
-        let decimal_comma = number(text.replace(',', ".").as_bytes()).is_some();
-        let help = match decimal_comma {
-            true => "write decimals with a point",
-            false => "write a number as `-1.5e-3`, or leave the cell empty; lines that begin with # are comments",
+        let what = format!("{} in the column `{}` is not a number", quoted(&text), self.columns[column]);
+        let help = if number(text.replace(',', ".").as_bytes()).is_some() {
+            "write decimals with a point"
+        } else {
+            "write a number as `-1.5e-3`, or leave the cell empty; lines that begin with # are comments"
         };
         Malformed { line, column: Some(column + 1), what, help }
     }
@@ -202,16 +270,6 @@ impl fmt::Debug for Log<'_> {
     }
 }
 
-fn rows(delimiter: u8) -> ReaderBuilder {
-    let mut builder = ReaderBuilder::new();
-    builder.has_headers(false).flexible(true).comment(Some(b'#')).delimiter(delimiter).buffer_capacity(BUFFER);
-    builder
-}
-
-fn refused(error: csv::Error) -> Unreadable {
-    Unreadable::Refused(error.into())
-}
-
 fn delimiter(header: &[u8]) -> u8 {
     let count = |delimiter: u8| header.iter().filter(|byte| **byte == delimiter).count();
     // Of equals the first: `max_by_key` takes the last.
@@ -219,7 +277,7 @@ fn delimiter(header: &[u8]) -> u8 {
 }
 
 fn number(cell: &[u8]) -> Option<f64> {
-    std::str::from_utf8(cell.trim_ascii()).ok()?.parse().ok()
+    std::str::from_utf8(cell).ok()?.parse().ok()
 }
 
 /// The name by which formulas call a column: what cannot be in a name is an underscore, of which there is none at the end.

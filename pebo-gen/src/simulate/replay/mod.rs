@@ -15,13 +15,15 @@ mod failure;
 mod fault;
 mod layout;
 mod log;
-mod meter;
 mod panels;
 mod replayed;
 mod residual;
 mod run;
 mod scene;
 mod signals;
+
+#[cfg(test)]
+mod tests;
 
 pub use failure::Failure;
 pub use fault::FaultCount;

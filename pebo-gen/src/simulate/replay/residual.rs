@@ -1,23 +1,24 @@
 //! What the outputs do that the model with the estimates does not explain.
 //!
 //! ```text
-//! r' = y' - f_y(x_hat, y, u) - alpha r        r = y - g_y(x_hat, y, u)
+//! r' = y' - f_y(x_hat, y, u) - r/T        r = y - g_y(x_hat, y, u)
 //! ```
 //!
-//! On the left for an output that has a rate: the output less what the rate adds up to, over the time 1/alpha in which the
-//! observer's own filter forgets. It needs no measured x, is in the unit of the output, and stays near the noise of the
-//! sensor if estimates and model are right.
+//! On the left for an output that has a rate: the output less what its rate adds up to, over the last hundred samples or
+//! so. It needs no measured x, is in the unit of the output, and stays near the noise of the sensor if estimates and model
+//! are right: one sample would tell little beside that noise, and many would tell of estimates long ago.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Interpreter, Program};
-use crate::simulate::settings::{Operator, Settings};
-use crate::simulate::timing::real;
 use crate::source::{Diagnostics, Span};
 
 use super::layout::Layout;
+
+/// T in samples.
+const MEMORY: f64 = 100.0;
 
 /// The outputs of which the model says how they move, with programs from the table.
 #[derive(Debug)]
@@ -26,8 +27,6 @@ pub(super) struct Residuals {
     pub(super) outputs: Vec<(usize, bool)>,
     /// Their rates, or their values.
     formulas: Program,
-    /// What the observer's operator forgets.
-    memory: Operator,
 }
 
 impl Residuals {
@@ -36,7 +35,6 @@ impl Residuals {
         plant: &Plant,
         layout: &Layout,
         numbers: &BTreeMap<Symbol, Expr>,
-        settings: &Settings,
         (span, problems): (Span, &mut Diagnostics),
     ) -> Option<Self> {
         let arena = &plant.arena;
@@ -56,7 +54,7 @@ impl Residuals {
         let (outputs, formulas): (Vec<_>, Vec<Expr>) =
             found.map(|(place, (formula, is_rate))| ((place, is_rate), formula)).unzip();
         let formulas = problems.keep(layout.program(arena, &formulas, span))?;
-        Some(Self { outputs, formulas, memory: settings.operator })
+        Some(Self { outputs, formulas })
     }
 
     /// At work.
@@ -85,17 +83,11 @@ impl Course<'_> {
     pub(super) fn sample(&mut self, table: &[f64], y: &[f64], dt: f64) {
         let Some((rates, outputs)) = &self.start else { return };
         self.interpreter.run(table, &mut self.end);
-        let alpha = match self.residuals.memory {
-            Operator::Filter(alpha) => alpha,
-            Operator::Window(samples) => 1.0 / (dt * real(u64::try_from(samples).unwrap_or(u64::MAX))),
-        };
-        // Shorter than the interval there is nothing to remember.
-        let alpha = alpha.min(1.0 / dt);
-        let kept = (-alpha * dt).exp();
+        let kept = (-1.0 / MEMORY).exp();
         for (place, &(output, is_rate)) in self.residuals.outputs.iter().enumerate() {
             self.values[place] = if is_rate {
                 let unexplained = (y[output] - outputs[output]) / dt - 0.5 * (rates[place] + self.end[place]);
-                kept * self.values[place] + (1.0 - kept) / alpha * unexplained
+                kept * self.values[place] + (1.0 - kept) * MEMORY * dt * unexplained
             } else {
                 y[output] - self.end[place]
             };

@@ -104,7 +104,7 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
     let (states, measured): (Vec<Symbol>, Vec<Measured>) = both.unzip();
     let errors: Vec<Expr> = measured.iter().map(|state| all[state.recovered]).collect();
     let errors = problems.keep(layout.program(arena, &errors, span))?;
-    let residuals = Residuals::resolve(plant, &layout, &numbers, &design.settings, (span, problems))?;
+    let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;
     Some(Replay {
         title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
         panels: Panels::resolve(plant, &layout, &states, &residuals),
