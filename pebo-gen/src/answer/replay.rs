@@ -39,7 +39,7 @@ pub struct Tape<'a> {
 /// let tape = Tape { name: "log.csv", recording: &mut recording, estimates: Some(&mut estimates) };
 /// let answer = replay(&source, &Ask::new(), tape);
 /// assert_eq!(answer.standing, Standing::Accepted);
-/// assert_eq!(answer.replay.expect("a replay").samples, 3);
+/// assert_eq!(answer.replay.expect("a replay").rows, 3);
 /// assert!(estimates.starts_with(b"t,p_hat\n0,0\n0.1,"));
 /// ```
 pub fn replay(source: &Source, ask: &Ask, tape: Tape<'_>) -> Answer {

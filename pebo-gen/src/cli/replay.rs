@@ -5,7 +5,6 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use pebo_gen::analysis::Outcome;
-use pebo_gen::simulate::replay::{MeasuredError, OutputResidual, Replayed};
 use pebo_gen::source::{Code, Diagnostic, Source, Span};
 use pebo_gen::{Answer, Standing, Tape};
 
@@ -49,7 +48,7 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     if let Some(path) = &options.plot {
         files::write(path, &replayed.figure)?;
     }
-    terminal::say(&outcome(&replayed));
+    terminal::say(&replayed.text());
     Ok(standing)
 }
 
@@ -65,31 +64,4 @@ fn open(path: &Path) -> Result<(Box<dyn Read>, Option<u64>), Diagnostic> {
     let file = File::open(path).map_err(|error| refused(&error))?;
     let size = file.metadata().ok().filter(std::fs::Metadata::is_file).map(|metadata| metadata.len());
     Ok((Box::new(file), size))
-}
-
-/// Lines about the rows, each estimate, each output, and each kind of fault.
-fn outcome(replayed: &Replayed) -> String {
-    let Replayed { rows, samples, start, end, .. } = replayed;
-    let mut text = format!("{rows} rows, {samples} samples taken, from t = {start} s to {end} s\n");
-    replayed.errors.iter().for_each(|error| text.push_str(&error_line(error)));
-    replayed.residuals.iter().for_each(|residual| text.push_str(&residual_line(residual)));
-    replayed.faults.iter().for_each(|fault| text.push_str(&format!("{fault}\n")));
-    text
-}
-
-fn error_line(error: &MeasuredError) -> String {
-    let MeasuredError { state, start, end, score, .. } = error;
-    let settled = match score.settled {
-        Some(t) => format!("within 1 % from t = {t} s on"),
-        None => format!("not within 1 %; from t = {} s on", score.since),
-    };
-    format!(
-        "{state}_error: {start:.3e} at the start, {end:.3e} at the end; {settled}: {:.3e} rms, {:.3e} at worst\n",
-        score.rms, score.worst
-    )
-}
-
-fn residual_line(residual: &OutputResidual) -> String {
-    let OutputResidual { output, score, .. } = residual;
-    format!("{output}_residual: {:.3e} rms, {:.3e} at worst from t = {} s on\n", score.rms, score.worst, score.since)
 }

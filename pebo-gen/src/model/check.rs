@@ -38,6 +38,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
             pass.belong(&simulation.initial, &both, "initial");
             pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
             pass.belong(&simulation.noise, &y, "noise");
+            pass.belong(&simulation.bias, &y, "bias");
+            pass.belong(&simulation.quantisation, &y, "quantisation");
+            pass.belong(&simulation.delay.each, &y, "delay");
             let parameters = model.parameters.iter().map(|entry| &entry.name);
             let true_values = Group::new(parameters.chain(&model.x), "a parameter or a state of x");
             pass.belong(&simulation.plant, &true_values, "plant");
@@ -219,9 +222,7 @@ impl Pass<'_> {
         let define = simulation.define.iter().map(|entry| &entry.name);
         let own = self.declare(signals.into_iter().chain(define), &[model]);
         self.circles(&simulation.define);
-        for deviation in &simulation.noise {
-            self.not_negative(&deviation.value, "a standard deviation");
-        }
+        self.sensors(simulation);
         for signal in simulation.signals.iter().chain(&simulation.plant) {
             for pair in signal.value.windows(2) {
                 let [before, after] = pair else { continue };
@@ -250,6 +251,29 @@ impl Pass<'_> {
             }
         }
         self.feedback(simulation);
+    }
+
+    /// What sensors do to samples is possible.
+    fn sensors(&mut self, simulation: &Simulation) {
+        for deviation in &simulation.noise {
+            self.not_negative(&deviation.value, "a standard deviation");
+        }
+        for step in &simulation.quantisation {
+            self.not_negative(&step.value, "the step of a quantisation");
+        }
+        for delay in simulation.delay.written() {
+            self.not_negative(delay, "a delay");
+        }
+        for (share, end, what, help) in [
+            (&simulation.jitter, 0.5, "`jitter`", "write it as a share of the step, as `jitter: 0.3` for 30 %"),
+            (&simulation.dropped, 1.0, "`dropped`", "write a probability, as `dropped: 0.2` for every fifth sample"),
+        ] {
+            let Some(share) = share.as_ref().filter(|share| !(0.0..end).contains(&share.value.to_f64())) else {
+                continue;
+            };
+            let message = format!("{what} must be 0 or more, and below {end}");
+            self.diagnostics.push(Diagnostic::error(Code::NumberOutOfRange, share.span, message).help(help));
+        }
     }
 
     fn feedback(&mut self, simulation: &Simulation) {

@@ -33,7 +33,9 @@ pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
 pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
-pub use written::{Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, Scale, Simulation};
+pub use written::{
+    Baseline, CascadeClass, Delay, Equations, Kalman, Luenberger, Model, Panel, Piece, Scale, Simulation,
+};
 
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};

@@ -17,6 +17,7 @@ mod control;
 mod curve;
 mod derived;
 mod estimator;
+mod excitation;
 mod failure;
 mod faults;
 pub mod figure;
@@ -33,20 +34,27 @@ mod run;
 mod scenario;
 mod scope;
 mod score;
+mod sensor;
 mod settings;
 mod signal;
 mod sizes;
 mod stepping;
+mod summary;
 mod timing;
 mod trace;
 mod truth;
 mod unit;
+mod watched;
 mod window;
 
 #[cfg(test)]
 mod tests;
 
+pub use excitation::Excitation;
 pub use failure::Failure;
+pub use faults::Faults;
 pub use overrides::Overrides;
 pub use scenario::Scenario;
+pub use score::{SETTLED, Score};
+pub use summary::{Estimate, Rated, Summary};
 pub use trace::Trace;

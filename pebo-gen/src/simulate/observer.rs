@@ -45,6 +45,8 @@ pub(super) struct Design {
     pub(super) phi_left: Program,
     /// The number of unknowns eta.
     pub(super) unknowns: usize,
+    /// The unknowns as formulas in theta.
+    pub(super) unknown_names: Vec<String>,
     /// Regression and estimator.
     pub(super) settings: Settings,
 }
@@ -104,6 +106,7 @@ impl Design {
             inputs: plant.u.len(),
             coordinates: plant.phi.len(),
             unknowns: regression.eta.len(),
+            unknown_names: regression.eta.iter().map(|unknown| arena.print(*unknown)).collect(),
             settings,
         };
         problems.keep(design.admit_size(span))?;

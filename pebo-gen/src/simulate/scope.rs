@@ -1,7 +1,8 @@
 //! What each place of the section `simulation` can see.
 //!
-//! Parameters are numbers here, those of the model; an output is what its sensor shows, noise included. A definition is lowered in each place anew, so that `hat(x)` in it is
-//! the estimate of the place that uses it; where it needs what is hidden, the definition is hidden too.
+//! Parameters are numbers here, those of the model; an output is what its sensor showed last. A definition is lowered in
+//! each place anew, so that `hat(x)` in it is the estimate of the place that uses it; where it needs what is hidden, the
+//! definition is hidden too.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use crate::plant::{Plant, Scope, lower};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::asked::Asked;
-use super::layout::{noise, rival_state, time};
+use super::layout::{rival_state, shown, time};
 
 /// Estimates by the state's name.
 pub(super) type Estimates = Vec<(String, Expr)>;
@@ -71,19 +72,14 @@ impl<'a> Names<'a> {
         self.asked().numbers()
     }
 
-    /// Outputs with noise.
-    fn noisy(&self) -> impl Iterator<Item = Symbol> {
-        self.simulation.noise.iter().map(|entry| self.plant.arena.symbol(&entry.name.value))
-    }
-
-    /// What the sensor of an output shows.
+    /// What the sensor of an output showed last.
     pub(super) fn measured(&self, output: Symbol) -> Expr {
         let arena = &self.plant.arena;
-        let value = arena.of_symbol(output);
-        if !self.noisy().any(|noisy| noisy == output) {
-            return value;
+        if self.simulation.is_imperfect() {
+            arena.of_symbol(shown(arena, &arena.name(output)))
+        } else {
+            arena.of_symbol(output)
         }
-        arena.add(value, arena.of_symbol(noise(arena, &arena.name(output))))
     }
 
     /// The names of a place with their meanings.
@@ -116,7 +112,7 @@ impl<'a> Names<'a> {
         show(plant.u.clone(), Sight::Inputs, "an input, whose value is not known here");
         // After the signals, which give w its course.
         show(plant.w.clone(), Sight::Everything, "not measured");
-        for output in self.noisy().filter(|_| view.sight >= Sight::Outputs) {
+        for output in plant.y.iter().map(|output| output.symbol).filter(|_| view.sight >= Sight::Outputs) {
             scope.define(arena.name(output), self.measured(output));
         }
         if let Some((name, baseline)) = view.own {

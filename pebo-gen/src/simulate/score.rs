@@ -24,6 +24,10 @@ const SPANS: usize = 512;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Score {
+    /// The error at the first instant, estimate less truth.
+    pub first: f64,
+    /// The error at the last instant.
+    pub last: f64,
     /// From when on, in seconds, the error stays below a hundredth of the state's largest magnitude (of an angle: of its
     /// period; of a state that is always 0: of its largest error); none if it does not.
     pub settled: Option<f64>,
@@ -48,10 +52,10 @@ pub(super) struct Scoring {
     spans: Vec<Span>,
     /// Samples in a span that is full.
     width: u64,
-    /// The last instant.
-    end: f64,
-    /// The first instant.
-    start: Option<f64>,
+    /// The last instant with its error.
+    last: (f64, f64),
+    /// The first instant with its error.
+    first: Option<(f64, f64)>,
 }
 
 /// Errors of some samples in a row.
@@ -78,14 +82,14 @@ impl Span {
 impl Scoring {
     /// Before the first sample; an angle has its period.
     pub(super) fn new(period: Option<f64>) -> Self {
-        Self { period, largest: 0.0, stairs: Vec::new(), spans: Vec::new(), width: 1, end: 0.0, start: None }
+        Self { period, largest: 0.0, stairs: Vec::new(), spans: Vec::new(), width: 1, last: (0.0, 0.0), first: None }
     }
 
     /// Takes the error at an instant, at which the state has this value.
     pub(super) fn add(&mut self, t: f64, error: f64, truth: f64) {
+        self.first.get_or_insert((t, error));
+        self.last = (t, error);
         let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
-        self.start.get_or_insert(t);
-        self.end = t;
         self.largest = self.largest.max(truth.abs());
         self.step(t, error);
         let sample = Span { end: t, samples: 1, squares: error * error, largest: error };
@@ -119,10 +123,10 @@ impl Scoring {
             None if self.largest > 0.0 => self.largest,
             None => self.stairs.first().map_or(0.0, |first| first.1),
         };
-        let start = self.start.unwrap_or_default();
+        let ((start, first), (end, last)) = (self.first.unwrap_or_default(), self.last);
         let last_above = self.stairs.iter().rev().find(|stair| stair.1 > SETTLED * scale);
-        let settled = last_above.map_or(Some(start), |stair| Some(stair.0).filter(|t| *t < self.end));
-        let ending = |share: f64| self.end - share * (self.end - start);
+        let settled = last_above.map_or(Some(start), |stair| Some(stair.0).filter(|t| *t < end));
+        let ending = |share: f64| end - share * (end - start);
         let since = settled.unwrap_or_else(|| ending(END));
         let over = |from: f64, to: f64| {
             let spans = self.spans.iter().filter(|span| span.end > from && span.end <= to);
@@ -130,19 +134,14 @@ impl Scoring {
         };
         let rms = |span: Span| (span.squares / real(span.samples.max(1))).sqrt();
         // The span in which it settled has larger errors too.
-        let first = self.spans.iter().position(|span| span.end > since).unwrap_or_default();
-        let whole = if settled.is_some_and(|t| t > start) {
-            self.spans.get(first).map_or(since, |span| span.end)
-        } else {
-            since
-        };
-        let after = over(whole, self.end);
+        let open = self.spans.iter().find(|span| span.end > since).filter(|_| settled.is_some_and(|t| t > start));
+        let after = over(open.map_or(since, |span| span.end), end);
         let worst = match settled {
             // Exact but for what counts as alike.
             Some(t) if t > start => self.stairs.iter().find(|stair| stair.0 > t).map_or(after.largest, |stair| stair.1),
             _ => after.largest,
         };
-        let trend = rms(over(ending(END), self.end)) / rms(over(ending(2.0 * END), ending(END)));
-        Score { settled, since, rms: rms(after), worst, trend }
+        let trend = rms(over(ending(END), end)) / rms(over(ending(2.0 * END), ending(END)));
+        Score { first, last, settled, since, rms: rms(after), worst, trend }
     }
 }

@@ -24,6 +24,8 @@ pub enum Failure {
         rows: u64,
         /// What was wrong with them.
         faults: Vec<FaultCount>,
+        /// Why the observer refused them.
+        refused: Vec<String>,
     },
     /// The caller ended the run.
     Stopped {
@@ -50,11 +52,12 @@ impl Replay {
                 Diagnostic::error(Code::RecordingMalformed, Span::NOWHERE, format!("{name} has no rows"))
                     .help("give a recording with a row for each sample, below the header")
             }
-            Failure::Silent { rows, faults } => {
+            Failure::Silent { rows, faults, refused } => {
                 let message = format!("the observer took no sample of the {rows} rows of {name}");
                 let silent = Diagnostic::error(Code::SimulationFailed, self.span, message)
                     .help("check the formulas under `recording` and the units of the columns");
-                faults.iter().fold(silent, |said, fault| said.note(fault.to_string()))
+                let reasons = refused.iter().cloned().chain(faults.iter().map(ToString::to_string));
+                reasons.fold(silent, Diagnostic::note)
             }
             Failure::Stopped { line } => {
                 let message = format!("the replay reached its limit at line {line} of {name}");

@@ -1,8 +1,7 @@
-//! What was wrong with rows, counted by kind: facts about the data and what the observer refused, not ends of a run.
+//! What was wrong with rows, counted by kind: facts about the data, not ends of a run.
 
 use std::fmt;
 
-use pebo_runtime::Fault;
 use serde::Serialize;
 
 use super::log::Blank;
@@ -24,8 +23,6 @@ pub(super) enum Kind {
     Cut,
     /// This input has no value.
     Input(usize),
-    /// The observer refused the sample.
-    Refused(Fault),
 }
 
 impl Kind {
@@ -53,8 +50,8 @@ impl Faults {
         }
     }
 
-    /// In words, in the order of their first lines; `columns`, `outputs` and `inputs` are the names that kinds number.
-    pub(super) fn worded(&self, [columns, outputs, inputs]: [&[String]; 3]) -> Vec<FaultCount> {
+    /// In words, in the order of their first lines; `columns` and `inputs` are the names that kinds number.
+    pub(super) fn worded(&self, [columns, inputs]: [&[String]; 2]) -> Vec<FaultCount> {
         let word = |kind: Kind| match kind {
             Kind::Empty(column) => format!("empty cells of `{}`", columns[column]),
             Kind::NotFinite(column) => format!("cells of `{}` that are NaN or infinite", columns[column]),
@@ -63,8 +60,6 @@ impl Faults {
             Kind::Gap => "gaps, where the time steps by more than one and a half periods".to_owned(),
             Kind::Cut => "last row dropped, as it breaks off with the file".to_owned(),
             Kind::Input(input) => format!("rows without a value of `{}`: the value before was held", inputs[input]),
-            Kind::Refused(Fault::Output { index }) => format!("samples refused: `{}` is not finite", outputs[index]),
-            Kind::Refused(fault) => format!("samples refused: {fault}"),
         };
         let mut counts = self.counts.clone();
         counts.sort_by_key(|(.., line)| *line);

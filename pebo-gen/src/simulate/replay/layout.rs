@@ -11,7 +11,7 @@ use crate::source::{Diagnostic, Span};
 /// Which value stands where: the states that were measured, outputs, inputs of the row, estimates.
 #[derive(Debug)]
 pub(super) struct Layout {
-    symbols: Vec<Symbol>,
+    pub(super) symbols: Vec<Symbol>,
     pub(super) x: Range<usize>,
     pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,

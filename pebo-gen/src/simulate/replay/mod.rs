@@ -28,5 +28,5 @@ mod tests;
 pub use failure::Failure;
 pub use fault::FaultCount;
 pub use log::{Log, Malformed, Unreadable};
-pub use replayed::{MeasuredError, OutputResidual, Replayed};
+pub use replayed::{OutputResidual, Replayed};
 pub use scene::Replay;

@@ -12,10 +12,13 @@ use std::ops::ControlFlow;
 
 use crate::program::Interpreter;
 use crate::simulate::derived::observer;
+use crate::simulate::excitation::Watch;
 use crate::simulate::figure::Sheet;
 use crate::simulate::label::Label;
+use crate::simulate::scenario::Judged;
 use crate::simulate::score::Scoring;
 use crate::simulate::stepping::Stepping;
+use crate::simulate::summary::{Rated, Summary};
 use crate::simulate::trace::write_number;
 
 use super::clock::{Clock, Instant};
@@ -23,7 +26,7 @@ use super::failure::Failure;
 use super::fault::{Faults, Kind};
 use super::log::{Log, Next};
 use super::panels::Curves;
-use super::replayed::{MeasuredError, OutputResidual, Replayed};
+use super::replayed::{OutputResidual, Replayed};
 use super::residual;
 use super::scene::Replay;
 
@@ -55,7 +58,11 @@ impl Replay {
                 Next::End => break,
             };
             machine.row(line)?;
-            if machine.rows % LOOKS == 0 && watch(machine.rows, log.bytes()).is_break() {
+            if machine.rows % LOOKS != 0 {
+                continue;
+            }
+            machine.look();
+            if watch(machine.rows, log.bytes()).is_break() {
                 return Err(Failure::Stopped { line });
             }
         }
@@ -80,8 +87,7 @@ struct Machine<'a, 'w> {
     curves: Curves<'a>,
     scores: Vec<Scoring>,
     misfits: Vec<Scoring>,
-    /// The errors of the first estimates and of the last.
-    ends: Vec<Option<(f64, f64)>>,
+    watch: Watch,
     rows: u64,
     samples: u64,
     /// The first instant, and that of the last accepted sample.
@@ -106,9 +112,9 @@ impl<'a, 'w> Machine<'a, 'w> {
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
             faults: Faults::default(),
             curves: replay.panels.start(),
-            scores: replay.states().map(|state| Scoring::new(state.period)).collect(),
+            scores: replay.judged.iter().map(|judged| Scoring::new(judged.period)).collect(),
             misfits: residuals.outputs.iter().map(|_| Scoring::new(None)).collect(),
-            ends: vec![None; replay.measured.len()],
+            watch: Watch::default(),
             rows: 0,
             samples: 0,
             first: None,
@@ -156,7 +162,7 @@ impl<'a, 'w> Machine<'a, 'w> {
         let outputs = layout.y.end;
         self.table[..outputs].copy_from_slice(&signals[..outputs]);
         let inputs = signals[outputs..].to_vec();
-        let accepted = self.sample(t, dt, &inputs, line);
+        let accepted = self.sample(t, dt, &inputs);
         for (input, value) in inputs.into_iter().enumerate() {
             if value.is_finite() {
                 self.table[layout.u.start + input] = value;
@@ -176,7 +182,7 @@ impl<'a, 'w> Machine<'a, 'w> {
 
     /// Gives the observer the outputs at the end of an interval, in which the inputs of the table were held; whether it
     /// took them.
-    fn sample(&mut self, t: f64, dt: f64, inputs: &[f64], line: u64) -> bool {
+    fn sample(&mut self, t: f64, dt: f64, inputs: &[f64]) -> bool {
         // It begins where the inputs of the interval to come are known.
         if !self.stepping.has_started() && inputs.iter().any(|input| !input.is_finite()) {
             return false;
@@ -184,8 +190,7 @@ impl<'a, 'w> Machine<'a, 'w> {
         let layout = &self.replay.layout;
         let (given, hat) = self.table.split_at_mut(layout.hat.start);
         let taken = self.stepping.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
-        if let Err(fault) = taken {
-            self.faults.count(Kind::Refused(fault), line);
+        if taken.is_err() {
             return false;
         }
         let since = t - self.last;
@@ -199,15 +204,18 @@ impl<'a, 'w> Machine<'a, 'w> {
         }
         let (errors, values) = &mut self.errors;
         errors.run(&self.table, values);
-        for (place, state) in self.replay.states().enumerate() {
-            let error = values[place];
+        for ((score, judged), error) in self.scores.iter_mut().zip(&self.replay.judged).zip(values) {
             // A cell without a number has been counted.
             if error.is_finite() {
-                self.scores[place].add(t, error, self.table[state.place]);
-                self.ends[place].get_or_insert((error, error)).1 = error;
+                score.add(t, *error, self.table[judged.truth]);
             }
         }
         true
+    }
+
+    /// Looks at what the data determine.
+    fn look(&mut self) {
+        self.watch.look(self.last, self.stepping.observer.weakest());
     }
 
     fn header(&mut self) -> Result<(), Failure> {
@@ -230,10 +238,10 @@ impl<'a, 'w> Machine<'a, 'w> {
             }
         };
         cell(t);
-        let mut errors = self.replay.states().zip(&self.errors.1).peekable();
+        let mut errors = self.replay.measured.iter().zip(&self.errors.1).peekable();
         for (recovered, hat) in self.table[self.replay.layout.hat.clone()].iter().enumerate() {
             cell(*hat);
-            if let Some((_, error)) = errors.next_if(|(state, _)| state.recovered == recovered) {
+            if let Some((_, error)) = errors.next_if(|(state, _)| **state == recovered) {
                 cell(*error);
             }
         }
@@ -241,19 +249,19 @@ impl<'a, 'w> Machine<'a, 'w> {
         file.write_all(text.as_bytes()).map_err(Failure::Unwritten)
     }
 
-    fn finish(self) -> Result<Replayed, Failure> {
-        let Replay { names, panels, residuals, title, .. } = self.replay;
-        let faults = self.faults.worded([&names.columns, &names.y, &names.u]);
+    fn finish(mut self) -> Result<Replayed, Failure> {
+        self.look();
+        let Replay { names, panels, residuals, title, design, .. } = self.replay;
+        let faults = self.faults.worded([&names.columns, &names.u]);
         let Some(first) = self.first.filter(|_| self.samples > 0) else {
-            return Err(Failure::Silent { rows: self.rows, faults });
+            let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
+            return Err(Failure::Silent { rows: self.rows, faults, refused });
         };
-        let scored = self.replay.states().zip(&self.scores).zip(&self.ends);
-        let error = |((state, score), ends): ((&super::scene::Measured, &Scoring), &Option<(f64, f64)>)| {
-            let (start, end) = (*ends)?;
-            Some(MeasuredError { state: state.name.clone(), start, end, score: score.finish() })
-        };
+        let rated =
+            |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
         let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
             output: names.y[*output].clone(),
+            unit: names.units[*output].clone(),
             score: score.finish(),
         };
         let misfits = residuals.outputs.iter().zip(&self.misfits).filter(|_| self.samples > 1);
@@ -270,10 +278,15 @@ impl<'a, 'w> Machine<'a, 'w> {
         };
         Ok(Replayed {
             rows: self.rows,
-            samples: self.samples,
             start: first,
-            end: self.last,
-            errors: scored.filter_map(error).collect(),
+            summary: Summary {
+                end: self.last,
+                samples: self.rows - 1,
+                estimates: self.replay.judged.iter().zip(&self.scores).map(rated).collect(),
+                excitation: self.watch.excitation(&design.unknown_names),
+                faults: self.stepping.faults().clone(),
+                dropped: 0,
+            },
             residuals: misfits.map(misfit).collect(),
             faults,
             figure: sheet.draw(),

@@ -3,8 +3,6 @@
 //! In: an accepted derivation with what was written, and the columns. Out: the replay, or every mistake in the sections
 //! `observer` and `recording`. After this, only what is in the rows can go wrong.
 
-use std::collections::BTreeMap;
-
 use crate::analysis::Derivation;
 use crate::cas::{Expr, Symbol};
 use crate::model::{Model, Recording};
@@ -12,7 +10,7 @@ use crate::plant::Plant;
 use crate::program::Program;
 use crate::simulate::asked::Asked;
 use crate::simulate::observer::Design;
-use crate::simulate::scenario::errors;
+use crate::simulate::scenario::{Judged, judged, periods};
 use crate::simulate::trace::Trace;
 use crate::source::{Diagnostic, Diagnostics, Span};
 
@@ -29,9 +27,11 @@ pub struct Replay {
     pub(super) signals: Signals,
     pub(super) design: Design,
     pub(super) layout: Layout,
-    /// The recovered states that were measured.
-    pub(super) measured: Vec<Measured>,
-    /// The errors of their estimates.
+    /// Positions among the recovered states of those that were measured.
+    pub(super) measured: Vec<usize>,
+    /// The estimates of these.
+    pub(super) judged: Vec<Judged>,
+    /// Their errors.
     pub(super) errors: Program,
     pub(super) residuals: Residuals,
     pub(super) panels: Panels,
@@ -41,24 +41,14 @@ pub struct Replay {
     pub(super) span: Span,
 }
 
-/// A recovered state that was measured.
-#[derive(Debug)]
-pub(super) struct Measured {
-    pub(super) name: String,
-    /// Its position in the table.
-    pub(super) place: usize,
-    /// Its position among the recovered states.
-    pub(super) recovered: usize,
-    /// Of an angle.
-    pub(super) period: Option<f64>,
-}
-
 /// Names in the order of what they name.
 #[derive(Debug)]
 pub(super) struct Names {
     /// The columns that are read.
     pub(super) columns: Vec<String>,
     pub(super) y: Vec<String>,
+    /// The units of y.
+    pub(super) units: Vec<Option<String>>,
     pub(super) u: Vec<String>,
 }
 
@@ -79,11 +69,6 @@ impl Replay {
         // Without a replay there is an error, which was propagated.
         replay.ok_or_else(Vec::new)
     }
-
-    /// The states that were measured.
-    pub(super) fn states(&self) -> impl Iterator<Item = &Measured> {
-        self.measured.iter()
-    }
 }
 
 fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diagnostics) -> Option<Replay> {
@@ -96,13 +81,11 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
     let name = |symbol: Symbol| arena.name(symbol);
     let hats: Vec<(String, Expr)> =
         layout.estimated.iter().map(|(state, hat)| (name(*state), arena.of_symbol(*hat))).collect();
-    let all = errors(plant, derivation, &numbers, &hats);
-    let both = layout.estimated.iter().enumerate().filter_map(|(recovered, (state, _))| {
-        let period = period(plant, derivation, &numbers, *state);
-        Some((*state, Measured { name: name(*state), place: layout.of_state(*state)?, recovered, period }))
-    });
-    let (states, measured): (Vec<Symbol>, Vec<Measured>) = both.unzip();
-    let errors: Vec<Expr> = measured.iter().map(|state| all[state.recovered]).collect();
+    let measured: Vec<usize> =
+        (0..hats.len()).filter(|place| layout.of_state(layout.estimated[*place].0).is_some()).collect();
+    let compared: Vec<(String, Expr)> = measured.iter().map(|place| hats[*place].clone()).collect();
+    let (judged, errors) = judged((plant, &layout.symbols), &periods(plant, derivation, &numbers), &compared, &[]);
+    let states: Vec<Symbol> = measured.iter().map(|place| layout.estimated[*place].0).collect();
     let errors = problems.keep(layout.program(arena, &errors, span))?;
     let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;
     Some(Replay {
@@ -112,35 +95,26 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
         names: Names {
             columns: signals.wanted.iter().map(|column| log.columns()[*column].clone()).collect(),
             y: plant.y.iter().map(|output| name(output.symbol)).collect(),
+            units: plant.y.iter().map(|output| plant.units.get(&output.symbol).cloned()).collect(),
             u: plant.u.iter().map(|input| name(*input)).collect(),
         },
         signals,
         design,
         layout,
         measured,
+        judged,
         errors,
         residuals,
         span,
     })
 }
 
-/// The period of a state that is an angle.
-fn period(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>, state: Symbol) -> Option<f64> {
-    let modulo = &derivation.left_inverse.result.as_ref()?.modulo;
-    let (_, period) = modulo.iter().find(|(angle, _)| *angle == state)?;
-    let arena = &plant.arena;
-    let program = crate::program::lower(arena, &[], &[arena.substitute(*period, numbers)]).ok()?;
-    let mut value = [0.0];
-    crate::program::Interpreter::new(&program).run(&[], &mut value);
-    Some(value[0])
-}
-
 /// `t`, then estimates, each with its error if the state was measured.
-fn columns(hats: &[(String, Expr)], measured: &[Measured]) -> Vec<String> {
+fn columns(hats: &[(String, Expr)], measured: &[usize]) -> Vec<String> {
     let mut columns = vec![Recording::T.to_owned()];
     for (recovered, (state, _)) in hats.iter().enumerate() {
         columns.push(format!("{state}_hat"));
-        if measured.iter().any(|state| state.recovered == recovered) {
+        if measured.contains(&recovered) {
             columns.push(format!("{state}{}", Trace::ERROR));
         }
     }

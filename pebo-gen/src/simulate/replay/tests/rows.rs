@@ -25,7 +25,6 @@ t,q,f,note
 ";
     let expected = [
         "empty cells of `q`: 1, first in line 4",
-        "samples refused: `q` is not finite: 2, first in line 4",
         "cells of `q` that are NaN or infinite: 1, first in line 5",
         "empty cells of `f`: 1, first in line 6",
         "rows without a value of `f`: the value before was held: 2, first in line 6",
@@ -37,7 +36,7 @@ t,q,f,note
     ];
     assert_eq!(faults(recording), expected);
     let (replayed, estimates) = replay(CART, recording).expect("a replay");
-    assert_eq!((replayed.rows, replayed.samples, replayed.end), (11, 6, 1.0));
+    assert_eq!((replayed.rows, replayed.summary.faults.count(), replayed.summary.end), (11, 2, 1.0));
     let rows: Vec<&str> = estimates.lines().collect();
     // A row for each that has a time of its own, with empty cells where the sample was refused.
     assert_eq!(&rows[..4], ["t,p_hat", "0,0", "0.1,", "0.2,"]);
@@ -71,7 +70,7 @@ fn a_refused_sample_leaves_its_time_and_input_to_the_next() {
 #[test]
 fn an_observer_begins_where_the_inputs_are_known() {
     let (replayed, estimates) = replay(CART, "t,q,f\n0,0,\n1,0,\n2,0,1\n3,0.5,1\n").expect("a replay");
-    assert_eq!((replayed.rows, replayed.samples), (4, 2));
+    assert_eq!(replayed.rows, 4);
     assert!(estimates.starts_with("t,p_hat\n0,\n1,\n2,0\n3,"), "{estimates}");
 }
 

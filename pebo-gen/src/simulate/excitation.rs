@@ -1,0 +1,177 @@
+//! Whether the data determine the unknown.
+//!
+//! In: the regressors that an estimator is given. Out: since when they tell all components of the unknown apart, or which
+//! one they do not. It is asked of the sum of their squares, from which the estimator forgets as it does itself:
+//!
+//! ```text
+//! G' = -beta G + Phi^T Phi        1 - R^2 of component i = 1/(G_ii (G^-1)_ii)
+//! ```
+//!
+//! which is the share of what the data say of a component that the other components cannot explain. The runtime's own
+//! [`Monitor`](pebo_runtime::Monitor) says more, the standard error of each component, but of sensors whose standard
+//! deviations are known, and beside an error that is wanted in the units of the regression: a model file has neither.
+//!
+//! Source: Belsley, Kuh, Welsch, *Regression diagnostics*, 1980, chapter 3 (variance inflation).
+
+use pebo_runtime::Turn;
+use pebo_runtime::nalgebra::SMatrix;
+use serde::Serialize;
+
+/// The share below which a component is not told apart: its standard error is then a thousand times what it would be if the
+/// other components were known.
+const ENOUGH: f64 = 1e-6;
+
+/// A sum of squares this large is made smaller, all of it: what a dying fundamental matrix carries along grows without end.
+const LARGE: f64 = 1e150;
+
+/// What the data are good for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "state", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Excitation {
+    /// They never determined the unknown.
+    NotYet {
+        /// The component of the unknown that is told apart least.
+        weakest: String,
+    },
+    /// They do.
+    Converged {
+        /// Since when, in seconds.
+        since: f64,
+    },
+    /// They did, and the estimator has forgotten since.
+    Lost {
+        /// Since when, in seconds.
+        since: f64,
+        /// The component of the unknown that is told apart least.
+        weakest: String,
+    },
+}
+
+/// The sum of squares of the regressors.
+#[derive(Clone, Debug)]
+pub(super) struct Information<const N: usize> {
+    unknowns: usize,
+    forgetting: f64,
+    gramian: SMatrix<f64, N, N>,
+    /// Whether its size still tells how much data there is.
+    is_measure: bool,
+}
+
+impl<const N: usize> Information<N> {
+    /// Before any data; forgetting is in 1/s.
+    pub(super) fn new(unknowns: usize, forgetting: f64) -> Self {
+        Self { unknowns, forgetting, gramian: SMatrix::zeros(), is_measure: forgetting > 0.0 }
+    }
+
+    /// Takes the regressor of a step.
+    pub(super) fn add(&mut self, regressor: &SMatrix<f64, N, N>, dt: f64) {
+        let kept = if self.forgetting > 0.0 { (-self.forgetting * dt).exp() } else { 1.0 };
+        for i in 0..self.unknowns {
+            for j in 0..=i {
+                let seen = regressor.column(i).dot(&regressor.column(j)) * dt;
+                self.gramian[(i, j)] = self.gramian[(i, j)] * kept + seen;
+                self.gramian[(j, i)] = self.gramian[(i, j)];
+            }
+        }
+    }
+
+    /// Follows a change of the unknown, as an estimator does.
+    pub(super) fn turn(&mut self, turn: &Turn<f64, N>) {
+        self.gramian += turn.of_gramian(&self.gramian);
+        if self.gramian.amax() > LARGE {
+            self.gramian /= LARGE;
+            self.is_measure = false;
+        }
+    }
+
+    /// Starts again without data.
+    pub(super) fn reset(&mut self) {
+        self.gramian.fill(0.0);
+    }
+
+    /// The component that is told apart least, and how much of it.
+    pub(super) fn weakest(&self) -> Weakest {
+        // Of the correlations, by elimination with the largest pivot first: the last pivot is the share of its component.
+        let scale: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)].sqrt()).collect();
+        if let Some(component) = scale.iter().position(|scale| !(*scale > 0.0 && scale.is_finite())) {
+            return Weakest { component, share: 0.0, data: 0.0 };
+        }
+        // What nobody forgets, nobody loses.
+        let data = if self.is_measure { scale.iter().copied().fold(f64::INFINITY, f64::min) } else { f64::INFINITY };
+        let mut rest = SMatrix::<f64, N, N>::zeros();
+        for i in 0..self.unknowns {
+            for j in 0..self.unknowns {
+                rest[(i, j)] = self.gramian[(i, j)] / scale[i] / scale[j];
+            }
+        }
+        let mut open: Vec<usize> = (0..self.unknowns).collect();
+        let (mut component, mut share) = (0, 1.0_f64);
+        while let Some(place) =
+            (0..open.len()).max_by(|a, b| rest[(open[*a], open[*a])].total_cmp(&rest[(open[*b], open[*b])]))
+        {
+            let pivot = open.swap_remove(place);
+            (component, share) = (pivot, rest[(pivot, pivot)]);
+            if share.is_nan() || share <= 0.0 {
+                return Weakest { component, share: 0.0, data };
+            }
+            for &i in &open {
+                let factor = rest[(i, pivot)] / share;
+                for &j in &open {
+                    rest[(i, j)] -= factor * rest[(pivot, j)];
+                }
+            }
+        }
+        Weakest { component, share, data }
+    }
+}
+
+/// The component that is told apart least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Weakest {
+    component: usize,
+    /// What of it the others cannot explain, 0 to 1.
+    share: f64,
+    /// The least that there is to say of a component, in its units; infinite where nothing is forgotten.
+    data: f64,
+}
+
+/// The excitation as time goes on.
+#[derive(Debug, Default)]
+pub(super) struct Watch {
+    state: State,
+    most: f64,
+    weakest: usize,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+enum State {
+    #[default]
+    NotYet,
+    Converged(f64),
+    Lost(f64),
+}
+
+impl Watch {
+    /// Looks at the data at this instant.
+    pub(super) fn look(&mut self, t: f64, found: Weakest) {
+        self.weakest = found.component;
+        self.most = self.most.max(found.data);
+        let enough = |share: f64| found.share >= share * ENOUGH && found.data >= share * ENOUGH * self.most;
+        self.state = match self.state {
+            State::NotYet | State::Lost(_) if found.share > 0.0 && enough(1.0) => State::Converged(t),
+            State::Converged(_) if !enough(0.5) => State::Lost(t),
+            unchanged => unchanged,
+        };
+    }
+
+    /// What the data are good for, with the names of the components.
+    pub(super) fn excitation(&self, names: &[String]) -> Excitation {
+        let weakest = names.get(self.weakest).cloned().unwrap_or_default();
+        match self.state {
+            State::NotYet => Excitation::NotYet { weakest },
+            State::Converged(since) => Excitation::Converged { since },
+            State::Lost(since) => Excitation::Lost { since, weakest },
+        }
+    }
+}
