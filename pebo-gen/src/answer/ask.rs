@@ -59,6 +59,9 @@ pub struct AskRun {
     pub trace: bool,
     /// Whether to draw the figure.
     pub figure: bool,
+    /// How often to run it, if more than once: with the seed and those after it. Then there is no table of all signals,
+    /// and the figure is about all runs.
+    pub runs: Option<u64>,
 }
 
 impl Ask {

@@ -131,7 +131,10 @@ impl Answer {
         #[cfg(feature = "simulate")]
         if let Some(wanted) = &ask.run {
             match run::run(derived, ask, wanted) {
-                Ok(run) => self.run = Some(run),
+                Ok((run, advice)) => {
+                    self.run = Some(run);
+                    self.diagnostics.extend(advice);
+                }
                 Err((standing, found)) => self.refuse(standing, found),
             }
         }

@@ -219,10 +219,10 @@ impl ClassName {
 pub(super) struct SimulateOptions {
     /// The model file, with a `simulation` section; `-` reads standard input
     pub(super) model: PathBuf,
-    /// Draw the figure into this SVG file
+    /// Draw the figure into this SVG file; of many runs, the median of each error and the band of 10 to 90 %
     #[arg(long, value_name = "FILE.svg")]
     pub(super) plot: Option<PathBuf>,
-    /// Write the time series into this CSV file; `-` is standard output
+    /// Write the time series into this CSV file; `-` is standard output. Of many runs, quantiles of the errors
     #[arg(long, value_name = "FILE.csv")]
     pub(super) csv: Option<PathBuf>,
     /// Seconds between rows of the output; by default a thousandth of the duration
@@ -231,9 +231,12 @@ pub(super) struct SimulateOptions {
     /// The sampling period, instead of the model file's
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) step: Option<f64>,
-    /// The seed of the sensors' noise, 1 by default: the same seed gives the same run
+    /// The seed of all chance (noise, jitter, dropped samples), 1 by default: the same seed gives the same run
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,
+    /// Run it so many times, with the seed and those after it, and show how the errors are spread
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub(super) runs: Option<u64>,
     /// Whose estimates the control law uses: observer, truth, or a baseline's name
     #[arg(long, value_name = "NAME")]
     pub(super) feedback: Option<String>,

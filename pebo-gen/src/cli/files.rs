@@ -172,6 +172,17 @@ fn put(file: NamedTempFile, path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
+/// What there is to say of a name that asks for a figure in another format than SVG.
+pub(super) fn not_a_figure(path: &Path) -> Option<Diagnostic> {
+    let ending = path.extension()?.to_string_lossy().into_owned();
+    if ending.eq_ignore_ascii_case("svg") {
+        return None;
+    }
+    let message = format!("{} asks for a figure as {ending}, which is not written", path.display());
+    let help = format!("write {}, which other programs turn into {ending}", path.with_extension("svg").display());
+    Some(Diagnostic::error(Code::FigureFormat, Span::NOWHERE, message).help(help))
+}
+
 pub(super) fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }

@@ -175,3 +175,66 @@ impl Watch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pebo_runtime::nalgebra::{SMatrix, SVector};
+
+    use super::{Excitation, Information, Watch};
+
+    /// One equation `[cos a, sin a, 0]` of two unknowns, padded.
+    fn row(angle: f64) -> SMatrix<f64, 3, 3> {
+        let mut regressor = SMatrix::<f64, 3, 3>::zeros();
+        regressor.set_row(0, &SVector::<f64, 3>::from([angle.cos(), 1e3 * angle.sin(), 0.0]).transpose());
+        regressor
+    }
+
+    fn names() -> Vec<String> {
+        ["theta1", "theta2"].map(str::to_owned).to_vec()
+    }
+
+    #[test]
+    fn the_share_is_what_the_others_do_not_explain() {
+        let mut information = Information::<3>::new(2, 0.0);
+        for angle in [0.3, 0.9] {
+            information.add(&row(angle), 0.1);
+        }
+        // 1 - cos^2 of the angle between the columns, whatever their units are.
+        let columns = [[0.3_f64.cos(), 0.9_f64.cos()], [0.3_f64.sin(), 0.9_f64.sin()]];
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let expected =
+            1.0 - dot(columns[0], columns[1]).powi(2) / dot(columns[0], columns[0]) / dot(columns[1], columns[1]);
+        assert!((information.weakest().share - expected).abs() < 1e-12, "{expected}");
+    }
+
+    #[test]
+    fn excitation_comes_and_goes_with_the_data() {
+        let (mut information, mut watch) = (Information::<3>::new(2, 1.0), Watch::default());
+        let mut states = Vec::new();
+        for step in 0..600_u32 {
+            let t = f64::from(step) * 0.1;
+            // The regressor turns between 10 and 20 s, and stands at 0.5 before and after.
+            let angle = 0.5 + (t - 10.0).clamp(0.0, 10.0);
+            information.add(&row(angle), 0.1);
+            watch.look(t, information.weakest());
+            states.push(watch.excitation(&names()));
+        }
+        assert!(matches!(&states[99], Excitation::NotYet { .. }), "{:?}", states[99]);
+        assert!(
+            matches!(&states[250], Excitation::Converged { since } if (10.0..10.5).contains(since)),
+            "{:?}",
+            states[250]
+        );
+        // exp(-t) of the turning is left: a millionth after 14 s or so.
+        let Excitation::Lost { since, .. } = &states[599] else { panic!("{:?}", states[599]) };
+        assert!((30.0..40.0).contains(since), "{since}");
+    }
+
+    #[test]
+    fn a_component_without_data_is_named() {
+        let (mut information, mut watch) = (Information::<3>::new(2, 0.0), Watch::default());
+        information.add(&row(0.0), 1.0);
+        watch.look(0.0, information.weakest());
+        assert_eq!(watch.excitation(&names()), Excitation::NotYet { weakest: "theta2".to_owned() });
+    }
+}

@@ -12,10 +12,12 @@
 //!
 //! Holds: the same scenario gives the same trace, to the last bit.
 
+mod advice;
 mod asked;
 mod control;
 mod curve;
 mod derived;
+mod ensemble;
 mod estimator;
 mod excitation;
 mod failure;
@@ -50,6 +52,7 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+pub use ensemble::{Ensemble, Quantiles, Spread};
 pub use excitation::Excitation;
 pub use failure::Failure;
 pub use faults::Faults;

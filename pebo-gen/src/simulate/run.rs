@@ -234,7 +234,7 @@ impl<'a> Machine<'a> {
             return Ok(());
         }
         match self.stepping.arrive(y, u, step, hat) {
-            Err(fault) if self.stepping.is_lost() => Err(Failure::Refused { at: before[TIME], fault }),
+            Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
             _ => Ok(()),
         }
     }

@@ -13,6 +13,7 @@ use crate::plant::Plant;
 use crate::program::{Interpreter, Program};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::advice::advise;
 use super::control;
 use super::failure::Failure;
 use super::flow;
@@ -24,7 +25,7 @@ use super::rival::{Rival, Sampled};
 use super::scope::{Estimates, Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
-use super::summary::Estimate;
+use super::summary::{Estimate, Summary};
 use super::timing::Timing;
 use super::trace::Trace;
 use super::truth::Truth;
@@ -112,9 +113,9 @@ impl Scenario {
         self.timing.samples
     }
 
-    /// The same scenario with chance by another seed.
-    pub(super) fn reseed(&mut self, seed: u64) {
-        self.seed = seed;
+    /// What there is to say of a run that did not converge: why, and what mends it.
+    pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
+        advise(summary, (&self.design.settings.estimator, &self.departures), self.span)
     }
 
     /// A failure of a run as a diagnostic at the section that was run.

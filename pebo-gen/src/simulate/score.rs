@@ -29,7 +29,7 @@ pub struct Score {
     /// The error at the last instant.
     pub last: f64,
     /// From when on, in seconds, the error stays below a hundredth of the state's largest magnitude (of an angle: of its
-    /// period; of a state that is always 0: of its largest error); none if it does not.
+    /// period; of a state that is always 0: of its largest error); none if it does not, or only within the last tenth.
     pub settled: Option<f64>,
     /// From when on the errors are told, in seconds: from when they have settled, else over the last tenth.
     pub since: f64,
@@ -61,7 +61,8 @@ pub(super) struct Scoring {
 /// Errors of some samples in a row.
 #[derive(Clone, Copy, Debug, Default)]
 struct Span {
-    /// The last instant.
+    /// The first instant and the last.
+    start: f64,
     end: f64,
     samples: u64,
     squares: f64,
@@ -71,6 +72,7 @@ struct Span {
 impl Span {
     fn and(self, later: Self) -> Self {
         Self {
+            start: self.start,
             end: later.end,
             samples: self.samples + later.samples,
             squares: self.squares + later.squares,
@@ -92,7 +94,7 @@ impl Scoring {
         let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
         self.largest = self.largest.max(truth.abs());
         self.step(t, error);
-        let sample = Span { end: t, samples: 1, squares: error * error, largest: error };
+        let sample = Span { start: t, end: t, samples: 1, squares: error * error, largest: error };
         match self.spans.last_mut() {
             Some(last) if last.samples < self.width => *last = last.and(sample),
             _ => {
@@ -125,17 +127,17 @@ impl Scoring {
         };
         let ((start, first), (end, last)) = (self.first.unwrap_or_default(), self.last);
         let last_above = self.stairs.iter().rev().find(|stair| stair.1 > SETTLED * scale);
-        let settled = last_above.map_or(Some(start), |stair| Some(stair.0).filter(|t| *t < end));
         let ending = |share: f64| end - share * (end - start);
+        // What noise let through for a moment has not settled.
+        let settled = last_above.map_or(Some(start), |stair| Some(stair.0).filter(|t| *t < ending(END)));
         let since = settled.unwrap_or_else(|| ending(END));
         let over = |from: f64, to: f64| {
-            let spans = self.spans.iter().filter(|span| span.end > from && span.end <= to);
+            let spans = self.spans.iter().filter(|span| span.start > from && span.end <= to);
             spans.copied().reduce(Span::and).or_else(|| self.spans.last().copied()).unwrap_or_default()
         };
         let rms = |span: Span| (span.squares / real(span.samples.max(1))).sqrt();
         // The span in which it settled has larger errors too.
-        let open = self.spans.iter().find(|span| span.end > since).filter(|_| settled.is_some_and(|t| t > start));
-        let after = over(open.map_or(since, |span| span.end), end);
+        let after = over(if last_above.is_none() { f64::NEG_INFINITY } else { since }, end);
         let worst = match settled {
             // Exact but for what counts as alike.
             Some(t) if t > start => self.stairs.iter().find(|stair| stair.0 > t).map_or(after.largest, |stair| stair.1),
@@ -143,5 +145,63 @@ impl Scoring {
         };
         let trend = rms(over(ending(END), end)) / rms(over(ending(2.0 * END), ending(END)));
         Score { first, last, settled, since, rms: rms(after), worst, trend }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Score, Scoring};
+
+    /// The score of an error over `count + 1` instants from 0 to 10.
+    fn score(count: u32, period: Option<f64>, error: impl Fn(f64) -> f64, truth: impl Fn(f64) -> f64) -> Score {
+        let mut scoring = Scoring::new(period);
+        for sample in 0..=count {
+            let t = 10.0 * f64::from(sample) / f64::from(count);
+            scoring.add(t, error(t), truth(t));
+        }
+        assert!(scoring.spans.len() <= super::SPANS && scoring.stairs.len() < 3000, "{}", scoring.stairs.len());
+        scoring.finish()
+    }
+
+    #[test]
+    fn an_error_that_decays_settles_when_it_is_a_hundredth_of_the_state() {
+        for count in [100, 10_000, 1_000_000] {
+            let score = score(count, None, |t| -2.0 * (-t).exp(), |t| 4.0 * t.sin());
+            // 2 exp(-t) = 0.04, to half a percent of the error and a sample.
+            let settled = score.settled.expect("it settles");
+            assert!((settled - 50.0_f64.ln()).abs() < 0.006 + 10.0 / f64::from(count), "{count} {settled}");
+            assert!((score.first + 2.0).abs() < 1e-12 && score.worst <= 0.04 && score.worst > 0.035, "{score:?}");
+            // The root mean square of exp(-t) from there on, within a span or a sample at its start.
+            let expected = (0.04_f64.powi(2) / 2.0 / (10.0 - settled)).sqrt();
+            assert!(
+                (score.rms / expected - 1.0).abs() < 0.05 + 5.0 / f64::from(count),
+                "{count} {} {expected}",
+                score.rms
+            );
+            assert!((score.trend - (-1.0_f64).exp()).abs() < 0.1, "{}", score.trend);
+        }
+    }
+
+    #[test]
+    fn an_error_that_comes_back_settles_after_it() {
+        let bump = |t: f64| if (t - 6.0).abs() < 0.001 { 1.0 } else { 1e-3 };
+        let found = score(10_000, None, bump, |_| 1.0);
+        assert!((found.settled.expect("it settles") - 6.0).abs() < 2e-3, "{found:?}");
+        assert!((found.rms - 1e-3).abs() < 1e-9 && (found.worst - 1e-3).abs() < 1e-5, "{found:?}");
+        // At the very end it does not settle: what is told is the last tenth.
+        let found = score(10_000, None, |t| if t > 9.999 { 1.0 } else { 1e-3 }, |_| 1.0);
+        assert_eq!((found.settled, found.since.round()), (None, 9.0));
+        assert!((found.worst - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_counts_as_small_depends_on_the_state() {
+        // From the start on, of a large state; never, of a small one; of an angle by its period; of a zero by its error.
+        let settled = |period, truth: f64| score(100, period, |t| 0.5 * (-t / 50.0).exp(), |_| truth).settled;
+        assert_eq!((settled(None, 100.0), settled(None, 1.0)), (Some(0.0), None));
+        assert_eq!((settled(Some(100.0), 1.0), settled(None, 0.0)), (Some(0.0), None));
+        // No number is no small error.
+        assert_eq!(score(100, None, |_| f64::NAN, |_| 1.0).settled, None);
+        assert!(score(100, None, |_| 0.0, |_| 0.0).settled.is_some_and(|t| t < 1e-12));
     }
 }

@@ -36,7 +36,7 @@ impl Stepping {
     /// is counted, and leaves the estimates as they are.
     ///
     /// # Errors
-    /// The fault of a sample that was refused; its time and input are left to the next.
+    /// The fault of a sample that was refused.
     pub(super) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let taken = match &self.gap {
             None => self.observer.sample(y, u, dt, hat),
@@ -53,21 +53,20 @@ impl Stepping {
         };
         self.faults.add(fault);
         self.refused += 1;
-        // Before the first sample no time is told.
         if self.started {
             self.wait(u, dt);
         }
         Err(fault)
     }
 
+    /// Whether nothing good is to be expected of the observer any more: it refused its first sample, or many in a row.
+    pub(super) fn has_given_up(&self) -> bool {
+        self.refused > 0 && (!self.has_started() || self.refused >= PATIENCE)
+    }
+
     /// Whether a sample has been accepted.
     pub(super) fn has_started(&self) -> bool {
         self.started
-    }
-
-    /// Whether there is little hope: the very first sample was refused, or many in a row.
-    pub(super) fn is_lost(&self) -> bool {
-        !self.started || self.refused >= PATIENCE
     }
 
     /// Takes an interval at whose end no sample arrived.

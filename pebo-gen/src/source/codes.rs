@@ -72,6 +72,10 @@ codes! {
          not very slow. Formulas with fewer functions, parameters with values, and shared parts with names under \
          define take less time."
 
+    FigureFormat "figure-format" "a figure is asked for in a format that is not written"
+        "Figures are SVG: a drawing that can be scaled, and that browsers and text processors show. The ending of the file's \
+         name says so. Other programs make other formats of it, as `rsvg-convert figure.svg -o figure.png`."
+
     // Files.
 
     CannotRead "cannot-read" "a file cannot be read"
@@ -327,6 +331,11 @@ codes! {
     SimulationUnsupported "simulation-unsupported" "a simulation that this version cannot run"
         "The simulator runs the observer in one of a few fixed sizes, and the estimators of the runtime library. The \
          message says what the simulator does not have. The emitted code has no such limit."
+    NotConverged "not-converged" "an estimate did not settle in a simulation"
+        "An estimate has settled when its error stays below a hundredth of the largest magnitude that the state has in the \
+         run. The notes say what was seen: samples that the observer refused, data that did not determine the unknown \
+         (excitation), an error that still falls, or one that rests because the plant and its sensors are not what the \
+         model says. The run itself is as it was asked for, and its files are written."
     SimulationFailed "simulation-failed" "a simulation stopped before its end"
         "The closed loop left the domain of a formula, grew beyond all bounds, or is too stiff for the explicit \
          integrator. The message says when and where. A shorter step, other gains or another start may help."

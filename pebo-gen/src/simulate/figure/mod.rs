@@ -15,6 +15,7 @@ use super::panel::Panel;
 use super::scenario::Scenario;
 use super::trace::Trace;
 use axis::Axis;
+pub(super) use page::Band;
 use page::{BOTTOM, HEADING, LEFT, MARGIN, PLOT_WIDTH, TEXT, TITLE, TOP};
 use plot::Plot;
 use svg::{Anchor, Drawing, width};
@@ -40,6 +41,11 @@ pub(super) struct Sheet<'a> {
 impl Sheet<'_> {
     /// The drawing as SVG.
     pub(super) fn draw(&self) -> String {
+        self.draw_with(&[])
+    }
+
+    /// The drawing with the bands of some panels' curves, panel by panel.
+    pub(super) fn draw_with(&self, bands: &[Vec<Band>]) -> String {
         let ([from, to], name) = &self.time;
         let (unit, factor) = time_unit(to - from);
         let time = Axis::whole(from * factor, to * factor);
@@ -55,8 +61,9 @@ impl Sheet<'_> {
         let half = width(heading, TITLE) / 2.0 + MARGIN;
         drawing.label((middle.min(page - half).max(half), TOP - 6.0), Anchor::Middle, TITLE, heading);
         let mut top = TOP;
-        for (panel, curves) in self.panels.iter().zip(self.curves) {
-            let plot = Plot { panel, curves, time: &time, factor, left: LEFT, top: top + HEADING };
+        for (number, (panel, curves)) in self.panels.iter().zip(self.curves).enumerate() {
+            let bands = bands.get(number).map_or(&[][..], Vec::as_slice);
+            let plot = Plot { panel, curves, bands, time: &time, factor, left: LEFT, top: top + HEADING };
             top = plot.draw(&mut drawing);
         }
         plot::time_axis(&mut drawing, &time, top, &name.clone().then(Label::text(&format!(" in {unit}"))));

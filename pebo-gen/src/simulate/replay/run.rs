@@ -30,7 +30,10 @@ use super::replayed::{OutputResidual, Replayed};
 use super::residual;
 use super::scene::Replay;
 
-/// Rows from one look at the clock to the next.
+/// Rows from one look at what the data determine to the next.
+const GLANCES: u64 = 32;
+
+/// Rows from one look at the caller's clock to the next.
 const LOOKS: u64 = 1024;
 
 /// Times that are this many durations away from zero are shown from the first row on.
@@ -58,11 +61,10 @@ impl Replay {
                 Next::End => break,
             };
             machine.row(line)?;
-            if machine.rows % LOOKS != 0 {
-                continue;
+            if machine.rows % GLANCES == 0 {
+                machine.look();
             }
-            machine.look();
-            if watch(machine.rows, log.bytes()).is_break() {
+            if machine.rows % LOOKS == 0 && watch(machine.rows, log.bytes()).is_break() {
                 return Err(Failure::Stopped { line });
             }
         }
