@@ -14,5 +14,5 @@ NR == 1 { for (column = 1; column <= NF; column++) place[$column] = column; next
     shunt = sprintf("%.0f", 2048 + 80 * $place["i"] + 6 * (seed / 65536 - 0.5))
     if (row % 500 == 250) tacho = ""
     if (row == 1500) tacho = "nan"
-    printf "%d,%s,%.0f,%s\n", row, tacho, 100 * $place["v"] / 24, shunt
+    printf "%.2f,%s,%.0f,%s\n", 1000 * $place["t"], tacho, 100 * $place["v"] / 24, shunt
 }
