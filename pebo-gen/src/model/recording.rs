@@ -23,6 +23,7 @@ impl Recording {
     pub const STEP: &str = "step";
 
     /// The section with these entries, in any order.
+    #[cfg(feature = "yaml")]
     pub(super) fn of(entries: Vec<Entry<Formula>>) -> Self {
         let mut recording = Self::default();
         for entry in entries {
