@@ -14,7 +14,8 @@ use super::timing::real;
 /// More samples refused than this share explain by themselves that an estimate does not settle.
 const REFUSED: f64 = 0.1;
 
-/// An error that is smaller than this part of what it was a tenth of the run before still falls.
+/// An error that is smaller than this part of what it was a quarter of the run before still falls. Of the noise of a
+/// sensor, a quarter of a run has rather many samples: what is left is well within a tenth of its root mean square.
 const FALLING: f64 = 0.9;
 
 /// What there is to say of a run that did not converge; `where_said` is the section that describes it.
@@ -58,21 +59,22 @@ pub(super) fn advise(
     } else if trend < FALLING {
         diagnostic
             .note(format!(
-                "the error of `{}` still falls: it is {} % of what it was a tenth of the run before",
+                "the error of `{}` still falls: it is {} % of what it was a quarter of the run before",
                 slowest.estimate.state,
                 short(100.0 * trend)
             ))
             .help(faster)
     } else {
         let note = format!(
-            "the error of `{}` does not fall any more: its root mean square rests at {}",
+            "the error of `{}` hardly falls any more: its root mean square at the end is {}",
             slowest.estimate.state,
             short(slowest.score.rms)
         );
         match departures.first() {
-            None => diagnostic.note(note).help(
-                "choose a shorter `step`, if the signals change much within one; else other settings under `observer`",
-            ),
+            None => {
+                let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
+                diagnostic.note(note).help(help)
+            }
             Some(first) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
                 diagnostic.note(note).help(mend(first))

@@ -15,7 +15,7 @@ use pebo_runtime::{
 
 use crate::program::{Interpreter, Program};
 
-use super::excitation::Weakest;
+use super::excitation::Said;
 use super::observer::Design;
 use super::sizes::{LARGEST, MOST_MIXED, pad};
 use super::watched::Watched;
@@ -26,8 +26,8 @@ pub(super) trait Estimation: fmt::Debug {
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates.
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
 
-    /// The component of the unknown that the data so far tell apart least.
-    fn weakest(&self) -> Weakest;
+    /// What the data so far say of each component of the unknown.
+    fn said(&self) -> Said;
 
     /// The coordinates z that a value of theta gives with the extension as it is.
     #[cfg(test)]
@@ -270,8 +270,8 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         Ok(())
     }
 
-    fn weakest(&self) -> Weakest {
-        self.0.estimator().estimator().weakest()
+    fn said(&self) -> Said {
+        self.0.estimator().estimator().said()
     }
 
     #[cfg(test)]

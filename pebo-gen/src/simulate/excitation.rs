@@ -21,6 +21,9 @@ use serde::Serialize;
 /// other components were known.
 const ENOUGH: f64 = 1e-6;
 
+/// A share below this is rounding.
+const ROUNDING: f64 = 1e-14;
+
 /// A sum of squares this large is made smaller, all of it: what a dying fundamental matrix carries along grows without end.
 const LARGE: f64 = 1e150;
 
@@ -90,58 +93,62 @@ impl<const N: usize> Information<N> {
         self.gramian.fill(0.0);
     }
 
-    /// The component that is told apart least, and how much of it.
-    pub(super) fn weakest(&self) -> Weakest {
-        // Of the correlations, by elimination with the largest pivot first: the last pivot is the share of its component.
-        let scale: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)].sqrt()).collect();
-        if let Some(component) = scale.iter().position(|scale| !(*scale > 0.0 && scale.is_finite())) {
-            return Weakest { component, share: 0.0, data: 0.0 };
-        }
+    /// What the data say of each component.
+    pub(super) fn said(&self) -> Said {
+        let data: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)]).collect();
+        let shares = (0..self.unknowns).map(|i| if data[i] > 0.0 { self.share(i, &data) } else { 0.0 }).collect();
         // What nobody forgets, nobody loses.
-        let data = if self.is_measure { scale.iter().copied().fold(f64::INFINITY, f64::min) } else { f64::INFINITY };
+        Said { data: if self.is_measure { data } else { Vec::new() }, shares }
+    }
+
+    /// What is said of a component that the others do not explain, 0 to 1.
+    ///
+    /// Method: Gauss elimination of the correlations, the largest pivot first and the component last, whose pivot it is.
+    fn share(&self, component: usize, data: &[f64]) -> f64 {
         let mut rest = SMatrix::<f64, N, N>::zeros();
-        for i in 0..self.unknowns {
-            for j in 0..self.unknowns {
-                rest[(i, j)] = self.gramian[(i, j)] / scale[i] / scale[j];
+        for i in (0..self.unknowns).filter(|i| data[*i] > 0.0) {
+            for j in (0..self.unknowns).filter(|j| data[*j] > 0.0) {
+                rest[(i, j)] = self.gramian[(i, j)] / (data[i] * data[j]).sqrt();
             }
         }
-        let mut open: Vec<usize> = (0..self.unknowns).collect();
-        let (mut component, mut share) = (0, 1.0_f64);
-        while let Some(place) =
+        let mut open: Vec<usize> = (0..self.unknowns).filter(|i| *i != component).collect();
+        let largest = |rest: &SMatrix<f64, N, N>, open: &[usize]| {
             (0..open.len()).max_by(|a, b| rest[(open[*a], open[*a])].total_cmp(&rest[(open[*b], open[*b])]))
-        {
+        };
+        while let Some(place) = largest(&rest, &open) {
             let pivot = open.swap_remove(place);
-            (component, share) = (pivot, rest[(pivot, pivot)]);
-            if share.is_nan() || share <= 0.0 {
-                return Weakest { component, share: 0.0, data };
+            let size = rest[(pivot, pivot)];
+            // The others explain it, to rounding.
+            if size.is_nan() || size <= ROUNDING {
+                break;
             }
-            for &i in &open {
-                let factor = rest[(i, pivot)] / share;
-                for &j in &open {
+            for &i in open.iter().chain([&component]) {
+                let factor = rest[(i, pivot)] / size;
+                for &j in open.iter().chain([&component]) {
                     rest[(i, j)] -= factor * rest[(pivot, j)];
                 }
             }
         }
-        Weakest { component, share, data }
+        rest[(component, component)].max(0.0)
     }
 }
 
-/// The component that is told apart least.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Weakest {
-    component: usize,
-    /// What of it the others cannot explain, 0 to 1.
-    share: f64,
-    /// The least that there is to say of a component, in its units; infinite where nothing is forgotten.
-    data: f64,
+/// What the data say of each component of the unknown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Said {
+    /// What the others do not explain, 0 to 1.
+    shares: Vec<f64>,
+    /// The sum of squares; empty where nothing is forgotten.
+    data: Vec<f64>,
 }
 
 /// The excitation as time goes on.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
     state: State,
-    most: f64,
     weakest: usize,
+    /// Of each component the variance that was just enough when all were determined first, in units of the noise.
+    enough: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -154,15 +161,31 @@ enum State {
 
 impl Watch {
     /// Looks at the data at this instant.
-    pub(super) fn look(&mut self, t: f64, found: Weakest) {
-        self.weakest = found.component;
-        self.most = self.most.max(found.data);
-        let enough = |share: f64| found.share >= share * ENOUGH && found.data >= share * ENOUGH * self.most;
-        self.state = match self.state {
-            State::NotYet | State::Lost(_) if found.share > 0.0 && enough(1.0) => State::Converged(t),
-            State::Converged(_) if !enough(0.5) => State::Lost(t),
-            unchanged => unchanged,
+    ///
+    /// Lost is judged by what the data say of a component, and not by its share alone: where the extension starts again
+    /// from the estimate, old data of a state that dies out become ever more certain, and all others small beside them.
+    pub(super) fn look(&mut self, t: f64, said: &Said) {
+        let least = |values: &mut dyn Iterator<Item = f64>| {
+            values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
+        let (weakest, share) = least(&mut said.shares.iter().copied());
+        let known = said.data.iter().zip(&said.shares).map(|(data, share)| data * share.max(ROUNDING));
+        let (faintest, certainty) = least(&mut known.zip(&self.enough).map(|(known, enough)| known * enough));
+        let is_lost = !said.data.is_empty() && certainty < 0.5;
+        match self.state {
+            State::NotYet => {
+                self.weakest = weakest;
+                if share >= ENOUGH {
+                    self.state = State::Converged(t);
+                    self.enough = said.data.iter().map(|data| 1.0 / (data * ENOUGH)).collect();
+                }
+            }
+            State::Converged(_) if is_lost && !self.enough.is_empty() => {
+                (self.state, self.weakest) = (State::Lost(t), faintest);
+            }
+            State::Lost(_) if !is_lost && certainty >= 1.0 => self.state = State::Converged(t),
+            State::Converged(_) | State::Lost(_) => {}
+        }
     }
 
     /// What the data are good for, with the names of the components.
@@ -204,7 +227,8 @@ mod tests {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let expected =
             1.0 - dot(columns[0], columns[1]).powi(2) / dot(columns[0], columns[0]) / dot(columns[1], columns[1]);
-        assert!((information.weakest().share - expected).abs() < 1e-12, "{expected}");
+        let said = information.said();
+        assert!(said.shares.iter().all(|share| (share - expected).abs() < 1e-12), "{said:?} {expected}");
     }
 
     #[test]
@@ -216,7 +240,7 @@ mod tests {
             // The regressor turns between 10 and 20 s, and stands at 0.5 before and after.
             let angle = 0.5 + (t - 10.0).clamp(0.0, 10.0);
             information.add(&row(angle), 0.1);
-            watch.look(t, information.weakest());
+            watch.look(t, &information.said());
             states.push(watch.excitation(&names()));
         }
         assert!(matches!(&states[99], Excitation::NotYet { .. }), "{:?}", states[99]);
@@ -234,7 +258,7 @@ mod tests {
     fn a_component_without_data_is_named() {
         let (mut information, mut watch) = (Information::<3>::new(2, 0.0), Watch::default());
         information.add(&row(0.0), 1.0);
-        watch.look(0.0, information.weakest());
+        watch.look(0.0, &information.said());
         assert_eq!(watch.excitation(&names()), Excitation::NotYet { weakest: "theta2".to_owned() });
     }
 }

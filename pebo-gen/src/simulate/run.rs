@@ -68,7 +68,7 @@ impl Scenario {
             }
             show(sample, Shown { table, errors });
             if sample % stride == 0 || sample == samples {
-                watch.look(table[TIME], machine.stepping.observer.weakest());
+                watch.look(table[TIME], &machine.stepping.observer.said());
             }
             if sample % stride == 0 && progress(real(sample) / real(samples)).is_break() {
                 return Err(Failure::Stopped { at: machine.table[TIME] });

@@ -14,6 +14,9 @@ pub const SETTLED: f64 = 0.01;
 /// The part of a run that errors are taken from where they have not settled: its end.
 const END: f64 = 0.1;
 
+/// The part of a run whose errors are compared with those of as long a part before.
+const TREND: f64 = 0.25;
+
 /// Errors that differ by less than this are one: the larger one, at the later instant.
 const ALIKE: f64 = 1.005;
 
@@ -37,7 +40,7 @@ pub struct Score {
     pub rms: f64,
     /// The largest of their magnitudes.
     pub worst: f64,
-    /// The root mean square in the last tenth of the run, over that in the tenth before.
+    /// The root mean square in the last quarter of the run, over that in the quarter before.
     pub trend: f64,
 }
 
@@ -47,8 +50,8 @@ pub(super) struct Scoring {
     /// What a hundredth is meant of, if that is no magnitude of the state.
     period: Option<f64>,
     largest: f64,
-    /// Magnitudes of errors with their instants: each larger than all that came after it.
-    stairs: Vec<(f64, f64)>,
+    /// Each larger than all that came after it.
+    stairs: Vec<Stair>,
     spans: Vec<Span>,
     /// Samples in a span that is full.
     width: u64,
@@ -56,6 +59,15 @@ pub(super) struct Scoring {
     last: (f64, f64),
     /// The first instant with its error.
     first: Option<(f64, f64)>,
+}
+
+/// The magnitude of an error.
+#[derive(Clone, Copy, Debug)]
+struct Stair {
+    error: f64,
+    /// Its instant, and that of the sample behind it.
+    at: f64,
+    next: f64,
 }
 
 /// Errors of some samples in a row.
@@ -108,13 +120,16 @@ impl Scoring {
         }
     }
 
-    fn step(&mut self, t: f64, error: f64) {
-        while self.stairs.last().is_some_and(|last| last.1 <= error) {
+    fn step(&mut self, at: f64, error: f64) {
+        if let Some(last) = self.stairs.last_mut() {
+            last.next = last.next.min(at);
+        }
+        while self.stairs.last().is_some_and(|last| last.error <= error) {
             self.stairs.pop();
         }
         match self.stairs.last_mut() {
-            Some(last) if last.1 <= error * ALIKE => last.0 = t,
-            _ => self.stairs.push((t, error)),
+            Some(last) if last.error <= error * ALIKE => (last.at, last.next) = (at, f64::INFINITY),
+            _ => self.stairs.push(Stair { error, at, next: f64::INFINITY }),
         }
     }
 
@@ -123,27 +138,29 @@ impl Scoring {
         let scale = match self.period {
             Some(period) => period,
             None if self.largest > 0.0 => self.largest,
-            None => self.stairs.first().map_or(0.0, |first| first.1),
+            None => self.stairs.first().map_or(0.0, |first| first.error),
         };
         let ((start, first), (end, last)) = (self.first.unwrap_or_default(), self.last);
-        let last_above = self.stairs.iter().rev().find(|stair| stair.1 > SETTLED * scale);
+        let last_above = self.stairs.iter().rev().find(|stair| stair.error > SETTLED * scale);
         let ending = |share: f64| end - share * (end - start);
         // What noise let through for a moment has not settled.
-        let settled = last_above.map_or(Some(start), |stair| Some(stair.0).filter(|t| *t < ending(END)));
+        let settled = last_above.map_or(Some(start), |stair| Some(stair.next).filter(|next| *next <= ending(END)));
         let since = settled.unwrap_or_else(|| ending(END));
         let over = |from: f64, to: f64| {
-            let spans = self.spans.iter().filter(|span| span.start > from && span.end <= to);
+            let spans = self.spans.iter().filter(|span| span.start >= from && span.end <= to);
             spans.copied().reduce(Span::and).or_else(|| self.spans.last().copied()).unwrap_or_default()
         };
         let rms = |span: Span| (span.squares / real(span.samples.max(1))).sqrt();
         // The span in which it settled has larger errors too.
-        let after = over(if last_above.is_none() { f64::NEG_INFINITY } else { since }, end);
+        let after = over(since, end);
         let worst = match settled {
             // Exact but for what counts as alike.
-            Some(t) if t > start => self.stairs.iter().find(|stair| stair.0 > t).map_or(after.largest, |stair| stair.1),
-            _ => after.largest,
+            Some(since) => {
+                self.stairs.iter().find(|stair| stair.at >= since).map_or(after.largest, |stair| stair.error)
+            }
+            None => after.largest,
         };
-        let trend = rms(over(ending(END), end)) / rms(over(ending(2.0 * END), ending(END)));
+        let trend = rms(over(ending(TREND), end)) / rms(over(ending(2.0 * TREND), ending(TREND)));
         Score { first, last, settled, since, rms: rms(after), worst, trend }
     }
 }
@@ -178,7 +195,7 @@ mod tests {
                 "{count} {} {expected}",
                 score.rms
             );
-            assert!((score.trend - (-1.0_f64).exp()).abs() < 0.1, "{}", score.trend);
+            assert!((score.trend - (-2.5_f64).exp()).abs() < 0.03, "{}", score.trend);
         }
     }
 

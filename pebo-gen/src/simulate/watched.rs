@@ -4,7 +4,7 @@ use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Estimator, Fault, Turn};
 
 use super::estimator::Chosen;
-use super::excitation::{Information, Weakest};
+use super::excitation::{Information, Said};
 use super::settings::{self, Covariance, Extension};
 
 /// An estimator of a padded model, with what its data say.
@@ -28,9 +28,9 @@ impl<const N: usize> Watched<N> {
         Ok(Self { estimator: Chosen::new(settings)?, information: Information::new(unknowns, forgetting) })
     }
 
-    /// The component of the unknown that the data tell apart least.
-    pub(super) fn weakest(&self) -> Weakest {
-        self.information.weakest()
+    /// What the data say of each component of the unknown.
+    pub(super) fn said(&self) -> Said {
+        self.information.said()
     }
 }
 

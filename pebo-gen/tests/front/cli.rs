@@ -263,7 +263,7 @@ fn a_run_is_summed_up() {
 fn a_run_that_did_not_converge_says_why() {
     let folder = Folder::new();
     for (more, gain, note, help) in [
-        ("", "gain: 0.05", "still falls", "raise `gain`, or simulate longer"),
+        ("", "gain: 0.1", "still falls", "raise `gain`, or simulate longer"),
         (", plant: {k: 5}", "gain: 50", "with `plant` in the simulation", "measure the parameter"),
     ] {
         let text_of = spring(more).replace("gain: 50", gain).replace("-4*q", "-k*q") + "parameters: {k: 4}\n";
