@@ -34,7 +34,7 @@ pub use observer::{Bounds, Estimator, Hold, Observer};
 pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
 pub use written::{
-    Baseline, CascadeClass, Delay, Equations, Kalman, Luenberger, Model, Panel, Piece, Scale, Simulation,
+    Baseline, CascadeClass, Delay, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
 };
 
 #[cfg(feature = "yaml")]

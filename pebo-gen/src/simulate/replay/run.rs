@@ -217,7 +217,7 @@ impl<'a, 'w> Machine<'a, 'w> {
 
     /// Looks at what the data determine.
     fn look(&mut self) {
-        self.watch.look(self.last, self.stepping.observer.weakest());
+        self.watch.look(self.last, &self.stepping.observer.said());
     }
 
     fn header(&mut self) -> Result<(), Failure> {
