@@ -124,8 +124,9 @@ impl Sensor {
     fn show(&self, value: f64, number: impl FnOnce() -> f64) -> f64 {
         let noise = if self.deviation > 0.0 { self.deviation * number() } else { 0.0 };
         let value = value + self.bias + noise;
-        // A zero is a positive one.
-        if self.step > 0.0 { self.step * (value / self.step).round() + 0.0 } else { value }
+        let count = (value / self.step).round();
+        // A zero is a positive one. Of a step too small to be counted there is nothing to be seen.
+        if self.step > 0.0 && count.is_finite() { self.step * count + 0.0 } else { value }
     }
 }
 

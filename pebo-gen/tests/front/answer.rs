@@ -165,7 +165,7 @@ fn the_answer_serialises_with_places_labels_and_notes() {
     assert!(summary["estimates"][0]["settled"].as_f64().is_some_and(|t| t > 0.0 && t < 0.5), "{summary}");
     assert_eq!(
         (&summary["excitation"]["state"], &summary["faults"]),
-        (&"converged".into(), &Value::Object(Default::default()))
+        (&"converged".into(), &Value::Object(serde_json::Map::default()))
     );
     assert_eq!(json["run"]["ensemble"], Value::Null);
 }

@@ -297,6 +297,22 @@ fn many_runs_have_a_table_a_figure_and_quantiles() {
     }
 }
 
+/// What is written goes beside its place and is moved there when it is whole: nothing is left of a run that is ended.
+#[test]
+fn an_interrupted_run_leaves_no_file() {
+    let folder = Folder::new();
+    let [plot, csv] = ["f.svg", "f.csv"].map(|name| folder.path(name).display().to_string());
+    let arguments = ["simulate", CUK, "--step", "1e-8", "--plot", &plot, "--csv", &csv];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pebo-gen"));
+    let mut child = command.args(arguments).stderr(Stdio::null()).spawn().expect("the program runs");
+    std::thread::sleep(Duration::from_millis(500));
+    // A hundred million samples take a minute and more.
+    assert!(child.try_wait().expect("a process").is_none());
+    child.kill().expect("it is there");
+    child.wait().expect("it ends");
+    assert_eq!(std::fs::read_dir(folder.path("")).expect("a folder").count(), 0);
+}
+
 #[test]
 fn colour_is_for_terminals() {
     let folder = Folder::new();

@@ -381,7 +381,7 @@ const SIMULATION: &[Key] = &[
         "signals",
         Shape::Map(&Shape::Signal),
         "signals: {V_d: {0: 25, 0.2: 30}}",
-        "Signals in time: a formula in t and parameters, or a map from start times to formulas",
+        "Signals in time, those of `w` too: a formula in t and parameters, or a map from start times to formulas, which are steps",
     ),
     optional(
         "noise",
