@@ -1,6 +1,7 @@
 //! Reading and writing: a file is written whole or not at all.
 
-use std::io::{BufWriter, Read as _, Stdout, Write};
+use std::fs::File;
+use std::io::{BufWriter, Read as _, Seek as _, Stdout, Write};
 use std::path::{Path, PathBuf};
 
 use pebo_gen::analysis::Class;
@@ -77,7 +78,7 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     if is_standard(path) {
         std::io::stdin().lock().take(limit).read_to_end(&mut bytes)?;
     } else {
-        std::fs::File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+        File::open(path)?.take(limit).read_to_end(&mut bytes)?;
     }
     Ok(bytes)
 }
@@ -90,9 +91,10 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     replace(path, text).map_err(|error| unwritten(path, &error))
 }
 
-/// A file that is written part by part, and is there when it is whole; or standard output for `-`.
+/// A file that is written part by part, and is there when it is whole; or standard output for `-`. It grows where it has no
+/// name at all, so that nothing is left of it if the program is ended.
 pub(super) enum Growing {
-    Named(PathBuf, BufWriter<NamedTempFile>),
+    Named(PathBuf, BufWriter<File>),
     Standard(BufWriter<Stdout>),
 }
 
@@ -101,7 +103,7 @@ impl Growing {
         if is_standard(path) {
             return Ok(Self::Standard(BufWriter::new(std::io::stdout())));
         }
-        let file = beside(path).map_err(|error| unwritten(path, &error))?;
+        let file = tempfile::tempfile_in(folder(path)).map_err(|error| unwritten(path, &error))?;
         Ok(Self::Named(path.to_owned(), BufWriter::new(file)))
     }
 
@@ -110,7 +112,7 @@ impl Growing {
         match self {
             Self::Named(path, file) => {
                 let whole = file.into_inner().map_err(std::io::IntoInnerError::into_error);
-                whole.and_then(|file| put(file, &path)).map_err(|error| unwritten(&path, &error))
+                whole.and_then(|file| name(file, &path)).map_err(|error| unwritten(&path, &error))
             }
             Self::Standard(mut output) => match output.flush() {
                 Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(standard::unwritten(&error)),
@@ -147,15 +149,21 @@ fn unwritten(path: &Path, error: &std::io::Error) -> Diagnostic {
 }
 
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let mut file = beside(path)?;
+    let mut file = NamedTempFile::new_in(folder(path))?;
     file.write_all(text.as_bytes())?;
     put(file, path)
 }
 
-/// A file without a name of its own yet.
-fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    NamedTempFile::new_in(folder)
+/// Gives what a file without a name holds a place.
+fn name(mut file: File, path: &Path) -> std::io::Result<()> {
+    file.rewind()?;
+    let mut named = NamedTempFile::new_in(folder(path))?;
+    std::io::copy(&mut file, named.as_file_mut())?;
+    put(named, path)
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Gives a whole file its name.

@@ -1,8 +1,9 @@
 //! `pebo-gen replay`, and the page that walks through it.
 #![cfg(all(feature = "cli", feature = "simulate", unix))]
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 const PAGE: &str = include_str!("../../../docs/replay.md");
 const MODEL: &str = include_str!("../../../models/recordings/motor_bench.yaml");
@@ -110,6 +111,24 @@ fn what_fails_leaves_no_file_and_says_where() {
     // A folder can be opened, but not read.
     let folder_read = run("pebo-gen replay cart.yaml --data models", folder.path());
     assert!(text(&folder_read.stderr).contains("error[cannot-read]"), "{}", text(&folder_read.stderr));
+}
+
+#[test]
+fn an_interrupted_run_leaves_no_file() {
+    let folder = bench();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pebo-gen"));
+    command.args(["replay", "cart.yaml", "--data", "-", "-o", "out.csv"]).current_dir(folder.path());
+    let mut child = command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the program runs");
+    let mut rows = child.stdin.take().expect("a pipe");
+    // More than the pipe and all buffers hold, so that most of it has been taken when the last of it is written.
+    rows.write_all(b"t,q,u\n").expect("it reads");
+    for row in 0..100_000 {
+        writeln!(rows, "{row},0,0").expect("it reads");
+    }
+    assert!(child.try_wait().expect("a process").is_none());
+    child.kill().expect("it is there");
+    child.wait().expect("it ends");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 2);
 }
 
 #[test]
