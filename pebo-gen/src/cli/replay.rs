@@ -27,10 +27,8 @@ pub(super) fn run(options: &ReplayOptions, limit: Option<Limit>) -> Standing {
 
 fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, Diagnostic> {
     let (mut recording, size) = open(&options.data)?;
-    let name = match files::is_standard(&options.data) {
-        true => "standard input".to_owned(),
-        false => options.data.display().to_string(),
-    };
+    let is_standard = files::is_standard(&options.data);
+    let name = if is_standard { "standard input".to_owned() } else { options.data.display().to_string() };
     let ask = progress::replaying(limit, size);
     let mut file = options.csv.as_deref().map(files::Growing::create).transpose()?;
     let (source, answer) = {

@@ -134,8 +134,8 @@ fn an_interrupted_run_leaves_no_file() {
 #[test]
 fn a_limit_stops_it() {
     let folder = bench();
-    let rows: String = (0..400_000).map(|row| format!("{},0,0\n", f64::from(row) / 100.0)).collect();
-    std::fs::write(folder.path().join("log.csv"), format!("t,q,u\n{rows}")).expect("a file");
+    let rows: Vec<String> = (0..400_000).map(|row| format!("{},0,0\n", f64::from(row) / 100.0)).collect();
+    std::fs::write(folder.path().join("log.csv"), format!("t,q,u\n{}", rows.concat())).expect("a file");
     let output = run("pebo-gen replay cart.yaml --data log.csv --limit 0.05 -o out.csv", folder.path());
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("error[limit-reached]"), "{}", text(&output.stderr));

@@ -42,7 +42,7 @@ impl Signals {
         }
         let states: Vec<Option<Expr>> = plant.x.iter().map(|state| pass.measured(&arena.name(state.symbol))).collect();
         let measured = (0..states.len()).filter(|place| states[*place].is_some()).collect();
-        formulas.extend(states.into_iter().filter(Option::is_some));
+        formulas.extend(states.into_iter().flatten().map(Some));
         let needed = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied());
         formulas.extend(needed.map(|signal| pass.needed(&arena.name(signal))));
         let formulas = formulas.into_iter().collect::<Option<Vec<Expr>>>()?;
@@ -128,17 +128,15 @@ impl Pass<'_> {
     fn period(&mut self, step: &Entry<Formula>) -> Option<(f64, f64)> {
         let arena = &self.asked.plant.arena;
         let value = self.formula(&step.value)?;
-        match arena.as_number(value).filter(|number| number.signum() > 0) {
-            Some(number) => Some((number.numerator().to_f64(), number.denominator().to_f64())),
-            None => {
-                let message = "the step of a recording is a number above zero";
-                self.problems.push(
-                    Diagnostic::error(Code::NumberOutOfRange, step.value.span, message)
-                        .help("write seconds from row to row, as `step: 1e-5`, or `t`, a formula in columns"),
-                );
-                None
-            }
+        let number = arena.as_number(value).filter(|number| number.signum() > 0);
+        if number.is_none() {
+            let message = "the step of a recording is a number above zero";
+            self.problems.push(
+                Diagnostic::error(Code::NumberOutOfRange, step.value.span, message)
+                    .help("write seconds from row to row, as `step: 1e-5`, or `t`, a formula in columns"),
+            );
         }
+        number.map(|number| (number.numerator().to_f64(), number.denominator().to_f64()))
     }
 
     fn time(&mut self) -> Option<Expr> {

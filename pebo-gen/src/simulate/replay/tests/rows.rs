@@ -47,8 +47,8 @@ t,q,f,note
 fn a_refused_sample_leaves_its_time_and_input_to_the_next() {
     let last = |rows: Vec<(f64, Option<f64>, f64)>| {
         let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-        let rows: String = rows.into_iter().map(|(t, q, f)| format!("{t},{},{f}\n", cell(q))).collect();
-        let (_, estimates) = replay(CART, &format!("t,q,f\n{rows}")).expect("a replay");
+        let rows: Vec<String> = rows.into_iter().map(|(t, q, f)| format!("{t},{},{f}\n", cell(q))).collect();
+        let (_, estimates) = replay(CART, &format!("t,q,f\n{}", rows.concat())).expect("a replay");
         let row = estimates.lines().last().expect("a row");
         row.split(',').nth(1).expect("an estimate").parse::<f64>().expect("a number")
     };
@@ -121,8 +121,8 @@ fn a_recording_of_which_nothing_is_taken_says_why() {
 
 #[test]
 fn a_caller_may_end_it() {
-    let rows: String = (0..5000).map(|k| format!("{k},0,0\n")).collect();
-    let text = format!("t,q,f\n{rows}");
+    let rows: Vec<String> = (0..5000).map(|k| format!("{k},0,0\n")).collect();
+    let text = format!("t,q,f\n{}", rows.concat());
     let mut log = Log::open("log.csv", text.as_bytes()).expect("a header");
     let replay = resolve(CART, &log).expect("the cart");
     let mut seen = Vec::new();
