@@ -1,4 +1,4 @@
-//! Reading and writing: a file is written whole or not at all.
+//! Reading and writing: a file is written whole or not at all; a device or a pipe is written to where it stands.
 
 use std::fs::File;
 use std::io::{BufWriter, Read as _, Seek as _, Stdout, Write};
@@ -83,18 +83,41 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a file beside its place and moves it there, or to standard output for `-`.
+/// Writes a file beside its place and moves it there, or to standard output for `-`. What is no file, as a device or a
+/// named pipe, is written to: to put a file in the place of `/dev/null` would harm the whole system.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     if is_standard(path) {
         return standard::write(text.as_bytes());
     }
-    replace(path, text).map_err(|error| unwritten(path, &error))
+    let written = target(path).and_then(|target| match target {
+        Target::Stream(mut to) => to.write_all(text.as_bytes()),
+        Target::File(place) => replace(&place, text),
+    });
+    written.map_err(|error| unwritten(path, &error))
+}
+
+/// What a path leads to.
+enum Target {
+    /// A device or a pipe, opened.
+    Stream(File),
+    /// A file, which is replaced when another is whole.
+    File(PathBuf),
+}
+
+fn target(path: &Path) -> std::io::Result<Target> {
+    match std::fs::metadata(path) {
+        Ok(old) if !old.is_file() => File::options().write(true).open(path).map(Target::Stream),
+        // A link stays one: what it leads to is replaced.
+        Ok(_) => path.canonicalize().map(Target::File),
+        Err(_) => Ok(Target::File(path.to_owned())),
+    }
 }
 
 /// A file that is written part by part, and is there when it is whole; or standard output for `-`. It grows where it has no
 /// name at all, so that nothing is left of it if the program is ended.
 pub(super) enum Growing {
     Named(PathBuf, BufWriter<File>),
+    Stream(PathBuf, BufWriter<File>),
     Standard(BufWriter<Stdout>),
 }
 
@@ -103,8 +126,14 @@ impl Growing {
         if is_standard(path) {
             return Ok(Self::Standard(BufWriter::new(std::io::stdout())));
         }
-        let file = tempfile::tempfile_in(folder(path)).map_err(|error| unwritten(path, &error))?;
-        Ok(Self::Named(path.to_owned(), BufWriter::new(file)))
+        let created = target(path).and_then(|target| match target {
+            Target::Stream(to) => Ok(Self::Stream(path.to_owned(), BufWriter::new(to))),
+            Target::File(place) => {
+                let file = tempfile::tempfile_in(folder(&place))?;
+                Ok(Self::Named(place, BufWriter::new(file)))
+            }
+        });
+        created.map_err(|error| unwritten(path, &error))
     }
 
     /// Nothing more will be written.
@@ -114,6 +143,7 @@ impl Growing {
                 let whole = file.into_inner().map_err(std::io::IntoInnerError::into_error);
                 whole.and_then(|file| name(file, &path)).map_err(|error| unwritten(&path, &error))
             }
+            Self::Stream(path, mut to) => to.flush().map_err(|error| unwritten(&path, &error)),
             Self::Standard(mut output) => match output.flush() {
                 Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(standard::unwritten(&error)),
                 _ => Ok(()),
@@ -125,7 +155,7 @@ impl Growing {
 impl Write for Growing {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         match self {
-            Self::Named(_, file) => file.write(bytes),
+            Self::Named(_, file) | Self::Stream(_, file) => file.write(bytes),
             // A reader that went away is no error of ours.
             Self::Standard(output) => match output.write(bytes) {
                 Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(bytes.len()),
@@ -136,7 +166,7 @@ impl Write for Growing {
 
     fn flush(&mut self) -> std::io::Result<()> {
         match self {
-            Self::Named(_, file) => file.flush(),
+            Self::Named(_, file) | Self::Stream(_, file) => file.flush(),
             Self::Standard(output) => output.flush(),
         }
     }

@@ -185,6 +185,7 @@ impl Sketch {
             origin: crate::plant::TransformOrigin::Given,
             class: None,
             asked: None,
+            relation_form: None,
             proposal: Proposal::default(),
             terms: std::collections::BTreeMap::new(),
             conditions: Vec::new(),
