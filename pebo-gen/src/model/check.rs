@@ -34,6 +34,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
+        if let Some(recording) = &model.recording {
+            pass.recording(recording, model);
+        }
         if let Some(simulation) = &model.simulation {
             pass.belong(&simulation.initial, &both, "initial");
             pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
@@ -57,9 +60,6 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
                 }
             }
         }
-    }
-    if let Some(recording) = &model.recording {
-        pass.recording(recording, model);
     }
     pass.units(model);
     pass.inverted(model);
