@@ -40,6 +40,13 @@ pub enum Stage {
         /// The samples of the whole run.
         samples: u64,
     },
+    /// It runs the observer over recorded data.
+    Replay {
+        /// The rows that it has taken.
+        rows: u64,
+        /// The bytes that it has read.
+        bytes: u64,
+    },
 }
 
 /// What to keep of a run of the closed loop beside the errors of its estimates.

@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::definitions::circles;
 use super::names::admit;
+use super::recording::Recording;
 use super::spanned::{Entry, Spanned};
 use super::written::{Baseline, Model, Simulation};
 use super::{Decimal, Formula};
@@ -18,7 +19,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted
 /// A list of states or outputs that is empty has been reported where it was read: what depends on
 /// it is not reported again.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
-    let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() };
+    let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() || model.recording.is_some() };
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
     pass.circles(&model.define);
@@ -33,6 +34,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
+        if let Some(recording) = &model.recording {
+            pass.recording(recording, model);
+        }
         if let Some(simulation) = &model.simulation {
             pass.belong(&simulation.initial, &both, "initial");
             pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
@@ -86,7 +90,7 @@ impl<'a> Group<'a> {
 
 struct Pass<'a> {
     diagnostics: &'a mut Diagnostics,
-    /// Whether `t` is time.
+    /// Whether `t` is time: where there is a simulation or a recording.
     simulated: bool,
 }
 
@@ -134,6 +138,26 @@ impl Pass<'_> {
                         .help(format!("write up to {LONGEST} letters, digits and signs, as `kg m^2/s`")),
                 );
             }
+        }
+    }
+
+    /// A recording has signals of the plant, and its rows are placed in time in one way.
+    fn recording(&mut self, recording: &Recording, model: &Model) {
+        let signals = || model.x.iter().chain(&model.y).chain(&model.u);
+        self.belong(&recording.signals, &Group::new(signals(), "a state, output or input"), "recording");
+        if let Some(name) = signals().find(|name| name.value == Recording::STEP) {
+            let message = format!("`{}` is reserved for the period of a recording", name.value);
+            self.diagnostics.push(
+                Diagnostic::error(Code::ReservedName, name.span, message)
+                    .help(format!("choose another name, as `{}_0`", name.value)),
+            );
+        }
+        if let (Some(t), Some(step)) = (&recording.t, &recording.step) {
+            self.diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, step.name.span, "`step` stands beside `t`")
+                    .also(t.name.span, "this says when each row was recorded")
+                    .help("remove `t` if the rows are equally far apart, or else `step`"),
+            );
         }
     }
 

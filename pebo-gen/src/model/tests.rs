@@ -57,6 +57,7 @@ simulation:
   panels:
     - {title: error, unit: A, curves: [hat(i1) - i1, v2], scale: log}
     - {title: duty, curves: [d]}
+recording: {t: time/1000, v2: ch1/256 - 2*L1, d: duty}
 ";
 
 fn source(text: &str) -> Source {
@@ -107,6 +108,9 @@ fn every_key_is_read() {
     assert!(matches!(&luenberger.value, Baseline::Luenberger(observer) if observer.poles.len() == 2));
     let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale).collect();
     assert_eq!(scales, [Scale::Log, Scale::Linear]);
+    let recording = model.recording.expect("it is there");
+    assert!(recording.t.is_some() && recording.step.is_none());
+    assert_eq!(recording.of_signal("v2").map(|entry| entry.value.names()[0].0), Some("ch1"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::class::Class;
 use super::definitions::sorted;
 use super::formula::{Comparison, Decimal, Formula};
 use super::observer::Observer;
+use super::recording::Recording;
 use super::spanned::{Entry, Spanned};
 
 /// A model.
@@ -64,6 +65,8 @@ pub struct Model {
     pub observer: Observer,
     /// What to simulate.
     pub simulation: Option<Simulation>,
+    /// What recorded data mean.
+    pub recording: Option<Recording>,
 }
 
 /// A closed loop to simulate.

@@ -14,6 +14,7 @@
 //! Holds: the same scenario gives the same trace, to the last bit.
 
 mod advice;
+mod asked;
 mod control;
 mod curve;
 mod derived;
@@ -30,6 +31,7 @@ mod noise;
 mod observer;
 mod overrides;
 mod panel;
+pub mod replay;
 mod rival;
 mod run;
 mod scenario;

@@ -151,7 +151,7 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names, derivation, &numbers, problems);
+        let design = Design::resolve(&names.asked(), derivation, &numbers, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
@@ -191,7 +191,7 @@ impl Resolution<'_> {
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
-        let (judged, errors) = judged((plant, &layout), &periods(plant, derivation, &numbers), &hats, &rivals);
+        let (judged, errors) = judged((plant, &layout.symbols), &periods(plant, derivation, &numbers), &hats, &rivals);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
@@ -277,7 +277,11 @@ fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range
 }
 
 /// The periods of angles.
-fn periods(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>) -> BTreeMap<Symbol, Expr> {
+pub(super) fn periods(
+    plant: &Plant,
+    derivation: &Derivation,
+    numbers: &BTreeMap<Symbol, Expr>,
+) -> BTreeMap<Symbol, Expr> {
     let modulo = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.modulo);
     modulo.map(|(state, period)| (*state, plant.arena.substitute(*period, numbers))).collect()
 }
@@ -298,8 +302,8 @@ fn errors(plant: &Plant, periods: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> 
 }
 
 /// Every estimate with its error: those of the observer, then those of each baseline.
-fn judged(
-    (plant, layout): (&Plant, &Layout),
+pub(super) fn judged(
+    (plant, table): (&Plant, &[Symbol]),
     periods: &BTreeMap<Symbol, Expr>,
     hats: &Estimates,
     rivals: &[Rival],
@@ -319,7 +323,7 @@ fn judged(
         let period = periods.get(&symbol).and_then(|period| program(arena, &[], &[*period], Span::NOWHERE).ok());
         Some(Judged {
             estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
-            truth: layout.symbols.iter().position(|known| *known == symbol)?,
+            truth: table.iter().position(|known| *known == symbol)?,
             period: period.map(|period| {
                 let mut value = [f64::NAN];
                 Interpreter::new(&period).run(&[], &mut value);

@@ -11,6 +11,7 @@ use crate::model::{Entry, Equations, Formula, Model, Simulation};
 use crate::plant::{Plant, Scope, lower};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::asked::Asked;
 use super::layout::{rival_state, shown, time};
 
 /// Estimates by the state's name.
@@ -61,10 +62,14 @@ impl<'a> Names<'a> {
         numbers.chain(entries).chain(signals).chain(feedback).min().unwrap_or(self.model.name.span)
     }
 
+    /// The observer of the model, asked for by its simulation.
+    pub(super) fn asked(&self) -> Asked<'a> {
+        Asked { model: self.model, plant: self.plant, section: self.section(), who: "the simulation" }
+    }
+
     /// The values of the parameters that have one.
     pub(super) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
-        let given = self.plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.clone()?)));
-        given.map(|(symbol, value)| (symbol, self.plant.arena.number(value))).collect()
+        self.asked().numbers()
     }
 
     /// What the sensor of an output showed last.
@@ -171,18 +176,7 @@ impl<'a> Names<'a> {
         for definition in &self.simulation.define {
             problems.keep(lower(arena, &scope, &definition.value));
         }
-        for parameter in self.plant.parameters.iter().filter(|parameter| parameter.value.is_none()) {
-            let name = arena.name(parameter.symbol);
-            problems.push(
-                Diagnostic::error(
-                    Code::SimulationIncomplete,
-                    parameter.span,
-                    format!("the parameter `{name}` has no value"),
-                )
-                .also(self.section(), "the simulation needs it")
-                .help(format!("write its value: `{name}: 1`")),
-            );
-        }
+        self.asked().check(problems);
         for unmeasured in &self.plant.w {
             let name = arena.name(*unmeasured);
             if !self.simulation.signals.iter().any(|signal| signal.name.value == name) {

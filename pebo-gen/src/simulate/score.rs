@@ -17,6 +17,9 @@ const END: f64 = 0.1;
 /// The part of a run whose errors are compared with those of as long a part before.
 const TREND: f64 = 0.25;
 
+/// The part of a run that an error stays small for at least: noise lets it be small for a moment.
+const HELD: f64 = 0.01;
+
 /// Errors that differ by less than this are one: the larger one, at the later instant.
 const ALIKE: f64 = 1.005;
 
@@ -32,7 +35,8 @@ pub struct Score {
     /// The error at the last instant.
     pub last: f64,
     /// From when on, in seconds, the error stays below a hundredth of the state's largest magnitude (of an angle: of its
-    /// period; of a state that is always 0: of its largest error); none if it does not.
+    /// period; of a state that is always 0: of its largest error); none if it does not, or not for the last hundredth of
+    /// the run.
     pub settled: Option<f64>,
     /// From when on the errors are told, in seconds: from when they have settled, else over the last tenth.
     pub since: f64,
@@ -142,8 +146,8 @@ impl Scoring {
         };
         let ((start, first), (end, last)) = (self.first.unwrap_or_default(), self.last);
         let last_above = self.stairs.iter().rev().find(|stair| stair.error > SETTLED * scale);
-        let settled = last_above.map_or(Some(start), |stair| Some(stair.next).filter(|next| next.is_finite()));
         let ending = |share: f64| end - share * (end - start);
+        let settled = last_above.map_or(Some(start), |stair| Some(stair.next).filter(|next| *next <= ending(HELD)));
         let since = settled.unwrap_or_else(|| ending(END));
         let over = |from: f64, to: f64| {
             let spans = self.spans.iter().filter(|span| span.start >= from && span.end <= to);
@@ -208,6 +212,9 @@ mod tests {
         let found = score(10_000, None, |t| if t > 9.999 { 1.0 } else { 1e-3 }, |_| 1.0);
         assert_eq!((found.settled, found.since.round()), (None, 9.0));
         assert!((found.worst - 1.0).abs() < 1e-12);
+        // Nor does one that is small for a moment at the end.
+        let found = score(10_000, None, |t| if t < 9.95 { 1.0 } else { 1e-3 }, |_| 1.0);
+        assert_eq!(found.settled, None);
     }
 
     #[test]

@@ -89,7 +89,7 @@ impl Summary {
             let [first, last] = errors;
             rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst)]);
         }
-        let mut text = table(&rows);
+        let mut text = if self.estimates.is_empty() { String::new() } else { table(&rows) };
         let mut line = |name: &str, what: &str| {
             let written = writeln!(text, "{name}: {what}");
             debug_assert!(written.is_ok(), "a string takes everything");

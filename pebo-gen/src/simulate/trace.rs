@@ -75,7 +75,7 @@ impl Trace {
 }
 
 /// The shortest text that reads back as the same number; an exponent where that is shorter than zeros.
-fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
+pub(super) fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
     let magnitude = value.abs();
     if value == 0.0 {
         text.write_char('0')

@@ -339,4 +339,17 @@ codes! {
     SimulationFailed "simulation-failed" "a simulation stopped before its end"
         "The closed loop left the domain of a formula, grew beyond all bounds, or is too stiff for the explicit \
          integrator. The message says when and where. A shorter step, other gains or another start may help."
+
+    // Recorded data.
+
+    RecordingIncomplete "recording-incomplete" "a recording does not say what the observer needs"
+        "A replay needs the time of each row, or the period between them, and a value of every output and input. The \
+         column of a signal's own name is that signal; for any other, the section `recording` of the model has a formula \
+         in columns and parameters. In formulas a column is called by its name with an underscore for what cannot be in \
+         a name: `Channel A (V)` is Channel_A_V."
+    RecordingMalformed "recording-malformed" "a recording is not a table of numbers"
+        "A recording is CSV text: a line with the names of the columns, then a row of numbers for each sample, parted by \
+         commas, semicolons or tabs. Lines that begin with # are comments. The message has line and column of the first \
+         cell that is not a number. A cell that is empty, NaN or infinite is no mistake: it is a fault of a sensor, which \
+         is counted."
 }

@@ -269,14 +269,16 @@ fn spring(more: &str) -> String {
 #[test]
 fn a_run_is_summed_up() {
     let folder = Folder::new();
-    let model = folder.file("spring.yaml", spring(", noise: {q: 1e-4}, dropped: 0.1, baselines: {kalman: {}}"));
+    let long =
+        spring(", noise: {q: 1e-4}, dropped: 0.1, baselines: {kalman: {}}").replace("duration: 10", "duration: 20");
+    let model = folder.file("spring.yaml", long);
     let output = run(&["simulate", &model, "--seed", "3"]);
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
     let lines: Vec<&str> = said.lines().collect();
     assert!(lines[0].starts_with("error of") && lines[0].contains("settled to 1 %"), "{said}");
     assert!(lines[1].starts_with("v in m/s") && lines[2].starts_with("kalman.v in m/s"), "{said}");
-    for part in ["excitation: enough from t = ", "dropped: ", " of 1000 samples"] {
+    for part in ["excitation: enough from t = ", "dropped: ", " of 2000 samples"] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(!said.contains("not-converged"), "{said}");

@@ -40,6 +40,7 @@ pub(super) struct Document {
     pub(super) units: Vec<Entry<Text>>,
     pub(super) observer: Observer,
     pub(super) simulation: Option<Simulation>,
+    pub(super) recording: Option<Vec<Entry<Text>>>,
     pub(super) lti: Option<Lti<Text>>,
     pub(super) mechanical: Option<Mechanical<Text>>,
     pub(super) electromechanical: Option<Electromechanical<Text>>,

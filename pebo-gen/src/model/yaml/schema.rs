@@ -3,7 +3,7 @@
 //! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
 use crate::model::observer::Estimator;
-use crate::model::{Baseline, CascadeClass, Class, RelationForm};
+use crate::model::{Baseline, CascadeClass, Class, Recording, RelationForm};
 
 /// The shape that a value must have.
 #[derive(Debug)]
@@ -184,6 +184,12 @@ pub(super) const MODEL: &[Key] = &[
         Shape::Record(SIMULATION),
         "simulation: {duration: 0.1, step: 1e-6}",
         "The closed loop to simulate",
+    ),
+    optional(
+        "recording",
+        Shape::Kinds(RECORDING, &Shape::Formula),
+        "recording: {t: time, v2: ch1/256 - offset}",
+        "What the columns of recorded data mean: a formula in columns and parameters for each output, input, and state that was measured besides; the column of its own name if left out",
     ),
     key(
         Role::Class,
@@ -443,6 +449,17 @@ const SIMULATION: &[Key] = &[
         Shape::List(&Shape::Record(PANEL)),
         "panels: [{title: error, unit: A, curves: [hat(i1) - i1]}]",
         "The panels of the figure",
+    ),
+];
+
+/// What a recording has besides signals.
+const RECORDING: &[Key] = &[
+    optional(Recording::T, Shape::Formula, "t: time/1000", "When each row was recorded, in seconds"),
+    optional(
+        Recording::STEP,
+        Shape::Formula,
+        "step: 1e-5",
+        "The time from row to row in seconds, in parameters, where the rows have no time",
     ),
 ];
 
