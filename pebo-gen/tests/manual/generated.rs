@@ -6,9 +6,9 @@ use pebo_gen::cas::{Arena, Expr};
 use pebo_gen::cas::function::{Asks, Function, Row};
 use pebo_gen::model::{Estimator, json_schema};
 use pebo_gen::source::Code;
-use serde_json::Value;
+use serde_yaml::Value;
 
-use super::page::{manual, updates};
+use super::page::{held, manual, updates};
 
 /// What stands in the part of this name.
 fn written(name: &str) -> Option<String> {
@@ -22,20 +22,29 @@ fn written(name: &str) -> Option<String> {
     }
 }
 
-/// The keys below a path, as `simulation/baselines/kalman`, from the schema that editors get.
+/// The schema that editors get, with its keys in their order: JSON is YAML, whose reader keeps it.
+fn schema() -> Value {
+    serde_yaml::from_str(&json_schema()).expect("a schema")
+}
+
+/// The keys below a path, as `simulation/baselines/kalman`.
 fn keys(path: &str) -> Option<String> {
-    let schema: Value = serde_json::from_str(&json_schema()).ok()?;
-    let mut node = &schema;
-    for part in path.split('/').filter(|part| !part.is_empty()) {
-        node = below(node, part)?;
-    }
-    let by_class = |key: &str| schema["dependentSchemas"]["lti"]["properties"].get(key).is_some();
+    let schema = schema();
+    let node = path.split('/').filter(|part| !part.is_empty()).try_fold(&schema, |node, part| below(node, part))?;
+    let by_class = &schema["dependentSchemas"]["lti"]["properties"];
     let mut table = "| key | value | what it is | example |\n|---|---|---|---|\n".to_owned();
-    for (key, value) in node["properties"].as_object()? {
-        let needed = node["required"].as_array().is_some_and(|all| all.iter().any(|name| name == key));
-        let needed = needed || (path.is_empty() && key == "f_x");
-        let class = if path.is_empty() && by_class(key) && value["properties"].is_null() { ", or a class" } else { "" };
-        let needed = if needed { format!(" (needed{class})") } else { String::new() };
+    for (key, value) in node["properties"].as_mapping()? {
+        let key = key.as_str()?;
+        let listed = node["required"].as_sequence().is_some_and(|all| all.iter().any(|name| name.as_str() == Some(key)));
+        // Required unless a class is there, and what a class gives.
+        let or_class = path.is_empty() && schema["anyOf"][0]["required"][0].as_str() == Some(key);
+        let barred = path.is_empty() && by_class.get(key).is_some() && value["properties"].is_null();
+        let needed = match (listed, or_class, barred) {
+            (true, ..) => " (needed)",
+            (_, true, _) => " (needed, or a class)",
+            (_, _, true) => " (not with a class)",
+            _ => "",
+        };
         let about = value["description"].as_str().unwrap_or_default();
         let example = value["examples"].get(0).map(|example| format!("`{key}: {}`", flow(example))).unwrap_or_default();
         writeln!(table, "| `{key}`{needed} | {} | {} | {} |", kind(value), cell(about), cell(&example)).ok()?;
@@ -46,30 +55,29 @@ fn keys(path: &str) -> Option<String> {
 /// What a key leads to: behind it, or in the entries of a list or of a map of any names.
 fn below<'a>(node: &'a Value, key: &str) -> Option<&'a Value> {
     match key {
-        "*" if node["items"].is_object() => Some(&node["items"]),
-        "*" => Some(&node["additionalProperties"]),
+        "*" => node.get("items").or(node.get("additionalProperties")),
         _ => node["properties"].get(key),
     }
 }
 
 /// The kind of value, in words.
 fn kind(value: &Value) -> String {
-    if let Some(choices) = value["enum"].as_array() {
-        return choices.iter().map(|choice| format!("`{}`", choice.as_str().unwrap_or_default())).collect::<Vec<_>>().join(", ");
+    if let Some(choices) = value["enum"].as_sequence() {
+        let names = choices.iter().map(|choice| format!("`{}`", choice.as_str().unwrap_or_default()));
+        return names.collect::<Vec<_>>().join(", ");
     }
-    if let Some(any) = value["anyOf"].as_array() {
-        return any.iter().map(kind).collect::<Vec<_>>().join(" or ");
+    if let Some(any) = value["anyOf"].as_sequence() {
+        let mut kinds: Vec<String> = any.iter().map(kind).collect();
+        kinds.dedup();
+        return kinds.join(" or ");
     }
-    let kinds: Vec<&str> = value["type"].as_array().map_or(Vec::new(), |kinds| kinds.iter().flat_map(Value::as_str).collect());
-    let name = value["type"].as_str().unwrap_or_else(|| kinds.first().copied().unwrap_or_default());
-    match name {
-        "array" => format!("list of: {}", kind(&value["items"])),
-        "object" if value["additionalProperties"].is_object() && value["properties"].is_null() => {
-            format!("map to: {}", kind(&value["additionalProperties"]))
-        }
+    let first = value["type"].as_str().or_else(|| value["type"][0].as_str()).unwrap_or_default();
+    match first {
+        "array" if kind(&value["items"]) == "number" => "list of numbers".to_owned(),
+        "array" => "list".to_owned(),
+        "object" if value["additionalProperties"].is_mapping() => "map".to_owned(),
         "object" => "section".to_owned(),
         "string" => "text".to_owned(),
-        "number" => "number".to_owned(),
         other => other.to_owned(),
     }
 }
@@ -77,17 +85,19 @@ fn kind(value: &Value) -> String {
 /// A value on one line, as a model file may have it.
 fn flow(value: &Value) -> String {
     match value {
-        Value::Array(items) => format!("[{}]", items.iter().map(flow).collect::<Vec<_>>().join(", ")),
-        Value::Object(map) => {
-            let entries = map.iter().map(|(key, value)| format!("{key}: {}", flow(value)));
+        Value::Sequence(items) => format!("[{}]", items.iter().map(flow).collect::<Vec<_>>().join(", ")),
+        Value::Mapping(map) => {
+            let entries = map.iter().map(|(key, value)| format!("{}: {}", flow(key), flow(value)));
             format!("{{{}}}", entries.collect::<Vec<_>>().join(", "))
         }
         Value::String(text) => text.clone(),
         // As a person writes it: 1e-6, and 12 rather than 12.0.
         Value::Number(number) => number.as_f64().map_or_else(String::new, |number| {
-            if number != 0.0 && number.abs() < 1e-3 || number.abs() >= 1e5 { format!("{number:e}") } else { format!("{number}") }
+            let short = number == 0.0 || (1e-3..1e5).contains(&number.abs());
+            if short { number.to_string() } else { format!("{number:e}") }
         }),
-        other => other.to_string(),
+        Value::Bool(value) => value.to_string(),
+        Value::Null | Value::Tagged(_) => String::new(),
     }
 }
 
@@ -169,7 +179,7 @@ fn diagnostics() -> String {
         };
         let paper = code.paper().map_or_else(String::new, |place| format!("In Ortega et al. 2015: {place}.\n\n"));
         let title = code.title();
-        let explanation = code.explanation();
+        let explanation = wrapped(code.explanation());
         write!(
             text,
             "\n## `{}`\n\n*{title}*\n\n{explanation}\n\n{paper}```{language}\n{example}\n```\n",
@@ -181,8 +191,26 @@ fn diagnostics() -> String {
     text
 }
 
+/// In lines of at most 120 columns.
+fn wrapped(text: &str) -> String {
+    let mut lines = String::new();
+    let mut width = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if width > 0 {
+            let fits = width + 1 + length <= 120;
+            lines.push(if fits { ' ' } else { '\n' });
+            width = if fits { width + 1 } else { 0 };
+        }
+        lines.push_str(word);
+        width += length;
+    }
+    lines
+}
+
 #[test]
 fn generated_parts_are_up_to_date() {
+    let _held = held();
     let mut found = 0;
     for mut page in manual() {
         for (name, range) in page.generated().into_iter().rev() {
@@ -204,6 +232,7 @@ fn generated_parts_are_up_to_date() {
 
 #[test]
 fn every_key_is_in_the_manual() {
+    let _held = held();
     let mut shown = String::new();
     for page in manual() {
         for (name, range) in page.generated() {
@@ -212,7 +241,7 @@ fn every_key_is_in_the_manual() {
             }
         }
     }
-    let schema: Value = serde_json::from_str(&json_schema()).expect("a schema");
+    let schema = schema();
     let mut missing = Vec::new();
     missing_keys(&schema, &shown, &mut missing);
     assert!(missing.is_empty(), "{missing:?}");
@@ -220,18 +249,19 @@ fn every_key_is_in_the_manual() {
 
 /// The keys with a description that stands in no table.
 fn missing_keys(node: &Value, shown: &str, missing: &mut Vec<String>) {
-    if let Some(keys) = node["properties"].as_object() {
+    if let Some(keys) = node["properties"].as_mapping() {
         for (key, value) in keys {
             if let Some(about) = value["description"].as_str() {
+                let key = key.as_str().unwrap_or_default();
                 if !shown.contains(&format!("| `{key}`")) || !shown.contains(&cell(about)) {
-                    missing.push(key.clone());
+                    missing.push(key.to_owned());
                 }
             }
             missing_keys(value, shown, missing);
         }
     }
     for inner in ["items", "additionalProperties"] {
-        if node[inner].is_object() {
+        if node[inner].is_mapping() {
             missing_keys(&node[inner], shown, missing);
         }
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::commands::{BY_HAND, commands, said};
-use super::page::{Block, Page, files, manual, root, updates};
+use super::page::{Block, Page, files, held, manual, root, updates};
 
 /// What is shown of one page, run from its beginning in a folder of its own.
 struct Run {
@@ -168,6 +168,7 @@ fn replaced(whole: &str, part: &str) -> String {
 
 #[test]
 fn pages_show_what_is_so() {
+    let _held = held();
     // Pages are independent of one another: a thread each.
     let wrong: String = std::thread::scope(|scope| {
         let running: Vec<_> = manual().into_iter().map(|page| scope.spawn(|| Run::of(page).all())).collect();
