@@ -13,6 +13,7 @@
 //! | `rust` | a part of a program | code that is compiled has it |
 //! | `toml` | dependencies of a crate beside a checkout named `pebo` | Cargo resolves them |
 //! | `text` | a diagram or formulas | nothing |
+//! | `text PATH` | a file of the project | it is that file |
 //!
 //! Between `<!-- generated: NAME -->` and `<!-- end -->` a page has what `generated` writes. `UPDATE_DOCS=1 cargo test -p
 //! pebo-gen --test manual` writes that and the output of commands anew; outputs with a line `...` are left alone.

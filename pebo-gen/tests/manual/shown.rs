@@ -73,7 +73,7 @@ impl Run {
     /// Code that some program has, whatever its indentation there.
     fn rust(&mut self, block: &Block) {
         let text = flush(self.page.of(block));
-        let programs = ["pebo-gen/tests/manual", "tests/tests", "tests/examples", "tests/firmware/src"];
+        let programs = ["tests/tests", "tests/examples", "tests/firmware", "pebo-runtime/tests"];
         let sources = self.sources("rs", &programs.map(|folder| root().join(folder)));
         if !sources.iter().any(|source| flush(source).contains(&text)) {
             self.complain(block, "no program has this part");
@@ -86,6 +86,14 @@ impl Run {
         let own = own.filter(|path| path.extension().is_some_and(|e| e == extension));
         let paths = folders.iter().flat_map(|folder| files(folder, extension)).chain(own);
         paths.map(|path| std::fs::read_to_string(path).expect("a source")).collect()
+    }
+
+    /// A file of the project, if one is named.
+    fn file(&mut self, block: &Block) {
+        let Some(name) = block.words.get(1) else { return };
+        if std::fs::read_to_string(root().join(name)).ok().as_deref() != Some(self.page.of(block)) {
+            self.complain(block, "the file is another");
+        }
     }
 
     /// Commands for a shell that are run elsewhere.
@@ -129,7 +137,7 @@ impl Run {
                 "sh" => self.elsewhere(&block),
                 "rust" => self.rust(&block),
                 "toml" => self.dependencies(&block),
-                "text" => {}
+                "text" => self.file(&block),
                 _ => self.complain(&block, "a block of no kind that is known"),
             }
         }

@@ -1,0 +1,112 @@
+//! A motor without a sensor of its position: three currents and voltages in, the position out.
+
+use pebo_runtime::nalgebra::SVector;
+use pebo_runtime::{Extension as _, Fault};
+
+/// The motor that is observed.
+#[pebo_macros::pebo_model("models/servo.yaml", scalar = f32)]
+mod model {}
+
+use model::{Parameters, Servo, Tuned, U, X, Y};
+
+/// Three windings to two coordinates, with the same amplitude.
+fn clarke([a, b, c]: [f32; 3]) -> [f32; 2] {
+    const INV_SQRT_3: f32 = 0.577_350_3;
+    [(2.0 * a - b - c) / 3.0, (b - c) * INV_SQRT_3]
+}
+
+/// What the current loop keeps from period to period.
+pub struct Position {
+    observer: Tuned,
+    magnet: f32,
+}
+
+impl Position {
+    /// Before the first sample.
+    ///
+    /// # Errors
+    /// None with the parameters of the model.
+    pub fn new() -> Result<Self, Fault> {
+        let parameters = Parameters::default();
+        Ok(Self { observer: Servo::observer(&parameters)?, magnet: parameters.lambda_m })
+    }
+
+    /// The position modulo a turn of the field, from the currents now, the voltages of the period that ends now, and its
+    /// length.
+    ///
+    /// # Errors
+    /// The fault of a sample that is not finite.
+    pub fn period(&mut self, currents: [f32; 3], voltages: [f32; 3], dt: f32) -> Result<f32, Fault> {
+        let ([i1, i2], [v1, v2]) = (clarke(currents), clarke(voltages));
+        let X { q } = self.observer.step(Y { i1, i2 }, U { v1, v2 }, dt)?;
+        // Fluxes of ten magnets: beyond, their squares leave the magnet's own few digits.
+        let chi = self.observer.extension().chi();
+        if chi.dot(chi) > 100.0 * self.magnet * self.magnet {
+            self.start_again()?;
+        }
+        Ok(q)
+    }
+
+    /// The extension starts again at the estimated fluxes, from which the unknown is 0 and its square that of the magnet.
+    fn start_again(&mut self) -> Result<(), Fault> {
+        let fluxes = self.observer.extension().coordinates(&self.observer.theta());
+        self.observer.restart(fluxes, &SVector::from([0.0, 0.0, self.magnet * self.magnet]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const R: f32 = 8.875;
+    const L: f32 = 40.03e-3;
+    const POLE_PAIRS: f32 = 5.0;
+    const MAGNET: f32 = 0.2086;
+
+    /// The largest error of the angle of the field in the last quarter of some seconds at constant speed, with an offset of
+    /// the first current's sensor, and how often the extension has started again.
+    fn error(seconds: f32, offset: f32) -> (f32, u32) {
+        let mut position = Position::new().expect("the parameters of the model");
+        let (dt, rate) = (1e-4_f64, 200.0_f64);
+        let (mut largest, mut restarts) = (0.0_f32, 0);
+        let steps = (f64::from(seconds) / dt) as u32;
+        for k in 0..steps {
+            // The angle of the field in f64, or its rounding is what is measured.
+            let turn = |at: f64| (rate * at).rem_euclid(core::f64::consts::TAU) as f32;
+            let (angle, middle) = (turn(f64::from(k) * dt), turn((f64::from(k) - 0.5) * dt));
+            // One ampere across the field, and the voltage that drives it, held at its mean over the period.
+            let current = [-angle.sin(), angle.cos()];
+            let across = R + MAGNET * rate as f32;
+            let along = -L * rate as f32;
+            let voltage =
+                [along * middle.cos() - across * middle.sin(), along * middle.sin() + across * middle.cos()];
+            let phases = |[a, b]: [f32; 2]| {
+                let half = 0.5 * 3.0_f32.sqrt() * b;
+                [a, -0.5 * a + half, -0.5 * a - half]
+            };
+            let [a, b, c] = phases(current);
+            let before = position.observer.extension().chi().norm();
+            let q = position.period([a + offset, b, c], phases(voltage), dt as f32).expect("a good sample");
+            restarts += u32::from(position.observer.extension().chi().norm() < before - MAGNET);
+            let difference = (POLE_PAIRS * q - angle).rem_euclid(core::f32::consts::TAU);
+            if k > steps / 4 * 3 {
+                largest = largest.max(difference.min(core::f32::consts::TAU - difference));
+            }
+        }
+        (largest, restarts)
+    }
+
+    #[test]
+    fn the_position_is_found() {
+        let (error, restarts) = error(1.0, 0.0);
+        println!("{error} {restarts}");
+        assert!(error < 0.01 && restarts == 0, "{error} rad, {restarts}");
+    }
+
+    #[test]
+    fn an_offset_makes_it_start_again() {
+        let (error, restarts) = error(20.0, 0.05);
+        println!("{error} {restarts}");
+        assert!(error < 0.1 && restarts > 0, "{error} rad, {restarts}");
+    }
+}
