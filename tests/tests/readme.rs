@@ -4,9 +4,6 @@
 use std::path::Path;
 use std::process::Command;
 
-use pebo_gen::derive;
-use pebo_gen::simulate::{Overrides, figure};
-use pebo_gen::source::Source;
 use serde_json::Value;
 
 const README: &str = include_str!("../../README.md");
@@ -55,16 +52,4 @@ fn it_is_short_and_begins_in_plain_words() {
 #[test]
 fn the_model_is_that_of_the_example() {
     assert_eq!(blocks("yaml drive.yaml"), [file("tests/examples/drive/drive.yaml")]);
-}
-
-#[test]
-fn figures_are_what_the_command_draws() {
-    for (model, shown) in
-        [("models/cuk.yaml", "models/cuk.svg"), ("tests/examples/drive/drive.yaml", "docs/drive.svg")]
-    {
-        let derived = derive(&Source::new(model, file(model)).expect("a text")).expect("a model");
-        let scenario = derived.scenario(&Overrides::default()).expect("a closed loop");
-        let trace = scenario.run().expect("a run to the end");
-        assert!(figure::draw(&trace, &scenario) == file(shown), "pebo-gen simulate {model} --plot {shown}");
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
@@ -16,6 +16,16 @@ fn links(text: &str) -> Vec<String> {
         _ => None,
     });
     links.collect()
+}
+
+/// The files of the images that a page shows.
+pub(super) fn images(page: &Page) -> Vec<PathBuf> {
+    let events = Parser::new_ext(&page.text, Options::ENABLE_TABLES);
+    let images = events.filter_map(|event| match event {
+        Event::Start(Tag::Image { dest_url, .. }) => Some(page.path.with_file_name(dest_url.as_ref())),
+        _ => None,
+    });
+    images.collect()
 }
 
 /// The names by which its headings can be linked to, as code hosts and mdBook make them.

@@ -12,8 +12,11 @@
 //! | `sh` | commands that build or install | CI runs them, or `commands::BY_HAND` has them |
 //! | `rust` | a part of a program | code that is compiled has it |
 //! | `toml` | dependencies of a crate beside a checkout named `pebo` | Cargo resolves them |
+//! | `awk NAME` | a script, which the commands behind it can name | |
 //! | `text` | a diagram or formulas | nothing |
 //! | `text PATH` | a file of the project | it is that file |
+//!
+//! A figure that a command of a page draws is the one of that name that the page shows.
 //!
 //! Between `<!-- generated: NAME -->` and `<!-- end -->` a page has what `generated` writes. `UPDATE_DOCS=1 cargo test -p
 //! pebo-gen --test manual` writes that and the output of commands anew; outputs with a line `...` are left alone.

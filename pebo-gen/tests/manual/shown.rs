@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::commands::{BY_HAND, commands, said};
+use super::links::images;
 use super::page::{Block, Page, files, held, manual, root, updates};
 
 /// What is shown of one page, run from its beginning in a folder of its own.
@@ -129,6 +130,27 @@ impl Run {
         }
     }
 
+    /// A script that commands name.
+    fn script(&mut self, block: &Block) {
+        match block.words.get(1) {
+            Some(name) => std::fs::write(self.folder.path().join(name), self.page.of(block)).expect("a file"),
+            None => self.complain(block, "a script without a name"),
+        }
+    }
+
+    /// The images that the page shows and a command of it drew.
+    fn figures(&mut self) {
+        for shown in images(&self.page) {
+            let drawn = self.folder.path().join(shown.file_name().expect("a name"));
+            let Ok(drawn) = std::fs::read(drawn) else { continue };
+            if updates() {
+                std::fs::write(&shown, drawn).expect("a figure");
+            } else if std::fs::read(&shown).ok() != Some(drawn) {
+                writeln!(self.wrong, "{}: a command of the page draws another", shown.display()).expect("a string");
+            }
+        }
+    }
+
     fn all(mut self) -> String {
         for block in self.page.blocks() {
             match block.language() {
@@ -138,9 +160,11 @@ impl Run {
                 "rust" => self.rust(&block),
                 "toml" => self.dependencies(&block),
                 "text" => self.file(&block),
+                "awk" => self.script(&block),
                 _ => self.complain(&block, "a block of no kind that is known"),
             }
         }
+        self.figures();
         if updates() {
             let Self { page, anew, .. } = &mut self;
             for (range, text) in anew.drain(..).rev() {
