@@ -4,11 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Commands that no test runs, as each installs or serves something.
-pub(super) const BY_HAND: &[&str] = &[
-    "cargo install --path pebo-gen",
-    "cargo install mdbook",
-    "mdbook serve docs",
-];
+pub(super) const BY_HAND: &[&str] = &["cargo install --path pebo-gen", "cargo install mdbook", "mdbook serve docs"];
 
 /// A line that stands for any number of lines.
 const GAP: &str = "...";

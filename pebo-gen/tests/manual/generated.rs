@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use pebo_gen::cas::{Arena, Expr};
 use pebo_gen::cas::function::{Asks, Function, Row};
+use pebo_gen::cas::{Arena, Expr};
 use pebo_gen::model::{Estimator, json_schema};
 use pebo_gen::source::Code;
 use serde_yaml::Value;
@@ -35,7 +35,8 @@ fn keys(path: &str) -> Option<String> {
     let mut table = "| key | value | what it is | example |\n|---|---|---|---|\n".to_owned();
     for (key, value) in node["properties"].as_mapping()? {
         let key = key.as_str()?;
-        let listed = node["required"].as_sequence().is_some_and(|all| all.iter().any(|name| name.as_str() == Some(key)));
+        let listed =
+            node["required"].as_sequence().is_some_and(|all| all.iter().any(|name| name.as_str() == Some(key)));
         // Required unless a class is there, and what a class gives.
         let or_class = path.is_empty() && schema["anyOf"][0]["required"][0].as_str() == Some(key);
         let barred = path.is_empty() && by_class.get(key).is_some() && value["properties"].is_null();
@@ -109,7 +110,7 @@ fn cell(text: &str) -> String {
 /// The functions of formulas.
 fn functions() -> String {
     let mut table =
-        "| function | also | in Rust | has a value where | derivative |\n|---|---|---|---|---|\n".to_owned();
+        "| function | also | in emitted code | has a value where | derivative |\n|---|---|---|---|---|\n".to_owned();
     for row in Function::table() {
         let arena = Arena::new();
         let names = &["a", "b"][..row.arity];
@@ -119,7 +120,7 @@ fn functions() -> String {
         let derivative: Vec<String> = derivative.into_iter().map(|d| format!("`{}`", arena.print(d))).collect();
         writeln!(
             table,
-            "| `{}({})` | {} | `{}` | {} | {} |",
+            "| `{}({})` | {} | `Real::{}` | {} | {} |",
             row.name,
             names.join(", "),
             list(row.aliases),
@@ -129,7 +130,7 @@ fn functions() -> String {
         )
         .expect("a string");
     }
-    cell_bars(&table)
+    table
 }
 
 /// What is asked for a value, or that nothing is.
@@ -148,12 +149,6 @@ fn with_smooth(row: &Row, arena: &Arena, arguments: &[Expr], derivative: &str) -
         Some(smooth) => format!("{derivative} where {}", conditions(arena, smooth(arena, arguments))),
         None => derivative.to_owned(),
     }
-}
-
-/// A formula has bars in no cell of ours but as `|`; none is there today.
-fn cell_bars(table: &str) -> String {
-    assert!(table.lines().all(|line| line.matches('|').count() == 6), "a bar within a cell:\n{table}");
-    table.to_owned()
 }
 
 /// The estimators with their settings.
@@ -180,12 +175,8 @@ fn diagnostics() -> String {
         let paper = code.paper().map_or_else(String::new, |place| format!("In Ortega et al. 2015: {place}.\n\n"));
         let title = code.title();
         let explanation = wrapped(code.explanation());
-        write!(
-            text,
-            "\n## `{}`\n\n*{title}*\n\n{explanation}\n\n{paper}```{language}\n{example}\n```\n",
-            code.name()
-        )
-        .expect("a string");
+        write!(text, "\n## `{}`\n\n*{title}*\n\n{explanation}\n\n{paper}```{language}\n{example}\n```\n", code.name())
+            .expect("a string");
     }
     text.push('\n');
     text

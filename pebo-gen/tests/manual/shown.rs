@@ -183,7 +183,8 @@ fn flush(text: &str) -> String {
 
 /// A model file whose keys of the first level are replaced by those of a part, which stands at the end.
 fn replaced(whole: &str, part: &str) -> String {
-    let key = |line: &str| line.starts_with(|c: char| c.is_alphabetic()).then(|| line.split(':').next().map(str::to_owned));
+    let key =
+        |line: &str| line.starts_with(|c: char| c.is_alphabetic()).then(|| line.split(':').next().map(str::to_owned));
     let new: Vec<String> = part.lines().filter_map(|line| key(line).flatten()).collect();
     let mut kept = String::new();
     let mut keeps = true;

@@ -100,6 +100,6 @@ mod tests {
             task.period(10.0, -12.0, 0.6, 1e-5).expect("a good sample");
         }
         assert!(task.period(10.0, -12.0, 0.6, 0.1).is_ok());
-        assert_eq!(task.observer.extension().chi(), &SVector::zeros());
+        assert_eq!(task.observer.extension().chi(), &SVector::<f32, 2>::zeros());
     }
 }

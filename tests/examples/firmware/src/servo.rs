@@ -39,15 +39,15 @@ impl Position {
     pub fn period(&mut self, currents: [f32; 3], voltages: [f32; 3], dt: f32) -> Result<f32, Fault> {
         let ([i1, i2], [v1, v2]) = (clarke(currents), clarke(voltages));
         let X { q } = self.observer.step(Y { i1, i2 }, U { v1, v2 }, dt)?;
-        // Fluxes of ten magnets: beyond, their squares leave the magnet's own few digits.
+        // Beyond the fluxes of three magnets an offset has grown into the extension.
         let chi = self.observer.extension().chi();
-        if chi.dot(chi) > 100.0 * self.magnet * self.magnet {
+        if chi.dot(chi) > 9.0 * self.magnet * self.magnet {
             self.start_again()?;
         }
         Ok(q)
     }
 
-    /// The extension starts again at the estimated fluxes, from which the unknown is 0 and its square that of the magnet.
+    /// Starts again at the estimated fluxes: the unknown is 0 then, and `eta3` the square of the magnet's flux.
     fn start_again(&mut self) -> Result<(), Fault> {
         let fluxes = self.observer.extension().coordinates(&self.observer.theta());
         self.observer.restart(fluxes, &SVector::from([0.0, 0.0, self.magnet * self.magnet]))
@@ -78,8 +78,7 @@ mod tests {
             let current = [-angle.sin(), angle.cos()];
             let across = R + MAGNET * rate as f32;
             let along = -L * rate as f32;
-            let voltage =
-                [along * middle.cos() - across * middle.sin(), along * middle.sin() + across * middle.cos()];
+            let voltage = [along * middle.cos() - across * middle.sin(), along * middle.sin() + across * middle.cos()];
             let phases = |[a, b]: [f32; 2]| {
                 let half = 0.5 * 3.0_f32.sqrt() * b;
                 [a, -0.5 * a + half, -0.5 * a - half]
@@ -96,17 +95,18 @@ mod tests {
         (largest, restarts)
     }
 
+    /// A voltage that is held at its mean misses a fraction of (200/s * 1e-4 s)^2/24 = 2e-5; the filter's lag dies out.
     #[test]
     fn the_position_is_found() {
         let (error, restarts) = error(1.0, 0.0);
-        println!("{error} {restarts}");
-        assert!(error < 0.01 && restarts == 0, "{error} rad, {restarts}");
+        assert!(error < 1e-3 && restarts == 0, "{error} rad, {restarts}");
     }
 
+    /// 0.05 A in one phase are 0.033 A in the plane, 0.3 V, and with a forgetting of 40/s a lag of 7 mWb, 0.04 rad; twice
+    /// that where the square of the extension counts.
     #[test]
     fn an_offset_makes_it_start_again() {
         let (error, restarts) = error(20.0, 0.05);
-        println!("{error} {restarts}");
-        assert!(error < 0.1 && restarts > 0, "{error} rad, {restarts}");
+        assert!(error < 0.1 && (10..=20).contains(&restarts), "{error} rad, {restarts}");
     }
 }
