@@ -178,7 +178,7 @@ impl Run {
 
 /// Lines without what they begin and end with of spaces.
 fn flush(text: &str) -> String {
-    text.lines().map(|line| format!("{}\n", line.trim())).collect()
+    text.lines().flat_map(|line| [line.trim(), "\n"]).collect()
 }
 
 /// A model file whose keys of the first level are replaced by those of a part, which stands at the end.
