@@ -56,6 +56,8 @@ impl Position {
 
 #[cfg(test)]
 mod tests {
+    use core::f32::consts::TAU;
+
     use super::*;
 
     const R: f32 = 8.875;
@@ -63,21 +65,22 @@ mod tests {
     const POLE_PAIRS: f32 = 5.0;
     const MAGNET: f32 = 0.2086;
 
-    /// The largest error of the angle of the field in the last quarter of some seconds at constant speed, with an offset of
+    /// Samples in a turn of the field.
+    const TURN: u16 = 314;
+
+    /// The largest error of the angle of the field in the last quarter of some turns at constant speed, with an offset of
     /// the first current's sensor, and how often the extension has started again.
-    fn error(seconds: f32, offset: f32) -> (f32, u32) {
+    fn error(turns: u16, offset: f32) -> (f32, u32) {
         let mut position = Position::new().expect("the parameters of the model");
-        let (dt, rate) = (1e-4_f64, 200.0_f64);
+        let (dt, increment) = (1e-4, TAU / f32::from(TURN));
         let (mut largest, mut restarts) = (0.0_f32, 0);
-        let steps = (f64::from(seconds) / dt) as u32;
-        for k in 0..steps {
-            // The angle of the field in f64, or its rounding is what is measured.
-            let turn = |at: f64| (rate * at).rem_euclid(core::f64::consts::TAU) as f32;
-            let (angle, middle) = (turn(f64::from(k) * dt), turn((f64::from(k) - 0.5) * dt));
+        for (turn, k) in (0..turns).flat_map(|turn| (0..TURN).map(move |k| (turn, k))) {
+            let angle = increment * f32::from(k);
+            let middle = angle - 0.5 * increment;
             // One ampere across the field, and the voltage that drives it, held at its mean over the period.
             let current = [-angle.sin(), angle.cos()];
-            let across = R + MAGNET * rate as f32;
-            let along = -L * rate as f32;
+            let across = R + MAGNET * increment / dt;
+            let along = -L * increment / dt;
             let voltage = [along * middle.cos() - across * middle.sin(), along * middle.sin() + across * middle.cos()];
             let phases = |[a, b]: [f32; 2]| {
                 let half = 0.5 * 3.0_f32.sqrt() * b;
@@ -85,20 +88,20 @@ mod tests {
             };
             let [a, b, c] = phases(current);
             let before = position.observer.extension().chi().norm();
-            let q = position.period([a + offset, b, c], phases(voltage), dt as f32).expect("a good sample");
+            let q = position.period([a + offset, b, c], phases(voltage), dt).expect("a good sample");
             restarts += u32::from(position.observer.extension().chi().norm() < before - MAGNET);
-            let difference = (POLE_PAIRS * q - angle).rem_euclid(core::f32::consts::TAU);
-            if k > steps / 4 * 3 {
-                largest = largest.max(difference.min(core::f32::consts::TAU - difference));
+            let difference = (POLE_PAIRS * q - angle).rem_euclid(TAU);
+            if turn > turns / 4 * 3 {
+                largest = largest.max(difference.min(TAU - difference));
             }
         }
         (largest, restarts)
     }
 
-    /// A voltage that is held at its mean misses a fraction of (200/s * 1e-4 s)^2/24 = 2e-5; the filter's lag dies out.
+    /// A voltage that is held at its mean misses a fraction of 0.02^2/24 = 2e-5; the filter's lag dies out.
     #[test]
     fn the_position_is_found() {
-        let (error, restarts) = error(1.0, 0.0);
+        let (error, restarts) = error(32, 0.0);
         assert!(error < 1e-3 && restarts == 0, "{error} rad, {restarts}");
     }
 
@@ -106,7 +109,7 @@ mod tests {
     /// that where the square of the extension counts.
     #[test]
     fn an_offset_makes_it_start_again() {
-        let (error, restarts) = error(20.0, 0.05);
+        let (error, restarts) = error(640, 0.05);
         assert!(error < 0.1 && (10..=20).contains(&restarts), "{error} rad, {restarts}");
     }
 }
