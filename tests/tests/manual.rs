@@ -31,6 +31,6 @@ fn the_examples_run() {
     assert_eq!(estimate_with_a_window(), Ok(cuk::X { i1: 0.0, i3: 0.0 }));
     // At rest the voltage is 24 V for a duty cycle of one half, and the coil's current twice that of 50 ohms. The observer
     // of the model takes a tenth of a second.
-    let current = current(&[24.0; 100_000], 0.5).expect("good samples");
+    let current = current(&vec![24.0; 100_000], 0.5).expect("good samples");
     assert!((current - 0.96).abs() < 1e-6, "{current}");
 }
