@@ -13,6 +13,7 @@ use crate::analysis::conditions::{Ask, Conditions};
 use crate::analysis::design::{
     Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict,
 };
+use crate::analysis::forms;
 use crate::analysis::identifiability;
 use crate::analysis::identities;
 use crate::analysis::left_inverse;
@@ -41,6 +42,7 @@ impl Derivation {
             permitted::left_inverse(plant, claim, found)
         });
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
+        let before = found.len();
         let regression = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
                 limited(plant, "the regression", &mut found, |found| {
@@ -57,6 +59,13 @@ impl Derivation {
                 })
             }
             _ => Claim::skipped(),
+        };
+        let (regression, identifiability) = match &cascade.result {
+            Some(result) if cascade.verdict == Verdict::Proved => {
+                let given = (regression, identifiability);
+                forms::preferred(plant, &domain, (class, result, inverse), given, &mut found, before)
+            }
+            _ => (regression, identifiability),
         };
         let (regression, identifiability) = match &cascade.result {
             Some(result) => {

@@ -6,7 +6,7 @@ use crate::cas::facts::Relation;
 use crate::cas::parts::Side;
 use crate::cas::{Expr, Symbol};
 pub use crate::plant::CascadeClass as Class;
-use crate::plant::Plant;
+use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
 
 use crate::analysis::advice::remarks::Remarks;
@@ -167,6 +167,18 @@ pub struct Regression {
     pub theta: Vec<Expr>,
     /// The symbols eta1..
     pub eta_symbols: Vec<Symbol>,
+    /// The other form of the relation that the regression is made of, if it has one.
+    pub alternative: Option<Alternative>,
+}
+
+/// A form of the regression that a model may ask for instead.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub struct Alternative {
+    /// Which.
+    pub form: RelationForm,
+    /// How many unknowns it has.
+    pub unknowns: usize,
 }
 
 impl Regression {

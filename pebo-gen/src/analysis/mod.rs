@@ -25,6 +25,7 @@ mod cascade;
 mod conditions;
 mod derive;
 mod design;
+mod forms;
 mod identifiability;
 mod identities;
 mod left_inverse;

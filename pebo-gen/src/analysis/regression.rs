@@ -6,6 +6,7 @@
 //! ([`separation`]), else a static one from an identity (Ortega et al. 2015, eqs. 16 and 28).
 
 mod cancelling;
+mod differentiated;
 mod functions;
 mod implicit;
 mod linear;
@@ -26,6 +27,7 @@ use crate::source::{Diagnostic, Span};
 use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
 use cancelling::combinations;
+pub(super) use differentiated::{differentiated, not_differentiable};
 use functions::{over_parameterised, under_derivative};
 use linear::{decompose, linear};
 use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};

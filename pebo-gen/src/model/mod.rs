@@ -31,7 +31,9 @@ pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
 pub use spanned::{Entry, Spanned};
-pub use written::{Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, Scale, Simulation};
+pub use written::{
+    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
+};
 
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};

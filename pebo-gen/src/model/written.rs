@@ -37,6 +37,8 @@ pub struct Model {
     pub define: Vec<Entry<Formula>>,
     /// The cascade that is asked for; without it either will do.
     pub asked: Option<Spanned<CascadeClass>>,
+    /// How a relation between the components of the transform is to become a regression.
+    pub relation_form: Option<Spanned<RelationForm>>,
     /// Inequalities that hold where the plant operates.
     pub assume: Vec<Comparison>,
     /// The class that the plant is written by, which gives what is empty below.
@@ -216,6 +218,35 @@ impl CascadeClass {
         match self {
             Self::Pebo => Self::NAMES[0],
             Self::Gpebo => Self::NAMES[1],
+        }
+    }
+}
+
+/// How a relation between the components of the transform becomes a regression.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
+pub enum RelationForm {
+    /// As it holds at every instant, with functions of theta among the unknowns where it is not affine.
+    Static,
+    /// Under the derivative, where constants vanish.
+    Differentiated,
+}
+
+impl RelationForm {
+    /// The names in a model.
+    pub const NAMES: &[&str] = &["static", "differentiated"];
+
+    /// The form of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Static, Self::Differentiated].into_iter().find(|form| form.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Static => Self::NAMES[0],
+            Self::Differentiated => Self::NAMES[1],
         }
     }
 }

@@ -51,7 +51,7 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
         steps.add(&letter("1"), &setter.matrix(&regression.phi_1), "");
         html.paragraph("Together, as the code computes them:");
         html.display(&steps.finish());
-        html.list(&notes::regression(plant, regression).into_iter().collect::<Vec<_>>());
+        html.list(&notes::regression(plant, regression));
     });
 }
 

@@ -23,7 +23,7 @@ pub mod settings;
 mod terms;
 mod values;
 
-pub use crate::model::CascadeClass;
+pub use crate::model::{CascadeClass, RelationForm};
 pub use class::{Class, Proposal};
 pub use formula::lower;
 pub use matrix::Matrix;

@@ -13,7 +13,7 @@ use crate::cas::manifold::Manifold;
 use crate::cas::rational::Rational;
 use crate::cas::tidy::functions;
 use crate::cas::{Arena, Expr, Symbol};
-use crate::model::CascadeClass;
+use crate::model::{CascadeClass, RelationForm};
 use crate::source::Span;
 
 use super::class::{Class, Proposal};
@@ -36,6 +36,8 @@ pub struct Plant {
     pub proposal: Proposal,
     /// The cascade that the author asks for; without it either will do.
     pub asked: Option<CascadeClass>,
+    /// How the author wants a relation between the components of the transform to become a regression.
+    pub relation_form: Option<RelationForm>,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
     /// Unmeasured states with their rates.

@@ -1,7 +1,7 @@
 //! What there is to say of a claim beside its formulas, in a sentence each: the same in text and on a page.
 
 use crate::analysis::{Derivation, Excitation, Gram, Motion, Outcome, Positive, Regression, RegressionKind, Verdict};
-use crate::plant::Plant;
+use crate::plant::{Plant, RelationForm};
 use crate::source::listed;
 
 /// Of the model: what its verdict means.
@@ -37,12 +37,23 @@ pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String
     lines
 }
 
-/// Of the regression: what more unknowns than theta has mean.
-pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Option<String> {
+/// Of the regression: what more unknowns than theta has mean, and what other form it has.
+pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let (unknowns, components) = (regression.eta.len(), plant.theta.len());
-    (unknowns > components).then(|| {
+    let more = (unknowns > components).then(|| {
         format!("eta has {unknowns} components and theta has {components}: all components of eta have to be excited")
-    })
+    });
+    let other = regression.alternative.map(|other| match other.form {
+        RelationForm::Static => format!(
+            "a relation among the components of phi, under the derivative; as it stands it is a regression in {} unknowns, \
+             with `regression: static`",
+            other.unknowns
+        ),
+        RelationForm::Differentiated => {
+            format!("under the derivative it is a regression in {} unknowns, with `regression: differentiated`", other.unknowns)
+        }
+    });
+    more.into_iter().chain(other).collect()
 }
 
 /// Of identifiability: what shows the unknowns, where they are not seen, and what has to move.

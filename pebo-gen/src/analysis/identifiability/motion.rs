@@ -11,8 +11,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::poly::Poly;
+use crate::cas::tidy::shortest;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
@@ -69,8 +71,10 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
     // Where all signals rest, so does z, and with it what a plain extension integrates.
     let outputs = plant.y.iter().map(|output| output.symbol);
     let extension = plant.chi.iter().copied().filter(|_| cascade.lambda.is_none());
-    let still = inputs.iter().copied().chain(outputs).chain(extension).collect();
-    let rest = question.shown(&Restriction { held: still, ..Restriction::default() });
+    let still: BTreeSet<Symbol> = inputs.iter().copied().chain(outputs).chain(extension).collect();
+    let balanced = Restriction { held: still.clone(), equal: at_rest(plant, domain, cascade) };
+    let rest =
+        question.shown(&balanced).or_else(|_| question.shown(&Restriction { held: still, ..Restriction::default() }));
     let at_rest = by_itself == Some(true) && rest.as_ref().is_ok_and(|shown| shown.hidden.is_empty());
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     let mut blind = Vec::new();
@@ -225,6 +229,30 @@ impl Question<'_> {
         };
         places.constants.into_iter().filter(lost).collect()
     }
+}
+
+/// Inputs that are the only ones with which the transform rests: under a plain cascade `h = 0` there.
+fn at_rest(plant: &Plant, domain: &Domain, cascade: &Cascade) -> BTreeMap<Symbol, Expr> {
+    let arena = &plant.arena;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let mut equal: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    for h in cascade.h.iter().filter(|_| cascade.lambda.is_none()) {
+        let h = arena.substitute(*h, &equal);
+        let solved = plant.u.iter().find_map(|input| {
+            let slope = arena.derivative(h, *input);
+            let steep =
+                arena.symbols_of(&[slope]).is_subset(&constants) && domain.implies(arena, slope, Relation::NonZero);
+            let rest = arena.substitute(h, &BTreeMap::from([(*input, arena.zero())]));
+            steep.then(|| (*input, arena.neg(arena.div(rest, slope))))
+        });
+        let Some((input, value)) = solved else { continue };
+        let value = BTreeMap::from([(input, shortest(arena, domain, value))]);
+        for other in equal.values_mut() {
+            *other = arena.substitute(*other, &value);
+        }
+        equal.extend(value);
+    }
+    equal
 }
 
 /// What is seen of the unknowns where these directions are not: combinations that do not change along them. Each direction

@@ -50,6 +50,7 @@ pub(super) fn over_parameterised(
         primitive_0,
         primitive_1,
         eta_symbols: plant.eta(separated.eta.len()),
+        alternative: None,
         eta: separated.eta,
         theta: recovered.theta,
     };

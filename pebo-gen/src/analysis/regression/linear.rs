@@ -100,5 +100,6 @@ pub(super) fn linear(
         eta: theta.clone(),
         theta: plant.eta(theta.len()).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(theta.len()),
+        alternative: None,
     }
 }

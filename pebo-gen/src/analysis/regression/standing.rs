@@ -24,7 +24,6 @@ pub(in crate::analysis) fn from_identities(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
-    let arena = &plant.arena;
     let span = plant.y.first().map_or(Span::point(0), |output| output.span);
     if plant.identities.is_empty() {
         if let Some(claim) = from_relations(plant, domain, cascade, left_inverse, found) {
@@ -48,9 +47,14 @@ pub(in crate::analysis) fn from_identities(
         return under_lambda(plant, domain, (rows, plant.identities[0].span), found);
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
-    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-    let identities: Vec<Expr> = plant.identities.iter().map(|i| arena.substitute(i.expr, &inverse)).collect();
+    let identities = identities_in_z(plant, left_inverse);
     standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+}
+
+/// The identities as equations between z, y and u.
+pub(super) fn identities_in_z(plant: &Plant, left_inverse: &LeftInverse) -> Vec<Expr> {
+    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
+    plant.identities.iter().map(|identity| plant.arena.substitute(identity.expr, &inverse)).collect()
 }
 
 /// A static regression from what the components of the transform have to do with each other; none if that
@@ -140,6 +144,7 @@ fn under_lambda(
         theta: eta_symbols.iter().map(|s| arena.of_symbol(*s)).collect(),
         eta: theta,
         eta_symbols,
+        alternative: None,
     };
     Claim { verdict: Verdict::Proved, result: Some(result) }
 }
@@ -170,6 +175,7 @@ fn standing_still(
                     primitive_0: Vec::new(),
                     primitive_1: Vec::new(),
                     eta_symbols: plant.eta(separated.eta.len()),
+                    alternative: None,
                     eta: separated.eta,
                     theta: recovered.theta,
                 };

@@ -20,10 +20,10 @@ use super::cancelling::{Combination, combinations, moved_freely, outputs_but};
 use super::functions::over_parameterised;
 use super::linear::decompose;
 
-/// `d/dt primitive = rate`, the rate as a function of z, y and u.
-struct Equation {
-    primitive: Expr,
-    rate: Expr,
+/// `d/dt primitive = rate`, the rate as a function of z, y and u, the primitive of y and perhaps z.
+pub(super) struct Equation {
+    pub(super) primitive: Expr,
+    pub(super) rate: Expr,
 }
 
 /// Regressions with more of what a plant's equations say, and whether that is all.
@@ -181,7 +181,7 @@ fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regression) -> O
 }
 
 /// The regression of the equations: linear where all are affine in z, else in functions of theta.
-fn joined(
+pub(super) fn joined(
     plant: &Plant,
     domain: &Domain,
     cascade: &Cascade,
@@ -192,8 +192,8 @@ fn joined(
     let arena = &plant.arena;
     let primitives: Vec<Expr> = equations.iter().map(|e| e.primitive).collect();
     let rates: Vec<Expr> = equations.iter().map(|e| e.rate).collect();
-    let rows: Option<Vec<_>> = rates.iter().map(|rate| affine(plant, domain, *rate)).collect();
-    let Some(rows) = rows else {
+    let rows = |of: &[Expr]| of.iter().map(|expr| affine(plant, domain, *expr)).collect::<Option<Vec<_>>>();
+    let (Some(held), Some(rows)) = (rows(&primitives), rows(&rates)) else {
         if cascade.lambda.is_some() {
             return None;
         }
@@ -209,18 +209,17 @@ fn joined(
         let column = |j: usize| -> Vec<Expr> { plant.psi.iter().map(|row| arena.of_symbol(row[j])).collect() };
         (0..unknowns).map(|j| dot(arena, factors, &column(j))).collect()
     };
+    let of_theta = |(_, factors): (Expr, Vec<Expr>)| if cascade.lambda.is_some() { moved(&factors) } else { factors };
     let result = Regression {
         kind: RegressionKind::Implicit,
         rows: Vec::new(),
         phi_0: arena.substitute_all(&rates, &at_chi),
-        phi_1: rows
-            .into_iter()
-            .map(|(_, factors)| if cascade.lambda.is_some() { moved(&factors) } else { factors })
-            .collect(),
-        primitive_0: primitives,
-        primitive_1: vec![vec![arena.zero(); unknowns]; equations.len()],
+        phi_1: rows.into_iter().map(of_theta).collect(),
+        primitive_0: arena.substitute_all(&primitives, &at_chi),
+        primitive_1: held.into_iter().map(of_theta).collect(),
         theta: plant.eta(unknowns).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(unknowns),
+        alternative: None,
         eta: theta,
     };
     Some(Claim { verdict: Verdict::Proved, result: Some(result) })

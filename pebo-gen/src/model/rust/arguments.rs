@@ -14,11 +14,11 @@ use super::places::Places;
 use super::refusal::unsupported;
 use crate::model::formula::Relation;
 use crate::model::spanned::{Entry, Spanned};
-use crate::model::written::CascadeClass;
+use crate::model::written::{CascadeClass, RelationForm};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
 /// What an attribute may say.
-const KEYS: [&str; 6] = ["title", "reference", "class", "assume", "angles", "units"];
+const KEYS: [&str; 7] = ["title", "reference", "class", "regression", "assume", "angles", "units"];
 
 const ANGLES: &str = "angles(q = 2.0 * PI)";
 const UNITS: &str = "units(L = \"H\", i = \"A\")";
@@ -29,6 +29,7 @@ pub(super) struct Arguments {
     pub(super) title: Option<Spanned<String>>,
     pub(super) reference: Option<Spanned<String>>,
     pub(super) class: Option<Spanned<CascadeClass>>,
+    pub(super) regression: Option<Spanned<RelationForm>>,
     pub(super) assume: Vec<Chain>,
     pub(super) angles: Vec<MetaNameValue>,
     pub(super) units: Vec<Entry<Spanned<String>>>,
@@ -69,7 +70,12 @@ impl Arguments {
         match (name.as_str(), meta) {
             ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, places)?),
             ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, places)?),
-            ("class", Meta::NameValue(pair)) => self.class = Some(class(&text(pair, places)?)?),
+            ("class", Meta::NameValue(pair)) => {
+                self.class = Some(choice(&text(pair, places)?, CascadeClass::from_name, CascadeClass::NAMES)?)
+            }
+            ("regression", Meta::NameValue(pair)) => {
+                self.regression = Some(choice(&text(pair, places)?, RelationForm::from_name, RelationForm::NAMES)?);
+            }
             ("assume", Meta::List(list)) => {
                 for part in split(list.tokens.clone(), is_comma) {
                     let chain = chain(part, places);
@@ -85,7 +91,7 @@ impl Arguments {
                     self.units.push(Entry { name, value: text(&pair, places)? });
                 }
             }
-            ("title" | "reference" | "class", _) => {
+            ("title" | "reference" | "class" | "regression", _) => {
                 return Err(unsupported(places.of(meta), format!("`{name}` takes a text"))
                     .help(format!("write `{name} = \"..\"`")));
             }
@@ -131,11 +137,15 @@ fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Di
     }
 }
 
-fn class(name: &Spanned<String>) -> Result<Spanned<CascadeClass>, Diagnostic> {
-    let Some(value) = CascadeClass::from_name(&name.value) else {
+fn choice<T>(
+    name: &Spanned<String>,
+    from_name: impl Fn(&str) -> Option<T>,
+    names: &[&str],
+) -> Result<Spanned<T>, Diagnostic> {
+    let Some(value) = from_name(&name.value) else {
         let message = format!("{} is none of the choices", quoted(&name.value));
         return Err(Diagnostic::error(Code::WrongChoice, name.span, message)
-            .help(format!("write one of {}", listed(CascadeClass::NAMES.iter().copied()))));
+            .help(format!("write one of {}", listed(names.iter().copied()))));
     };
     Ok(Spanned { value, span: name.span })
 }

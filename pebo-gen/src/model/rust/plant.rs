@@ -94,6 +94,7 @@ pub(super) fn read(
         title,
         reference: arguments.reference,
         asked: arguments.class,
+        relation_form: arguments.regression,
         parameters,
         x,
         y,

@@ -9,7 +9,7 @@ use crate::model::class::{Electromechanical, Lti, Mechanical};
 use crate::model::formula::Decimal;
 use crate::model::observer::Observer;
 use crate::model::spanned::{Entry, Spanned};
-use crate::model::written::{CascadeClass, Scale};
+use crate::model::written::{CascadeClass, RelationForm, Scale};
 
 /// A text with its place: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;
@@ -27,6 +27,7 @@ pub(super) struct Document {
     pub(super) u: Vec<Text>,
     pub(super) w: Vec<Text>,
     pub(super) class: Option<Spanned<CascadeClass>>,
+    pub(super) regression: Option<Spanned<RelationForm>>,
     pub(super) define: Vec<Entry<Text>>,
     pub(super) assume: Vec<Text>,
     pub(super) f_x: Vec<Entry<Text>>,

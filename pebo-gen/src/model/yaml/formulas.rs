@@ -34,6 +34,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         u: document.u,
         w: document.w,
         asked: document.class,
+        relation_form: document.regression,
         define,
         assume,
         class,

@@ -3,7 +3,7 @@
 //! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
 use crate::model::observer::Estimator;
-use crate::model::{Baseline, CascadeClass, Class};
+use crate::model::{Baseline, CascadeClass, Class, RelationForm};
 
 /// The shape that a value must have.
 #[derive(Debug)]
@@ -117,6 +117,14 @@ pub(super) const MODEL: &[Key] = &[
         Shape::Choice(CascadeClass::NAMES),
         "class: pebo",
         "The cascade that is asked for; if left out, a plain cascade (pebo) is preferred to a generalised one (gpebo)",
+    ),
+    optional(
+        "regression",
+        Shape::Choice(RelationForm::NAMES),
+        "regression: static",
+        "How a relation between the components of phi becomes a regression: as it holds at every instant, or \
+         differentiated, which has fewer unknowns; if left out, an identity of the model is used as it is written, and a \
+         relation that was found is differentiated where that gives fewer unknowns",
     ),
     optional("define", RATES, "define: {p: v2*i1}", "Names for parts of formulas, in any order"),
     optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]", "Inequalities that hold wherever the plant operates"),
