@@ -47,10 +47,10 @@ impl Position {
         Ok(q)
     }
 
-    /// Starts again at the estimated fluxes: the unknown is 0 then, and `eta3` the square of the magnet's flux.
+    /// Starts again at the estimated fluxes, from which the unknown is 0.
     fn start_again(&mut self) -> Result<(), Fault> {
         let fluxes = self.observer.extension().coordinates(&self.observer.theta());
-        self.observer.restart(fluxes, &SVector::from([0.0, 0.0, self.magnet * self.magnet]))
+        self.observer.restart(fluxes, &SVector::zeros())
     }
 }
 
@@ -105,8 +105,8 @@ mod tests {
         assert!(error < 1e-3 && restarts == 0, "{error} rad, {restarts}");
     }
 
-    /// 0.05 A in one phase are 0.033 A in the plane, 0.3 V, and with a forgetting of 40/s a lag of 7 mWb, 0.04 rad; twice
-    /// that where the square of the extension counts.
+    /// 0.05 A in one phase are 0.033 A in the plane, 0.3 V, and with a forgetting of 40/s a lag of 7 mWb, 0.04 rad; as much
+    /// again for what the offset does to the equation itself.
     #[test]
     fn an_offset_makes_it_start_again() {
         let (error, restarts) = error(640, 0.05);
