@@ -153,4 +153,13 @@ impl Derived {
     ) -> Result<crate::simulate::Scenario, Vec<Diagnostic>> {
         crate::simulate::Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides)
     }
+
+    /// The observer of the model, ready to be run over recorded data with these columns.
+    #[cfg(feature = "simulate")]
+    pub fn replay(
+        &self,
+        log: &crate::simulate::replay::Log<'_>,
+    ) -> Result<crate::simulate::replay::Replay, Vec<Diagnostic>> {
+        crate::simulate::replay::Replay::resolve(&self.model, &self.plant, &self.derivation, log)
+    }
 }

@@ -32,7 +32,7 @@ pub mod source;
 #[cfg(feature = "yaml")]
 pub use answer::{Answer, Ask, Solution, Stage, Standing, Typeset, answer, solve};
 #[cfg(feature = "simulate")]
-pub use answer::{AskRun, FinalError, Run};
+pub use answer::{AskRun, FinalError, Run, Tape, replay};
 #[cfg(feature = "yaml")]
 pub use builder::{BuildError, Builder, Built};
 pub use derived::Derived;

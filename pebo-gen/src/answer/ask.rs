@@ -40,6 +40,13 @@ pub enum Stage {
         /// The samples of the whole run.
         samples: u64,
     },
+    /// It runs the observer over recorded data.
+    Replay {
+        /// The rows that it has taken.
+        rows: u64,
+        /// The bytes that it has read.
+        bytes: u64,
+    },
 }
 
 /// What to keep of a run of the closed loop beside the errors of its estimates.
@@ -52,6 +59,9 @@ pub struct AskRun {
     pub trace: bool,
     /// Whether to draw the figure.
     pub figure: bool,
+    /// How often to run it, if more than once: with the seed and those after it. Then there is no table of all signals,
+    /// and the figure is about all runs.
+    pub runs: Option<u64>,
 }
 
 impl Ask {

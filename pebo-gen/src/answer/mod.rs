@@ -15,6 +15,8 @@ mod filled;
 mod framed;
 mod page;
 #[cfg(feature = "simulate")]
+mod replay;
+#[cfg(feature = "simulate")]
 mod run;
 mod solve;
 mod standing;
@@ -23,6 +25,8 @@ mod typeset;
 #[cfg(feature = "simulate")]
 pub use ask::AskRun;
 pub use ask::{Ask, Stage};
+#[cfg(feature = "simulate")]
+pub use replay::{Tape, replay};
 #[cfg(feature = "simulate")]
 pub use run::{FinalError, Run};
 pub use solve::{Solution, solve};
@@ -38,6 +42,8 @@ use crate::certificate::certificate;
 use crate::derived::{Derived, derive_within};
 use crate::emit::Emitted;
 use crate::report::{self, Report};
+#[cfg(feature = "simulate")]
+use crate::simulate::replay::Replayed;
 use crate::source::{Diagnostic, Source};
 
 /// All there is to say of a model. Fields are only ever added.
@@ -63,6 +69,9 @@ pub struct Answer {
     /// What came of the closed loop, if a run was asked for and everything is proved.
     #[cfg(feature = "simulate")]
     pub run: Option<Run>,
+    /// What came of the observer over recorded data, if that is what the call was for and everything is proved.
+    #[cfg(feature = "simulate")]
+    pub replay: Option<Replayed>,
 }
 
 /// Checks a model, and does what is asked beside.
@@ -83,8 +92,7 @@ pub fn answer(source: &Source, ask: &Ask) -> Answer {
     let derived = match derive_within(source, ask.budget()) {
         Ok(derived) => derived,
         Err(diagnostics) => {
-            let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            return Answer::of_unread(&ask.name.clone().or_else(stem).unwrap_or_default(), diagnostics, source);
+            return Answer::of_unread(&stem(source, ask), diagnostics, source);
         }
     };
     let mut answer = Answer::of(&derived, source);
@@ -102,6 +110,12 @@ pub fn answer(source: &Source, ask: &Ask) -> Answer {
     answer
 }
 
+/// What a model is called that is too malformed to say its name.
+fn stem(source: &Source, ask: &Ask) -> String {
+    let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    ask.name.clone().or_else(stem).unwrap_or_default()
+}
+
 impl Answer {
     /// Adds what was asked for of an accepted model.
     fn add(&mut self, derived: &Derived, ask: &Ask) {
@@ -117,7 +131,10 @@ impl Answer {
         #[cfg(feature = "simulate")]
         if let Some(wanted) = &ask.run {
             match run::run(derived, ask, wanted) {
-                Ok(run) => self.run = Some(run),
+                Ok((run, advice)) => {
+                    self.run = Some(run);
+                    self.diagnostics.extend(advice);
+                }
                 Err((standing, found)) => self.refuse(standing, found),
             }
         }
@@ -138,6 +155,8 @@ impl Answer {
             page: None,
             #[cfg(feature = "simulate")]
             run: None,
+            #[cfg(feature = "simulate")]
+            replay: None,
         }
     }
 
@@ -155,6 +174,8 @@ impl Answer {
             page: None,
             #[cfg(feature = "simulate")]
             run: None,
+            #[cfg(feature = "simulate")]
+            replay: None,
         }
     }
 

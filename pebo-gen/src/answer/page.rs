@@ -35,7 +35,7 @@ pub(super) fn page(
     #[cfg(feature = "simulate")]
     let run = emitted.as_ref().and_then(|_| {
         let run = described(derived, ask)?;
-        run.map_err(|failed| refusal = Some(failed)).ok()
+        run.map_err(|failed| refusal = Some(failed)).map(|(run, _)| run).ok()
     });
     let diagnostics: Vec<Diagnostic> =
         known.iter().chain(refusal.iter().flat_map(|(_, found)| found)).cloned().collect();
@@ -53,7 +53,7 @@ pub(super) fn page(
 
 /// Runs the closed loop that the model describes, if it describes one.
 #[cfg(feature = "simulate")]
-fn described(derived: &Derived, ask: &Ask) -> Option<Result<Run, Refusal>> {
+fn described(derived: &Derived, ask: &Ask) -> Option<Result<(Run, Option<Diagnostic>), Refusal>> {
     derived.model.simulation.as_ref()?;
     Some(run::run(derived, ask, &AskRun { figure: true, ..AskRun::default() }))
 }

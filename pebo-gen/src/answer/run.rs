@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use crate::derived::Derived;
-use crate::simulate::{Trace, figure};
+use crate::simulate::{Ensemble, Rated, Summary, Trace, figure};
 use crate::source::Diagnostic;
 
 use super::ask::{Ask, AskRun, Stage};
@@ -22,6 +22,11 @@ pub struct Run {
     pub end: f64,
     /// The error of each estimate.
     pub errors: Vec<FinalError>,
+    /// How each estimate settled and how large its error was then; samples that were lost; excitation. Of many runs, of the
+    /// first that came to its end.
+    pub summary: Summary,
+    /// How estimates are spread over many runs, if these were asked for.
+    pub ensemble: Option<Ensemble>,
     /// All signals over time, if they were asked for.
     pub trace: Option<Trace>,
     /// The figure as SVG, if it was asked for.
@@ -40,25 +45,46 @@ pub struct FinalError {
     pub end: f64,
 }
 
-/// Runs the loop; a loop that is not described well is the caller's mistake, one that fails is not.
-pub(super) fn run(derived: &Derived, ask: &Ask, wanted: &AskRun) -> Result<Run, (Standing, Vec<Diagnostic>)> {
-    let scenario = derived.scenario(&wanted.overrides).map_err(|found| (Standing::Malformed, found))?;
-    let samples = scenario.samples();
+/// Runs the loop; a loop that is not described well is the caller's mistake, one that fails is not. Beside it what there is
+/// to say of one that did not converge.
+pub(super) fn run(
+    derived: &Derived,
+    ask: &Ask,
+    wanted: &AskRun,
+) -> Result<(Run, Option<Diagnostic>), (Standing, Vec<Diagnostic>)> {
+    let mut scenario = derived.scenario(&wanted.overrides).map_err(|found| (Standing::Malformed, found))?;
+    let runs = wanted.runs.unwrap_or(1).max(1);
+    let samples = scenario.samples().saturating_mul(runs);
     let mut progress = |done| match &ask.watch {
         Some(watch) => watch(Stage::Run { done, samples }),
         None => ControlFlow::Continue(()),
     };
-    let failed = |failure| (Standing::Refused, vec![scenario.explain(&failure)]);
-    let trace = scenario.run_while(&mut progress).map_err(failed)?;
+    if wanted.runs.is_some() {
+        let ran = scenario.run_often(runs, &mut progress);
+        let (ensemble, first) = ran.map_err(|failure| (Standing::Refused, vec![scenario.explain(&failure)]))?;
+        let figure = wanted.figure.then(|| ensemble.figure(&scenario));
+        let advice = scenario.advise_on(&ensemble);
+        let run = Run { figure, ensemble: Some(ensemble), ..Run::of(first) };
+        return Ok((run, advice));
+    }
+    let ran = scenario.run_while(&mut progress);
+    let trace = ran.map_err(|failure| (Standing::Refused, vec![scenario.explain(&failure)]))?;
     let figure = wanted.figure.then(|| figure::draw(&trace, &scenario));
-    Ok(Run { end: trace.end(), errors: errors(&trace), figure, trace: wanted.trace.then_some(trace) })
+    let summary = trace.summary().clone();
+    let advice = scenario.advise(&summary);
+    Ok((Run { figure, trace: wanted.trace.then_some(trace), ..Run::of(summary) }, advice))
 }
 
-fn errors(trace: &Trace) -> Vec<FinalError> {
-    let states = trace.columns().iter().filter_map(|name| name.strip_suffix(Trace::ERROR));
-    let error = |state: &str| {
-        let values = trace.column(&format!("{state}{}", Trace::ERROR))?;
-        Some(FinalError { state: state.to_owned(), start: *values.first()?, end: *values.last()? })
-    };
-    states.filter_map(error).collect()
+impl Run {
+    /// A run of which nothing else was asked for.
+    fn of(summary: Summary) -> Self {
+        let own = summary.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
+        let error = |rated: &Rated| FinalError {
+            state: rated.estimate.state.clone(),
+            start: rated.score.first,
+            end: rated.score.last,
+        };
+        let errors = own.map(error).collect();
+        Self { end: summary.end, errors, summary, ensemble: None, trace: None, figure: None }
+    }
 }

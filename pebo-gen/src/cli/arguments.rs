@@ -16,6 +16,7 @@ Examples:
   pebo-gen models/*.yaml -o src/observers/        the same for several models, a file each
   pebo-gen check models/*.yaml --format json      verdicts for programs, a line each
   pebo-gen simulate models/cuk.yaml --plot cuk.svg
+  pebo-gen replay models/cuk.yaml --data log.csv -o estimates.csv
   pebo-gen report models/cuk.yaml -o cuk.html     a page that explains the proof
   pebo-gen certificate models/cuk.yaml -o cuk.py  a script that proves the claims again
   pebo-gen explain cascade-refuted                what a diagnostic means, with an example
@@ -37,7 +38,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     pub(super) generate: GenerateOptions,
     /// Time for each model, 10 seconds by default; what is not decided by then is undecided. Memory is limited to
-    /// 512 MB, in proportion more beyond 10 seconds. If given, `simulate` also stops a run that takes longer
+    /// 512 MB, in proportion more beyond 10 seconds. If given, `simulate` and `replay` also stop a run that takes longer
     #[arg(long, global = true, value_name = "SECONDS")]
     pub(super) limit: Option<Limit>,
 }
@@ -85,6 +86,8 @@ pub(super) enum Command {
     Check(CheckOptions),
     /// Simulate the closed loop of plant, control law and observer
     Simulate(SimulateOptions),
+    /// Run the observer over recorded data
+    Replay(ReplayOptions),
     /// Explain a diagnostic by its code
     Explain(ExplainOptions),
     /// Print the completions for a shell
@@ -216,10 +219,10 @@ impl ClassName {
 pub(super) struct SimulateOptions {
     /// The model file, with a `simulation` section; `-` reads standard input
     pub(super) model: PathBuf,
-    /// Draw the figure into this SVG file
+    /// Draw the figure into this SVG file; of many runs, the median of each error and the band of 10 to 90 %
     #[arg(long, value_name = "FILE.svg")]
     pub(super) plot: Option<PathBuf>,
-    /// Write the time series into this CSV file; `-` is standard output
+    /// Write the time series into this CSV file; `-` is standard output. Of many runs, quantiles of the errors
     #[arg(long, value_name = "FILE.csv")]
     pub(super) csv: Option<PathBuf>,
     /// Seconds between rows of the output; by default a thousandth of the duration
@@ -228,12 +231,30 @@ pub(super) struct SimulateOptions {
     /// The sampling period, instead of the model file's
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) step: Option<f64>,
-    /// The seed of the sensors' noise, 1 by default: the same seed gives the same run
+    /// The seed of all chance (noise, jitter, dropped samples), 1 by default: the same seed gives the same run
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,
+    /// Run it so many times, with the seed and those after it, and show how the errors are spread
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub(super) runs: Option<u64>,
     /// Whose estimates the control law uses: observer, truth, or a baseline's name
     #[arg(long, value_name = "NAME")]
     pub(super) feedback: Option<String>,
+}
+
+#[derive(Args)]
+pub(super) struct ReplayOptions {
+    /// The model file, perhaps with a `recording` section that says what the columns mean; `-` reads standard input
+    pub(super) model: PathBuf,
+    /// The recording: CSV with the names of the columns in its first line; `-` reads standard input
+    #[arg(long, value_name = "LOG.csv")]
+    pub(super) data: PathBuf,
+    /// Write the estimates, and their errors where the state was measured, into this CSV file; `-` is standard output
+    #[arg(short = 'o', long, value_name = "OUT.csv", visible_alias = "output")]
+    pub(super) csv: Option<PathBuf>,
+    /// Draw the figure into this SVG file
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) plot: Option<PathBuf>,
 }
 
 #[derive(Args)]

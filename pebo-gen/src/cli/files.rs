@@ -1,11 +1,13 @@
 //! Reading and writing: a file is written whole or not at all.
 
-use std::io::{Read as _, Write as _};
-use std::path::Path;
+use std::fs::File;
+use std::io::{BufWriter, Read as _, Seek as _, Stdout, Write};
+use std::path::{Path, PathBuf};
 
 use pebo_gen::analysis::Class;
 use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
-use pebo_gen::{Answer, Ask, Solution};
+use pebo_gen::{Answer, Ask, Solution, Tape};
+use tempfile::NamedTempFile;
 
 use super::standard::{self, reason};
 
@@ -41,6 +43,22 @@ pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Sol
     }
 }
 
+/// The answer on a model file and a recording, with the text that its diagnostics are about.
+pub(super) fn replay(path: &Path, ask: Ask, tape: Tape<'_>) -> (Source, Answer) {
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    match read(path) {
+        Ok(source) => {
+            let answer = pebo_gen::replay(&source, &ask.named(stem), tape);
+            (source, answer)
+        }
+        Err(unread) => {
+            let (source, diagnostic) = *unread;
+            let answer = Answer::of_unread(&stem, vec![diagnostic], &source);
+            (source, answer)
+        }
+    }
+}
+
 /// Reads a model file, or standard input for `-`; the error comes with a source to show it beside.
 fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
     let name = if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() };
@@ -60,7 +78,7 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     if is_standard(path) {
         std::io::stdin().lock().take(limit).read_to_end(&mut bytes)?;
     } else {
-        std::fs::File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+        File::open(path)?.take(limit).read_to_end(&mut bytes)?;
     }
     Ok(bytes)
 }
@@ -70,17 +88,86 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     if is_standard(path) {
         return standard::write(text.as_bytes());
     }
-    replace(path, text).map_err(|error| {
-        let message = format!("cannot write {}: {}", path.display(), reason(&error));
-        Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
-            .help("check that the folder exists and can be written to")
-    })
+    replace(path, text).map_err(|error| unwritten(path, &error))
+}
+
+/// A file that is written part by part, and is there when it is whole; or standard output for `-`. It grows where it has no
+/// name at all, so that nothing is left of it if the program is ended.
+pub(super) enum Growing {
+    Named(PathBuf, BufWriter<File>),
+    Standard(BufWriter<Stdout>),
+}
+
+impl Growing {
+    pub(super) fn create(path: &Path) -> Result<Self, Diagnostic> {
+        if is_standard(path) {
+            return Ok(Self::Standard(BufWriter::new(std::io::stdout())));
+        }
+        let file = tempfile::tempfile_in(folder(path)).map_err(|error| unwritten(path, &error))?;
+        Ok(Self::Named(path.to_owned(), BufWriter::new(file)))
+    }
+
+    /// Nothing more will be written.
+    pub(super) fn finish(self) -> Result<(), Diagnostic> {
+        match self {
+            Self::Named(path, file) => {
+                let whole = file.into_inner().map_err(std::io::IntoInnerError::into_error);
+                whole.and_then(|file| name(file, &path)).map_err(|error| unwritten(&path, &error))
+            }
+            Self::Standard(mut output) => match output.flush() {
+                Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(standard::unwritten(&error)),
+                _ => Ok(()),
+            },
+        }
+    }
+}
+
+impl Write for Growing {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Self::Named(_, file) => file.write(bytes),
+            // A reader that went away is no error of ours.
+            Self::Standard(output) => match output.write(bytes) {
+                Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+                written => written,
+            },
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Named(_, file) => file.flush(),
+            Self::Standard(output) => output.flush(),
+        }
+    }
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> Diagnostic {
+    let message = format!("cannot write {}: {}", path.display(), reason(error));
+    Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
+        .help("check that the folder exists and can be written to")
 }
 
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    let mut file = NamedTempFile::new_in(folder(path))?;
     file.write_all(text.as_bytes())?;
+    put(file, path)
+}
+
+/// Gives what a file without a name holds a place.
+fn name(mut file: File, path: &Path) -> std::io::Result<()> {
+    file.rewind()?;
+    let mut named = NamedTempFile::new_in(folder(path))?;
+    std::io::copy(&mut file, named.as_file_mut())?;
+    put(named, path)
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Gives a whole file its name.
+fn put(file: NamedTempFile, path: &Path) -> std::io::Result<()> {
     file.as_file().sync_all()?;
     #[cfg(unix)]
     {
@@ -91,6 +178,17 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     }
     file.persist(path).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// What there is to say of a name that asks for a figure in another format than SVG.
+pub(super) fn not_a_figure(path: &Path) -> Option<Diagnostic> {
+    let ending = path.extension()?.to_string_lossy().into_owned();
+    if ending.eq_ignore_ascii_case("svg") {
+        return None;
+    }
+    let message = format!("{} asks for a figure as {ending}, which is not written", path.display());
+    let help = format!("write {}, which other programs turn into {ending}", path.with_extension("svg").display());
+    Some(Diagnostic::error(Code::FigureFormat, Span::NOWHERE, message).help(help))
 }
 
 pub(super) fn is_standard(path: &Path) -> bool {

@@ -9,6 +9,7 @@ mod files;
 mod generate;
 mod manual;
 mod progress;
+mod replay;
 mod report;
 mod simulate;
 mod solve;
@@ -30,6 +31,7 @@ pub(crate) fn run() -> ExitCode {
     let standing = match arguments.command {
         Some(Command::Check(options)) => check::run(&options, arguments.limit.unwrap_or_default()),
         Some(Command::Simulate(options)) => simulate::run(&options, arguments.limit),
+        Some(Command::Replay(options)) => replay::run(&options, arguments.limit),
         Some(Command::Explain(options)) => explain::run(&options),
         Some(Command::Completions(options)) => manual::completions(&options),
         Some(Command::Man) => manual::page(),

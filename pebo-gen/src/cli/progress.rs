@@ -14,6 +14,9 @@ use super::arguments::Limit;
 /// Runs with fewer samples are over before a bar would be seen.
 const LONG_RUN: u64 = 200_000;
 
+/// Recordings of fewer bytes too.
+const LARGE: u64 = 16 << 20;
+
 /// The resolution of the bar.
 const TICKS: u64 = 1000;
 
@@ -26,13 +29,30 @@ pub(super) fn ask(limit: Option<Limit>) -> Ask {
     })
 }
 
+/// A question about a model that is begun now, and a recording of this many bytes.
+pub(super) fn replaying(limit: Option<Limit>, size: Option<u64>) -> Ask {
+    let proof = limit.unwrap_or_default().watch();
+    let most = limit.map(|limit| Duration::from_secs_f64(limit.0));
+    let begun: OnceCell<(Instant, ProgressBar)> = OnceCell::new();
+    limit.unwrap_or_default().ask().watch(move |stage| {
+        let Stage::Replay { bytes, .. } = stage else { return proof(stage) };
+        let (start, bar) = begun.get_or_init(|| (Instant::now(), bar(size.is_some_and(|size| size > LARGE))));
+        bar.set_position(share(real(bytes) / real(size.unwrap_or(1))));
+        let is_over = most.is_some_and(|most| start.elapsed() > most);
+        if is_over || size.is_some_and(|size| bytes >= size) {
+            bar.finish_and_clear();
+        }
+        if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })
+}
+
 /// Shows how far a run is, and ends it at the limit. A run that nobody limits ends by itself: its samples are counted
 /// before it starts.
 fn watch(limit: Option<Limit>) -> impl Fn(f64, u64) -> ControlFlow<()> {
     let begun: OnceCell<(Instant, ProgressBar)> = OnceCell::new();
     let most = limit.map(|limit| Duration::from_secs_f64(limit.0));
     move |done, samples| {
-        let (start, bar) = begun.get_or_init(|| (Instant::now(), progress(samples)));
+        let (start, bar) = begun.get_or_init(|| (Instant::now(), bar(samples >= LONG_RUN)));
         bar.set_position(share(done));
         if done >= 1.0 || most.is_some_and(|most| start.elapsed() > most) {
             bar.finish_and_clear();
@@ -42,8 +62,8 @@ fn watch(limit: Option<Limit>) -> impl Fn(f64, u64) -> ControlFlow<()> {
 }
 
 /// A bar for a long run at a terminal; hidden otherwise.
-fn progress(samples: u64) -> ProgressBar {
-    if samples < LONG_RUN || !std::io::stderr().is_terminal() {
+fn bar(is_long: bool) -> ProgressBar {
+    if !is_long || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(TICKS);
@@ -52,6 +72,11 @@ fn progress(samples: u64) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+#[expect(clippy::cast_precision_loss, reason = "for the eye")]
+fn real(bytes: u64) -> f64 {
+    bytes as f64
 }
 
 #[allow(

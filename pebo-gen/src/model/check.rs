@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::definitions::circles;
 use super::names::admit;
+use super::recording::Recording;
 use super::spanned::{Entry, Spanned};
 use super::written::{Baseline, Model, Simulation};
 use super::{Decimal, Formula};
@@ -18,7 +19,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted
 /// A list of states or outputs that is empty has been reported where it was read: what depends on
 /// it is not reported again.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
-    let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() };
+    let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() || model.recording.is_some() };
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
     pass.circles(&model.define);
@@ -37,6 +38,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
             pass.belong(&simulation.initial, &both, "initial");
             pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
             pass.belong(&simulation.noise, &y, "noise");
+            pass.belong(&simulation.bias, &y, "bias");
+            pass.belong(&simulation.quantisation, &y, "quantisation");
+            pass.belong(&simulation.delay.each, &y, "delay");
             let parameters = model.parameters.iter().map(|entry| &entry.name);
             let true_values = Group::new(parameters.chain(&model.x), "a parameter or a state of x");
             pass.belong(&simulation.plant, &true_values, "plant");
@@ -53,6 +57,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
                 }
             }
         }
+    }
+    if let Some(recording) = &model.recording {
+        pass.recording(recording, model);
     }
     pass.units(model);
     pass.inverted(model);
@@ -83,7 +90,7 @@ impl<'a> Group<'a> {
 
 struct Pass<'a> {
     diagnostics: &'a mut Diagnostics,
-    /// Whether `t` is time.
+    /// Whether `t` is time: where there is a simulation or a recording.
     simulated: bool,
 }
 
@@ -131,6 +138,26 @@ impl Pass<'_> {
                         .help(format!("write up to {LONGEST} letters, digits and signs, as `kg m^2/s`")),
                 );
             }
+        }
+    }
+
+    /// A recording has signals of the plant, and its rows are placed in time in one way.
+    fn recording(&mut self, recording: &Recording, model: &Model) {
+        let signals = || model.x.iter().chain(&model.y).chain(&model.u);
+        self.belong(&recording.signals, &Group::new(signals(), "a state, output or input"), "recording");
+        if let Some(name) = signals().find(|name| name.value == Recording::STEP) {
+            let message = format!("`{}` is reserved for the period of a recording", name.value);
+            self.diagnostics.push(
+                Diagnostic::error(Code::ReservedName, name.span, message)
+                    .help(format!("choose another name, as `{}_0`", name.value)),
+            );
+        }
+        if let (Some(t), Some(step)) = (&recording.t, &recording.step) {
+            self.diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, step.name.span, "`step` stands beside `t`")
+                    .also(t.name.span, "this says when each row was recorded")
+                    .help("remove `t` if the rows are equally far apart, or else `step`"),
+            );
         }
     }
 
@@ -195,9 +222,7 @@ impl Pass<'_> {
         let define = simulation.define.iter().map(|entry| &entry.name);
         let own = self.declare(signals.into_iter().chain(define), &[model]);
         self.circles(&simulation.define);
-        for deviation in &simulation.noise {
-            self.not_negative(&deviation.value, "a standard deviation");
-        }
+        self.sensors(simulation);
         for signal in simulation.signals.iter().chain(&simulation.plant) {
             for pair in signal.value.windows(2) {
                 let [before, after] = pair else { continue };
@@ -226,6 +251,29 @@ impl Pass<'_> {
             }
         }
         self.feedback(simulation);
+    }
+
+    /// What sensors do to samples is possible.
+    fn sensors(&mut self, simulation: &Simulation) {
+        for deviation in &simulation.noise {
+            self.not_negative(&deviation.value, "a standard deviation");
+        }
+        for step in &simulation.quantisation {
+            self.not_negative(&step.value, "the step of a quantisation");
+        }
+        for delay in simulation.delay.written() {
+            self.not_negative(delay, "a delay");
+        }
+        for (share, end, what, help) in [
+            (&simulation.jitter, 0.5, "`jitter`", "write it as a share of the step, as `jitter: 0.3` for 30 %"),
+            (&simulation.dropped, 1.0, "`dropped`", "write a probability, as `dropped: 0.2` for every fifth sample"),
+        ] {
+            let Some(share) = share.as_ref().filter(|share| !(0.0..end).contains(&share.value.to_f64())) else {
+                continue;
+            };
+            let message = format!("{what} must be 0 or more, and below {end}");
+            self.diagnostics.push(Diagnostic::error(Code::NumberOutOfRange, share.span, message).help(help));
+        }
     }
 
     fn feedback(&mut self, simulation: &Simulation) {

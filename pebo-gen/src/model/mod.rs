@@ -16,6 +16,7 @@ mod definitions;
 pub mod formula;
 mod names;
 mod observer;
+mod recording;
 pub mod rust;
 mod spanned;
 mod written;
@@ -30,9 +31,10 @@ pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Hold, Observer};
+pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
 pub use written::{
-    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
+    Baseline, CascadeClass, Delay, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
 };
 
 #[cfg(feature = "yaml")]

@@ -3,15 +3,14 @@
 use super::formula::greek;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 
-/// Whether `text` can be declared as a name, for `what` the name is of; `simulated` if there is a
-/// simulation, in which `t` is time.
+/// Whether `text` can be declared as a name; `simulated` if there is a simulation or a recording, in which `t` is time.
 pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagnostic> {
     if !is_identifier(text) {
         return Err(invalid(text, span));
     }
     let meaning = match coordinate(text) {
         Some(meaning) => meaning,
-        None if text == "t" && simulated => "time in the simulation",
+        None if text == "t" && simulated => "time",
         None => return Ok(()),
     };
     let message = format!("`{text}` is reserved for {meaning}");

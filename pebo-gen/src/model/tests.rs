@@ -38,6 +38,11 @@ simulation:
   initial: {i1: 0, v2: E}
   signals: {V_d: {0: 25, 0.2: 30*t}, V: 1}
   noise: {v2: 0.1}
+  bias: {v2: -0.5}
+  quantisation: {v4: 0.05}
+  delay: {v2: 2e-6}
+  jitter: 0.3
+  dropped: 0.2
   plant: {E: {0: 12, 0.25: 13}}
   define: {power: V_d*hat(i1)}
   control: {d: V_d/(V_d + E)}
@@ -52,6 +57,7 @@ simulation:
   panels:
     - {title: error, unit: A, curves: [hat(i1) - i1, v2], scale: log}
     - {title: duty, curves: [d]}
+recording: {t: time/1000, v2: ch1/256 - 2*L1, d: duty}
 ";
 
 fn source(text: &str) -> Source {
@@ -89,6 +95,12 @@ fn every_key_is_read() {
     assert_eq!(starts, [0.0, 0.2]);
     assert_eq!(simulation.signals[1].value.len(), 1);
     assert_eq!(simulation.noise[0].value.value.text(), "0.1");
+    assert_eq!(simulation.bias[0].value.value.text(), "-0.5");
+    assert_eq!(simulation.quantisation[0].name.value, "v4");
+    let delay = |output: &str| simulation.delay.of(output).map(|delay| delay.value.text());
+    assert_eq!((delay("v2"), delay("v4")), (Some("2e-6"), None));
+    assert_eq!(simulation.jitter.as_ref().map(|share| share.value.text()), Some("0.3"));
+    assert_eq!(simulation.dropped.as_ref().map(|share| share.value.text()), Some("0.2"));
     assert_eq!(simulation.plant[0].value.len(), 2);
     let [copy, kalman, luenberger] = simulation.baselines.as_slice() else { panic!("three baselines") };
     assert_eq!(copy.value.equations().map(|equations| equations.state.len()), Some(1));
@@ -96,6 +108,9 @@ fn every_key_is_read() {
     assert!(matches!(&luenberger.value, Baseline::Luenberger(observer) if observer.poles.len() == 2));
     let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale).collect();
     assert_eq!(scales, [Scale::Log, Scale::Linear]);
+    let recording = model.recording.expect("it is there");
+    assert!(recording.t.is_some() && recording.step.is_none());
+    assert_eq!(recording.of_signal("v2").map(|entry| entry.value.names()[0].0), Some("ch1"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::class::Class;
 use super::definitions::sorted;
 use super::formula::{Comparison, Decimal, Formula};
 use super::observer::Observer;
+use super::recording::Recording;
 use super::spanned::{Entry, Spanned};
 
 /// A model.
@@ -64,6 +65,8 @@ pub struct Model {
     pub observer: Observer,
     /// What to simulate.
     pub simulation: Option<Simulation>,
+    /// What recorded data mean.
+    pub recording: Option<Recording>,
 }
 
 /// A closed loop to simulate.
@@ -79,6 +82,16 @@ pub struct Simulation {
     pub signals: Vec<Entry<Vec<Piece>>>,
     /// Standard deviations of the outputs' samples, in their units; none where absent.
     pub noise: Vec<Entry<Spanned<Decimal>>>,
+    /// Constant offsets of the outputs' sensors, in the units of the outputs; none where absent.
+    pub bias: Vec<Entry<Spanned<Decimal>>>,
+    /// Steps of which a sensor shows multiples, in the units of the outputs; none where absent or 0.
+    pub quantisation: Vec<Entry<Spanned<Decimal>>>,
+    /// How old what a sensor shows is, in seconds.
+    pub delay: Delay,
+    /// How far an instant of the loop is from where it is meant to be, at most, as a share of the step.
+    pub jitter: Option<Spanned<Decimal>>,
+    /// The probability that a sample never arrives.
+    pub dropped: Option<Spanned<Decimal>>,
     /// True values in time of parameters, and of states whose rate is 0, in `t` and the model's parameters: where they
     /// differ from what the model says.
     pub plant: Vec<Entry<Vec<Piece>>>,
@@ -94,6 +107,30 @@ pub struct Simulation {
     pub baselines: Vec<Entry<Baseline>>,
     /// The parts of the figure.
     pub panels: Vec<Panel>,
+}
+
+/// Delays of sensors in seconds: one for all outputs, or some outputs' own; no delay where there is neither.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
+pub struct Delay {
+    /// That of all outputs.
+    pub all: Option<Spanned<Decimal>>,
+    /// Those of outputs by name.
+    pub each: Vec<Entry<Spanned<Decimal>>>,
+}
+
+impl Delay {
+    /// The delay of an output, if it has one.
+    pub fn of(&self, output: &str) -> Option<&Spanned<Decimal>> {
+        let own = self.each.iter().find(|entry| entry.name.value == output).map(|entry| &entry.value);
+        own.or(self.all.as_ref())
+    }
+
+    /// All that are written.
+    pub fn written(&self) -> impl Iterator<Item = &Spanned<Decimal>> {
+        self.all.iter().chain(self.each.iter().map(|entry| &entry.value))
+    }
 }
 
 /// A formula of time that holds from some time on.
@@ -257,6 +294,26 @@ impl Simulation {
 
     /// For `feedback`: the unmeasured states themselves, as the control law may see them in a simulation.
     pub const TRUTH: &str = "truth";
+
+    /// Whether a sample may be other than the output that it is of, or not be there.
+    pub fn is_imperfect(&self) -> bool {
+        let lists = [&self.noise, &self.bias, &self.quantisation].iter().any(|entries| !entries.is_empty());
+        lists || self.delay.written().next().is_some() || self.dropped.is_some()
+    }
+
+    /// The keys that make the plant and its sensors differ from what the model says.
+    pub fn departures(&self) -> Vec<&'static str> {
+        let keys = [
+            ("plant", !self.plant.is_empty()),
+            ("bias", !self.bias.is_empty()),
+            ("delay", self.delay.written().next().is_some()),
+            ("jitter", self.jitter.is_some()),
+            ("noise", !self.noise.is_empty()),
+            ("quantisation", !self.quantisation.is_empty()),
+            ("dropped", self.dropped.is_some()),
+        ];
+        keys.into_iter().filter_map(|(key, is_there)| is_there.then_some(key)).collect()
+    }
 
     /// Whose estimates the control law may see.
     pub fn feedbacks(&self) -> Vec<&str> {

@@ -53,14 +53,75 @@ impl Curve {
     }
 
     fn close(&mut self) {
-        let Some(Span { first, mut least, mut largest, last, .. }) = self.span.take() else { return };
+        if let Some(span) = self.span.take() {
+            span.append(&mut self.points);
+        }
+    }
+}
+
+impl Span {
+    /// Adds the points to a line that ends before them.
+    fn append(self, points: &mut Vec<(f64, f64)>) {
+        let Self { first, mut least, mut largest, last, .. } = self;
         if least.0 > largest.0 {
             std::mem::swap(&mut least, &mut largest);
         }
         for point in [first, least, largest, last] {
-            if self.points.last().is_none_or(|before| before.0 < point.0) {
-                self.points.push(point);
+            if points.last().is_none_or(|before| before.0 < point.0) {
+                points.push(point);
             }
         }
+    }
+
+    /// This and the next in one. What is not finite is a gap only where there is nothing else.
+    fn and(self, next: Self) -> Self {
+        if !self.least.1.is_finite() {
+            return Self { index: self.index, ..next };
+        }
+        if !next.least.1.is_finite() {
+            return self;
+        }
+        let least = if next.least.1 < self.least.1 { next.least } else { self.least };
+        let largest = if next.largest.1 > self.largest.1 { next.largest } else { self.largest };
+        Self { least, largest, last: next.last, ..self }
+    }
+}
+
+/// The same of a curve that is as long as it turns out to be: its spans grow with it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Growing {
+    /// At most twice as many as a curve of known length has.
+    spans: Vec<Span>,
+    /// A span has two to this power samples.
+    doublings: u32,
+    samples: u64,
+}
+
+impl Growing {
+    /// Adds the next sample.
+    pub(super) fn add(&mut self, point: (f64, f64)) {
+        let mut index = self.samples >> self.doublings;
+        if index >= 2 * SPANS {
+            let halved = self.spans.chunks(2).map(|pair| {
+                let both = pair.iter().copied().reduce(Span::and).unwrap_or(pair[0]);
+                Span { index: both.index / 2, ..both }
+            });
+            self.spans = halved.collect();
+            self.doublings += 1;
+            index /= 2;
+        }
+        self.samples += 1;
+        let span = Span { index, first: point, least: point, largest: point, last: point };
+        match self.spans.last_mut() {
+            Some(last) if last.index == index => *last = last.and(span),
+            _ => self.spans.push(span),
+        }
+    }
+
+    /// The points, after the last sample.
+    pub(super) fn finish(self) -> Vec<(f64, f64)> {
+        let mut points = Vec::new();
+        self.spans.into_iter().for_each(|span| span.append(&mut points));
+        points
     }
 }

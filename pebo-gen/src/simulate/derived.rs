@@ -15,15 +15,19 @@ use pebo_runtime::{
 
 use crate::program::{Interpreter, Program};
 
-use super::estimator::Chosen;
+use super::excitation::Said;
 use super::observer::Design;
 use super::sizes::{LARGEST, MOST_MIXED, pad};
+use super::watched::Watched;
 use super::window::Passage;
 
 /// An observer of some size.
 pub(super) trait Estimation: fmt::Debug {
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates.
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+
+    /// What the data so far say of each component of the unknown.
+    fn said(&self) -> Said;
 
     /// The coordinates z that a value of theta gives with the extension as it is.
     #[cfg(test)]
@@ -232,7 +236,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
 impl<X: Known<N>, K: Kind, const N: usize> Rebase<N, N, N, N, N> for Derived<X, K, N> {}
 
 type Inner<X, K, const N: usize> =
-    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Chosen<N>, N>, N, N, N, N, N, N, Passage<N>>;
+    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
 
 /// The runtime's observer at size N.
 struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
@@ -241,7 +245,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator = Bounded::new(Chosen::new(&settings.estimator)?, &lower, &upper)?;
+        let estimator = Bounded::new(Watched::new(&settings.estimator, design.unknowns)?, &lower, &upper)?;
         let passage = Passage::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
@@ -264,6 +268,10 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         let estimate = self.0.step(pad(y), pad(u), dt)?;
         hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
         Ok(())
+    }
+
+    fn said(&self) -> Said {
+        self.0.estimator().estimator().said()
     }
 
     #[cfg(test)]

@@ -71,6 +71,13 @@ impl Label {
         self
     }
 
+    /// The label of a state's estimate.
+    pub(super) fn estimate(state: &str) -> Self {
+        let mut label = Self::default();
+        label.write_name(state, true);
+        label
+    }
+
     /// The label of a state's estimate less the state.
     pub(super) fn error(state: &str) -> Self {
         let mut label = Self::default();

@@ -15,7 +15,7 @@ use crate::source::{Code, Diagnostic, Span};
 pub(super) const TIME: usize = 0;
 
 /// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
-/// estimates; the baselines' estimates; signals and courses; noise.
+/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show.
 #[derive(Debug)]
 pub(super) struct Layout {
     /// The symbols in the order of the table.
@@ -23,6 +23,8 @@ pub(super) struct Layout {
     /// x, y and the baselines' states together.
     pub(super) state: Range<usize>,
     pub(super) x: Range<usize>,
+    /// The outputs as they are.
+    pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,
     /// The observer's estimates.
     pub(super) hat: Range<usize>,
@@ -30,8 +32,8 @@ pub(super) struct Layout {
     pub(super) rivals: Range<usize>,
     /// Signals, then the courses of what is true of the plant.
     pub(super) signals: Range<usize>,
-    /// The noise of each noisy output's last sample.
-    pub(super) noise: Range<usize>,
+    /// The last sample of each output that arrived; empty where sensors are perfect.
+    pub(super) shown: Range<usize>,
 }
 
 impl Layout {
@@ -46,7 +48,7 @@ impl Layout {
         };
         let baselines = || simulation.baselines.iter();
         let x = add(plant.x.iter().map(|state| state.symbol).collect());
-        add(plant.y.iter().map(|output| output.symbol).collect());
+        let y = add(plant.y.iter().map(|output| output.symbol).collect());
         let own = add(baselines()
             .filter_map(|b| Some((&b.name.value, b.value.equations()?)))
             .flat_map(|(name, b)| b.state.iter().map(|entry| rival_state(arena, name, &entry.name.value)))
@@ -57,8 +59,9 @@ impl Layout {
         let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
         let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
         let signals = add(signals.chain(courses).collect());
-        let noise = add(simulation.noise.iter().map(|entry| noise(arena, &entry.name.value)).collect());
-        Self { symbols, state: x.start..own.end, x, u, hat, rivals, signals, noise }
+        let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
+        let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
+        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals, shown }
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.
@@ -90,9 +93,9 @@ pub(super) fn course(arena: &Arena, name: &str) -> Symbol {
     arena.generated(&format!("plant({name})"))
 }
 
-/// The noise of an output.
-pub(super) fn noise(arena: &Arena, output: &str) -> Symbol {
-    arena.generated(&format!("noise({output})"))
+/// The last sample of an output that arrived.
+pub(super) fn shown(arena: &Arena, output: &str) -> Symbol {
+    arena.generated(&format!("shown({output})"))
 }
 
 /// The observer's estimate of a state.

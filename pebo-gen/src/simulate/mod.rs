@@ -8,15 +8,21 @@
 //! of the loop, or a diagnostic where the sections do not say enough, or the fact that the run could
 //! not go on. The observer is the runtime library's own, on a model that is interpreted. The plant, which may differ from
 //! its model (`truth`), and the baselines that have equations are one ODE between two samples; baselines by name (`rival`)
-//! are fed the samples that the observer is. No file is touched here and nothing printed.
+//! are fed the samples that the observer is. Between plant and observers are sensors (`sensor`), whose samples may be
+//! noisy, offset, rounded, late, at other instants or not there. No file is touched here and nothing printed.
 //!
 //! Holds: the same scenario gives the same trace, to the last bit.
 
+mod advice;
+mod asked;
 mod control;
 mod curve;
 mod derived;
+mod ensemble;
 mod estimator;
+mod excitation;
 mod failure;
+mod faults;
 pub mod figure;
 mod flow;
 mod label;
@@ -25,23 +31,34 @@ mod noise;
 mod observer;
 mod overrides;
 mod panel;
+pub mod replay;
 mod rival;
 mod run;
 mod scenario;
 mod scope;
+mod score;
+mod sensor;
 mod settings;
 mod signal;
 mod sizes;
+mod stepping;
+mod summary;
 mod timing;
 mod trace;
 mod truth;
 mod unit;
+mod watched;
 mod window;
 
 #[cfg(test)]
 mod tests;
 
+pub use ensemble::{Ensemble, Quantiles, Spread};
+pub use excitation::Excitation;
 pub use failure::Failure;
+pub use faults::Faults;
 pub use overrides::Overrides;
 pub use scenario::Scenario;
+pub use score::{SETTLED, Score};
+pub use summary::{Estimate, Rated, Summary};
 pub use trace::Trace;

@@ -1,8 +1,8 @@
-//! Noise of the sensors: normal, white, and the same in every run with the same seed.
+//! Chance: numbers that are white, and the same in every run with the same seed.
 //!
-//! In: a seed, and which sample of which output. Out: a normal number. Nothing is kept from one number to the next, so
-//! that the noise of an output does not depend on which others are noisy or how often anybody looks. It is ours and no
-//! library's, because a figure must not change with a library's version.
+//! In: a seed, and which sample of which stream; an output is a stream. Out: a normal number, or a uniform one. Nothing is
+//! kept from one number to the next, so that the noise of an output does not depend on which others are noisy or how often
+//! anybody looks. It is ours and no library's, because a figure must not change with a library's version.
 //!
 //! Method: the finaliser of `SplitMix64` (Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, 2014) as a
 //! hash of the three; Box and Muller's method.
@@ -14,12 +14,26 @@ use super::timing::real;
 /// `SplitMix64`'s increment, the golden ratio's fraction of 2^64.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
+/// The stream that says which samples are dropped.
+pub(super) const DROPPED: u64 = u64::MAX;
+
+/// The stream that says how far an instant is from its place.
+pub(super) const JITTER: u64 = u64::MAX - 1;
+
 /// A normal number of variance 1.
-pub(super) fn normal(seed: u64, output: u64, sample: u64) -> f64 {
-    let stream = mixed(mixed(seed.wrapping_add(STEP)).wrapping_add(output.wrapping_mul(STEP)));
-    let at = |number: u64| mixed(stream.wrapping_add(number.wrapping_mul(STEP)));
-    let [radius, angle] = [at(2 * sample + 1), at(2 * sample + 2)].map(uniform);
+pub(super) fn normal(seed: u64, stream: u64, sample: u64) -> f64 {
+    let [radius, angle] = [2 * sample + 1, 2 * sample + 2].map(|number| drawn(seed, stream, number));
     (-2.0 * radius.ln()).sqrt() * (TAU * angle).cos()
+}
+
+/// A number evenly spread between 0 and 1.
+pub(super) fn even(seed: u64, stream: u64, sample: u64) -> f64 {
+    drawn(seed, stream, sample + 1)
+}
+
+fn drawn(seed: u64, stream: u64, number: u64) -> f64 {
+    let stream = mixed(mixed(seed.wrapping_add(STEP)).wrapping_add(stream.wrapping_mul(STEP)));
+    uniform(mixed(stream.wrapping_add(number.wrapping_mul(STEP))))
 }
 
 fn mixed(bits: u64) -> u64 {
@@ -35,7 +49,7 @@ fn uniform(bits: u64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::normal;
+    use super::{DROPPED, even, normal};
 
     /// Moments of many numbers, and correlations with those beside them in all three directions.
     #[test]
@@ -55,5 +69,11 @@ mod tests {
         near(mean(&|k| at(k) * at(k + 1)), 0.0, 1.0);
         near(mean(&|k| at(k) * normal(7, 3, k)), 0.0, 1.0);
         near(mean(&|k| at(k) * normal(8, 2, k)), 0.0, 1.0);
+        let share = |k: u64| even(7, DROPPED, k);
+        assert!((0..u64::from(COUNT)).all(|k| share(k) > 0.0 && share(k) <= 1.0));
+        near(mean(&share), 0.5, 1.0 / 12.0);
+        near(mean(&|k| (share(k) - 0.5).powi(2)), 1.0 / 12.0, 1.0 / 180.0);
+        near(mean(&|k| (share(k) - 0.5) * (share(k + 1) - 0.5)), 0.0, 1.0 / 144.0);
+        near(mean(&|k| (share(k) - 0.5) * at(k)), 0.0, 1.0 / 12.0);
     }
 }

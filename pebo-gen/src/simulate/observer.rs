@@ -8,8 +8,8 @@ use crate::plant::settings::cannot_rebase;
 use crate::program::Program;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::asked::Asked;
 use super::layout::program;
-use super::scope::Names;
 use super::settings::Settings;
 use super::sizes::LARGEST;
 
@@ -45,6 +45,8 @@ pub(super) struct Design {
     pub(super) phi_left: Program,
     /// The number of unknowns eta.
     pub(super) unknowns: usize,
+    /// The unknowns as formulas in theta.
+    pub(super) unknown_names: Vec<String>,
     /// Regression and estimator.
     pub(super) settings: Settings,
 }
@@ -52,18 +54,18 @@ pub(super) struct Design {
 impl Design {
     /// The design of an accepted derivation; `numbers` are the values of the parameters.
     pub(super) fn resolve(
-        names: &Names,
+        asked: &Asked,
         derivation: &Derivation,
         numbers: &BTreeMap<Symbol, Expr>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
-        let plant = names.plant;
-        let span = names.model.name.span;
+        let plant = asked.plant;
+        let span = asked.model.name.span;
         let cascade = derivation.cascade.result.as_ref()?;
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        let settings = Settings::resolve(names, (regression, inverse), problems)?;
-        if let Some(rebase) = names.model.observer.rebase.as_ref().filter(|_| !derivation.can_rebase(plant)) {
+        let settings = Settings::resolve(asked, (regression, inverse), problems)?;
+        if let Some(rebase) = asked.model.observer.rebase.as_ref().filter(|_| !derivation.can_rebase(plant)) {
             problems.push(cannot_rebase(&plant.name, rebase.span));
             return None;
         }
@@ -104,6 +106,7 @@ impl Design {
             inputs: plant.u.len(),
             coordinates: plant.phi.len(),
             unknowns: regression.eta.len(),
+            unknown_names: regression.eta.iter().map(|unknown| arena.print(*unknown)).collect(),
             settings,
         };
         problems.keep(design.admit_size(span))?;

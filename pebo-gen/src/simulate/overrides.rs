@@ -5,7 +5,7 @@
 pub struct Overrides {
     /// Whose estimates the control law sees: `observer`, `truth`, or a baseline.
     pub feedback: Option<String>,
-    /// The seed of the noise; [`Overrides::SEED`] if absent.
+    /// The seed of all chance: noise, jitter, dropped samples; [`Overrides::SEED`] if absent.
     pub seed: Option<u64>,
     /// The duration in seconds.
     pub duration: Option<f64>,

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::{Expr, Symbol};
 use crate::model::Scale;
-use crate::plant::lower;
+use crate::plant::{Plant, lower};
 use crate::source::Diagnostics;
 
 use super::label::Label;
@@ -24,6 +24,20 @@ pub(super) struct Panel {
     pub(super) scale: Scale,
     /// The labels of its curves.
     pub(super) curves: Vec<Label>,
+}
+
+impl Panel {
+    /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
+    pub(super) fn of_signals(plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label)>) -> Self {
+        let unit_of = |symbol: &Symbol| plant.units.get(symbol).map(String::as_str);
+        let unit = unit::same(curves.iter().map(|curve| unit_of(&curve.0))).map(str::to_owned);
+        let labelled = |(symbol, label): (Symbol, Label)| match unit_of(&symbol).filter(|_| unit.is_none()) {
+            Some(unit) => label.then(Label::text(&format!(" in {unit}"))),
+            None => label,
+        };
+        let curves = curves.into_iter().map(labelled).collect();
+        Self { title: title.to_owned(), unit, scale, curves }
+    }
 }
 
 /// The panels, and the values of their curves one after the other.
@@ -99,16 +113,11 @@ impl Pass<'_> {
         }
     }
 
-    /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
     fn signals(&mut self, title: &str, scale: Scale, curves: Vec<(Symbol, Label, Expr)>) {
-        let common = unit::same(curves.iter().map(|curve| self.unit(curve.0))).map(str::to_owned);
-        let beside = |symbol: Symbol| self.unit(symbol).filter(|_| common.is_none());
-        let labelled = curves.into_iter().map(|(symbol, label, value)| match beside(symbol) {
-            Some(unit) => (label.then(Label::text(&format!(" in {unit}"))), value),
-            None => (label, value),
-        });
-        let labelled = labelled.collect();
-        self.add((title, common, scale), labelled);
+        let (labels, values): (Vec<_>, Vec<Expr>) =
+            curves.into_iter().map(|(symbol, label, value)| ((symbol, label), value)).unzip();
+        let panel = Panel::of_signals(self.names.plant, title, scale, labels);
+        self.add((title, panel.unit, scale), panel.curves.into_iter().zip(values).collect());
     }
 
     /// The unit that the model gives a signal.

@@ -3,20 +3,27 @@
 //! ```text
 //! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, told of u_0 -> u_1 -> ..
 //! ```
+//!
+//! Between y and the observers are the sensors, whose samples may be late, wrong, or not there. With jitter the instants
+//! move, at which the loop samples and sets its inputs; observers are told the period that is meant.
 
 use std::ops::ControlFlow;
 
 use crate::program::{Interpreter, Program};
 
 use super::curve::Curve;
-use super::derived::{Estimation, observer};
+use super::derived::observer;
+use super::excitation::Watch;
 use super::failure::Failure;
 use super::flow::Flow;
 use super::layout::TIME;
-use super::noise::normal;
 use super::rival::Follower;
-use super::scenario::Scenario;
+use super::scenario::{Judged, Scenario};
+use super::score::Scoring;
+use super::sensor::{Sensing, instant};
 use super::signal::Course;
+use super::stepping::Stepping;
+use super::summary::{Rated, Summary};
 use super::timing::real;
 use super::trace::Trace;
 
@@ -32,8 +39,21 @@ impl Scenario {
     /// The same, but for a caller who is told now and then which part is done, 0 to 1, and may end it there with
     /// [`Failure::Stopped`].
     pub fn run_while(&self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Trace, Failure> {
-        let mut machine = Machine::start(self)?;
         let mut record = Record::new(self);
+        let summary = self.follow(&mut |sample, table| record.take(sample, table), progress)?;
+        Ok(record.finish(summary))
+    }
+
+    /// Runs the loop, shows its table at each sample, and gives what it came to.
+    pub(super) fn follow(
+        &self,
+        show: &mut dyn FnMut(u64, Shown<'_>),
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Summary, Failure> {
+        let mut machine = Machine::start(self)?;
+        let mut errors = Formulas::new(&self.errors);
+        let mut scores: Vec<Scoring> = self.judged.iter().map(|judged| Scoring::new(judged.period)).collect();
+        let mut watch = Watch::default();
         let samples = self.timing.samples;
         let stride = (samples / REPORTS).max(1);
         for sample in 0..=samples {
@@ -41,13 +61,39 @@ impl Scenario {
                 machine.advance(sample)?;
             }
             machine.control()?;
-            record.take(sample, &machine.table);
+            let table = &machine.table;
+            let errors = errors.of(table);
+            for ((score, judged), error) in scores.iter_mut().zip(&self.judged).zip(errors) {
+                score.add(table[TIME], *error, table[judged.truth]);
+            }
+            show(sample, Shown { table, errors });
+            if sample % stride == 0 || sample == samples {
+                watch.look(table[TIME], &machine.stepping.observer.said());
+            }
             if sample % stride == 0 && progress(real(sample) / real(samples)).is_break() {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
-        Ok(record.finish())
+        let rated =
+            |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
+        Ok(Summary {
+            end: machine.table[TIME],
+            samples,
+            estimates: self.judged.iter().zip(&scores).map(rated).collect(),
+            excitation: watch.excitation(&self.design.unknown_names),
+            faults: machine.stepping.faults().clone(),
+            dropped: machine.stepping.dropped(),
+        })
     }
+}
+
+/// What there is to see at a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown<'a> {
+    /// All values.
+    pub(super) table: &'a [f64],
+    /// The errors of the estimates.
+    pub(super) errors: &'a [f64],
 }
 
 /// A program with room for its values.
@@ -74,8 +120,9 @@ pub(super) struct Machine<'a> {
     scenario: &'a Scenario,
     /// All values, see [`Layout`](super::layout::Layout).
     pub(super) table: Vec<f64>,
-    pub(super) observer: Box<dyn Estimation>,
+    pub(super) stepping: Stepping,
     flow: Flow,
+    sensing: Sensing<'a>,
     signals: Vec<Course>,
     given: Formulas,
     measured: Formulas,
@@ -93,7 +140,8 @@ impl<'a> Machine<'a> {
         let mut machine = Self {
             scenario,
             table: vec![0.0; layout.symbols.len()],
-            observer: observer(&scenario.design).map_err(refused)?,
+            stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
+            sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
                 &scenario.rates,
                 layout.state.clone(),
@@ -109,20 +157,25 @@ impl<'a> Machine<'a> {
         };
         machine.read_signals();
         let mut start = Formulas::new(&scenario.start);
-        let state = start.of(&machine.table);
-        machine.table[layout.state.clone()].copy_from_slice(state);
-        machine.measure(0);
+        // Baselines start from what the sensors show of the plant's start.
+        for _ in 0..2 {
+            let state = start.of(&machine.table);
+            machine.table[layout.state.clone()].copy_from_slice(state);
+            machine.sensing = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
+            machine.measure(0);
+        }
         machine.admit(layout.state.clone())?;
         let (x, y) = (&machine.table[layout.x.clone()], machine.measured.of(&machine.table));
         let followers = scenario.followers.iter();
         machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
-        machine.estimate()?;
+        machine.estimate(true)?;
         Ok(machine)
     }
 
     /// Goes on to this sample, with the inputs held.
     pub(super) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
-        let (from, to) = (self.table[TIME], self.scenario.timing.at(sample));
+        let Scenario { timing, jitter, seed, .. } = self.scenario;
+        let (from, to) = (self.table[TIME], instant(timing, *jitter, *seed, sample));
         let stuck = |stuck: super::flow::Stuck| Failure::Stuck { at: from, steps: stuck.0 };
         self.flow.advance(&mut self.table, from, to).map_err(stuck)?;
         self.table[TIME] = to;
@@ -131,12 +184,12 @@ impl<'a> Machine<'a> {
         for (position, value) in self.scenario.given.0.iter().zip(given) {
             self.table[*position] = *value;
         }
-        self.measure(sample);
+        let arrives = self.measure(sample);
         self.admit(self.scenario.layout.state.clone())?;
-        let y = self.measured.of(&self.table);
+        let y = Some(self.measured.of(&self.table)).filter(|_| arrives);
         let u = &self.table[self.scenario.layout.u.clone()];
         self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
-        self.estimate()
+        self.estimate(arrives)
     }
 
     /// Sets the inputs for the interval to come.
@@ -155,16 +208,15 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Draws the noise of this sample.
-    fn measure(&mut self, sample: u64) {
-        let noisy = self.scenario.layout.noise.clone().zip(&self.scenario.deviations).zip(0_u64..);
-        for ((position, deviation), output) in noisy {
-            self.table[position] = deviation * normal(self.scenario.seed, output, sample);
-        }
+    /// Lets the sensors take this sample; whether it arrives.
+    fn measure(&mut self, sample: u64) -> bool {
+        let layout = &self.scenario.layout;
+        let (before, after) = self.table.split_at_mut(layout.shown.start);
+        self.sensing.sample(sample, before[TIME], &before[layout.y.clone()], &mut after[..layout.shown.len()])
     }
 
-    /// Lets all observers have the outputs of now and the inputs of the interval before.
-    fn estimate(&mut self) -> Result<(), Failure> {
+    /// Lets all observers have the sample of now, if it arrives, and the inputs of the interval before.
+    fn estimate(&mut self, arrives: bool) -> Result<(), Failure> {
         let layout = &self.scenario.layout;
         for ((place, _), follower) in self.scenario.followers.iter().zip(&self.followers) {
             follower.write(&mut self.table[place.clone()]);
@@ -176,9 +228,15 @@ impl<'a> Machine<'a> {
         let y = self.measured.of(&self.table);
         let (before, after) = self.table.split_at_mut(layout.hat.start);
         let hat = &mut after[..layout.hat.len()];
-        self.observer
-            .sample(y, &before[layout.u.clone()], self.scenario.timing.step, hat)
-            .map_err(|fault| Failure::Refused { at: before[TIME], fault })
+        let (u, step) = (&before[layout.u.clone()], self.scenario.timing.step);
+        if !arrives {
+            self.stepping.miss(u, step);
+            return Ok(());
+        }
+        match self.stepping.arrive(y, u, step, hat) {
+            Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
+            _ => Ok(()),
+        }
     }
 
     /// Whether the values at these positions are finite.
@@ -196,10 +254,9 @@ impl<'a> Machine<'a> {
 #[derive(Debug)]
 struct Record<'a> {
     scenario: &'a Scenario,
-    trace: Trace,
+    rows: Vec<f64>,
     next_row: u64,
     measured: Formulas,
-    errors: Formulas,
     values: Formulas,
     curves: Vec<Curve>,
 }
@@ -208,16 +265,15 @@ impl<'a> Record<'a> {
     fn new(scenario: &'a Scenario) -> Self {
         Self {
             scenario,
-            trace: Trace::new(scenario.columns.clone()),
+            rows: Vec::new(),
             next_row: 0,
             measured: Formulas::new(&scenario.measured),
-            errors: Formulas::new(&scenario.errors),
             values: Formulas::new(&scenario.curves),
             curves: vec![Curve::default(); scenario.curves.outputs.len()],
         }
     }
 
-    fn take(&mut self, sample: u64, table: &[f64]) {
+    fn take(&mut self, sample: u64, Shown { table, errors }: Shown<'_>) {
         let timing = &self.scenario.timing;
         for (curve, value) in self.curves.iter_mut().zip(self.values.of(table)) {
             curve.add(sample, timing.samples, (table[TIME], *value));
@@ -227,21 +283,21 @@ impl<'a> Record<'a> {
         }
         self.next_row += 1;
         let layout = &self.scenario.layout;
-        self.trace.push(table[TIME]);
-        table[layout.x.clone()].iter().for_each(|state| self.trace.push(*state));
-        self.measured.of(table).iter().for_each(|output| self.trace.push(*output));
-        table[layout.u.clone()].iter().for_each(|input| self.trace.push(*input));
-        for (hat, error) in table[layout.hat.clone()].iter().zip(self.errors.of(table)) {
-            self.trace.push(*hat);
-            self.trace.push(*error);
+        self.rows.push(table[TIME]);
+        self.rows.extend(&table[layout.x.clone()]);
+        self.rows.extend(self.measured.of(table));
+        self.rows.extend(&table[layout.u.clone()]);
+        // The errors of the observer's estimates are the first.
+        for (hat, error) in table[layout.hat.clone()].iter().zip(errors) {
+            self.rows.extend([*hat, *error]);
         }
-        table[layout.rivals.clone()].iter().for_each(|estimate| self.trace.push(*estimate));
+        self.rows.extend(&table[layout.rivals.clone()]);
     }
 
-    fn finish(mut self) -> Trace {
+    fn finish(self, summary: Summary) -> Trace {
         let mut curves = self.curves.into_iter().map(Curve::finish);
         let panels = self.scenario.panels.iter();
-        self.trace.curves = panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect();
-        self.trace
+        let curves = panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect();
+        Trace::new((self.scenario.columns.clone(), self.rows), curves, summary)
     }
 }

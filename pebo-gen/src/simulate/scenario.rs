@@ -10,19 +10,22 @@ use crate::analysis::Derivation;
 use crate::cas::{Expr, Symbol};
 use crate::model::{Model, Simulation};
 use crate::plant::Plant;
-use crate::program::Program;
+use crate::program::{Interpreter, Program};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::advice::advise;
 use super::control;
 use super::failure::Failure;
 use super::flow;
-use super::layout::{Layout, estimate, rival_estimate};
+use super::layout::{Layout, estimate, program, rival_estimate};
 use super::observer::Design;
 use super::overrides::Overrides;
 use super::panel::{Panel, Panels};
 use super::rival::{Rival, Sampled};
 use super::scope::{Estimates, Names, Sight, View};
+use super::sensor::Sensors;
 use super::signal::Signal;
+use super::summary::{Estimate, Summary};
 use super::timing::Timing;
 use super::trace::Trace;
 use super::truth::Truth;
@@ -44,12 +47,15 @@ pub struct Scenario {
     pub(super) start: Program,
     /// The values of states and outputs that are not integrated, with their positions in the table.
     pub(super) given: (Vec<usize>, Program),
-    /// What the sensors show.
+    /// What the sensors showed last.
     pub(super) measured: Program,
-    /// The standard deviations of the noise.
-    pub(super) deviations: Vec<f64>,
-    /// Of the noise.
+    pub(super) sensors: Sensors,
+    /// How far instants are from their places at most, in steps.
+    pub(super) jitter: f64,
+    /// Of chance.
     pub(super) seed: u64,
+    /// In what the plant and its sensors differ from what the model says: keys of the section.
+    pub(super) departures: Vec<&'static str>,
     /// The rates of the state.
     pub(super) rates: Program,
     /// The baselines' estimates.
@@ -58,7 +64,9 @@ pub struct Scenario {
     pub(super) followers: Vec<(Range<usize>, Sampled)>,
     /// The inputs.
     pub(super) control: Program,
-    /// The errors of the observer's estimates.
+    /// The estimates, those of the observer first.
+    pub(super) judged: Vec<Judged>,
+    /// Their errors.
     pub(super) errors: Program,
     pub(super) panels: Vec<Panel>,
     /// The values of the panels' curves.
@@ -68,6 +76,16 @@ pub struct Scenario {
     /// The names of the table's values.
     pub(super) names: Vec<String>,
     span: Span,
+}
+
+/// An estimate that is compared with the state that it is of.
+#[derive(Debug)]
+pub(super) struct Judged {
+    pub(super) estimate: Estimate,
+    /// Where the state stands in the table.
+    pub(super) truth: usize,
+    /// Of an angle.
+    pub(super) period: Option<f64>,
 }
 
 impl Scenario {
@@ -93,6 +111,11 @@ impl Scenario {
     /// The number of samples of a run.
     pub fn samples(&self) -> u64 {
         self.timing.samples
+    }
+
+    /// What there is to say of a run that did not converge: why, and what mends it.
+    pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
+        advise(summary, (&self.design.settings.estimator, &self.departures), self.span)
     }
 
     /// A failure of a run as a diagnostic at the section that was run.
@@ -128,7 +151,7 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names, derivation, &numbers, problems);
+        let design = Design::resolve(&names.asked(), derivation, &numbers, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
@@ -148,7 +171,7 @@ impl Resolution<'_> {
             .collect();
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
-        let errors = errors(plant, derivation, &numbers, &hats);
+        let errors = errors(plant, &periods(plant, derivation, &numbers), &hats);
         let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
 
         let layout = Layout::new(plant, simulation, &design.recovered);
@@ -167,6 +190,8 @@ impl Resolution<'_> {
         let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs.clone()).collect();
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
+        let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
+        let (judged, errors) = judged((plant, &layout.symbols), &periods(plant, derivation, &numbers), &hats, &rivals);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
@@ -174,12 +199,15 @@ impl Resolution<'_> {
             start: compile(&start)?,
             given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
             measured: compile(&measured)?,
-            deviations: simulation.noise.iter().map(|entry| entry.value.value.to_f64()).collect(),
+            sensors,
+            jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
+            departures: simulation.departures(),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
             rivals: compile(&estimates)?,
             followers,
             control: compile(&control)?,
+            judged,
             errors: compile(&errors)?,
             curves: compile(&panels.values)?,
             panels: panels.panels,
@@ -248,13 +276,20 @@ fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range
     rivals.iter_mut().filter_map(follower).collect()
 }
 
+/// The periods of angles.
+pub(super) fn periods(
+    plant: &Plant,
+    derivation: &Derivation,
+    numbers: &BTreeMap<Symbol, Expr>,
+) -> BTreeMap<Symbol, Expr> {
+    let modulo = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.modulo);
+    modulo.map(|(state, period)| (*state, plant.arena.substitute(*period, numbers))).collect()
+}
+
 /// Estimate less truth; for an angle, the difference that is least in magnitude.
-fn errors(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> Vec<Expr> {
+fn errors(plant: &Plant, periods: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> Vec<Expr> {
     use crate::cas::Function::{Atan2, Cos, Sin};
     let arena = &plant.arena;
-    let modulo = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.modulo);
-    let periods: BTreeMap<Symbol, Expr> =
-        modulo.map(|(state, period)| (*state, arena.substitute(*period, numbers))).collect();
     let error = |(state, hat): &(String, Expr)| {
         let symbol = arena.symbol(state);
         let difference = arena.sub(*hat, arena.of_symbol(symbol));
@@ -264,6 +299,40 @@ fn errors(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Exp
         arena.div(arena.call(Atan2, &[arena.call(Sin, &[angle]), arena.call(Cos, &[angle])]), turn)
     };
     hats.iter().map(error).collect()
+}
+
+/// Every estimate with its error: those of the observer, then those of each baseline.
+pub(super) fn judged(
+    (plant, table): (&Plant, &[Symbol]),
+    periods: &BTreeMap<Symbol, Expr>,
+    hats: &Estimates,
+    rivals: &[Rival],
+) -> (Vec<Judged>, Vec<Expr>) {
+    let arena = &plant.arena;
+    let of_rivals = rivals.iter().flat_map(|rival| {
+        let estimates = rival
+            .estimates
+            .iter()
+            .map(|(state, _)| (state.clone(), arena.of_symbol(rival_estimate(arena, &rival.name, state))));
+        estimates.map(|estimate| (Some(rival.name.clone()), estimate))
+    });
+    let own = hats.iter().cloned().map(|estimate| (None, estimate));
+    let (baselines, estimates): (Vec<_>, Estimates) = own.chain(of_rivals).unzip();
+    let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
+        let symbol = arena.symbol(state);
+        let period = periods.get(&symbol).and_then(|period| program(arena, &[], &[*period], Span::NOWHERE).ok());
+        Some(Judged {
+            estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
+            truth: table.iter().position(|known| *known == symbol)?,
+            period: period.map(|period| {
+                let mut value = [f64::NAN];
+                Interpreter::new(&period).run(&[], &mut value);
+                value[0]
+            }),
+        })
+    };
+    let judged = baselines.into_iter().zip(&estimates).filter_map(judge).collect();
+    (judged, errors(plant, periods, &estimates))
 }
 
 fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String> {

@@ -1,7 +1,8 @@
 //! What each place of the section `simulation` can see.
 //!
-//! Parameters are numbers here, those of the model; an output is what its sensor shows, noise included. A definition is lowered in each place anew, so that `hat(x)` in it is
-//! the estimate of the place that uses it; where it needs what is hidden, the definition is hidden too.
+//! Parameters are numbers here, those of the model; an output is what its sensor showed last. A definition is lowered in
+//! each place anew, so that `hat(x)` in it is the estimate of the place that uses it; where it needs what is hidden, the
+//! definition is hidden too.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,8 @@ use crate::model::{Entry, Equations, Formula, Model, Simulation};
 use crate::plant::{Plant, Scope, lower};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::layout::{noise, rival_state, time};
+use super::asked::Asked;
+use super::layout::{rival_state, shown, time};
 
 /// Estimates by the state's name.
 pub(super) type Estimates = Vec<(String, Expr)>;
@@ -60,25 +62,24 @@ impl<'a> Names<'a> {
         numbers.chain(entries).chain(signals).chain(feedback).min().unwrap_or(self.model.name.span)
     }
 
+    /// The observer of the model, asked for by its simulation.
+    pub(super) fn asked(&self) -> Asked<'a> {
+        Asked { model: self.model, plant: self.plant, section: self.section(), who: "the simulation" }
+    }
+
     /// The values of the parameters that have one.
     pub(super) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
-        let given = self.plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.clone()?)));
-        given.map(|(symbol, value)| (symbol, self.plant.arena.number(value))).collect()
+        self.asked().numbers()
     }
 
-    /// Outputs with noise.
-    fn noisy(&self) -> impl Iterator<Item = Symbol> {
-        self.simulation.noise.iter().map(|entry| self.plant.arena.symbol(&entry.name.value))
-    }
-
-    /// What the sensor of an output shows.
+    /// What the sensor of an output showed last.
     pub(super) fn measured(&self, output: Symbol) -> Expr {
         let arena = &self.plant.arena;
-        let value = arena.of_symbol(output);
-        if !self.noisy().any(|noisy| noisy == output) {
-            return value;
+        if self.simulation.is_imperfect() {
+            arena.of_symbol(shown(arena, &arena.name(output)))
+        } else {
+            arena.of_symbol(output)
         }
-        arena.add(value, arena.of_symbol(noise(arena, &arena.name(output))))
     }
 
     /// The names of a place with their meanings.
@@ -111,7 +112,7 @@ impl<'a> Names<'a> {
         show(plant.u.clone(), Sight::Inputs, "an input, whose value is not known here");
         // After the signals, which give w its course.
         show(plant.w.clone(), Sight::Everything, "not measured");
-        for output in self.noisy().filter(|_| view.sight >= Sight::Outputs) {
+        for output in plant.y.iter().map(|output| output.symbol).filter(|_| view.sight >= Sight::Outputs) {
             scope.define(arena.name(output), self.measured(output));
         }
         if let Some((name, baseline)) = view.own {
@@ -175,18 +176,7 @@ impl<'a> Names<'a> {
         for definition in &self.simulation.define {
             problems.keep(lower(arena, &scope, &definition.value));
         }
-        for parameter in self.plant.parameters.iter().filter(|parameter| parameter.value.is_none()) {
-            let name = arena.name(parameter.symbol);
-            problems.push(
-                Diagnostic::error(
-                    Code::SimulationIncomplete,
-                    parameter.span,
-                    format!("the parameter `{name}` has no value"),
-                )
-                .also(self.section(), "the simulation needs it")
-                .help(format!("write its value: `{name}: 1`")),
-            );
-        }
+        self.asked().check(problems);
         for unmeasured in &self.plant.w {
             let name = arena.name(*unmeasured);
             if !self.simulation.signals.iter().any(|signal| signal.name.value == name) {

@@ -7,7 +7,7 @@ use crate::model::{self, Decimal, Observer};
 use crate::plant::settings;
 use crate::source::{Code, Diagnostic, Diagnostics};
 
-use super::scope::Names;
+use super::asked::Asked;
 use super::sizes::{LONGEST, MOST_MIXED};
 
 /// Settings of an observer, with a value for each unknown where there may be one.
@@ -52,16 +52,16 @@ pub(super) type FiniteTime = settings::FiniteTime<f64>;
 impl Settings {
     /// The settings of a model with this regression; what is missing in the section is reported.
     pub(super) fn resolve(
-        names: &Names,
+        asked: &Asked,
         (regression, inverse): (&Regression, &LeftInverse),
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let (unknowns, states) = (regression.eta.len(), inverse.x.len());
-        let written = &names.model.observer;
-        let mut section = Section { names, written, problems };
+        let written = &asked.model.observer;
+        let mut section = Section { asked, written, problems };
         section.operator();
         section.estimator(unknowns);
-        let sizes = (unknowns, names.plant.phi.len(), states);
+        let sizes = (unknowns, asked.plant.phi.len(), states);
         let read = |number: &Decimal| Some(number.to_f64());
         let resolved = settings::Settings::resolve(written, sizes, read, section.problems)?;
         let mixes = matches!(resolved.estimator, Estimator::Drem { .. });
@@ -105,15 +105,15 @@ fn whole(wanted: f64) -> Option<u32> {
 }
 
 struct Section<'a> {
-    names: &'a Names<'a>,
+    asked: &'a Asked<'a>,
     written: &'a Observer,
     problems: &'a mut Diagnostics,
 }
 
 impl Section<'_> {
     fn lacks(&mut self, what: &str, help: String) {
-        let message = format!("the simulation needs {what}");
-        self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.names.section(), message).help(help));
+        let message = format!("{} needs {what}", self.asked.who);
+        self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.asked.section, message).help(help));
     }
 
     /// Reports that there is neither filter nor window, or no room for the window.
@@ -149,7 +149,7 @@ impl Section<'_> {
         let mixes = !matches!(name, Name::Gradient | Name::NormalisedGradient | Name::LeastSquares);
         if mixes && unknowns > MOST_MIXED {
             let message = format!("DREM of {unknowns} unknowns is too large to be simulated");
-            let place = self.written.estimator.as_ref().map_or(self.names.section(), |estimator| estimator.span);
+            let place = self.written.estimator.as_ref().map_or(self.asked.section, |estimator| estimator.span);
             self.problems.push(Diagnostic::error(Code::SimulationUnsupported, place, message).help(format!(
                 "the simulator has room for {MOST_MIXED}: simulate the emitted code, or choose `least-squares`"
             )));

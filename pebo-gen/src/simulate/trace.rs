@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::summary::Summary;
+
 /// What a run gives. Serialises to `columns`, the names, and `values`, row by row.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Trace {
@@ -11,18 +13,27 @@ pub struct Trace {
     /// The points of each panel's curves.
     #[serde(skip)]
     pub(super) curves: Vec<Vec<Vec<(f64, f64)>>>,
+    /// What the run came to.
+    #[serde(skip)]
+    pub(super) summary: Summary,
 }
 
 impl Trace {
     /// What the name of the column of a state's error ends with.
     pub const ERROR: &str = "_error";
 
-    pub(super) fn new(columns: Vec<String>) -> Self {
-        Self { columns, values: Vec::new(), curves: Vec::new() }
+    /// The table row by row, the points of each panel's curves, and what the run came to.
+    pub(super) fn new(
+        (columns, values): (Vec<String>, Vec<f64>),
+        curves: Vec<Vec<Vec<(f64, f64)>>>,
+        summary: Summary,
+    ) -> Self {
+        Self { columns, values, curves, summary }
     }
 
-    pub(super) fn push(&mut self, value: f64) {
-        self.values.push(value);
+    /// What the run came to.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
     }
 
     /// The names of the columns: `t`, states of x and y, inputs, `<x>_hat` and `<x>_error` for each recovered state,
@@ -64,7 +75,7 @@ impl Trace {
 }
 
 /// The shortest text that reads back as the same number; an exponent where that is shorter than zeros.
-fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
+pub(super) fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
     let magnitude = value.abs();
     if value == 0.0 {
         text.write_char('0')

@@ -72,6 +72,10 @@ codes! {
          not very slow. Formulas with fewer functions, parameters with values, and shared parts with names under \
          define take less time."
 
+    FigureFormat "figure-format" "a figure is asked for in a format that is not written"
+        "Figures are SVG: a drawing that can be scaled, and that browsers and text processors show. The ending of the file's \
+         name says so. Other programs make other formats of it, as `rsvg-convert figure.svg -o figure.png`."
+
     // Files.
 
     CannotRead "cannot-read" "a file cannot be read"
@@ -327,7 +331,25 @@ codes! {
     SimulationUnsupported "simulation-unsupported" "a simulation that this version cannot run"
         "The simulator runs the observer in one of a few fixed sizes, and the estimators of the runtime library. The \
          message says what the simulator does not have. The emitted code has no such limit."
+    NotConverged "not-converged" "an estimate did not settle in a simulation"
+        "An estimate has settled when its error stays below a hundredth of the largest magnitude that the state has in the \
+         run. The notes say what was seen: samples that the observer refused, data that did not determine the unknown \
+         (excitation), an error that still falls, or one that rests because the plant and its sensors are not what the \
+         model says. The run itself is as it was asked for, and its files are written."
     SimulationFailed "simulation-failed" "a simulation stopped before its end"
         "The closed loop left the domain of a formula, grew beyond all bounds, or is too stiff for the explicit \
          integrator. The message says when and where. A shorter step, other gains or another start may help."
+
+    // Recorded data.
+
+    RecordingIncomplete "recording-incomplete" "a recording does not say what the observer needs"
+        "A replay needs the time of each row, or the period between them, and a value of every output and input. The \
+         column of a signal's own name is that signal; for any other, the section `recording` of the model has a formula \
+         in columns and parameters. In formulas a column is called by its name with an underscore for what cannot be in \
+         a name: `Channel A (V)` is Channel_A_V."
+    RecordingMalformed "recording-malformed" "a recording is not a table of numbers"
+        "A recording is CSV text: a line with the names of the columns, then a row of numbers for each sample, parted by \
+         commas, semicolons or tabs. Lines that begin with # are comments. The message has line and column of the first \
+         cell that is not a number. A cell that is empty, NaN or infinite is no mistake: it is a fault of a sensor, which \
+         is counted."
 }

@@ -60,10 +60,10 @@ pub fn quoted(text: &str) -> String {
     format!("`{shown}`")
 }
 
-/// Names in a row for use inside a message: quoted, with commas, the first two dozen of them.
+/// Names in a row for use inside a message: quoted, with commas, the first three dozen of them.
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
-    let mut shown: Vec<String> = names.by_ref().take(24).map(quoted).collect();
+    let mut shown: Vec<String> = names.by_ref().take(36).map(quoted).collect();
     if names.next().is_some() {
         shown.push("…".to_owned());
     }

@@ -41,7 +41,7 @@ fn text(bytes: &[u8]) -> &str {
 /// A short run of the converter.
 fn short() -> AskRun {
     let overrides = Overrides { step: Some(1e-4), every: Some(0.25), ..Overrides::default() };
-    AskRun { overrides, trace: true, figure: true }
+    AskRun { overrides, trace: true, figure: true, ..AskRun::default() }
 }
 
 #[test]
@@ -77,11 +77,33 @@ fn a_run_has_its_final_errors_and_what_was_asked_for() {
     let written = std::fs::read_to_string(&csv).expect("a table");
     std::fs::remove_file(&csv).expect("it was written");
     assert_eq!(written, run.trace.as_ref().expect("asked for").csv());
-    let lines = run.errors.iter().map(|error| {
-        format!("{}_error: {:.3e} at the start, {:.3e} at t = 1 s\n", error.state, error.start, error.end)
-    });
-    assert_eq!(text(&output.stderr), lines.collect::<String>());
+    assert_eq!(text(&output.stderr), run.summary.text());
     assert!(run.figure.expect("asked for").starts_with("<svg"));
+}
+
+#[test]
+fn many_runs_are_told_by_their_quantiles() {
+    let noisy =
+        std::fs::read_to_string(CUK).expect("a model").replace("  step: 1e-5", "  step: 1e-4\n  noise: {v2: 0.1}");
+    let runs = |runs: u64| {
+        let overrides = Overrides { seed: Some(5), duration: Some(0.2), ..Overrides::default() };
+        let ask = AskRun { overrides, figure: true, runs: Some(runs), ..AskRun::default() };
+        asked(&noisy, &Ask::new().run(ask)).run.expect("a run")
+    };
+    let (few, one) = (runs(7), runs(1));
+    let [few_ensemble, one_ensemble] = [&few, &one].map(|run| run.ensemble.as_ref().expect("asked for"));
+    assert_eq!((few_ensemble.seed, few_ensemble.runs, few_ensemble.stopped, one_ensemble.runs), (5, 7, 0, 1));
+    for (spread, alone) in few_ensemble.estimates.iter().zip(&one_ensemble.estimates) {
+        let (rms, score) = (spread.rms, few.summary.estimates.iter().find(|rated| rated.estimate == spread.estimate));
+        assert!(rms.median > Some(0.0) && rms.ninety > rms.median, "{spread:?}");
+        // One run is all of its quantiles; the first of many is that one.
+        assert_eq!((alone.rms.median, alone.rms.ninety), (score.map(|rated| rated.score.rms), alone.rms.median));
+    }
+    assert_eq!(few_ensemble, runs(7).ensemble.as_ref().expect("asked for"));
+    assert!(few.figure.as_ref().is_some_and(|svg| svg.contains("fill-opacity") && svg.contains("(7 runs)")));
+    assert!(few.trace.is_none());
+    let json = serde_json::to_value(few_ensemble).expect("it serialises");
+    assert!(json["estimates"][0]["settled"]["median"].is_number(), "{json}");
 }
 
 /// A plant that is accepted, with something behind it.
@@ -138,6 +160,14 @@ fn the_answer_serialises_with_places_labels_and_notes() {
     assert!(json["emitted"]["text"].as_str().is_some_and(|text| text.contains("pub struct Cuk")));
     assert_eq!(json["run"]["trace"]["columns"][0], "t");
     assert_eq!(json["run"]["errors"][0]["state"], "i1");
+    let summary = &json["run"]["summary"];
+    assert_eq!((&summary["estimates"][0]["state"], &summary["estimates"][0]["unit"]), (&"i1".into(), &"A".into()));
+    assert!(summary["estimates"][0]["settled"].as_f64().is_some_and(|t| t > 0.0 && t < 0.5), "{summary}");
+    assert_eq!(
+        (&summary["excitation"]["state"], &summary["faults"]),
+        (&"converged".into(), &Value::Object(serde_json::Map::default()))
+    );
+    assert_eq!(json["run"]["ensemble"], Value::Null);
 }
 
 #[test]

@@ -220,6 +220,102 @@ fn settings_of_the_call_are_refused_without_the_file() {
 }
 
 #[test]
+fn a_figure_in_another_format_is_refused_before_anything_runs() {
+    let folder = Folder::new();
+    let path = folder.path("figure.png").display().to_string();
+    let output = run(&["simulate", "no such model.yaml", "--plot", &path]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("error[figure-format]") && said.contains("asks for a figure as png"), "{said}");
+    assert!(said.contains("figure.svg") && !said.contains("no such model"), "{said}");
+    assert!(!folder.path("figure.png").exists());
+}
+
+/// A spring with an observer, and this in its simulation.
+fn spring(more: &str) -> String {
+    format!(
+        "model: spring\nx: [v]\ny: [q]\nf_x: {{v: -4*q}}\nf_y: {{q: v}}\nphi: [v]\nunits: {{v: m/s}}\n\
+         observer: {{gain: 50, filter: 5}}\n\
+         simulation: {{duration: 10, step: 0.01, initial: {{v: 0.5, q: 1}}{more}}}\n"
+    )
+}
+
+#[test]
+fn a_run_is_summed_up() {
+    let folder = Folder::new();
+    let long =
+        spring(", noise: {q: 1e-4}, dropped: 0.1, baselines: {kalman: {}}").replace("duration: 10", "duration: 20");
+    let model = folder.file("spring.yaml", long);
+    let output = run(&["simulate", &model, "--seed", "3"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(lines[0].starts_with("error of") && lines[0].contains("settled to 1 %"), "{said}");
+    assert!(lines[1].starts_with("v in m/s") && lines[2].starts_with("kalman.v in m/s"), "{said}");
+    for part in ["excitation: enough from t = ", "dropped: ", " of 2000 samples"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!said.contains("not-converged"), "{said}");
+    // The same seed is the same run, another one is another.
+    assert_eq!(said, text(&run(&["simulate", &model, "--seed", "3"]).stderr));
+    assert_ne!(said, text(&run(&["simulate", &model, "--seed", "4"]).stderr));
+}
+
+#[test]
+fn a_run_that_did_not_converge_says_why() {
+    let folder = Folder::new();
+    for (more, gain, note, help) in [
+        ("", "gain: 0.1", "still falls", "raise `gain`, or simulate longer"),
+        (", plant: {k: 5}", "gain: 50", "with `plant` in the simulation", "measure the parameter"),
+    ] {
+        let text_of = spring(more).replace("gain: 50", gain).replace("-4*q", "-k*q") + "parameters: {k: 4}\n";
+        let output = run(&["simulate", &folder.file("spring.yaml", text_of)]);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert!(said.contains("warning[not-converged]") && said.contains(note) && said.contains(help), "{said}");
+    }
+}
+
+#[test]
+fn many_runs_have_a_table_a_figure_and_quantiles() {
+    let folder = Folder::new();
+    let model = folder.file("spring.yaml", spring(", noise: {q: 1e-3}, baselines: {kalman: {}}"));
+    let [plot, csv] = ["band.svg", "band.csv"].map(|name| folder.path(name).display().to_string());
+    let output = run(&["simulate", &model, "--runs", "5", "--plot", &plot, "--csv", &csv]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("rms then, median") && said.contains("runs: 5 with the seeds 1 to 5"), "{said}");
+    let table = std::fs::read_to_string(&csv).expect("a table");
+    let header = "t,v_error_10,v_error_50,v_error_90,kalman.v_error_10,kalman.v_error_50,kalman.v_error_90";
+    assert_eq!(table.lines().next(), Some(header));
+    assert_eq!(table.lines().count(), 401);
+    for line in table.lines().skip(1) {
+        let values: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        assert!(values[1] <= values[2] && values[2] <= values[3] && values[4] <= values[5], "{line}");
+    }
+    assert!(std::fs::read_to_string(&plot).expect("a figure").contains("fill-opacity"));
+    for wrong in ["0", "-1", "1e9", "x"] {
+        assert_eq!(run(&["simulate", &model, "--runs", wrong]).status.code(), Some(2), "{wrong}");
+    }
+}
+
+/// What is written goes beside its place and is moved there when it is whole: nothing is left of a run that is ended.
+#[test]
+fn an_interrupted_run_leaves_no_file() {
+    let folder = Folder::new();
+    let [plot, csv] = ["f.svg", "f.csv"].map(|name| folder.path(name).display().to_string());
+    let arguments = ["simulate", CUK, "--step", "1e-8", "--plot", &plot, "--csv", &csv];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pebo-gen"));
+    let mut child = command.args(arguments).stderr(Stdio::null()).spawn().expect("the program runs");
+    std::thread::sleep(Duration::from_millis(500));
+    // A hundred million samples take a minute and more.
+    assert!(child.try_wait().expect("a process").is_none());
+    child.kill().expect("it is there");
+    child.wait().expect("it ends");
+    assert_eq!(std::fs::read_dir(folder.path("")).expect("a folder").count(), 0);
+}
+
+#[test]
 fn colour_is_for_terminals() {
     let folder = Folder::new();
     let refused = folder.file("m.yaml", model("f_x", "f_x: {x1: u1 - x1*x1}"));

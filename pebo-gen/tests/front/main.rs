@@ -5,4 +5,5 @@ mod certificate;
 mod cli;
 mod explain;
 mod page;
+mod replay;
 mod schema;

@@ -52,6 +52,7 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("granit_parser", &["model"]),
     ("serde_yaml", &["model"]),
     ("annotate_snippets", &["source"]),
+    ("csv_core", &["simulate"]),
     ("dashu_int", &["cas"]),
     // The emitter names it in the code it writes.
     ("pebo_runtime", &["simulate", "emit"]),

@@ -113,6 +113,7 @@ pub(super) fn read(
         units: arguments.units,
         observer: Observer::default(),
         simulation: None,
+        recording: None,
     })
 }
 

@@ -9,7 +9,7 @@ use crate::model::class::{Electromechanical, Lti, Mechanical};
 use crate::model::formula::Decimal;
 use crate::model::observer::Observer;
 use crate::model::spanned::{Entry, Spanned};
-use crate::model::written::{CascadeClass, RelationForm, Scale};
+use crate::model::written::{CascadeClass, Delay, RelationForm, Scale};
 
 /// A text with its place: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;
@@ -40,6 +40,7 @@ pub(super) struct Document {
     pub(super) units: Vec<Entry<Text>>,
     pub(super) observer: Observer,
     pub(super) simulation: Option<Simulation>,
+    pub(super) recording: Option<Vec<Entry<Text>>>,
     pub(super) lti: Option<Lti<Text>>,
     pub(super) mechanical: Option<Mechanical<Text>>,
     pub(super) electromechanical: Option<Electromechanical<Text>>,
@@ -54,6 +55,11 @@ pub(super) struct Simulation {
     pub(super) initial: Vec<Entry<Text>>,
     pub(super) signals: Vec<Entry<Vec<Piece>>>,
     pub(super) noise: Vec<Entry<Spanned<Decimal>>>,
+    pub(super) bias: Vec<Entry<Spanned<Decimal>>>,
+    pub(super) quantisation: Vec<Entry<Spanned<Decimal>>>,
+    pub(super) delay: Delay,
+    pub(super) jitter: Option<Spanned<Decimal>>,
+    pub(super) dropped: Option<Spanned<Decimal>>,
     pub(super) plant: Vec<Entry<Vec<Piece>>>,
     pub(super) define: Vec<Entry<Text>>,
     pub(super) control: Vec<Entry<Text>>,

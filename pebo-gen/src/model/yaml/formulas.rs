@@ -6,6 +6,7 @@
 use super::document::{self, Document, Text};
 use crate::model::class::{Class, Electromechanical, Lti, Mechanical};
 use crate::model::formula::{Comparison, Decimal, Estimates, Formula, Places, Term, parse_comparison, parse_formula};
+use crate::model::recording::Recording;
 use crate::model::spanned::Entry;
 use crate::model::written::{Baseline, Equations, Kalman, Luenberger, Model, Panel, Piece, Simulation};
 use crate::source::{Diagnostics, Source};
@@ -23,6 +24,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
     let identities = pass.list(&document.identities);
     let angles = pass.entries(document.angles);
     let class = pass.class(document.lti, document.mechanical, document.electromechanical);
+    let recording = document.recording.map(|entries| Recording::of(pass.entries(entries)));
     let simulation = document.simulation.map(|simulation| pass.simulation(simulation));
     Some(Model {
         name: document.model?,
@@ -48,6 +50,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         units: document.units,
         observer: document.observer,
         simulation,
+        recording,
     })
 }
 
@@ -106,6 +109,11 @@ impl Pass<'_> {
             initial,
             signals,
             noise: simulation.noise,
+            bias: simulation.bias,
+            quantisation: simulation.quantisation,
+            delay: simulation.delay,
+            jitter: simulation.jitter,
+            dropped: simulation.dropped,
             plant,
             define: self.entries(simulation.define),
             control: self.entries(simulation.control),

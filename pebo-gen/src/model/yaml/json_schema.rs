@@ -124,6 +124,7 @@ fn shape(shape: &Shape) -> Node {
         Shape::List(item) => list(self::shape(item)),
         Shape::OneOrMore(item) => either([self::shape(item), list(self::shape(item))]),
         Shape::Map(value) => map(self::shape(value)),
+        Shape::AllOrEach => either([self::shape(&Shape::Number), map(self::shape(&Shape::Number))]),
         Shape::Kinds(keys, other) => Node {
             properties: keys.iter().map(|key| (key.name, Admission::by(value(key)))).collect(),
             ..map(self::shape(other))

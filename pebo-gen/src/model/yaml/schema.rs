@@ -3,7 +3,7 @@
 //! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
 use crate::model::observer::Estimator;
-use crate::model::{Baseline, CascadeClass, Class, RelationForm};
+use crate::model::{Baseline, CascadeClass, Class, Recording, RelationForm};
 
 /// The shape that a value must have.
 #[derive(Debug)]
@@ -26,6 +26,8 @@ pub(super) enum Shape {
     Parameters,
     /// A formula, or a map from start times to formulas.
     Signal,
+    /// A number for all names, or a map from names to numbers.
+    AllOrEach,
     /// A map from names to values, of one shape but for these names.
     Kinds(&'static [Key], &'static Shape),
     /// A map with these keys.
@@ -89,6 +91,8 @@ const NUMBERS: Shape = Shape::List(&Shape::Number);
 const ONE_OR_EACH: Shape = Shape::OneOrMore(&Shape::Number);
 /// A number above zero for each name.
 const DEVIATIONS: Shape = Shape::Map(&Shape::Number);
+/// A number for each name.
+const OFFSETS: Shape = Shape::Map(&Shape::Number);
 const FORMULAS: Shape = Shape::List(&Shape::Formula);
 const RATES: Shape = Shape::Map(&Shape::Formula);
 
@@ -180,6 +184,12 @@ pub(super) const MODEL: &[Key] = &[
         Shape::Record(SIMULATION),
         "simulation: {duration: 0.1, step: 1e-6}",
         "The closed loop to simulate",
+    ),
+    optional(
+        "recording",
+        Shape::Kinds(RECORDING, &Shape::Formula),
+        "recording: {t: time, v2: ch1/256 - offset}",
+        "What the columns of recorded data mean: a formula in columns and parameters for each output, input, and state that was measured besides; the column of its own name if left out",
     ),
     key(
         Role::Class,
@@ -371,13 +381,43 @@ const SIMULATION: &[Key] = &[
         "signals",
         Shape::Map(&Shape::Signal),
         "signals: {V_d: {0: 25, 0.2: 30}}",
-        "Signals in time: a formula in t and parameters, or a map from start times to formulas",
+        "Signals in time, those of `w` too: a formula in t and parameters, or a map from start times to formulas, which are steps",
     ),
     optional(
         "noise",
         DEVIATIONS,
         "noise: {v2: 0.1, v4: 0.1}",
         "The standard deviation of each output's samples, in the unit of the output; 0 if left out",
+    ),
+    optional(
+        "bias",
+        OFFSETS,
+        "bias: {v2: 0.1}",
+        "The constant offset of each output's sensor, in the unit of the output; 0 if left out",
+    ),
+    optional(
+        "quantisation",
+        OFFSETS,
+        "quantisation: {v2: 0.05}",
+        "The step of each output's converter, in the unit of the output: a sample is the multiple of it that is nearest; none if 0 or left out",
+    ),
+    optional(
+        "delay",
+        Shape::AllOrEach,
+        "delay: {v2: 2e-6}",
+        "How old a sample is, in seconds: one number, or one for each output; a part of a step is interpolated straight between samples",
+    ),
+    optional(
+        "jitter",
+        Shape::Number,
+        "jitter: 0.3",
+        "How far an instant of the loop is from its place at most, as a share of the step below 0.5: uniform, and not told to any observer",
+    ),
+    optional(
+        "dropped",
+        Shape::Number,
+        "dropped: 0.2",
+        "The probability that the sample of an instant never arrives, from 0 to below 1; the first one does",
     ),
     optional(
         "plant",
@@ -412,6 +452,17 @@ const SIMULATION: &[Key] = &[
     ),
 ];
 
+/// What a recording has besides signals.
+const RECORDING: &[Key] = &[
+    optional(Recording::T, Shape::Formula, "t: time/1000", "When each row was recorded, in seconds"),
+    optional(
+        Recording::STEP,
+        Shape::Formula,
+        "step: 1e-5",
+        "The time from row to row in seconds, in parameters, where the rows have no time",
+    ),
+];
+
 /// Baselines that are given by their name.
 const BASELINES: &[Key] = &[
     optional(
@@ -439,7 +490,7 @@ const KALMAN: &[Key] = &[
         "sensors",
         DEVIATIONS,
         "sensors: {v2: 0.1}",
-        "The standard deviation of each output's samples; that of `noise` if left out",
+        "The standard deviation of each output's samples; that of `noise` and `quantisation` together if left out",
     ),
     optional(
         "start",

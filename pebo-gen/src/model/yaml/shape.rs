@@ -50,6 +50,10 @@ impl Fitter<'_> {
                 Some(sequence(items.iter().map(|node| self.fit(node, item))))
             }
             (Shape::OneOrMore(item), Content::Scalar(_)) => Some(sequence([self.fit(node, item)])),
+            (Shape::AllOrEach, Content::Scalar(text)) => Some(fields([("all", self.number(text, node.span)?)])),
+            (Shape::AllOrEach, Content::Map(_)) => {
+                Some(fields([("each", self.fit(node, &Shape::Map(&Shape::Number))?)]))
+            }
             (Shape::Map(shape), Content::Map(entries)) => Some(sequence(
                 entries.iter().map(|(key, node)| Some(entry(&key.text, key.span, self.fit(node, shape)?))),
             )),
@@ -218,6 +222,7 @@ fn describe(shape: &Shape) -> String {
         Shape::List(item) => format!("a list of {}", plural(item)),
         Shape::OneOrMore(item) => format!("{} or a list of {}", describe(item), plural(item)),
         Shape::Map(value) | Shape::Kinds(_, value) => format!("a map from names to {}", plural(value)),
+        Shape::AllOrEach => "a number, or a map from names to numbers".to_owned(),
         Shape::Parameters => "a map from names to numbers, or a list of names".to_owned(),
         Shape::Signal => "a formula, or a map from start times to formulas".to_owned(),
         Shape::Record(keys) => {

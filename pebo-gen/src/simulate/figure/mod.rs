@@ -11,9 +11,11 @@ mod plot;
 mod svg;
 
 use super::label::Label;
+use super::panel::Panel;
 use super::scenario::Scenario;
 use super::trace::Trace;
 use axis::Axis;
+pub(super) use page::Band;
 use page::{BOTTOM, HEADING, LEFT, MARGIN, PLOT_WIDTH, TEXT, TITLE, TOP};
 use plot::Plot;
 use svg::{Anchor, Drawing, width};
@@ -21,26 +23,52 @@ use svg::{Anchor, Drawing, width};
 /// Draws the panels of a scenario with the curves of its run.
 pub fn draw(trace: &Trace, scenario: &Scenario) -> String {
     let duration = scenario.timing.at(scenario.timing.samples);
-    let (unit, factor) = time_unit(duration);
-    let time = Axis::whole(0.0, duration * factor);
+    let title = (scenario.title.as_str(), title(scenario));
+    Sheet { title, time: ([0.0, duration], Label::name("t")), panels: &scenario.panels, curves: &trace.curves }.draw()
+}
 
-    let labels = scenario.panels.iter().flat_map(|panel| &panel.curves);
-    let legend = labels.map(|label| width(label, TEXT)).fold(0.0, f64::max) + plot::SAMPLE + 2.0 * MARGIN;
-    let heading = title(scenario);
-    let page = (LEFT + PLOT_WIDTH + legend).max(2.0 * MARGIN + width(&heading, TITLE));
+/// Panels with their curves over a common time.
+pub(super) struct Sheet<'a> {
+    /// The title as plain text, and as it is drawn.
+    pub(super) title: (&'a str, Label),
+    /// From when to when, in seconds, and what the time is called.
+    pub(super) time: ([f64; 2], Label),
+    pub(super) panels: &'a [Panel],
+    /// The points of each panel's curves.
+    pub(super) curves: &'a [Vec<Vec<(f64, f64)>>],
+}
 
-    let mut drawing = Drawing::new();
-    let middle = LEFT + PLOT_WIDTH / 2.0;
-    // The title stands over the middle of the plots, unless it then left the page.
-    let half = width(&heading, TITLE) / 2.0 + MARGIN;
-    drawing.label((middle.min(page - half).max(half), TOP - 6.0), Anchor::Middle, TITLE, &heading);
-    let mut top = TOP;
-    for (panel, curves) in scenario.panels.iter().zip(&trace.curves) {
-        let plot = Plot { panel, curves, time: &time, factor, left: LEFT, top: top + HEADING };
-        top = plot.draw(&mut drawing);
+impl Sheet<'_> {
+    /// The drawing as SVG.
+    pub(super) fn draw(&self) -> String {
+        self.draw_with(&[])
     }
-    plot::time_axis(&mut drawing, &time, top, &Label::name("t").then(Label::text(&format!(" in {unit}"))));
-    drawing.finish((page, top + BOTTOM), &scenario.title)
+
+    /// The drawing with the bands of some panels' curves, panel by panel.
+    pub(super) fn draw_with(&self, bands: &[Vec<Band>]) -> String {
+        let ([from, to], name) = &self.time;
+        let (unit, factor) = time_unit(to - from);
+        let time = Axis::whole(from * factor, to * factor);
+
+        let labels = self.panels.iter().flat_map(|panel| &panel.curves);
+        let legend = labels.map(|label| width(label, TEXT)).fold(0.0, f64::max) + plot::SAMPLE + 2.0 * MARGIN;
+        let (title, heading) = &self.title;
+        let page = (LEFT + PLOT_WIDTH + legend).max(2.0 * MARGIN + width(heading, TITLE));
+
+        let mut drawing = Drawing::new();
+        let middle = LEFT + PLOT_WIDTH / 2.0;
+        // The title stands over the middle of the plots, unless it then left the page.
+        let half = width(heading, TITLE) / 2.0 + MARGIN;
+        drawing.label((middle.min(page - half).max(half), TOP - 6.0), Anchor::Middle, TITLE, heading);
+        let mut top = TOP;
+        for (number, (panel, curves)) in self.panels.iter().zip(self.curves).enumerate() {
+            let bands = bands.get(number).map_or(&[][..], Vec::as_slice);
+            let plot = Plot { panel, curves, bands, time: &time, factor, left: LEFT, top: top + HEADING };
+            top = plot.draw(&mut drawing);
+        }
+        plot::time_axis(&mut drawing, &time, top, &name.clone().then(Label::text(&format!(" in {unit}"))));
+        drawing.finish((page, top + BOTTOM), title)
+    }
 }
 
 fn title(scenario: &Scenario) -> Label {

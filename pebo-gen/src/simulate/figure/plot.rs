@@ -4,7 +4,7 @@ use super::super::label::Label;
 use super::super::panel::Panel;
 use super::axis::Axis;
 use super::line::thinned;
-use super::page::{LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
+use super::page::{Band, LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
 use super::svg::{Anchor, Drawing};
 use crate::model::Scale;
 
@@ -30,6 +30,8 @@ const SPACING: f64 = 17.0;
 pub(super) struct Plot<'a> {
     pub(super) panel: &'a Panel,
     pub(super) curves: &'a [Vec<(f64, f64)>],
+    /// About each of the curves, if there are any.
+    pub(super) bands: &'a [Band],
     pub(super) time: &'a Axis,
     /// Units of the time axis in a second.
     pub(super) factor: f64,
@@ -43,7 +45,8 @@ impl Plot<'_> {
     pub(super) fn draw(&self, drawing: &mut Drawing) -> f64 {
         let rows = self.panel.curves.iter().fold(0.0, |rows, _| rows + 1.0);
         let height = PLOT_HEIGHT.max(SPACING * rows);
-        let values = || self.curves.iter().flatten().map(|point| point.1);
+        let ends = || self.bands.iter().flatten().flat_map(|(_, ends)| *ends);
+        let values = || self.curves.iter().flatten().map(|point| point.1).chain(ends());
         let axis = match self.panel.scale {
             Scale::Linear => Axis::linear(values()),
             Scale::Log => Axis::logarithmic(values()),
@@ -58,6 +61,18 @@ impl Plot<'_> {
         for mark in &self.time.marks {
             let x = self.left + mark.place * PLOT_WIDTH;
             drawing.grid_line((x, self.top), (x, bottom));
+        }
+        for (number, band) in self.bands.iter().enumerate() {
+            // What is beyond the axis ends at its edge.
+            let place = |t: f64, value: f64| {
+                let x = self.left + self.time.place(t * self.factor) * PLOT_WIDTH;
+                (x, bottom - axis.place(value).clamp(0.0, 1.0) * height)
+            };
+            let known = || band.iter().filter(|(_, ends)| !ends.iter().any(|end| end.is_nan()));
+            let lower: Vec<_> = known().map(|(t, [lower, _])| place(*t, *lower)).collect();
+            let upper: Vec<_> = known().map(|(t, [_, upper])| place(*t, *upper)).collect();
+            let edge: Vec<_> = thinned(&lower).into_iter().chain(thinned(&upper).into_iter().rev()).collect();
+            drawing.area(&edge, style(number).0);
         }
         for (number, curve) in self.curves.iter().enumerate() {
             let place = |(t, value): &(f64, f64)| {

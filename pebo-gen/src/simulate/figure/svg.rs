@@ -71,6 +71,20 @@ impl Drawing {
         ));
     }
 
+    /// What an edge goes round, lightly filled so that what lies below is seen.
+    pub(super) fn area(&mut self, edge: &[Point], colour: &str) {
+        let mut path = String::new();
+        for (index, (x, y)) in edge.iter().enumerate() {
+            path.push(if index == 0 { 'M' } else { 'L' });
+            path.push_str(&number(*x));
+            path.push(' ');
+            path.push_str(&number(*y));
+        }
+        if !path.is_empty() {
+            self.push(&format!("<path d=\"{path}Z\" fill=\"{colour}\" fill-opacity=\"0.18\" stroke=\"none\"/>"));
+        }
+    }
+
     pub(super) fn label(&mut self, (x, y): Point, anchor: Anchor, size: f64, label: &Label) {
         let anchor = match anchor {
             Anchor::Start => "",

@@ -24,10 +24,18 @@ pub(super) enum Gain<const N: usize> {
 }
 
 impl<const N: usize> Gain<N> {
-    /// The correction of the states at the end of a step of `dt` seconds; nothing where there is none.
-    pub(super) fn correct(&mut self, step: &Step<N>, sample: &Sample<N>, dt: f64) -> Option<SVector<f64, N>> {
+    /// Follows the states over a step of `dt` seconds.
+    pub(super) fn predict(&mut self, step: &Step<N>, dt: f64) {
         match self {
-            Self::Kalman(filter) => Some(filter.correct(step, sample, dt)),
+            Self::Kalman(filter) => filter.predict(step, dt),
+            Self::Luenberger(_) => {}
+        }
+    }
+
+    /// The correction of the states by a sample at the end of a step; nothing where there is none.
+    pub(super) fn correct(&mut self, step: &Step<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
+        match self {
+            Self::Kalman(filter) => Some(filter.correct(sample)),
             Self::Luenberger(observer) => observer.correct(step, sample),
         }
     }
@@ -44,15 +52,21 @@ pub(super) struct Kalman<const N: usize> {
     pub(super) sensors: Vec<f64>,
 }
 
+/// The covariance after a motion.
+fn carried<const N: usize>(motion: &SMatrix<f64, N, N>, covariance: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    motion * covariance * motion.transpose()
+}
+
 impl<const N: usize> Kalman<N> {
-    /// Method: the integral of the disturbance by Simpson's rule, of fourth order in the step and never indefinite; the
-    /// outputs one by one, which independent sensors allow, in Joseph's form.
-    fn correct(&mut self, step: &Step<N>, sample: &Sample<N>, dt: f64) -> SVector<f64, N> {
+    /// Method: the integral of the disturbance by Simpson's rule, of fourth order in the step and never indefinite.
+    fn predict(&mut self, step: &Step<N>, dt: f64) {
         let intensity = SMatrix::from_diagonal(&self.intensity);
-        let carried =
-            |motion: &SMatrix<f64, N, N>, covariance: SMatrix<f64, N, N>| motion * covariance * motion.transpose();
         let disturbed = intensity + carried(&step.half, intensity * 4.0) + carried(&step.whole, intensity);
         self.covariance = carried(&step.whole, self.covariance) + disturbed * (dt / 6.0);
+    }
+
+    /// Method: the outputs one by one, which independent sensors allow, in Joseph's form.
+    fn correct(&mut self, sample: &Sample<N>) -> SVector<f64, N> {
         let mut correction = SVector::zeros();
         for (row, &variance) in self.sensors.iter().enumerate() {
             let slope = sample.slopes.row(row).transpose();

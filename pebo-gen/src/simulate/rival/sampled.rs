@@ -13,6 +13,7 @@ use crate::plant::lower;
 use crate::program::{Interpreter, Program};
 use crate::simulate::layout::program;
 use crate::simulate::scope::{Names, Sight, View};
+use crate::simulate::sensor;
 use crate::simulate::sizes::{LARGEST, pad};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
@@ -98,7 +99,7 @@ fn kalman(
     let arena = &names.plant.arena;
     let mut sensors = Vec::new();
     for output in names.plant.y.iter().map(|output| arena.name(output.symbol)) {
-        let of_noise = || number(&names.simulation.noise, &output).filter(|deviation| *deviation > 0.0);
+        let of_noise = || Some(sensor::deviation(names.simulation, &output)).filter(|deviation| *deviation > 0.0);
         let deviation = number(&written.sensors, &output).or_else(of_noise);
         if deviation.is_none() {
             let message = format!("`{name}` needs the standard deviation of `{output}`");
@@ -135,8 +136,8 @@ fn luenberger(
 
 /// An observer of some size at work.
 pub(in crate::simulate) trait Follower: fmt::Debug {
-    /// Takes the outputs at the end of a step and the inputs during it.
-    fn sample(&mut self, y: &[f64], u: &[f64]);
+    /// Takes the inputs during a step, and the outputs at its end if their sample arrived.
+    fn sample(&mut self, y: Option<&[f64]>, u: &[f64]);
 
     /// Writes the estimates of x; NaN where it has none.
     fn write(&self, hat: &mut [f64]);
@@ -188,15 +189,18 @@ impl<const N: usize> Following<N> {
 }
 
 impl<const N: usize> Follower for Following<N> {
-    fn sample(&mut self, y: &[f64], u: &[f64]) {
+    fn sample(&mut self, y: Option<&[f64]>, u: &[f64]) {
         let Ok(step) = self.plant.advance(&self.state, u, self.dt) else {
             self.state.fill(f64::NAN);
             return;
         };
+        self.gain.predict(&step, self.dt);
+        self.state = step.state;
+        let Some(y) = y else { return };
         let (predicted, slopes) = self.plant.measure(&step.state, u);
         let sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
-        match self.gain.correct(&step, &sample, self.dt) {
-            Some(correction) => self.state = step.state + correction,
+        match self.gain.correct(&step, &sample) {
+            Some(correction) => self.state += correction,
             None => self.state.fill(f64::NAN),
         }
     }

@@ -7,6 +7,7 @@ mod identity;
 mod refusal;
 mod rival;
 mod run;
+mod sensor;
 mod truth;
 
 use crate::analysis::Derivation;

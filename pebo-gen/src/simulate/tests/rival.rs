@@ -39,6 +39,33 @@ simulation: {duration: 1, step: 0.01, initial: {c: 2}, noise: {p: 0.5}, baseline
     }
 }
 
+/// With a bias and dropped samples it is the mean of those that arrived: what it is given is what the observer is given.
+#[test]
+fn a_baseline_gets_the_samples_of_the_observer() {
+    let text = "
+model: constant
+x: [c]
+y: [p]
+f_x: {c: 0}
+g_y: {p: c}
+phi: [c]
+observer: {gain: 1, filter: 5}
+simulation:
+  {duration: 2, step: 0.01, initial: {c: 2}, noise: {p: 0.5}, bias: {p: 1}, dropped: 0.4, baselines: {kalman: {start: {c: 3}}}}
+";
+    let trace = every_sample(text);
+    let (p, hat) = (trace.column("p").unwrap(), trace.column("kalman.c_hat").unwrap());
+    let (mut sum, mut samples) = (0.0, 0.5_f64.powi(2) / 3.0_f64.powi(2));
+    for row in 1..p.len() {
+        // A sample that did not arrive leaves the one before: with noise no two are the same.
+        if p[row].to_bits() != p[row - 1].to_bits() {
+            (sum, samples) = (sum + p[row], samples + 1.0);
+        }
+        assert!((hat[row] - sum / samples).abs() < 1e-12, "{row} {} {}", hat[row], sum / samples);
+    }
+    assert!((samples - 120.0).abs() < 30.0 && (hat[200] - 3.0).abs() < 0.2, "{samples} {}", hat[200]);
+}
+
 /// Three states, of which the first two are seen by one output, and an output of another kind.
 const CHAIN: &str = "
 model: chain

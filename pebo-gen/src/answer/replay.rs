@@ -1,0 +1,76 @@
+//! The observer of a model over recorded data, in one call.
+//!
+//! In: a source, what may be taken for it, and a recording. Out: the answer on the model, and what came of the replay; or
+//! the diagnostics of a model that is refused, of columns that are not there, or of a row that is no row.
+
+use std::io::{Read, Write};
+use std::ops::ControlFlow;
+
+use crate::analysis::Outcome;
+use crate::derived::{Derived, derive_within};
+use crate::simulate::replay::{Failure, Log, Replayed, Unreadable};
+use crate::source::{Diagnostic, Source};
+
+use super::ask::{Ask, Stage};
+use super::standing::Standing;
+use super::{Answer, stem};
+
+/// A recording, and where the estimates go.
+pub struct Tape<'a> {
+    /// What messages call the recording.
+    pub name: &'a str,
+    /// The recording as CSV; read row by row.
+    pub recording: &'a mut dyn Read,
+    /// Takes the estimates as CSV, row by row; what was written is of use only if there is a replay in the answer.
+    pub estimates: Option<&'a mut dyn Write>,
+}
+
+/// Checks a model, and runs its observer over a recording if everything is proved; what else is asked of the model is not
+/// answered here.
+///
+/// ```
+/// use pebo_gen::source::Source;
+/// use pebo_gen::{Ask, Standing, Tape, replay};
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nf_x: {p: -p}\nf_y: {q: p}\nphi: [p]\nobserver: {gain: 1, filter: 1}\n";
+/// let source = Source::new("m.yaml", text).expect("a short text");
+/// let mut recording = "t,q\n0,0\n0.1,0.095\n0.2,0.181\n".as_bytes();
+/// let mut estimates = Vec::new();
+/// let tape = Tape { name: "log.csv", recording: &mut recording, estimates: Some(&mut estimates) };
+/// let answer = replay(&source, &Ask::new(), tape);
+/// assert_eq!(answer.standing, Standing::Accepted);
+/// assert_eq!(answer.replay.expect("a replay").rows, 3);
+/// assert!(estimates.starts_with(b"t,p_hat\n0,0\n0.1,"));
+/// ```
+pub fn replay(source: &Source, ask: &Ask, tape: Tape<'_>) -> Answer {
+    let derived = match derive_within(source, ask.budget()) {
+        Ok(derived) => derived,
+        Err(diagnostics) => return Answer::of_unread(&stem(source, ask), diagnostics, source),
+    };
+    let mut answer = Answer::of(&derived, source);
+    if derived.derivation.outcome == Outcome::Accepted {
+        match run(&derived, ask, tape) {
+            Ok(replayed) => answer.replay = Some(replayed),
+            Err((standing, found)) => answer.refuse(standing, found),
+        }
+    }
+    answer
+}
+
+/// Runs the observer; what the call, the model or the recording does not say well is the caller's mistake.
+fn run(derived: &Derived, ask: &Ask, tape: Tape<'_>) -> Result<Replayed, (Standing, Vec<Diagnostic>)> {
+    let unreadable = |found: Unreadable| (Standing::Malformed, vec![found.explain(tape.name)]);
+    let mut log = Log::open(tape.name, tape.recording).map_err(unreadable)?;
+    let replay = derived.replay(&log).map_err(|found| (Standing::Malformed, found))?;
+    let mut watch = |rows, bytes| match &ask.watch {
+        Some(watch) => watch(Stage::Replay { rows, bytes }),
+        None => ControlFlow::Continue(()),
+    };
+    replay.run(&mut log, tape.estimates, &mut watch).map_err(|failure| {
+        let standing = match failure {
+            Failure::Unreadable(_) | Failure::Unwritten(_) | Failure::Silent { rows: 0, .. } => Standing::Malformed,
+            _ => Standing::Refused,
+        };
+        (standing, vec![replay.explain(&failure, tape.name)])
+    })
+}

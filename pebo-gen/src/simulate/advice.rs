@@ -1,0 +1,99 @@
+//! Why a run did not converge, and what mends it.
+//!
+//! In: what a run came to, and in what its plant and sensors differ from what the model says. Out: a diagnostic, if an
+//! estimate of the model's observer has not settled. What is said is what was seen: refused samples come first, then data
+//! that do not determine the unknown, then an error that still falls, then one that rests.
+
+use crate::source::{Code, Diagnostic, Span, listed};
+
+use super::excitation::Excitation;
+use super::settings::Estimator;
+use super::summary::{Summary, short};
+use super::timing::real;
+
+/// More samples refused than this share explain by themselves that an estimate does not settle.
+const REFUSED: f64 = 0.1;
+
+/// An error that is smaller than this part of what it was a quarter of the run before still falls. Of the noise of a
+/// sensor, a quarter of a run has rather many samples: what is left is well within a tenth of its root mean square.
+const FALLING: f64 = 0.9;
+
+/// What there is to say of a run that did not converge; `where_said` is the section that describes it.
+pub(super) fn advise(
+    summary: &Summary,
+    (estimator, departures): (&Estimator, &[&'static str]),
+    where_said: Span,
+) -> Option<Diagnostic> {
+    let unsettled = summary.unsettled();
+    let slowest = unsettled.iter().max_by(|a, b| a.score.trend.total_cmp(&b.score.trend))?;
+    let names = listed(unsettled.iter().map(|rated| rated.estimate.state.as_str()));
+    let message = match unsettled.len() {
+        1 => format!("the estimate of {names} has not settled to 1 % within {} s", short(summary.end)),
+        _ => format!("the estimates of {names} have not settled to 1 % within {} s", short(summary.end)),
+    };
+    let diagnostic = Diagnostic::warning(Code::NotConverged, where_said, message);
+    let faster = match estimator {
+        Estimator::LeastSquares(_) => "raise `covariance`, or simulate longer",
+        Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => {
+            "raise `gain`, or simulate longer"
+        }
+    };
+    let (refused, trend) = (summary.faults.count(), slowest.score.trend);
+    Some(if real(refused) > REFUSED * real(summary.samples) {
+        let reason =
+            summary.faults.iter().max_by_key(|(_, count)| *count).map(|(reason, _)| reason).unwrap_or_default();
+        diagnostic
+            .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples))
+            .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
+    } else if let Excitation::NotYet { weakest } = &summary.excitation {
+        diagnostic.note(format!("excitation: the data never told `{weakest}` apart from the rest of the unknown")).help(
+            "let inputs or set points move more, or longer: the verdict on identifiability says which motions it needs",
+        )
+    } else if let Excitation::Lost { since, weakest } = &summary.excitation {
+        diagnostic
+            .note(format!(
+                "excitation: from t = {} s on nothing new was said of `{weakest}`, which was forgotten",
+                short(*since)
+            ))
+            .help("lower `forgetting`, or let inputs or set points go on moving")
+    } else if trend < FALLING {
+        diagnostic
+            .note(format!(
+                "the error of `{}` still falls: it is {} % of what it was a quarter of the run before",
+                slowest.estimate.state,
+                short(100.0 * trend)
+            ))
+            .help(faster)
+    } else {
+        let note = format!(
+            "the error of `{}` hardly falls any more: its root mean square at the end is {}",
+            slowest.estimate.state,
+            short(slowest.score.rms)
+        );
+        match departures.first() {
+            None => {
+                let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
+                diagnostic.note(note).help(help)
+            }
+            Some(first) => {
+                let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
+                diagnostic.note(note).help(mend(first))
+            }
+        }
+    })
+}
+
+/// What helps against the first of the things in which a plant and its sensors differ from the model.
+fn mend(departure: &str) -> &'static str {
+    match departure {
+        "plant" => "measure the parameter that differs, or make it a state with rate 0, which is then estimated too",
+        "bias" => "calibrate the sensor, or make its offset a state with rate 0, which is then estimated too",
+        "delay" => "give the observer the inputs as late as the outputs, or choose a lower `filter` or `gain`",
+        "jitter" => {
+            "give the observer the time that has passed in place of the period, as `step` takes it in the emitted code"
+        }
+        "quantisation" => "choose a finer converter, or a lower `filter` or `gain`, which averages more samples",
+        "dropped" => "choose a shorter `step`, so that less happens in a gap",
+        _ => "choose a lower `filter` or `gain`, which averages more samples, or a better sensor",
+    }
+}

@@ -1,0 +1,297 @@
+//! The observer over the rows of a log.
+//!
+//! ```text
+//! row 0: y_0 -> observer, u_0 held -> row 1: y_1 -> observer, told of u_0 -> ..
+//! ```
+//!
+//! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then on.
+//! No more than a row is in memory, and what is kept of the run does not grow with it.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+
+use crate::program::Interpreter;
+use crate::simulate::derived::observer;
+use crate::simulate::excitation::Watch;
+use crate::simulate::figure::Sheet;
+use crate::simulate::label::Label;
+use crate::simulate::scenario::Judged;
+use crate::simulate::score::Scoring;
+use crate::simulate::stepping::Stepping;
+use crate::simulate::summary::{Rated, Summary};
+use crate::simulate::trace::write_number;
+
+use super::clock::{Clock, Instant};
+use super::failure::Failure;
+use super::fault::{Faults, Kind};
+use super::log::{Log, Next};
+use super::panels::Curves;
+use super::replayed::{OutputResidual, Replayed};
+use super::residual;
+use super::scene::Replay;
+
+/// Rows from one look at what the data determine to the next.
+const GLANCES: u64 = 32;
+
+/// Rows from one look at the caller's clock to the next.
+const LOOKS: u64 = 1024;
+
+/// Times that are this many durations away from zero are shown from the first row on.
+const FAR: f64 = 20.0;
+
+impl Replay {
+    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` is told of rows and bytes
+    /// now and then, and may end the run there.
+    pub fn run(
+        &self,
+        log: &mut Log,
+        estimates: Option<&mut dyn Write>,
+        watch: &mut dyn FnMut(u64, u64) -> ControlFlow<()>,
+    ) -> Result<Replayed, Failure> {
+        let mut machine = Machine::start(self, estimates)?;
+        machine.header()?;
+        loop {
+            let next = machine.read(log)?;
+            let line = match next {
+                Next::Row(line) => line,
+                Next::Cut(line) => {
+                    machine.faults.count(Kind::Cut, line);
+                    break;
+                }
+                Next::End => break,
+            };
+            machine.row(line)?;
+            if machine.rows % GLANCES == 0 {
+                machine.look();
+            }
+            if machine.rows % LOOKS == 0 && watch(machine.rows, log.bytes()).is_break() {
+                return Err(Failure::Stopped { line });
+            }
+        }
+        machine.finish()
+    }
+}
+
+/// The observer at one row.
+struct Machine<'a, 'w> {
+    replay: &'a Replay,
+    clock: Clock,
+    signals: Interpreter,
+    /// The cells of the row, and what they say.
+    cells: Vec<f64>,
+    said: Vec<f64>,
+    /// All values, see [`Layout`](super::layout::Layout).
+    table: Vec<f64>,
+    stepping: Stepping,
+    residuals: residual::Course<'a>,
+    errors: (Interpreter, Vec<f64>),
+    faults: Faults,
+    curves: Curves<'a>,
+    scores: Vec<Scoring>,
+    misfits: Vec<Scoring>,
+    watch: Watch,
+    rows: u64,
+    samples: u64,
+    /// The first instant, and that of the last accepted sample.
+    first: Option<f64>,
+    last: f64,
+    estimates: Option<&'w mut dyn Write>,
+    text: String,
+}
+
+impl<'a, 'w> Machine<'a, 'w> {
+    fn start(replay: &'a Replay, estimates: Option<&'w mut dyn Write>) -> Result<Self, Failure> {
+        let Replay { signals, layout, design, residuals, .. } = replay;
+        Ok(Self {
+            replay,
+            clock: Clock::new(signals.period),
+            signals: Interpreter::new(&signals.program),
+            cells: vec![0.0; signals.wanted.len()],
+            said: vec![0.0; signals.program.outputs.len()],
+            table: vec![0.0; layout.len()],
+            stepping: Stepping::new(observer(design).map_err(Failure::Refused)?),
+            residuals: residuals.start(),
+            errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
+            faults: Faults::default(),
+            curves: replay.panels.start(),
+            scores: replay.judged.iter().map(|judged| Scoring::new(judged.period)).collect(),
+            misfits: residuals.outputs.iter().map(|_| Scoring::new(None)).collect(),
+            watch: Watch::default(),
+            rows: 0,
+            samples: 0,
+            first: None,
+            last: 0.0,
+            estimates,
+            text: String::new(),
+        })
+    }
+
+    fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
+        let Self { faults, replay, cells, .. } = self;
+        let wanted = &replay.signals.wanted;
+        let place = |column: usize| wanted.iter().position(|known| *known == column).unwrap_or_default();
+        log.next(wanted, cells, |column, blank, line| faults.count(Kind::of_cell(place(column), blank), line))
+            .map_err(Failure::Unreadable)
+    }
+
+    /// Takes the row that was read.
+    fn row(&mut self, line: u64) -> Result<(), Failure> {
+        self.rows += 1;
+        self.signals.run(&self.cells, &mut self.said);
+        let (told, signals) = match self.replay.signals.period {
+            Some(_) => (f64::NAN, self.said.as_slice()),
+            None => (self.said[0], &self.said[1..]),
+        };
+        let (t, dt) = match self.clock.row(told) {
+            Instant::First(t) => (t, 1.0),
+            Instant::Later { t, dt, gap } => {
+                if gap {
+                    self.faults.count(Kind::Gap, line);
+                }
+                (t, dt)
+            }
+            Instant::Backwards => {
+                self.faults.count(Kind::Backwards, line);
+                return Ok(());
+            }
+            Instant::Timeless => {
+                self.faults.count(Kind::Timeless, line);
+                return Ok(());
+            }
+        };
+        self.first.get_or_insert(t);
+        let layout = &self.replay.layout;
+        let outputs = layout.y.end;
+        self.table[..outputs].copy_from_slice(&signals[..outputs]);
+        let inputs = signals[outputs..].to_vec();
+        let accepted = self.sample(t, dt, &inputs);
+        for (input, value) in inputs.into_iter().enumerate() {
+            if value.is_finite() {
+                self.table[layout.u.start + input] = value;
+            } else {
+                self.faults.count(Kind::Input(input), line);
+            }
+        }
+        if accepted {
+            self.residuals.begin(&self.table, &self.table[layout.y.clone()]);
+        } else {
+            self.table[layout.hat.clone()].fill(f64::NAN);
+            self.errors.1.fill(f64::NAN);
+        }
+        self.curves.add(t, &self.table, &self.errors.1, self.residuals.values());
+        self.write(t)
+    }
+
+    /// Gives the observer the outputs at the end of an interval, in which the inputs of the table were held; whether it
+    /// took them.
+    fn sample(&mut self, t: f64, dt: f64, inputs: &[f64]) -> bool {
+        // It begins where the inputs of the interval to come are known.
+        if !self.stepping.has_started() && inputs.iter().any(|input| !input.is_finite()) {
+            return false;
+        }
+        let layout = &self.replay.layout;
+        let (given, hat) = self.table.split_at_mut(layout.hat.start);
+        let taken = self.stepping.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
+        if taken.is_err() {
+            return false;
+        }
+        let since = t - self.last;
+        (self.last, self.samples) = (t, self.samples + 1);
+        self.residuals.sample(&self.table, &self.table[layout.y.clone()], since);
+        if self.samples > 1 {
+            for (place, misfit) in self.misfits.iter_mut().enumerate() {
+                let output = self.replay.residuals.outputs[place].0;
+                misfit.add(t, self.residuals.values()[place], self.table[layout.y.start + output]);
+            }
+        }
+        let (errors, values) = &mut self.errors;
+        errors.run(&self.table, values);
+        for ((score, judged), error) in self.scores.iter_mut().zip(&self.replay.judged).zip(values) {
+            // A cell without a number has been counted.
+            if error.is_finite() {
+                score.add(t, *error, self.table[judged.truth]);
+            }
+        }
+        true
+    }
+
+    /// Looks at what the data determine.
+    fn look(&mut self) {
+        self.watch.look(self.last, &self.stepping.observer.said());
+    }
+
+    fn header(&mut self) -> Result<(), Failure> {
+        let Some(file) = &mut self.estimates else { return Ok(()) };
+        writeln!(file, "{}", self.replay.columns.join(",")).map_err(Failure::Unwritten)
+    }
+
+    /// Writes the row; what is not known is an empty cell.
+    fn write(&mut self, t: f64) -> Result<(), Failure> {
+        let Some(file) = &mut self.estimates else { return Ok(()) };
+        let text = &mut self.text;
+        text.clear();
+        let mut cell = |value: f64| {
+            if !text.is_empty() {
+                text.push(',');
+            }
+            if value.is_finite() {
+                let written = write_number(text, value);
+                debug_assert!(written.is_ok(), "a string takes everything");
+            }
+        };
+        cell(t);
+        let mut errors = self.replay.measured.iter().zip(&self.errors.1).peekable();
+        for (recovered, hat) in self.table[self.replay.layout.hat.clone()].iter().enumerate() {
+            cell(*hat);
+            if let Some((_, error)) = errors.next_if(|(state, _)| **state == recovered) {
+                cell(*error);
+            }
+        }
+        text.push('\n');
+        file.write_all(text.as_bytes()).map_err(Failure::Unwritten)
+    }
+
+    fn finish(mut self) -> Result<Replayed, Failure> {
+        self.look();
+        let Replay { names, panels, residuals, title, design, .. } = self.replay;
+        let faults = self.faults.worded([&names.columns, &names.u]);
+        let Some(first) = self.first.filter(|_| self.samples > 0) else {
+            let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
+            return Err(Failure::Silent { rows: self.rows, faults, refused });
+        };
+        let rated =
+            |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
+        let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
+            output: names.y[*output].clone(),
+            unit: names.units[*output].clone(),
+            score: score.finish(),
+        };
+        let misfits = residuals.outputs.iter().zip(&self.misfits).filter(|_| self.samples > 1);
+        let far = first.abs() > FAR * (self.last - first);
+        let (zero, name) = if far { (first, "t since the first row") } else { (0.0, "") };
+        let mut curves = self.curves.finish();
+        curves.iter_mut().flatten().flatten().for_each(|point| point.0 -= zero);
+        let time = if far { Label::text(name) } else { Label::name("t") };
+        let sheet = Sheet {
+            title: (title, Label::text(title).remark("replay")),
+            time: ([first - zero, self.last - zero], time),
+            panels: panels.panels(),
+            curves: &curves,
+        };
+        Ok(Replayed {
+            rows: self.rows,
+            start: first,
+            summary: Summary {
+                end: self.last,
+                samples: self.rows - 1,
+                estimates: self.replay.judged.iter().zip(&self.scores).map(rated).collect(),
+                excitation: self.watch.excitation(&design.unknown_names),
+                faults: self.stepping.faults().clone(),
+                dropped: 0,
+            },
+            residuals: misfits.map(misfit).collect(),
+            faults,
+            figure: sheet.draw(),
+        })
+    }
+}

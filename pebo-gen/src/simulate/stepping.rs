@@ -1,0 +1,91 @@
+//! An observer fed sample by sample, some of which are missing.
+//!
+//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. What is missing or
+//! refused is bridged as on the target: the next sample covers the time since the last one that was accepted, with the mean
+//! of the inputs (the runtime's [`Gap`]). Knows nothing of where samples are from.
+
+use pebo_runtime::{Fault, Gap};
+
+use super::derived::Estimation;
+use super::faults::Faults;
+use super::sizes::{LARGEST, pad};
+
+/// Samples in a row that may be refused: an observer that refuses as many has lost its state, and a later sample will not
+/// bring it back.
+const PATIENCE: u64 = 100;
+
+/// An observer at work.
+#[derive(Debug)]
+pub(super) struct Stepping {
+    pub(super) observer: Box<dyn Estimation>,
+    /// Intervals since the last accepted sample, if there are any but the current one.
+    gap: Option<Gap<f64, LARGEST>>,
+    started: bool,
+    refused: u64,
+    faults: Faults,
+    dropped: u64,
+}
+
+impl Stepping {
+    /// Before the first sample.
+    pub(super) fn new(observer: Box<dyn Estimation>) -> Self {
+        Self { observer, gap: None, started: false, refused: 0, faults: Faults::default(), dropped: 0 }
+    }
+
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A fault
+    /// is counted, and leaves the estimates as they are.
+    ///
+    /// # Errors
+    /// The fault of a sample that was refused.
+    pub(super) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+        let taken = match &self.gap {
+            None => self.observer.sample(y, u, dt, hat),
+            Some(gap) => {
+                let mut whole = *gap;
+                whole.add(&pad(u), dt);
+                let (mean, time) = whole.take();
+                self.observer.sample(y, &mean.as_slice()[..u.len()], time, hat)
+            }
+        };
+        let Err(fault) = taken else {
+            (self.gap, self.started, self.refused) = (None, true, 0);
+            return Ok(());
+        };
+        self.faults.add(fault);
+        self.refused += 1;
+        if self.started {
+            self.wait(u, dt);
+        }
+        Err(fault)
+    }
+
+    /// Whether nothing good is to be expected of the observer any more: it refused its first sample, or many in a row.
+    pub(super) fn has_given_up(&self) -> bool {
+        self.refused > 0 && (!self.has_started() || self.refused >= PATIENCE)
+    }
+
+    /// Whether a sample has been accepted.
+    pub(super) fn has_started(&self) -> bool {
+        self.started
+    }
+
+    /// Takes an interval at whose end no sample arrived.
+    pub(super) fn miss(&mut self, u: &[f64], dt: f64) {
+        self.dropped += 1;
+        self.wait(u, dt);
+    }
+
+    fn wait(&mut self, u: &[f64], dt: f64) {
+        self.gap.get_or_insert_default().add(&pad(u), dt);
+    }
+
+    /// The samples that were refused.
+    pub(super) fn faults(&self) -> &Faults {
+        &self.faults
+    }
+
+    /// The samples that never arrived.
+    pub(super) fn dropped(&self) -> u64 {
+        self.dropped
+    }
+}

@@ -1,0 +1,143 @@
+//! What a run comes to, for people and for programs.
+//!
+//! In: the scores of the estimates, what the data were good for, and the samples that were lost. Out: the same together,
+//! and as a table in text. Knows nothing of where samples are from.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::excitation::Excitation;
+use super::faults::Faults;
+use super::score::Score;
+
+/// What a run comes to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Summary {
+    /// When it ended, in seconds.
+    pub end: f64,
+    /// The samples after the first.
+    pub samples: u64,
+    /// The estimates of the model's observer, then those of each baseline.
+    pub estimates: Vec<Rated>,
+    /// What the data of the model's observer were good for.
+    pub excitation: Excitation,
+    /// The samples that the model's observer refused.
+    pub faults: Faults,
+    /// The samples that never arrived.
+    pub dropped: u64,
+}
+
+/// The estimate of a state, with how good it was.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Rated {
+    /// Whose estimate, and of what.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+    /// How good it was.
+    #[serde(flatten)]
+    pub score: Score,
+}
+
+/// Whose estimate, and of what.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// The baseline; none for the model's own observer.
+    pub baseline: Option<String>,
+    /// The state.
+    pub state: String,
+    /// Its unit, if the model has one for it.
+    pub unit: Option<String>,
+}
+
+impl Estimate {
+    /// The state's name behind its baseline's.
+    pub fn name(&self) -> String {
+        match &self.baseline {
+            Some(baseline) => format!("{baseline}.{}", self.state),
+            None => self.state.clone(),
+        }
+    }
+
+    /// The name with the unit.
+    pub(super) fn heading(&self) -> String {
+        let unit = self.unit.as_ref().map_or_else(String::new, |unit| format!(" in {unit}"));
+        self.name() + &unit
+    }
+}
+
+impl Summary {
+    /// The states whose estimates by the model's own observer did not settle.
+    pub fn unsettled(&self) -> Vec<&Rated> {
+        let own = self.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
+        own.filter(|rated| rated.score.settled.is_none()).collect()
+    }
+
+    /// A table of the estimates, and a line each for excitation, faults and lost samples.
+    pub fn text(&self) -> String {
+        let headings = ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then"];
+        let mut rows = vec![headings.map(str::to_owned)];
+        for Rated { estimate, score } in &self.estimates {
+            let settled = match score.settled {
+                Some(t) => format!("{} s", short(t)),
+                None => "no".to_owned(),
+            };
+            let errors = [score.first, score.last].map(short);
+            let [first, last] = errors;
+            rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst)]);
+        }
+        let mut text = if self.estimates.is_empty() { String::new() } else { table(&rows) };
+        let mut line = |name: &str, what: &str| {
+            let written = writeln!(text, "{name}: {what}");
+            debug_assert!(written.is_ok(), "a string takes everything");
+        };
+        match &self.excitation {
+            Excitation::NotYet { weakest } => line("excitation", &format!("not yet, `{weakest}` is not determined")),
+            Excitation::Converged { since } => line("excitation", &format!("enough from t = {} s on", short(*since))),
+            Excitation::Lost { since, weakest } => {
+                line("excitation", &format!("lost at t = {} s, `{weakest}` has been forgotten", short(*since)));
+            }
+        }
+        if self.dropped > 0 {
+            line("dropped", &format!("{} of {} samples", self.dropped, self.samples));
+        }
+        for (reason, count) in self.faults.iter() {
+            line("refused", &format!("{count} of {} samples: {reason}", self.samples));
+        }
+        text
+    }
+}
+
+/// Three digits.
+pub(super) fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e4).contains(&magnitude) {
+        // Of each power of ten the decimals that leave three digits.
+        let decimals = [1000.0, 100.0, 10.0, 1.0, 0.1, 0.01, 0.0].iter().position(|power| magnitude >= *power);
+        format!("{value:.0$}", decimals.unwrap_or_default().saturating_sub(1))
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// Columns beside one another: the first to the left, the others to the right.
+pub(super) fn table<const N: usize>(rows: &[[String; N]]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default();
+    let widths: [usize; N] = std::array::from_fn(width);
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(widths).enumerate().map(|(column, (cell, width))| match column {
+            0 => format!("{cell:<width$}"),
+            _ => format!("   {cell:>width$}"),
+        });
+        let line: String = cells.collect();
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
