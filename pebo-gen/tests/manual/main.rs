@@ -12,7 +12,7 @@
 //! | `sh` | commands that build or install | CI runs them, or `commands::BY_HAND` has them |
 //! | `rust` | a part of a program | code that is compiled has it |
 //! | `toml` | dependencies of a crate beside a checkout named `pebo` | Cargo resolves them |
-//! | `awk NAME` | a script, which the commands behind it can name | |
+//! | `csv` | a part of a recording | a recording below models/ has it |
 //! | `text` | a diagram or formulas | nothing |
 //! | `text PATH` | a file of the project | it is that file |
 //!
