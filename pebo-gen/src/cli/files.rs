@@ -1,4 +1,4 @@
-//! Reading and writing: a file is written whole or not at all.
+//! Reading and writing: a file is written whole or not at all; a device or a pipe is written to where it stands.
 
 use std::io::{Read as _, Write as _};
 use std::path::Path;
@@ -65,12 +65,21 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a file beside its place and moves it there, or to standard output for `-`.
+/// Writes a file beside its place and moves it there, or to standard output for `-`. What is no file, as a device or a
+/// named pipe, is written to: to put a file in the place of `/dev/null` would harm the whole system.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     if is_standard(path) {
         return standard::write(text.as_bytes());
     }
-    replace(path, text).map_err(|error| {
+    let written = match std::fs::metadata(path) {
+        Ok(old) if !old.is_file() => {
+            std::fs::File::options().write(true).open(path).and_then(|mut to| to.write_all(text.as_bytes()))
+        }
+        // A link stays one: what it leads to is replaced.
+        Ok(_) => path.canonicalize().and_then(|place| replace(&place, text)),
+        Err(_) => replace(path, text),
+    };
+    written.map_err(|error| {
         let message = format!("cannot write {}: {}", path.display(), reason(&error));
         Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)
             .help("check that the folder exists and can be written to")

@@ -1,7 +1,7 @@
 //! The command line: exit status, what goes to which stream, files whole or not at all, and hostile input.
 #![cfg(all(feature = "cli", feature = "simulate"))]
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -168,6 +168,32 @@ fn a_failed_write_leaves_the_old_file() {
     let output = run(&[CUK, "-o", &target.display().to_string()]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("error[cannot-write]"), "{}", text(&output.stderr));
+}
+
+/// What is no file stays what it is: as root, a file could be put in the place of `/dev/null`.
+#[cfg(unix)]
+#[test]
+fn pipes_and_links_are_written_to_where_they_stand() {
+    use std::os::unix::fs::FileTypeExt as _;
+
+    let folder = Folder::new();
+    let pipe = folder.path("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    let reader = Command::new("cat").arg(&pipe).stdout(Stdio::piped()).spawn().expect("cat");
+    let arguments = ["simulate", CUK, "--step", "1e-4", "--csv"];
+    let to = |place: &Path| run(&[&arguments[..], &[&place.display().to_string()]].concat());
+    let output = to(&pipe);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(std::fs::metadata(&pipe).expect("the pipe").file_type().is_fifo(), "a file stands in its place");
+    let piped = reader.wait_with_output().expect("what was written").stdout;
+    assert!(text(&piped).starts_with("t,"), "{}", text(&piped));
+
+    let (file, link) = (folder.path("file.csv"), folder.path("link.csv"));
+    std::fs::write(&file, "old").expect("a file");
+    std::os::unix::fs::symlink(&file, &link).expect("a link");
+    assert!(to(&link).status.success());
+    assert!(std::fs::symlink_metadata(&link).expect("the link").is_symlink());
+    assert_eq!(std::fs::read(&file).expect("the file"), piped);
 }
 
 /// A full disk, for whatever is written to standard output.
