@@ -58,13 +58,14 @@ pub(super) fn commands(text: &str) -> Vec<Shown<'_>> {
     shown
 }
 
-/// What a shell says to a command in a folder, on both streams.
-pub(super) fn said(command: &str, folder: &Path) -> String {
+/// What a shell says to a command in a folder, on both streams, and whether the command succeeds.
+pub(super) fn said(command: &str, folder: &Path) -> (String, bool) {
     let programs = Path::new(env!("CARGO_BIN_EXE_pebo-gen")).parent().expect("a folder").display();
     let path = format!("{programs}:{}", std::env::var("PATH").unwrap_or_default());
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("exec 2>&1\n{command}")]).current_dir(folder).env("PATH", path);
-    String::from_utf8_lossy(&shell.output().expect("a shell").stdout).into_owned()
+    let output = shell.output().expect("a shell");
+    (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.success())
 }
 
 #[test]

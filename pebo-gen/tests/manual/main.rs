@@ -8,7 +8,8 @@
 //! | `yaml NAME.yaml refused` | one that is not accepted | it is refused |
 //! | `yaml NAME.yaml with` | keys that replace those of the file so far, or come behind them | the file is accepted |
 //! | `yaml` | a part of a model file | a shipped model, or one on the page, has it |
-//! | `console` | commands behind `$ `, each with what it says | it says so; a line `...` stands for any number of lines |
+//! | `console` | commands behind `$ `, each with what it says | it succeeds and says so; a line `...` stands for any number of lines |
+//! | `console refused` | the same, of commands that fail | they fail |
 //! | `sh` | commands that build or install | CI runs them, or `commands::BY_HAND` has them |
 //! | `rust` | a part of a program | code that is compiled has it |
 //! | `toml` | dependencies of a crate beside a checkout named `pebo` | Cargo resolves them |
