@@ -28,6 +28,13 @@ pub(super) fn images(page: &Page) -> Vec<PathBuf> {
     images.collect()
 }
 
+/// The commands on a model file that stand within its sentences.
+pub(super) fn commands_in_sentences(page: &Page) -> Vec<String> {
+    let events = Parser::new_ext(&page.text, Options::ENABLE_TABLES);
+    let codes = events.filter_map(|event| if let Event::Code(code) = event { Some(code.to_string()) } else { None });
+    codes.filter(|code| code.starts_with("pebo-gen ") && code.contains(".yaml")).collect()
+}
+
 /// The names by which its headings can be linked to, as code hosts and mdBook make them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::commands::{BY_HAND, commands, said};
-use super::links::images;
+use super::links::{commands_in_sentences, images};
 use super::page::{Block, Page, files, held, manual, root, updates};
 
 /// What is shown of one page, run from its beginning in a folder of its own.
@@ -153,6 +153,17 @@ impl Run {
         }
     }
 
+    /// Commands within sentences, which succeed.
+    fn sentences(&mut self) {
+        std::fs::create_dir_all(self.folder.path().join("src")).expect("a folder");
+        for command in commands_in_sentences(&self.page).into_iter().filter(|command| !command.contains("MODEL")) {
+            let (answer, succeeds) = said(&command, self.folder.path());
+            if !succeeds {
+                writeln!(self.wrong, "{}: `{command}`\n{answer}", self.page.path.display()).expect("a string");
+            }
+        }
+    }
+
     fn all(mut self) -> String {
         for block in self.page.blocks() {
             match block.language() {
@@ -167,6 +178,7 @@ impl Run {
             }
         }
         self.figures();
+        self.sentences();
         if updates() {
             let Self { page, anew, .. } = &mut self;
             for (range, text) in anew.drain(..).rev() {
