@@ -71,7 +71,7 @@ impl Arguments {
             ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, places)?),
             ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, places)?),
             ("class", Meta::NameValue(pair)) => {
-                self.class = Some(choice(&text(pair, places)?, CascadeClass::from_name, CascadeClass::NAMES)?)
+                self.class = Some(choice(&text(pair, places)?, CascadeClass::from_name, CascadeClass::NAMES)?);
             }
             ("regression", Meta::NameValue(pair)) => {
                 self.regression = Some(choice(&text(pair, places)?, RelationForm::from_name, RelationForm::NAMES)?);
