@@ -119,7 +119,7 @@ fn without_rivals(text: &str) -> String {
         }
         !is_left_out
     });
-    kept.map(|line| format!("{line}\n")).collect()
+    kept.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// The step of the plant is there: without the observer's correction its error would stay or grow.
@@ -194,8 +194,8 @@ fn wander(errors: &[(f64, f64)]) -> f64 {
 #[test]
 fn a_motor_of_varying_speed_is_followed_by_its_currents() {
     let trace = motor(COURSE, NO_VOLTAGE, "1e-5");
-    // A decade in 50 ms: that is the gain's and the speed's; the bounds are what was seen, and a quarter.
-    for (from, bound) in [(0.1, 2e-2), (0.15, 3e-3), (0.2, 6e-4), (0.3, 2e-5), (0.4, 3e-7)] {
+    // A decade in 60 ms: that is the gain's and the speed's; the bounds are what was seen, and a quarter.
+    for (from, bound) in [(0.1, 2.4e-2), (0.15, 4.8e-3), (0.2, 8.2e-4), (0.3, 1.8e-5), (0.4, 2.4e-7)] {
         let error = largest(&position_errors(&trace, from));
         println!("from {from} s on: {error:.1e} rad");
         assert!(error < bound, "from {from} s on: {error}");
