@@ -41,6 +41,18 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
         }
     }
 
+    /// Loses a share of what it is, and adds `increment`.
+    ///
+    /// What is lost is rounded as what there was: where little is left, that would be many digits of it.
+    pub(crate) fn decay(&mut self, lost: S, increment: &SMatrix<S, R, C>) {
+        if lost > Real::from_f64(0.5) {
+            let kept = S::one() - lost;
+            *self = Self::new(self.value * kept + (self.carry * kept + increment));
+        } else {
+            self.add(&(increment - self.value * lost));
+        }
+    }
+
     /// By how much the sum is more than `base`, with what it carries.
     pub(crate) fn beyond(&self, base: &SMatrix<S, R, C>) -> SMatrix<S, R, C> {
         (self.value - base) + self.carry

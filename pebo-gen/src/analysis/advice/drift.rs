@@ -41,11 +41,11 @@ impl Drift {
 
 /// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase` of the runtime): the
 /// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
-/// not move. None where the unknowns are not theta itself, or stand under the derivative.
+/// not move; likewise what stands under the derivative. None where the unknowns are not theta itself.
 pub(in crate::analysis) fn rebase_residuals(plant: &Plant, class: Class, regression: &Regression) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
     let unknowns = regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
-    if unknowns.ne(regression.theta.iter().copied()) || regression.kind == RegressionKind::Implicit {
+    if unknowns.ne(regression.theta.iter().copied()) {
         return None;
     }
     let extension = match class {
@@ -53,7 +53,8 @@ pub(in crate::analysis) fn rebase_residuals(plant: &Plant, class: Class, regress
         Class::Gpebo => &plant.xi,
     };
     let mut residuals = Vec::new();
-    for (phi_0, phi_1) in regression.phi_0.iter().zip(&regression.phi_1) {
+    let primitives = regression.primitive_0.iter().zip(&regression.primitive_1);
+    for (phi_0, phi_1) in regression.phi_0.iter().zip(&regression.phi_1).chain(primitives) {
         let slopes: Vec<Expr> = extension.iter().map(|&chi| arena.derivative(*phi_0, chi)).collect();
         for (column, &entry) in phi_1.iter().enumerate() {
             let slope = match class {

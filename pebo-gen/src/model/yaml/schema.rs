@@ -177,7 +177,7 @@ pub(super) const MODEL: &[Key] = &[
         "observer",
         Shape::Record(OBSERVER),
         "observer: {gain: 1e7}",
-        "The estimator and its settings, for the simulation",
+        "The estimator and its settings, for the emitted code and the simulation",
     ),
     optional(
         "simulation",

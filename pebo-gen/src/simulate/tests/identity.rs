@@ -48,7 +48,7 @@ impl Loop {
     fn of(text: &str) -> Self {
         let mut model = read(text).unwrap();
         model.observer.rebase = None;
-        for simulation in &mut model.simulation {
+        if let Some(simulation) = &mut model.simulation {
             simulation.baselines.clear();
             simulation.panels.clear();
         }

@@ -60,10 +60,8 @@ impl<S: Real, const NR: usize, const NE: usize> RegressorExtension<S, NR, NE> fo
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
         let share = self.forgetting.over(dt);
         let transposed = regressor.transpose();
-        let gramian = (transposed * regressor) * share.taken - self.gramian.value() * share.lost;
-        let correlation = (transposed * regressand) * share.taken - self.correlation.value() * share.lost;
-        self.gramian.add(&gramian);
-        self.correlation.add(&correlation);
+        self.gramian.decay(share.lost, &((transposed * regressor) * share.taken));
+        self.correlation.decay(share.lost, &((transposed * regressand) * share.taken));
         Ok(())
     }
 

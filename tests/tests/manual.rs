@@ -1,0 +1,36 @@
+//! The pieces of Rust that the manual shows and no example has: that the text is here is tested by
+//! `pebo-gen/tests/manual`, that it does what the manual says, here.
+
+use pebo_runtime::nalgebra::SVector;
+use pebo_runtime::{Bounded, Fault, Hold, LeastSquares, WindowedRegression};
+use tests::emitted::{boost_f64 as boost, cuk_f64 as cuk};
+
+fn estimate_with_a_window() -> Result<cuk::X, Fault> {
+    let estimator = LeastSquares::diagonal(&SVector::from([1e6, 1e10]), 100.0)?;
+    let mut observer = pebo_runtime::Observer::with_regression(
+        cuk::Cuk::new(&cuk::Parameters::default()),
+        Bounded::new(estimator, &SVector::repeat(-100.0), &SVector::from([50.0, 100.0]))?,
+        WindowedRegression::<f64, { cuk::NR }, { cuk::NE }, 100>::new(Hold::First),
+        SVector::zeros(),
+    )?;
+    observer.step(cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.68 }, 10e-6)
+}
+
+fn current(voltages: &[f64], duty: f64) -> Result<f64, Fault> {
+    let mut observer = boost::Boost::observer(&boost::Parameters::default())?;
+    let mut current = 0.0;
+    for &v in voltages {
+        // The voltage now, the duty cycle since the sample before, the period in seconds.
+        current = observer.step(boost::Y { v }, boost::U { d: duty }, 1e-5)?.i;
+    }
+    Ok(current)
+}
+
+#[test]
+fn the_examples_run() {
+    assert_eq!(estimate_with_a_window(), Ok(cuk::X { i1: 0.0, i3: 0.0 }));
+    // At rest the voltage is 24 V for a duty cycle of one half, and the coil's current twice that of 50 ohms. The observer
+    // of the model takes a tenth of a second.
+    let current = current(&vec![24.0; 100_000], 0.5).expect("good samples");
+    assert!((current - 0.96).abs() < 1e-6, "{current}");
+}
