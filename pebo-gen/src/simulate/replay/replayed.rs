@@ -35,7 +35,7 @@ pub struct OutputResidual {
     pub output: String,
     /// Its unit, if the model has one for it.
     pub unit: Option<String>,
-    /// How large the residual is, held against the output itself.
+    /// How large the residual is in the last tenth of the recording.
     pub score: Score,
 }
 

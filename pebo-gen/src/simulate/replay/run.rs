@@ -115,7 +115,8 @@ impl<'a, 'w> Machine<'a, 'w> {
             faults: Faults::default(),
             curves: replay.panels.start(),
             scores: replay.judged.iter().map(|judged| Scoring::new(judged.period)).collect(),
-            misfits: residuals.outputs.iter().map(|_| Scoring::new(None)).collect(),
+            // Of these none is small in itself: what is told is the last tenth.
+            misfits: residuals.outputs.iter().map(|_| Scoring::new(Some(0.0))).collect(),
             watch: Watch::default(),
             rows: 0,
             samples: 0,
