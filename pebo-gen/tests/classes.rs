@@ -312,6 +312,15 @@ fn the_circle_of_fluxes_is_found() {
     let motor = derived(MOTOR);
     assert_eq!(motor.derivation.outcome, Outcome::Accepted, "{:?}", motor.derivation.diagnostics);
     let regression = motor.derivation.regression.result.as_ref().expect("a regression");
+    assert_eq!(regression.kind, RegressionKind::Implicit);
+    assert_eq!(printed(&motor, &regression.eta), ["theta1", "theta2"]);
+    assert_eq!(printed(&motor, &regression.phi_1.concat()), ["v1 - R*i1", "v2 - R*i2"]);
+    assert_eq!(printed(&motor, &regression.primitive_1.concat()), ["L*i1", "L*i2"]);
+    let line = "as it stands it is a regression in 3 unknowns, with `regression: static`";
+    assert!(summary(&motor.plant, &motor.derivation).contains(line));
+    // As it stands.
+    let motor = derived(&format!("regression: static\n{MOTOR}"));
+    let regression = motor.derivation.regression.result.as_ref().expect("a regression");
     assert_eq!(regression.kind, RegressionKind::Static);
     assert_eq!(printed(&motor, &regression.eta), ["theta1", "theta2", "lambda_m^2 - theta1^2 - theta2^2"]);
     assert_eq!(printed(&motor, &regression.phi_1.concat()), ["-2*(chi1 - L*i1)", "-2*(chi2 - L*i2)", "1"]);

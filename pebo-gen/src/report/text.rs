@@ -159,8 +159,8 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
         for (index, eta) in regression.eta.iter().enumerate() {
             lines.push(format!("{} = {}", unknown(index), arena.print(*eta)));
         }
-        lines.extend(notes::regression(plant, regression));
     }
+    lines.extend(notes::regression(plant, regression));
     lines
 }
 

@@ -28,7 +28,7 @@ use make::Truth;
 use plant::Plant;
 
 /// Models of a run that nobody asked more of.
-const MODELS: u64 = 120;
+const MODELS: u64 = 60;
 
 /// What counts as slow.
 const SLOW: Duration = Duration::from_secs(2);
