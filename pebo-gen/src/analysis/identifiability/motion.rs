@@ -231,18 +231,24 @@ impl Question<'_> {
     }
 }
 
-/// Inputs that are the only ones with which the transform rests: under a plain cascade `h = 0` there.
+/// Inputs that are the only ones with which the plant rests, and the transform with it: read off the rates that hold no
+/// unmeasured state, which are zero there.
 fn at_rest(plant: &Plant, domain: &Domain, cascade: &Cascade) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let hidden = plant.hidden();
+    let moves = cascade.h.iter().filter(|_| cascade.lambda.is_none()).copied();
     let mut equal: BTreeMap<Symbol, Expr> = BTreeMap::new();
-    for h in cascade.h.iter().filter(|_| cascade.lambda.is_none()) {
-        let h = arena.substitute(*h, &equal);
+    for rate in moves.chain(plant.rates().into_values()) {
+        let rate = arena.substitute(rate, &equal);
+        if arena.depends_on(rate, &hidden) {
+            continue;
+        }
         let solved = plant.u.iter().find_map(|input| {
-            let slope = arena.derivative(h, *input);
+            let slope = arena.derivative(rate, *input);
             let steep =
                 arena.symbols_of(&[slope]).is_subset(&constants) && domain.implies(arena, slope, Relation::NonZero);
-            let rest = arena.substitute(h, &BTreeMap::from([(*input, arena.zero())]));
+            let rest = arena.substitute(rate, &BTreeMap::from([(*input, arena.zero())]));
             steep.then(|| (*input, arena.neg(arena.div(rest, slope))))
         });
         let Some((input, value)) = solved else { continue };
@@ -387,6 +393,10 @@ mod tests {
         assert!(lines[1].starts_with("while the plant rests, only `"), "{lines:?}");
         assert!(lines[2].starts_with("while `u = 0`, only `"), "{lines:?}");
         assert_eq!(lines.len(), 3);
+        let turned = "x: [q]\ny: [s]\nu: [v]\nf_x: {q: v}\ng_y: {s: sin(q)}\nphi: [sin(q), cos(q)]\nangles: {q: 2*pi}";
+        let lines = of(turned);
+        assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+        assert_eq!(lines[1], "while the plant rests, nothing is identified");
         let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
         assert_eq!(
             of(frame),
