@@ -164,10 +164,13 @@ proptest! {
         };
         let width = Interval::from_rational(&(&step * &Rational::from(2)), precision).expect("a number");
         let quotient = up.sub(&down, precision).and_then(|rise| rise.div(&width, precision)).expect("a quotient");
-        let (quotient, slope) = (quotient.lo(), slope.lo());
-        // The error of a central difference is h^2/6 times the third derivative.
-        if slope.abs() < 1e6 {
-            prop_assert!((quotient - slope).abs() <= 1e-6 * (1.0 + slope.abs()), "{quotient} {slope}");
+        // The error of a central difference is h^2/6 times the third derivative. Of numbers beyond 2^400 the difference is
+        // rounding alone, as its enclosure says.
+        let size = slope.lo().abs();
+        if size < 1e6 {
+            let error = 1e-6 * (1.0 + size);
+            let meets = quotient.lo() - error <= slope.hi() && slope.lo() <= quotient.hi() + error;
+            prop_assert!(meets, "{quotient:?} {slope:?}");
         }
     }
 }
