@@ -144,29 +144,23 @@ impl Answer {
     fn of(derived: &Derived, source: &Source) -> Self {
         let Derived { plant, derivation, .. } = derived;
         let diagnostics = derived.advised();
-        Self {
-            standing: derivation.outcome.into(),
-            report: Report::of(plant, derivation, &diagnostics, source),
-            summary: report::summary(plant, derivation),
-            diagnostics,
-            emitted: None,
-            mathml: None,
-            certificate: None,
-            page: None,
-            #[cfg(feature = "simulate")]
-            run: None,
-            #[cfg(feature = "simulate")]
-            replay: None,
-        }
+        let report = Report::of(plant, derivation, &diagnostics, source);
+        Self::saying(derivation.outcome.into(), report, report::summary(plant, derivation), diagnostics)
     }
 
     /// On a model of which no plant was made, perhaps because there is no text of it; `source` is what its diagnostics
     /// are about.
     pub fn of_unread(name: &str, diagnostics: Vec<Diagnostic>, source: &Source) -> Self {
+        let report = Report::of_unread(name, &diagnostics, source);
+        Self::saying(Standing::of_unread(&diagnostics), report, String::new(), diagnostics)
+    }
+
+    /// With nothing of what may be asked for besides.
+    fn saying(standing: Standing, report: Report, summary: String, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
-            standing: Standing::of_unread(&diagnostics),
-            report: Report::of_unread(name, &diagnostics, source),
-            summary: String::new(),
+            standing,
+            report,
+            summary,
             diagnostics,
             emitted: None,
             mathml: None,

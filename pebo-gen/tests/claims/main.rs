@@ -3,6 +3,7 @@
 mod conditions;
 mod fundamental;
 mod refusals;
+mod relations;
 mod table;
 
 use pebo_gen::report::summary;

@@ -4,11 +4,11 @@ use pebo_gen::analysis::Verdict;
 use pebo_gen::cas::{Expr, Symbol};
 
 use super::derived;
-use super::table::{Answer::Accepted, TABLE};
+use super::table::{Answer::Accepted, rows};
 
 #[test]
 fn a_refusal_says_what_and_how_to_mend_it() {
-    for (what, lines, answer) in TABLE {
+    for (what, lines, answer) in rows() {
         if matches!(answer, Accepted(_)) {
             continue;
         }

@@ -5,6 +5,7 @@ use pebo_gen::analysis::{Class, Outcome};
 use pebo_gen::source::Code;
 
 use super::derived;
+use super::relations::RELATIONS;
 
 /// What is expected of a plant: every claim proved, or the code of the first refusal.
 pub(super) enum Answer {
@@ -24,7 +25,10 @@ fn class(derived: &Derived) -> String {
     format!("{cascade}{kind} {parameterisation} {excitation}")
 }
 
-pub(super) const TABLE: &[(&str, &str, Answer)] = &[
+/// What it is, the lines of the model, and what is expected of it.
+pub(super) type Row = (&'static str, &'static str, Answer);
+
+const TABLE: &[Row] = &[
     // Rates of the output as functions of z = x, with x' = u.
     ("affine", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 2*x + y}\nphi: [x]", Accepted("dynamic linear instant")),
     (
@@ -300,64 +304,6 @@ pub(super) const TABLE: &[(&str, &str, Answer)] = &[
         "x: [a, b]\ny: [y]\nu: [w, u]\nclass: pebo\nf_x: {a: w*b + u, b: w*a}\nf_y: {y: a}\nphi: [a, b]",
         Rejected(Code::CascadeRefuted),
     ),
-    // Static regressions under a generalised cascade.
-    (
-        "a sum of decays",
-        "parameters: [k, m]\nassume: [k > 0, m > 0, k != m]\nx: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - k*a, b: u - m*b}\n\
-         phi: [a, b]\nidentities: [s - a - b]",
-        Accepted("gpebo static linear excitation"),
-    ),
-    (
-        "a sum of equal decays",
-        "parameters: [k]\nassume: [k > 0]\nx: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - k*a, b: u - k*b}\n\
-         phi: [a, b]\nidentities: [s - a - b]",
-        Rejected(Code::NeverIdentifiable),
-    ),
-    (
-        "a bearing",
-        "x: [p, v]\ny: [s, c, o]\nf_x: {p: v, v: 0}\nphi: [p, v]\nidentities: [(p - o)*s - c]",
-        Accepted("gpebo static linear excitation"),
-    ),
-    (
-        "a square under a generalised cascade, whose derivative is affine by itself",
-        "x: [a]\ny: [s]\nu: [u]\nf_x: {a: u - a}\nphi: [a]\nidentities: [s - a^2]",
-        Accepted("gpebo implicit linear instant"),
-    ),
-    (
-        "a circle under a cascade that turns",
-        "x: [a, b]\ny: [c, d]\nu: [w, v]\nclass: gpebo\nf_x: {a: w*b + v, b: -w*a}\nphi: [a, b]\n\
-         identities: [(a - c)^2 + (b - d)^2 - 4]",
-        Accepted("gpebo implicit linear excitation"),
-    ),
-    (
-        "a square under a generalised cascade with an unequal one",
-        "x: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - a, b: u - 2*b}\nphi: [a, b]\nidentities: [s - a^2 - b^2]",
-        Undecided(Code::RegressionUndecided),
-    ),
-    // A relation under the derivative.
-    (
-        "a circle of which the derivative is asked for",
-        "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nregression: differentiated\n\
-         identities: [(a - c)^2 + (b - d)^2 - 4]",
-        Accepted("implicit linear excitation"),
-    ),
-    (
-        "an angle on a circle that was found",
-        "x: [q]\ny: [c, d]\nu: [u, v]\nw: [r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
-         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}",
-        Accepted("implicit linear excitation"),
-    ),
-    (
-        "an angle on a circle as it stands",
-        "x: [q]\ny: [c, d]\nu: [u, v]\nw: [r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
-         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}\nregression: static",
-        Accepted("static over-parameterised excitation"),
-    ),
-    (
-        "a square whose coefficient moves has no such derivative",
-        "x: [a]\ny: [s, k]\nu: [u]\nf_x: {a: u}\nphi: [a]\nregression: differentiated\nidentities: [s - k*a^2]",
-        Undecided(Code::RegressionUndecided),
-    ),
     // Identifiability.
     (
         "two unknowns, one output",
@@ -603,10 +549,15 @@ pub(super) const TABLE: &[(&str, &str, Answer)] = &[
     ),
 ];
 
+/// All of them.
+pub(super) fn rows() -> impl Iterator<Item = &'static Row> {
+    TABLE.iter().chain(RELATIONS)
+}
+
 #[test]
 fn verdicts() {
     let mut wrong = Vec::new();
-    for (what, lines, answer) in TABLE {
+    for (what, lines, answer) in rows() {
         let derived = derived(lines);
         let derivation = &derived.derivation;
         let has = |code: &Code| derivation.diagnostics.iter().any(|d| d.code == *code);

@@ -277,7 +277,7 @@ fn write_crate(cases: &[Case]) -> PathBuf {
     for case in cases {
         let (seed, type_name) = (case.seed, &case.emitted.type_name);
         std::fs::write(source.join(format!("m{seed}.rs")), &case.emitted.text).expect("a module");
-        writeln!(modules, "#[allow(dead_code)]\nmod m{seed};").expect("a string");
+        writeln!(modules, "pub mod m{seed};").expect("a string");
         let points: Vec<String> = case
             .points
             .iter()
@@ -285,12 +285,14 @@ fn write_crate(cases: &[Case]) -> PathBuf {
             .collect();
         writeln!(
             calls,
-            "    run({seed}, &m{seed}::{type_name}::new(&m{seed}::Parameters::default()), &[{}]);",
+            "    run({seed}, &emitted::m{seed}::{type_name}::new(&emitted::m{seed}::Parameters::default()), &[{}]);",
             points.join(", ")
         )
         .expect("a string");
     }
-    std::fs::write(source.join("main.rs"), format!("{modules}{DRIVER}\nfn main() {{\n{calls}}}\n")).expect("a program");
+    // Of a library what nobody calls is no dead code.
+    std::fs::write(source.join("lib.rs"), modules).expect("a library");
+    std::fs::write(source.join("main.rs"), format!("{DRIVER}\nfn main() {{\n{calls}}}\n")).expect("a program");
     folder
 }
 

@@ -126,7 +126,7 @@ fn pair<S: Real>(a: f64, b: f64) -> Vector2<S> {
 #[test]
 fn estimates_are_those_without_rebasing() {
     let window = WindowedRegression::<f64, 1, 2, 16>::new(Hold::First);
-    let squares = LeastSquares::diagonal(&pair(1e3, 1e3), 0.0).unwrap();
+    let squares = LeastSquares::diagonal(&pair(1e3, 1e3), Real::from_f64(0.0)).unwrap();
     let gradient = Gradient::diagonal(&pair(3.0, 5.0)).unwrap().carrying_its_gain();
     for every in [1, 7] {
         let runs = [
@@ -143,6 +143,13 @@ fn estimates_are_those_without_rebasing() {
     }
 }
 
+/// [`apart`] of least squares without forgetting, and of the gradient that carries its gain.
+fn both_apart<S: Real>(every: u32, steps: u32, dt: f64, lambda: [f64; 4]) -> [[f64; 2]; 2] {
+    let squares = LeastSquares::<S, 2>::diagonal(&pair(1e3, 1e3), Real::from_f64(0.0)).unwrap();
+    let gradient = Gradient::<S, 2>::diagonal(&pair(3.0, 5.0)).unwrap().carrying_its_gain();
+    [apart(squares, filter(), every, steps, dt, lambda), apart(gradient, filter(), every, steps, dt, lambda)]
+}
+
 /// Ten million steps take a minute in a release build: `REBASING_STEPS`.
 #[test]
 fn rounding_does_not_add_up() {
@@ -151,42 +158,8 @@ fn rounding_does_not_add_up() {
     let still = [-0.0, 3.0, -3.0, 0.0];
     let dt = 1e-3;
     for every in [1, 100] {
-        let double = [
-            apart::<f64, _, _>(
-                LeastSquares::diagonal(&pair(1e3, 1e3), 0.0).unwrap(),
-                filter(),
-                every,
-                steps,
-                dt,
-                still,
-            ),
-            apart::<f64, _, _>(
-                Gradient::diagonal(&pair(3.0, 5.0)).unwrap().carrying_its_gain(),
-                filter(),
-                every,
-                steps,
-                dt,
-                still,
-            ),
-        ];
-        let single = [
-            apart::<f32, _, _>(
-                LeastSquares::diagonal(&pair(1e3, 1e3), 0.0).unwrap(),
-                filter(),
-                every,
-                steps,
-                dt,
-                still,
-            ),
-            apart::<f32, _, _>(
-                Gradient::diagonal(&pair(3.0, 5.0)).unwrap().carrying_its_gain(),
-                filter(),
-                every,
-                steps,
-                dt,
-                still,
-            ),
-        ];
+        let double = both_apart::<f64>(every, steps, dt, still);
+        let single = both_apart::<f32>(every, steps, dt, still);
         println!("every {every}, {steps} steps: f64 {double:?}, f32 {single:?}");
         // Least squares settles and the gradient forgets: what is left is the rounding of numbers up to 5 and what gains
         // make of it at the start.

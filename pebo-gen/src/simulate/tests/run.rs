@@ -231,3 +231,24 @@ fn the_error_of_an_angle_is_the_shorter_way_round() {
     // The angle itself has turned several periods by then.
     assert!(column("q").last().unwrap() > &6.9 && column("q_hat").last().unwrap() < &0.7);
 }
+
+/// A regression that stands under the derivative as well: what is moved from the extension into the unknown is nothing that
+/// the estimate sees.
+#[test]
+fn rebasing_changes_no_estimate_of_a_relation_under_the_derivative() {
+    let motor = include_str!("../../../../models/motor_currents.yaml");
+    let motor =
+        with(motor, "estimator: gradient", "estimator: least-squares").replace("  gain: 0.1 ", "  covariance: 1 ");
+    let estimates = |rebase: &str| {
+        let text = with(&motor, "\n  filter: 1000\n", &format!("\n  filter: 1000\n{rebase}"));
+        run(&text, &short(0.3)).column("q_hat").unwrap()
+    };
+    let plain = estimates("");
+    assert!(plain.first() != plain.last(), "nothing was estimated");
+    for every in [1, 100] {
+        // Thirty thousand steps round by 2^-53 each, of which the sum is 3e-12 and the root of the sum of squares 2e-14.
+        for (one, other) in plain.iter().zip(estimates(&format!("  rebase: {every}\n"))) {
+            assert!((one - other).abs() < 1e-12, "{every}: {one} {other}");
+        }
+    }
+}

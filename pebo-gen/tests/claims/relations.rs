@@ -1,0 +1,67 @@
+//! Verdicts on equations between the components of the transform and the outputs that hold at every instant.
+
+use pebo_gen::source::Code;
+
+use super::table::Answer::{Accepted, Rejected, Undecided};
+use super::table::Row;
+
+pub(super) const RELATIONS: &[Row] = &[
+    // Static regressions under a generalised cascade.
+    (
+        "a sum of decays",
+        "parameters: [k, m]\nassume: [k > 0, m > 0, k != m]\nx: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - k*a, b: u - m*b}\n\
+         phi: [a, b]\nidentities: [s - a - b]",
+        Accepted("gpebo static linear excitation"),
+    ),
+    (
+        "a sum of equal decays",
+        "parameters: [k]\nassume: [k > 0]\nx: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - k*a, b: u - k*b}\n\
+         phi: [a, b]\nidentities: [s - a - b]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "a bearing",
+        "x: [p, v]\ny: [s, c, o]\nf_x: {p: v, v: 0}\nphi: [p, v]\nidentities: [(p - o)*s - c]",
+        Accepted("gpebo static linear excitation"),
+    ),
+    (
+        "a square under a generalised cascade, whose derivative is affine by itself",
+        "x: [a]\ny: [s]\nu: [u]\nf_x: {a: u - a}\nphi: [a]\nidentities: [s - a^2]",
+        Accepted("gpebo implicit linear instant"),
+    ),
+    (
+        "a circle under a cascade that turns",
+        "x: [a, b]\ny: [c, d]\nu: [w, v]\nclass: gpebo\nf_x: {a: w*b + v, b: -w*a}\nphi: [a, b]\n\
+         identities: [(a - c)^2 + (b - d)^2 - 4]",
+        Accepted("gpebo implicit linear excitation"),
+    ),
+    (
+        "a square under a generalised cascade with an unequal one",
+        "x: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - a, b: u - 2*b}\nphi: [a, b]\nidentities: [s - a^2 - b^2]",
+        Undecided(Code::RegressionUndecided),
+    ),
+    // A relation under the derivative.
+    (
+        "a circle of which the derivative is asked for",
+        "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nregression: differentiated\n\
+         identities: [(a - c)^2 + (b - d)^2 - 4]",
+        Accepted("implicit linear excitation"),
+    ),
+    (
+        "an angle on a circle that was found",
+        "x: [q]\ny: [c, d]\nu: [u, v]\nw: [r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
+         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}",
+        Accepted("implicit linear excitation"),
+    ),
+    (
+        "an angle on a circle as it stands",
+        "x: [q]\ny: [c, d]\nu: [u, v]\nw: [r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
+         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}\nregression: static",
+        Accepted("static over-parameterised excitation"),
+    ),
+    (
+        "a square whose coefficient moves has no such derivative",
+        "x: [a]\ny: [s, k]\nu: [u]\nf_x: {a: u}\nphi: [a]\nregression: differentiated\nidentities: [s - k*a^2]",
+        Undecided(Code::RegressionUndecided),
+    ),
+];
