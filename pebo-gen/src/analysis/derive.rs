@@ -69,6 +69,12 @@ impl Derivation {
         };
         let (regression, identifiability) = match &cascade.result {
             Some(result) => {
+                by_values(plant, &domain, (class, result, inverse), (regression, identifiability), &mut found, before)
+            }
+            None => (regression, identifiability),
+        };
+        let (regression, identifiability) = match &cascade.result {
+            Some(result) => {
                 from_identities(plant, &domain, (class, result, inverse), (regression, identifiability), &mut found)
             }
             None => (regression, identifiability),
@@ -231,6 +237,32 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     } else {
         Outcome::Undecided
     }
+}
+
+/// Outputs that are given by their value stand by it wherever that identifies as much as their rates; else the given.
+/// Of the diagnostics, those from `before` on are of these claims.
+fn by_values(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let Some(rates) = given.0.result.as_ref().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
+    let mut said = Vec::new();
+    let Some(other) = regression::by_values(plant, domain, cascade, inverse, rates, &mut said) else { return given };
+    let other = permitted::regression(plant, class, other, &mut said);
+    let seen = other
+        .result
+        .as_ref()
+        .filter(|_| other.verdict == Verdict::Proved)
+        .map(|result| identifiability::prove(plant, domain, cascade, result, inverse, &mut said))
+        .filter(|seen| seen.verdict == Verdict::Proved && (!forms::at_once(&given.1) || forms::at_once(seen)));
+    let Some(seen) = seen else { return given };
+    found.truncate(before);
+    found.extend(said);
+    (other, seen)
 }
 
 /// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.

@@ -70,7 +70,7 @@ pub(super) fn preferred(
 }
 
 /// Whether one moment shows all unknowns.
-fn at_once(claim: &Claim<Identifiability>) -> bool {
+pub(super) fn at_once(claim: &Claim<Identifiability>) -> bool {
     claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
 }
 

@@ -15,6 +15,7 @@ mod relations;
 mod separation;
 mod standing;
 mod together;
+mod valued;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,6 +35,7 @@ use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};
 pub(super) use standing::from_identities;
 use standing::from_relations;
 pub(super) use together::together;
+pub(super) use valued::by_values;
 
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
     exponentials, sines and cosines of z were tried";

@@ -137,6 +137,13 @@ pub struct Output {
     pub span: Span,
 }
 
+impl Output {
+    /// Whether its rate is that of its value, rather than one that its author gave.
+    pub fn moves_with_value(&self) -> bool {
+        self.rate.zip(self.value).is_some_and(|(rate, value)| rate.span == value.span)
+    }
+}
+
 /// An expression and where its author wrote it.
 #[derive(Clone, Copy, Debug)]
 pub struct Formula {

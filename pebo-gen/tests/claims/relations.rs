@@ -40,6 +40,29 @@ pub(super) const RELATIONS: &[Row] = &[
         "x: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - a, b: u - 2*b}\nphi: [a, b]\nidentities: [s - a^2 - b^2]",
         Undecided(Code::RegressionUndecided),
     ),
+    // An output's value tells more than the rate that follows from it.
+    (
+        "an inclination that is measured, beside a position",
+        "parameters: [m, g, c]\nassume: [m > 0, g > 0]\nx: [v, a]\ny: [s, n]\nu: [f]\nf_x: {v: f/m - g*a - c*v/m, a: 0}\n\
+         f_y: {s: v}\ng_y: {n: a}\nphi: [v, a]",
+        Accepted("gpebo implicit linear instant"),
+    ),
+    (
+        "the same by its rate, which the author gives",
+        "parameters: [m, g, c]\nassume: [m > 0, g > 0]\nx: [v, a]\ny: [s, n]\nu: [f]\nf_x: {v: f/m - g*a - c*v/m, a: 0}\n\
+         f_y: {s: v, n: 0}\ng_y: {n: a}\nphi: [v, a]",
+        Accepted("gpebo dynamic linear excitation"),
+    ),
+    (
+        "two values that show the states at once",
+        "x: [v, a]\ny: [s, n]\nu: [f]\nf_x: {v: f - a, a: f}\ng_y: {s: v + a, n: 2*a}\nphi: [v, a]",
+        Accepted("static linear instant"),
+    ),
+    (
+        "a value that is not affine stands by its rate",
+        "x: [v]\ny: [q, s]\nu: [f]\nf_x: {v: f}\nf_y: {q: v}\ng_y: {s: sin(q)}\nphi: [v]",
+        Accepted("dynamic linear instant"),
+    ),
     // A relation under the derivative.
     (
         "a circle of which the derivative is asked for",

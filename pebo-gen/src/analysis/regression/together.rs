@@ -159,7 +159,7 @@ fn affine(plant: &Plant, domain: &Domain, rate: Expr) -> Option<(Expr, Vec<Expr>
 }
 
 /// The equations of a regression with nothing unknown under the derivative: z = chi + theta at theta = 0, with z for chi.
-fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Vec<Equation>> {
+pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Vec<Equation>> {
     let arena = &plant.arena;
     let held = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
     let outputs: Vec<Expr> = match regression.kind {
