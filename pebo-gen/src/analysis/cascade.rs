@@ -259,8 +259,8 @@ fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
         }
         mended = arena.sub(mended, arena.mul(coefficient, arena.of_symbol(*output)));
     }
-    // A component that no longer holds a state would be of no use.
-    let useful = mended != phi && arena.depends_on(mended, &plant.hidden());
+    // A component that no longer holds a state, or is zero by an output's value, would be of no use.
+    let useful = mended != phi && arena.depends_on(mended, &plant.hidden()) && !decide(arena, mended, domain).is_zero();
     let proved = || matches!(component(plant, domain, arena.directional(mended, &plant.rates())), Component::Free(_));
     (useful && proved()).then_some(mended)
 }

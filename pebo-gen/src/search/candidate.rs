@@ -1,6 +1,7 @@
 //! A transform that was found, with what is proved of it.
 
 use crate::analysis::{Class, Derivation, Excitation, Outcome};
+use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr};
 use crate::plant::Plant;
 
@@ -39,8 +40,8 @@ impl Candidate {
         self.derivation.left_inverse.result.as_ref().map_or(0, |inverse| inverse.x.len())
     }
 
-    /// What comes first among candidates: what is accepted, recovers all states, has outputs affine in z, a plain cascade,
-    /// few components, unknowns that are seen at once, and is short.
+    /// What comes first among candidates: what is accepted, recovers all states, has no component that is zero, outputs affine
+    /// in z, a plain cascade, few components, unknowns that are seen at once, and is short.
     pub(super) fn merit(&self) -> impl Ord + use<> {
         let accepted = match self.derivation.outcome {
             Outcome::Accepted => 0,
@@ -51,12 +52,22 @@ impl Candidate {
         (
             accepted,
             self.plant.x.len() - self.recovered().min(self.plant.x.len()),
+            self.vanishes_in_part(),
             !self.is_linear(),
             self.derivation.class != Class::Pebo,
             self.plant.phi.len(),
             kind != Some(Excitation::Instant),
             size(&self.plant.arena, &self.plant.transform()),
         )
+    }
+
+    /// Whether a component is zero by the identities, as a state less the output that measures it: such a component
+    /// filters nothing, and the state is recovered with all the noise of that output.
+    pub(super) fn vanishes_in_part(&self) -> bool {
+        let arena = &self.plant.arena;
+        let domain = self.plant.domain();
+        let vanishes = |component: &Expr| decide(arena, *component, &domain).is_zero();
+        !self.plant.identities.is_empty() && self.plant.transform().iter().any(vanishes)
     }
 }
 

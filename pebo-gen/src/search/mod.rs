@@ -158,7 +158,8 @@ struct Hunt<'a> {
 impl Hunt<'_> {
     /// Whether there is nothing better to be expected.
     fn is_over(&self) -> bool {
-        !self.question.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear())
+        !self.question.goes_on()
+            || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.vanishes_in_part())
     }
 
     /// Whether a look at transforms affine in x, or at series of low order, shows that no smooth transform has a plain

@@ -167,3 +167,12 @@ fn of_more_solutions_than_states_those_that_hold_everywhere_are_taken() {
     let best = &found.candidates[0];
     assert!(best.is_full() && best.derivation.conditions.is_empty(), "{:?}", best.formulas());
 }
+
+#[test]
+fn a_state_is_not_replaced_by_the_output_that_measures_it() {
+    // `angle - incline` has a known rate, as it is zero: with it the estimate of the angle would be the sensor's sample.
+    let lines = "x: [angle, bias]\ny: [incline]\nu: [gyro]\nf_x: {angle: gyro - bias, bias: 0}\ng_y: {incline: angle}";
+    let (_, found) = search(lines, None);
+    assert_eq!(found.candidates[0].formulas(), ["angle", "bias"]);
+    assert!(found.candidates.iter().any(|candidate| candidate.formulas() == ["angle - incline", "bias"]));
+}
