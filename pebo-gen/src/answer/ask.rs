@@ -23,6 +23,7 @@ pub struct Ask {
     pub(super) mathml: bool,
     pub(super) certificate: bool,
     pub(super) page: bool,
+    pub(super) sections: bool,
     #[cfg(feature = "simulate")]
     pub(super) run: Option<AskRun>,
 }
@@ -75,6 +76,7 @@ impl Ask {
             mathml: false,
             certificate: false,
             page: false,
+            sections: false,
             #[cfg(feature = "simulate")]
             run: None,
         }
@@ -128,6 +130,14 @@ impl Ask {
     #[must_use]
     pub fn page(mut self) -> Self {
         self.page = true;
+        self
+    }
+
+    /// To write the parts of that page that are about what was derived, each by itself and with its places in the file; the
+    /// code is among them if it is asked for, and nothing is run for them.
+    #[must_use]
+    pub fn sections(mut self) -> Self {
+        self.sections = true;
         self
     }
 

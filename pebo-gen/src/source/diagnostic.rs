@@ -54,6 +54,8 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What to do.
     pub help: Option<Box<str>>,
+    /// What to write at the primary place, where that is all there is to do.
+    pub replacement: Option<Box<str>>,
 }
 
 impl Diagnostic {
@@ -77,7 +79,7 @@ impl Diagnostic {
     fn new(severity: Severity, code: Code, span: Span, message: impl Into<Box<str>>) -> Self {
         let primary = Label { span, text: Box::default() };
         let message = message.into();
-        Self { code, severity, message, primary, secondary: Vec::new(), notes: Vec::new(), help: None }
+        Self { code, severity, message, primary, secondary: Vec::new(), notes: Vec::new(), help: None, replacement: None }
     }
 
     /// With `text` beside the primary place.
@@ -108,11 +110,11 @@ impl Diagnostic {
         self
     }
 
-    /// With "did you mean" for help, where there is a nearest name.
+    /// With "did you mean" for help, where there is a nearest name for what stands at the primary place.
     #[must_use]
     pub fn suggest(self, name: Option<&str>) -> Self {
         match name {
-            Some(name) => self.help(format!("did you mean `{name}`?")),
+            Some(name) => Self { replacement: Some(name.into()), ..self.help(format!("did you mean `{name}`?")) },
             None => self,
         }
     }
