@@ -58,13 +58,12 @@ pub enum Question {
         /// The recording as CSV.
         csv: String,
     },
-    /// The story of a diagnostic.
-    Explain {
-        /// Its code.
-        code: String,
-    },
+    /// The story of every diagnostic by its code, as `pebo-gen explain` tells it.
+    Stories,
     /// The JSON schema of a model file.
     Schema,
+    /// The version of the generator.
+    Version,
 }
 
 /// The type of numbers in emitted code.

@@ -1,5 +1,7 @@
 //! From a question to its answer.
 
+use std::collections::BTreeMap;
+
 use pebo_gen::model::{Estimator, Model, json_schema};
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Answer, Ask, AskRun, Derived, Solution, Tape, solve};
@@ -52,18 +54,26 @@ impl Knobs {
     }
 }
 
-/// A replay with its estimates as CSV, and a run with its table.
+/// A run with its signals as CSV.
 #[derive(Debug, Serialize)]
-struct Tabled {
+struct Ran {
     #[serde(flatten)]
     answer: Answer,
+    csv: Option<String>,
+}
+
+/// A replay with its figure as SVG, and its estimates as CSV.
+#[derive(Debug, Serialize)]
+struct Taped {
+    #[serde(flatten)]
+    answer: Answer,
+    figure: Option<String>,
     csv: Option<String>,
 }
 
 /// The story of a diagnostic.
 #[derive(Debug, Serialize)]
 struct Story {
-    code: &'static str,
     title: &'static str,
     explanation: &'static str,
     example: &'static str,
@@ -104,7 +114,7 @@ pub fn respond(kept: &mut Kept, question: &str) -> String {
                 Answer::on(derived, source, &kept.ask().run(run))
             });
             let trace = answer.run.as_mut().and_then(|run| run.trace.take());
-            json(&Tabled { csv: trace.map(|trace| trace.csv()), answer })
+            json(&Ran { csv: trace.map(|trace| trace.csv()), answer })
         }
         Question::Solve { text, limit } => json(&match Source::new(NAME, text) {
             Ok(source) => solve(&source, None, &limited(kept.ask(), limit)),
@@ -117,18 +127,19 @@ pub fn respond(kept: &mut Kept, question: &str) -> String {
                 Answer::replayed_on(derived, source, &kept.ask(), tape)
             });
             let csv = answer.replay.is_some().then(|| String::from_utf8_lossy(&estimates).into_owned());
-            json(&Tabled { answer, csv })
+            let figure = answer.replay.as_ref().map(|replay| replay.figure.clone());
+            json(&Taped { answer, figure, csv })
         }
-        Question::Explain { code } => match Code::from_name(&code) {
-            Some(code) => json(&Story {
-                code: code.name(),
+        Question::Stories => {
+            let story = |code: Code| Story {
                 title: code.title(),
                 explanation: code.explanation(),
                 example: code.example(),
                 paper: code.paper(),
-            }),
-            None => json(&Misasked { error: format!("there is no diagnostic `{code}`") }),
-        },
+            };
+            json(&Code::ALL.iter().map(|code| (code.name(), story(*code))).collect::<BTreeMap<_, _>>())
+        }
+        Question::Version => json(&env!("CARGO_PKG_VERSION")),
         Question::Schema => json_schema(),
     }
 }
