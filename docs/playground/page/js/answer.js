@@ -38,7 +38,22 @@ export function verdict(answer) {
       element("strong", {}, word),
       `: ${MEANING[word]}${found}.`,
     ),
+    answer.standing === "accepted" ? contents() : null,
   );
+}
+
+/** What follows from a proof, further down. */
+function contents() {
+  const link = ([id, name]) => {
+    const go = (event) => {
+      // The fragment of the address is for models.
+      event.preventDefault();
+      document.getElementById(id).scrollIntoView({ block: "start" });
+    };
+    return element("li", {}, element("a", { href: `#${id}`, onclick: go }, name));
+  };
+  const parts = [["claims", "Claims"], ["transforms", "Transforms"], ["loop", "Closed loop"], ["code", "Code"], ["recording", "Recorded data"]];
+  return element("nav", { "aria-label": "Contents", class: "contents" }, element("ul", {}, parts.map(link)));
 }
 
 /** The diagnostics as a list; each leads to its place. */
