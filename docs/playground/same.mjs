@@ -5,12 +5,13 @@
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 
 import { generator } from "./generator.mjs";
 
 const [native, wasm] = process.argv.slice(2);
-const root = join(import.meta.dirname, "../..");
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const texts = (folder, end) =>
   readdirSync(join(root, folder))
     .filter((file) => file.endsWith(end))

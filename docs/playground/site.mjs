@@ -2,12 +2,13 @@
 //
 //   node site.mjs SITE PEBO.wasm
 import { existsSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 
 import { generator } from "./generator.mjs";
 
 const [site, wasm] = process.argv.slice(2);
-const here = import.meta.dirname;
+const here = dirname(fileURLToPath(import.meta.url));
 const models = join(here, "../../models");
 const ask = generator(wasm);
 const read = (path) => readFileSync(path, "utf8");
@@ -22,7 +23,6 @@ const nothing = { ...titled("nothing", read(join(here, "page/nothing.yaml"))), t
 
 const manual = existsSync(join(site, "manual/index.html"));
 const known = {
-  version: JSON.parse(ask({ what: "version" })),
   manual,
   first: "boost",
   examples: [nothing, ...shipped, recorded],
@@ -47,7 +47,7 @@ writeFileSync(
 </head>
 <body>
 <h1>pebo</h1>
-<p>From the equations of a plant, an observer of its unmeasured states: proved, and written as Rust for firmware.</p>
+<p>Version ${JSON.parse(ask({ what: "version" }))}. From the equations of a plant, an observer of its unmeasured states: proved, and written as Rust for firmware.</p>
 <ul>
 <li><a href="playground/">Try it in this browser</a>: nothing is installed, and nothing is sent</li>
 ${manual ? '<li><a href="manual/">The manual</a></li>' : ""}

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use pebo_gen::cas::budget::Budget;
 use pebo_gen::source::{Diagnostic, Source};
 use pebo_gen::{Ask, Derived, Stage, derive_within};
-use pebo_gen::cas::budget::Budget;
 
 /// The last model with what was derived of it, and what is told of the progress of a call.
 #[derive(Debug)]

@@ -94,9 +94,8 @@ pub fn respond(kept: &mut Kept, question: &str) -> String {
     };
     match question {
         Question::Check { text, limit } => {
-            let answer = |kept: &Kept, derived: &Derived, source: &Source| {
-                Answer::on(derived, source, &kept.ask().sections())
-            };
+            let answer =
+                |kept: &Kept, derived: &Derived, source: &Source| Answer::on(derived, source, &kept.ask().sections());
             let (answer, model) = of_model(kept, &text, limit, answer);
             let accepted = answer.report.verdict == pebo_gen::analysis::Outcome::Accepted;
             let knobs = model.filter(|_| accepted).and_then(|model| Knobs::of(&model));
@@ -110,9 +109,8 @@ pub fn respond(kept: &mut Kept, question: &str) -> String {
         ),
         Question::Simulate { text, limit, set, csv } => {
             let run = AskRun { overrides: set.into(), trace: csv, figure: true, runs: None };
-            let (mut answer, _) = of_model(kept, &text, limit, |kept, derived, source| {
-                Answer::on(derived, source, &kept.ask().run(run))
-            });
+            let (mut answer, _) =
+                of_model(kept, &text, limit, |kept, derived, source| Answer::on(derived, source, &kept.ask().run(run)));
             let trace = answer.run.as_mut().and_then(|run| run.trace.take());
             json(&Ran { csv: trace.map(|trace| trace.csv()), answer })
         }

@@ -22,6 +22,7 @@ mod solve;
 mod standing;
 mod typeset;
 
+pub use crate::page::Section;
 #[cfg(feature = "simulate")]
 pub use ask::AskRun;
 pub use ask::{Ask, Stage};
@@ -29,7 +30,6 @@ pub use ask::{Ask, Stage};
 pub use replay::{Tape, replay};
 #[cfg(feature = "simulate")]
 pub use run::{FinalError, Run};
-pub use crate::page::Section;
 pub use solve::{Solution, solve};
 pub use standing::Standing;
 pub use typeset::Typeset;

@@ -103,9 +103,8 @@ fn with_estimator(written: &Observer, estimator: Estimator) -> Observer {
     };
     let speed = if speed.is_empty() { list("1") } else { speed.clone() };
     // The scalar estimators of DREM have a gain in 1/s: no faster than the filter in front of them.
-    let mixes = |estimator| {
-        !matches!(estimator, Estimator::Gradient | Estimator::NormalisedGradient | Estimator::LeastSquares)
-    };
+    let mixes =
+        |estimator| !matches!(estimator, Estimator::Gradient | Estimator::NormalisedGradient | Estimator::LeastSquares);
     let scalar = match &written.filter {
         _ if mixes(written.estimator()) => written.gain.clone(),
         Some(filter) => vec![filter.clone()],

@@ -79,7 +79,16 @@ impl Diagnostic {
     fn new(severity: Severity, code: Code, span: Span, message: impl Into<Box<str>>) -> Self {
         let primary = Label { span, text: Box::default() };
         let message = message.into();
-        Self { code, severity, message, primary, secondary: Vec::new(), notes: Vec::new(), help: None, replacement: None }
+        Self {
+            code,
+            severity,
+            message,
+            primary,
+            secondary: Vec::new(),
+            notes: Vec::new(),
+            help: None,
+            replacement: None,
+        }
     }
 
     /// With `text` beside the primary place.

@@ -2,12 +2,13 @@
 
 import { copier, element, save, show } from "./dom.js";
 
-const CARGO = (version) => `[dependencies]
-pebo-runtime = "${version}"
+/** As the manual has it: where this repository is. */
+const CARGO = `[dependencies]
+pebo-runtime = { path = "../pebo/pebo-runtime" }
 `;
 
 /** Shows the module; `choose` asks for the other type of numbers. */
-export function code(name, emitted, scalar, version, choose) {
+export function code(name, emitted, scalar, choose) {
   const other = (wanted, words) =>
     element(
       "label",
@@ -25,7 +26,7 @@ export function code(name, emitted, scalar, version, choose) {
       element("legend", {}, "Numbers"),
       other("f64", "f64"),
       other("f32", "f32"),
-      copier("Copy", () => emitted.text),
+      copier("Copy the module", () => emitted.text),
       element("button", { type: "button", id: "download", onclick: () => save(`${name}.rs`, emitted.text, "text/rust") }, "Download"),
     ),
     element(
@@ -38,7 +39,8 @@ export function code(name, emitted, scalar, version, choose) {
       element("code", {}, "Cargo.toml"),
       ":",
     ),
-    element("pre", { tabindex: "0" }, CARGO(version)),
+    element("pre", { tabindex: "0" }, CARGO),
+    element("p", {}, copier("Copy these lines", () => CARGO)),
     element(
       "details",
       { id: "module" },

@@ -16,7 +16,7 @@ const status = document.getElementById("status");
 const progress = document.getElementById("progress");
 const examples = document.getElementById("examples");
 
-let engine, editor, loop, version;
+let engine, editor, loop;
 /** The story of each diagnostic by its code. */
 let stories = {};
 let scalar = "f64";
@@ -98,7 +98,7 @@ async function write(mine) {
   const answer = await ask({ what: "emit", text: last.text, scalar });
   if (mine !== turn) return;
   if (answer.emitted) {
-    code(last.name, answer.emitted, scalar, version, (wanted) => {
+    code(last.name, answer.emitted, scalar, (wanted) => {
       scalar = wanted;
       write(turn).catch(fail);
     });
@@ -174,7 +174,6 @@ async function start() {
     fetch(here("./site.json")).then((response) => response.json()),
   ]);
   engine = loaded;
-  version = known.version;
   stories = known.stories;
   document.getElementById("manual").hidden = !known.manual;
   for (const { name, title } of known.examples) examples.append(element("option", { value: name }, title));

@@ -36,7 +36,8 @@ fn true_parameters_of_the_call_multiply_those_of_the_file() {
 fn the_error_at_the_start_is_that_share_of_the_files() {
     for text in [SPRING, CUK, CUK_CASE_2] {
         let errors = |share| {
-            let called = Overrides { initial_error: share, duration: Some(1e-3), step: Some(1e-5), ..Overrides::default() };
+            let called =
+                Overrides { initial_error: share, duration: Some(1e-3), step: Some(1e-5), ..Overrides::default() };
             let trace = run(text, &called);
             let own = trace.summary().estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
             own.map(|rated| rated.score.first).collect::<Vec<_>>()
