@@ -95,12 +95,11 @@ pub struct Set {
     noise: BTreeMap<String, f64>,
     plant: BTreeMap<String, f64>,
     initial_error: Option<f64>,
-    estimator: Option<String>,
+    estimator: Option<Estimator>,
 }
 
 impl From<Set> for Overrides {
     fn from(set: Set) -> Self {
-        let named = |name: String| Estimator::ALL.into_iter().find(|estimator| estimator.name() == name);
         Self {
             seed: set.seed,
             step: set.step,
@@ -108,7 +107,7 @@ impl From<Set> for Overrides {
             noise: set.noise,
             plant: set.plant,
             initial_error: set.initial_error,
-            estimator: set.estimator.and_then(named),
+            estimator: set.estimator,
             ..Self::default()
         }
     }

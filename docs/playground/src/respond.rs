@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use pebo_gen::model::{Estimator, Model, json_schema};
-use pebo_gen::source::{Code, Source};
+use pebo_gen::source::{Code, Diagnostic, Source};
 use pebo_gen::{Answer, Ask, AskRun, Derived, Solution, Tape, solve};
 use serde::Serialize;
 
@@ -18,6 +18,8 @@ const NAME: &str = "model.yaml";
 struct Checked {
     #[serde(flatten)]
     answer: Answer,
+    /// Of each diagnostic, what to write at its place, where that is all there is to do.
+    replacements: Vec<Option<String>>,
     /// What there is to set of the simulation, where there is one and everything is proved.
     knobs: Option<Knobs>,
 }
@@ -99,7 +101,9 @@ pub fn respond(kept: &mut Kept, question: &str) -> String {
             let (answer, model) = of_model(kept, &text, limit, answer);
             let accepted = answer.report.verdict == pebo_gen::analysis::Outcome::Accepted;
             let knobs = model.filter(|_| accepted).and_then(|model| Knobs::of(&model));
-            json(&Checked { answer, knobs })
+            let replacement = |diagnostic: &Diagnostic| diagnostic.replacement().map(str::to_owned);
+            let replacements = answer.diagnostics.iter().map(replacement).collect();
+            json(&Checked { answer, replacements, knobs })
         }
         Question::Emit { text, limit, scalar } => json(
             &of_model(kept, &text, limit, |kept, derived, source| {

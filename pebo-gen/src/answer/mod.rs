@@ -38,6 +38,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use ask::Explained;
+
 use crate::analysis::Outcome;
 use crate::certificate::certificate;
 use crate::derived::{Derived, derive_within};
@@ -131,15 +133,16 @@ impl Answer {
         if derived.derivation.outcome == Outcome::Accepted {
             answer.add(derived, ask);
         }
-        if ask.page {
-            let (page, refusal) = page::page(derived, source, ask, (&answer.diagnostics, answer.emitted.as_ref()));
-            answer.page = Some(page);
-            if let Some((standing, found)) = refusal {
-                answer.refuse(standing, found);
+        match ask.explained {
+            Explained::Not => {}
+            Explained::Page => {
+                let (page, refusal) = page::page(derived, source, ask, (&answer.diagnostics, answer.emitted.as_ref()));
+                answer.page = Some(page);
+                if let Some((standing, found)) = refusal {
+                    answer.refuse(standing, found);
+                }
             }
-        }
-        if ask.sections {
-            answer.sections = Some(page::sections(derived, source, &answer));
+            Explained::Sections => answer.sections = Some(page::sections(derived, source, &answer)),
         }
         answer
     }

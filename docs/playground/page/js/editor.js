@@ -140,9 +140,8 @@ export function story(code, explain) {
 
 /** The quick fix of a diagnostic; null if there is none that needs no thought. */
 export function fix(diagnostic, text) {
-  const place = range(text, diagnostic.primary.span);
-  if (!diagnostic.replacement || !place || place.from === place.to) return null;
-  return { ...place, insert: diagnostic.replacement, name: `Change to \`${diagnostic.replacement}\`` };
+  const insert = diagnostic.replacement;
+  return insert ? { ...range(text, diagnostic.primary.span), insert, name: `Change to \`${insert}\`` } : null;
 }
 
 /** The editor. */

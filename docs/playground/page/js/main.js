@@ -64,6 +64,7 @@ async function check() {
     const answer = await ask({ what: "check", text });
     if (!current()) return;
     const name = answer.report.model;
+    answer.diagnostics.forEach((diagnostic, index) => (diagnostic.replacement = answer.replacements[index]));
     last = { text, accepted: answer.standing === "accepted", name };
     answers.verdict(answer);
     answers.diagnostics(answer, text, editor);
