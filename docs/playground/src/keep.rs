@@ -8,14 +8,17 @@ use pebo_gen::{Ask, Derived, Stage, derive_within};
 
 /// The last model with what was derived of it, and what is told of the progress of a call.
 #[derive(Debug)]
-pub struct Kept {
+pub(super) struct Kept {
     progress: fn(f64),
-    last: Option<(String, Option<f64>, Result<Derived, Vec<Diagnostic>>)>,
+    last: Option<Last>,
 }
+
+/// A text, its limit, and what was derived of it.
+type Last = (String, Option<f64>, Result<Derived, Vec<Diagnostic>>);
 
 impl Kept {
     /// Nothing yet. A run of the closed loop tells which part of it is done, 0 to 1.
-    pub fn new(progress: fn(f64)) -> Self {
+    pub(super) fn new(progress: fn(f64)) -> Self {
         Self { progress, last: None }
     }
 

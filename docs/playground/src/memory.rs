@@ -4,7 +4,8 @@
 
 use std::cell::RefCell;
 
-use super::{Kept, respond};
+use super::keep::Kept;
+use super::respond::respond;
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {

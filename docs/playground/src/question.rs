@@ -10,7 +10,7 @@ use serde::Deserialize;
 /// A question. The answer to each is one JSON object.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "what", rename_all = "lowercase", deny_unknown_fields)]
-pub enum Question {
+pub(super) enum Question {
     /// The verdict with its diagnostics, the derivation in sections, and what there is to set of its simulation.
     Check {
         /// The model file.
@@ -69,7 +69,7 @@ pub enum Question {
 /// The type of numbers in emitted code.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Number {
+pub(super) enum Number {
     /// Single precision.
     F32,
     /// Double precision.
@@ -88,7 +88,7 @@ impl From<Number> for Scalar {
 /// Settings of a run that go before those of the file.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Set {
+pub(super) struct Set {
     seed: Option<u64>,
     step: Option<f64>,
     duration: Option<f64>,

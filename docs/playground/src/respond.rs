@@ -89,7 +89,7 @@ struct Misasked {
 }
 
 /// Answers a question.
-pub fn respond(kept: &mut Kept, question: &str) -> String {
+pub(super) fn respond(kept: &mut Kept, question: &str) -> String {
     let question = match serde_json::from_str(question) {
         Ok(question) => question,
         Err(error) => return json(&Misasked { error: error.to_string() }),

@@ -1,8 +1,15 @@
 //! Answers the questions on standard input, one a line, with one line each: what the page is held against.
+//!
+//! An example of the package `tests`, which has the generator compiled already.
+
+mod keep;
+mod question;
+mod respond;
 
 use std::io::{BufRead, Write, stdin, stdout};
 
-use pebo_playground::{Kept, respond};
+use keep::Kept;
+use respond::respond;
 
 fn main() -> std::io::Result<()> {
     let mut kept = Kept::new(|_| ());
