@@ -153,8 +153,11 @@ const chapters = {
     assert.match(await text(page, "#used"), /^least-squares, covariance/);
     await page.click("#reset");
     await page.waitForFunction((before) => document.getElementById("errors")?.textContent === before, { timeout: PATIENCE }, before);
+    const double = await text(page, "#module pre");
     await page.click('input[value="f32"]');
-    await page.waitForFunction(() => /f32/.test(document.querySelector("#module pre")?.textContent), { timeout: PATIENCE });
+    const other = (double) => document.querySelector("#module pre").textContent !== double;
+    await page.waitForFunction(other, { timeout: PATIENCE }, double);
+    assert.equal(await page.evaluate(() => document.activeElement.value), "f32");
     await page.click("#download");
     const path = join(downloads, "boost.rs");
     for (const end = Date.now() + PATIENCE; Date.now() < end; await new Promise((wait) => setTimeout(wait, 50))) {

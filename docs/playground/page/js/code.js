@@ -16,6 +16,7 @@ export function code(name, emitted, scalar, choose) {
       element("input", { type: "radio", name: "scalar", value: wanted, checked: wanted === scalar, onchange: () => choose(wanted) }),
       ` ${words}`,
     );
+  const chosen = document.activeElement?.name === "scalar";
   const lines = emitted.text.split("\n").length;
   show(
     "code",
@@ -48,4 +49,6 @@ export function code(name, emitted, scalar, choose) {
       element("pre", { tabindex: "0" }, element("code", {}, emitted.text)),
     ),
   );
+  // The choice that was made is made anew, and keeps the keyboard.
+  if (chosen) document.querySelector(`#code input[value="${scalar}"]`).focus();
 }
