@@ -30,7 +30,7 @@ pub mod simulate;
 pub mod source;
 
 #[cfg(feature = "yaml")]
-pub use answer::{Answer, Ask, Solution, Stage, Standing, Typeset, answer, solve};
+pub use answer::{Answer, Ask, Section, Solution, Stage, Standing, Typeset, answer, solve};
 #[cfg(feature = "simulate")]
 pub use answer::{AskRun, FinalError, Run, Tape, replay};
 #[cfg(feature = "yaml")]

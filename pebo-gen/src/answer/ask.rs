@@ -22,9 +22,17 @@ pub struct Ask {
     pub(super) scalar: Option<Scalar>,
     pub(super) mathml: bool,
     pub(super) certificate: bool,
-    pub(super) page: bool,
+    pub(super) explained: Explained,
     #[cfg(feature = "simulate")]
     pub(super) run: Option<AskRun>,
+}
+
+/// How what was proved is explained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Explained {
+    Not,
+    Page,
+    Sections,
 }
 
 /// Where a call is.
@@ -74,7 +82,7 @@ impl Ask {
             scalar: None,
             mathml: false,
             certificate: false,
-            page: false,
+            explained: Explained::Not,
             #[cfg(feature = "simulate")]
             run: None,
         }
@@ -127,7 +135,15 @@ impl Ask {
     /// loop, if the model is accepted and describes one.
     #[must_use]
     pub fn page(mut self) -> Self {
-        self.page = true;
+        self.explained = Explained::Page;
+        self
+    }
+
+    /// To write the parts of that page that are about what was derived, each by itself and with its places in the file; the
+    /// code is among them if it is asked for, and nothing is run for them. It is these or the page.
+    #[must_use]
+    pub fn sections(mut self) -> Self {
+        self.explained = Explained::Sections;
         self
     }
 

@@ -22,6 +22,7 @@ mod solve;
 mod standing;
 mod typeset;
 
+pub use crate::page::Section;
 #[cfg(feature = "simulate")]
 pub use ask::AskRun;
 pub use ask::{Ask, Stage};
@@ -36,6 +37,8 @@ pub use typeset::Typeset;
 use std::path::Path;
 
 use serde::Serialize;
+
+use ask::Explained;
 
 use crate::analysis::Outcome;
 use crate::certificate::certificate;
@@ -66,6 +69,8 @@ pub struct Answer {
     pub certificate: Option<String>,
     /// A page of HTML that explains the proof, if it was asked for and a plant was made, accepted or not.
     pub page: Option<String>,
+    /// The parts of that page that are about what was derived, if they were asked for and a plant was made.
+    pub sections: Option<Vec<Section>>,
     /// What came of the closed loop, if a run was asked for and everything is proved.
     #[cfg(feature = "simulate")]
     pub run: Option<Run>,
@@ -95,19 +100,7 @@ pub fn answer(source: &Source, ask: &Ask) -> Answer {
             return Answer::of_unread(&stem(source, ask), diagnostics, source);
         }
     };
-    let mut answer = Answer::of(&derived, source);
-    answer.mathml = ask.mathml.then(|| Typeset::of(&derived));
-    if derived.derivation.outcome == Outcome::Accepted {
-        answer.add(&derived, ask);
-    }
-    if ask.page {
-        let (page, refusal) = page::page(&derived, source, ask, (&answer.diagnostics, answer.emitted.as_ref()));
-        answer.page = Some(page);
-        if let Some((standing, found)) = refusal {
-            answer.refuse(standing, found);
-        }
-    }
-    answer
+    Answer::on(&derived, source, ask)
 }
 
 /// What a model is called that is too malformed to say its name.
@@ -117,6 +110,43 @@ fn stem(source: &Source, ask: &Ask) -> String {
 }
 
 impl Answer {
+    /// The same of a model that was derived before, from this source: nothing is derived again. What is asked now draws
+    /// from the budget of the derivation.
+    ///
+    /// ```
+    /// use pebo_gen::source::Source;
+    /// use pebo_gen::{Answer, Ask, Standing, derive};
+    ///
+    /// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\nphi: [p]\n";
+    /// let source = Source::new("m.yaml", text).expect("a short text");
+    /// let derived = derive(&source).expect("it is a model");
+    /// let answer = Answer::on(&derived, &source, &Ask::new().sections());
+    /// assert_eq!(answer.standing, Standing::Accepted);
+    /// let sections = answer.sections.expect("they were asked for");
+    /// let cascade = sections.iter().find(|section| section.id == "cascade").expect("there are four claims");
+    /// assert_eq!(cascade.verdict, Some("proved"));
+    /// assert!(cascade.places.iter().any(|place| source.slice(*place) == "v - sin(q)"));
+    /// ```
+    pub fn on(derived: &Derived, source: &Source, ask: &Ask) -> Self {
+        let mut answer = Self::of(derived, source);
+        answer.mathml = ask.mathml.then(|| Typeset::of(derived));
+        if derived.derivation.outcome == Outcome::Accepted {
+            answer.add(derived, ask);
+        }
+        match ask.explained {
+            Explained::Not => {}
+            Explained::Page => {
+                let (page, refusal) = page::page(derived, source, ask, (&answer.diagnostics, answer.emitted.as_ref()));
+                answer.page = Some(page);
+                if let Some((standing, found)) = refusal {
+                    answer.refuse(standing, found);
+                }
+            }
+            Explained::Sections => answer.sections = Some(page::sections(derived, source, &answer)),
+        }
+        answer
+    }
+
     /// Adds what was asked for of an accepted model.
     fn add(&mut self, derived: &Derived, ask: &Ask) {
         if ask.certificate {
@@ -166,6 +196,7 @@ impl Answer {
             mathml: None,
             certificate: None,
             page: None,
+            sections: None,
             #[cfg(feature = "simulate")]
             run: None,
             #[cfg(feature = "simulate")]

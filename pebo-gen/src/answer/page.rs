@@ -3,9 +3,10 @@
 use crate::analysis::Outcome;
 use crate::derived::Derived;
 use crate::emit::{Emitted, Scalar};
-use crate::page::{self, Subject};
+use crate::page::{self, Section, Subject};
 use crate::source::{Diagnostic, Source};
 
+use super::Answer;
 use super::ask::Ask;
 #[cfg(feature = "simulate")]
 use super::ask::AskRun;
@@ -49,6 +50,19 @@ pub(super) fn page(
         run: run.as_ref().and_then(of_run),
     });
     (page, refusal)
+}
+
+/// The parts of the page that are about what was derived.
+pub(super) fn sections(derived: &Derived, source: &Source, answer: &Answer) -> Vec<Section> {
+    page::sections(&Subject {
+        source,
+        plant: &derived.plant,
+        derivation: &derived.derivation,
+        diagnostics: &answer.diagnostics,
+        emitted: answer.emitted.as_ref(),
+        #[cfg(feature = "simulate")]
+        run: None,
+    })
 }
 
 /// Runs the closed loop that the model describes, if it describes one.

@@ -47,14 +47,21 @@ pub fn replay(source: &Source, ask: &Ask, tape: Tape<'_>) -> Answer {
         Ok(derived) => derived,
         Err(diagnostics) => return Answer::of_unread(&stem(source, ask), diagnostics, source),
     };
-    let mut answer = Answer::of(&derived, source);
-    if derived.derivation.outcome == Outcome::Accepted {
-        match run(&derived, ask, tape) {
-            Ok(replayed) => answer.replay = Some(replayed),
-            Err((standing, found)) => answer.refuse(standing, found),
+    Answer::replayed_on(&derived, source, ask, tape)
+}
+
+impl Answer {
+    /// The same with a model that was derived before, from this source: nothing is derived again.
+    pub fn replayed_on(derived: &Derived, source: &Source, ask: &Ask, tape: Tape<'_>) -> Self {
+        let mut answer = Self::of(derived, source);
+        if derived.derivation.outcome == Outcome::Accepted {
+            match run(derived, ask, tape) {
+                Ok(replayed) => answer.replay = Some(replayed),
+                Err((standing, found)) => answer.refuse(standing, found),
+            }
         }
+        answer
     }
-    answer
 }
 
 /// Runs the observer; what the call, the model or the recording does not say well is the caller's mistake.

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use crate::derived::Derived;
-use crate::simulate::{Ensemble, Rated, Summary, Trace, figure};
+use crate::simulate::{Ensemble, Rated, Scenario, Summary, Trace, figure};
 use crate::source::Diagnostic;
 
 use super::ask::{Ask, AskRun, Stage};
@@ -20,6 +20,8 @@ use super::standing::Standing;
 pub struct Run {
     /// When it ended, in seconds.
     pub end: f64,
+    /// The estimator with its settings, as a file would have them.
+    pub estimator: String,
     /// The error of each estimate.
     pub errors: Vec<FinalError>,
     /// How each estimate settled and how large its error was then; samples that were lost; excitation. Of many runs, of the
@@ -64,7 +66,7 @@ pub(super) fn run(
         let (ensemble, first) = ran.map_err(|failure| (Standing::Refused, vec![scenario.explain(&failure)]))?;
         let figure = wanted.figure.then(|| ensemble.figure(&scenario));
         let advice = scenario.advise_on(&ensemble);
-        let run = Run { figure, ensemble: Some(ensemble), ..Run::of(first) };
+        let run = Run { figure, ensemble: Some(ensemble), ..Run::of(&scenario, first) };
         return Ok((run, advice));
     }
     let ran = scenario.run_while(&mut progress);
@@ -72,12 +74,12 @@ pub(super) fn run(
     let figure = wanted.figure.then(|| figure::draw(&trace, &scenario));
     let summary = trace.summary().clone();
     let advice = scenario.advise(&summary);
-    Ok((Run { figure, trace: wanted.trace.then_some(trace), ..Run::of(summary) }, advice))
+    Ok((Run { figure, trace: wanted.trace.then_some(trace), ..Run::of(&scenario, summary) }, advice))
 }
 
 impl Run {
     /// A run of which nothing else was asked for.
-    fn of(summary: Summary) -> Self {
+    fn of(scenario: &Scenario, summary: Summary) -> Self {
         let own = summary.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
         let error = |rated: &Rated| FinalError {
             state: rated.estimate.state.clone(),
@@ -85,6 +87,7 @@ impl Run {
             end: rated.score.last,
         };
         let errors = own.map(error).collect();
-        Self { end: summary.end, errors, summary, ensemble: None, trace: None, figure: None }
+        let estimator = scenario.estimator().to_owned();
+        Self { end: summary.end, estimator, errors, summary, ensemble: None, trace: None, figure: None }
     }
 }

@@ -32,6 +32,8 @@ pub struct Solution {
     pub diagnostics: Vec<Diagnostic>,
     /// The text of the model with the best transform for its own, if one was found.
     pub filled: Option<String>,
+    /// The text of the model with each candidate for its transform, in their order, where the file has words for it.
+    pub texts: Vec<Option<String>>,
 }
 
 /// Searches for transforms of a model's plant, whether or not the model has one; of one class of cascade, or of the one
@@ -59,12 +61,15 @@ pub fn solve(source: &Source, class: Option<Class>, ask: &Ask) -> Solution {
     };
     let search = search::solve(&plant, class.or(plant.asked));
     let best = search.candidates.first().filter(|_| search.verdict == Found::Found);
+    let texts: Vec<Option<String>> =
+        search.candidates.iter().map(|candidate| filled(source, &model, &candidate.plant)).collect();
     Solution {
         standing: if best.is_some() { Standing::Accepted } else { Standing::Refused },
         report: SearchReport::of(&plant, &search),
         summary: search_summary(&plant, &search),
         diagnostics: Vec::new(),
-        filled: best.and_then(|best| filled(source, &model, &best.plant)),
+        filled: best.and_then(|_| texts.first().cloned().flatten()),
+        texts,
     }
 }
 
@@ -78,6 +83,7 @@ impl Solution {
             summary: String::new(),
             diagnostics,
             filled: None,
+            texts: Vec::new(),
         }
     }
 }

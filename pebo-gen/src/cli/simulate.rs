@@ -19,6 +19,7 @@ pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {
         duration: None,
         step: options.step,
         every: options.every,
+        ..Overrides::default()
     };
     let (trace, figure) = (options.csv.is_some(), options.plot.is_some());
     let wanted = AskRun { overrides, trace, figure, runs: options.runs };

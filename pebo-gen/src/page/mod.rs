@@ -15,6 +15,7 @@ mod plant;
 mod regression;
 #[cfg(feature = "simulate")]
 mod run;
+mod sections;
 mod subject;
 mod transform;
 mod usage;
@@ -23,6 +24,8 @@ mod verdict;
 use formula::Setter;
 use html::Html;
 
+pub use sections::Section;
+pub(crate) use sections::sections;
 pub(crate) use subject::Subject;
 #[cfg(feature = "simulate")]
 pub(crate) use subject::{Errors, Loop};

@@ -15,6 +15,7 @@
 
 mod advice;
 mod asked;
+mod changed;
 mod control;
 mod curve;
 mod derived;

@@ -1,5 +1,9 @@
 //! What a call sets instead of the file.
 
+use std::collections::BTreeMap;
+
+use crate::model::Estimator;
+
 /// Settings of a call, which go before those of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
@@ -13,6 +17,16 @@ pub struct Overrides {
     pub step: Option<f64>,
     /// The time between rows of the table in seconds; a thousandth of the duration if absent.
     pub every: Option<f64>,
+    /// The standard deviations of outputs' samples, in their units; 0 for none.
+    pub noise: BTreeMap<String, f64>,
+    /// The true values of parameters, as multiples of what they are without this.
+    pub plant: BTreeMap<String, f64>,
+    /// How wrong the extension is at the start, as a multiple of how wrong it is without this: 0 where it begins at phi,
+    /// so that the observer knows the state. Bounds of the unknowns hold all the same.
+    pub initial_error: Option<f64>,
+    /// The estimator. Settings that it needs and the file does not have take the values of those that play their part in
+    /// the file's estimator, or usual ones: a place to start from.
+    pub estimator: Option<Estimator>,
 }
 
 impl Overrides {

@@ -14,6 +14,7 @@ use crate::program::{Interpreter, Program};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::advice::advise;
+use super::changed::{changed, told};
 use super::control;
 use super::failure::Failure;
 use super::flow;
@@ -37,6 +38,8 @@ const MOST_VALUES: f64 = 2e7;
 #[derive(Debug)]
 pub struct Scenario {
     pub(super) title: String,
+    /// The estimator with its settings, as a file would have them.
+    pub(super) estimator: String,
     /// The baseline or `truth`, where the control law does not see the observer's estimates.
     pub(super) feedback: Option<String>,
     pub(super) timing: Timing,
@@ -99,8 +102,9 @@ impl Scenario {
         overrides: &Overrides,
     ) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
-        let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
         let mut problems = Diagnostics::new();
+        let model = &*changed(model, overrides, &mut problems);
+        let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
         let names = Names { model, simulation, plant };
         let scenario = Resolution { names, problems: &mut problems }.scenario(derivation, overrides);
         problems.propagate()?;
@@ -111,6 +115,11 @@ impl Scenario {
     /// The number of samples of a run.
     pub fn samples(&self) -> u64 {
         self.timing.samples
+    }
+
+    /// The estimator with its settings, as a file would have them: `gradient, gain: [1e7, 1e7]`.
+    pub fn estimator(&self) -> &str {
+        &self.estimator
     }
 
     /// What there is to say of a run that did not converge: why, and what mends it.
@@ -161,7 +170,7 @@ impl Resolution<'_> {
         let truth = Truth::resolve(&names, problems);
         let start = start(&names, &truth, &rivals, problems);
         let rates = rates(&names, &truth, &rivals, problems);
-        let (timing, design, rates) = (timing?, design?, rates?);
+        let (timing, mut design, rates) = (timing?, design?, rates?);
 
         let hats: Estimates = design
             .recovered
@@ -182,6 +191,9 @@ impl Resolution<'_> {
                     .help(format!("the simulator has room for {}", flow::LARGEST)),
             );
         }
+        if let Some(share) = overrides.initial_error {
+            begin(&names, (&layout, &signals), &start, share, &mut design.settings.chi_0);
+        }
         let columns = columns(plant, &design.recovered, &rivals);
         problems.keep(admit_table(&timing, columns.len()));
         let followers = followers(plant, &layout, &mut rivals);
@@ -195,6 +207,7 @@ impl Resolution<'_> {
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
+            estimator: told(&names.model.observer),
             feedback: (feedback != Simulation::OBSERVER).then_some(feedback),
             start: compile(&start)?,
             given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
@@ -237,6 +250,28 @@ fn start(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnost
     let all: Vec<Expr> = states.into_iter().map(|symbol| arena.of_symbol(symbol)).collect();
     let others = rivals.iter().flat_map(|rival| rival.start.iter().copied());
     arena.substitute_all(&all.into_iter().chain(others).collect::<Vec<_>>(), &values)
+}
+
+/// The extension at the start, as wrong as the call asks for.
+fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr], share: f64, chi_0: &mut [f64]) {
+    let (plant, arena) = (names.plant, &names.plant.arena);
+    let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
+    let at: BTreeMap<Symbol, Expr> = states.zip(start.iter().copied()).chain(names.numbers()).collect();
+    // The inputs are still 0, as where states are given by them.
+    let mut table = vec![0.0; layout.symbols.len()];
+    for (position, signal) in layout.signals.clone().zip(signals) {
+        table[position] = signal.course().value(0.0);
+    }
+    for (formula, chi) in plant.phi.iter().zip(chi_0) {
+        let mut value = [f64::NAN];
+        if let Ok(program) = layout.program(arena, &[arena.substitute(formula.expr, &at)], Span::NOWHERE) {
+            Interpreter::new(&program).run(&table, &mut value);
+        }
+        // Where phi has no value at the start, the extension begins where it did.
+        if value[0].is_finite() {
+            *chi = value[0] + share * (*chi - value[0]);
+        }
+    }
 }
 
 /// The rates of x, y and the baselines' states; of what is not integrated, 0.

@@ -54,7 +54,12 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What to do.
     pub help: Option<Box<str>>,
+    /// Whether the primary place is a name that is nearly right, and the help says which is: a change that takes no thought.
+    pub misspelt: bool,
 }
+
+/// What stands before the nearest name.
+const DID_YOU_MEAN: &str = "did you mean `";
 
 impl Diagnostic {
     /// An error at `span`.
@@ -77,7 +82,7 @@ impl Diagnostic {
     fn new(severity: Severity, code: Code, span: Span, message: impl Into<Box<str>>) -> Self {
         let primary = Label { span, text: Box::default() };
         let message = message.into();
-        Self { code, severity, message, primary, secondary: Vec::new(), notes: Vec::new(), help: None }
+        Self { code, severity, message, primary, secondary: Vec::new(), notes: Vec::new(), help: None, misspelt: false }
     }
 
     /// With `text` beside the primary place.
@@ -108,11 +113,19 @@ impl Diagnostic {
         self
     }
 
-    /// With "did you mean" for help, where there is a nearest name.
+    /// What to write at the primary place, where that is all there is to do.
+    pub fn replacement(&self) -> Option<&str> {
+        let help = self.help.as_deref().filter(|_| self.misspelt)?;
+        help.strip_prefix(DID_YOU_MEAN)?.strip_suffix("`?")
+    }
+
+    /// With "did you mean" for help, where there is a nearest name for what stands at the primary place.
     #[must_use]
     pub fn suggest(self, name: Option<&str>) -> Self {
         match name {
-            Some(name) => self.help(format!("did you mean `{name}`?")),
+            Some(name) => {
+                Self { misspelt: self.primary.span != Span::NOWHERE, ..self.help(format!("{DID_YOU_MEAN}{name}`?")) }
+            }
             None => self,
         }
     }

@@ -138,3 +138,12 @@ fn quoted_texts_are_short_and_harmless() {
     assert!(quoted(&"é".repeat(1000)).chars().count() < 60);
     assert_eq!(listed(["a", "b"]), "`a`, `b`");
 }
+
+#[test]
+fn a_nearest_name_is_what_to_write_instead() {
+    let diagnostic = Diagnostic::error(Code::UnknownKey, Span::new(0, 2), "unknown key");
+    assert_eq!(diagnostic.clone().suggest(Some("phi")).replacement(), Some("phi"));
+    assert_eq!(diagnostic.help("did you mean `phi`?").replacement(), None);
+    let elsewhere = Diagnostic::error(Code::WrongChoice, Span::NOWHERE, "said in the call");
+    assert_eq!(elsewhere.suggest(Some("truth")).replacement(), None);
+}

@@ -4,7 +4,14 @@ use std::path::Path;
 use std::process::Command;
 
 /// Commands that no test runs, as each installs or serves something.
-pub(super) const BY_HAND: &[&str] = &["cargo install --path pebo-gen", "cargo install mdbook", "mdbook serve docs"];
+pub(super) const BY_HAND: &[&str] = &[
+    "cargo install --path pebo-gen",
+    "cargo install mdbook",
+    "mdbook serve docs",
+    // By `docs/playground/test` in CI.
+    "docs/build",
+    "python3 -m http.server --directory target/site",
+];
 
 /// A line that stands for any number of lines.
 const GAP: &str = "...";

@@ -1,0 +1,50 @@
+//! The last model, as it was derived.
+
+use std::ops::ControlFlow;
+
+use pebo_gen::cas::budget::Budget;
+use pebo_gen::source::{Diagnostic, Source};
+use pebo_gen::{Ask, Derived, Stage, derive_within};
+
+/// The last model with what was derived of it, and what is told of the progress of a call.
+#[derive(Debug)]
+pub(super) struct Kept {
+    progress: fn(f64),
+    last: Option<Last>,
+}
+
+/// A text, its limit, and what was derived of it.
+type Last = (String, Option<f64>, Result<Derived, Vec<Diagnostic>>);
+
+impl Kept {
+    /// Nothing yet. A run of the closed loop tells which part of it is done, 0 to 1.
+    pub(super) fn new(progress: fn(f64)) -> Self {
+        Self { progress, last: None }
+    }
+
+    /// What is asked of every model, within so many seconds.
+    pub(super) fn ask(&self) -> Ask {
+        let progress = self.progress;
+        Ask::new().named("model").watch(move |stage| {
+            if let Stage::Run { done, .. } = stage {
+                progress(done);
+            }
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// The model as it was derived, now or before.
+    pub(super) fn take(&mut self, source: &Source, limit: Option<f64>) -> Result<Derived, Vec<Diagnostic>> {
+        let wanted = (source.text(), limit);
+        let known = self.last.take().filter(|(text, within, _)| (text.as_str(), *within) == wanted);
+        match known {
+            Some((_, _, derived)) => derived,
+            None => derive_within(source, Budget::of_seconds(limit.unwrap_or(Budget::SECONDS))),
+        }
+    }
+
+    /// Keeps the model.
+    pub(super) fn keep(&mut self, source: &Source, limit: Option<f64>, derived: Result<Derived, Vec<Diagnostic>>) {
+        self.last = Some((source.text().to_owned(), limit, derived));
+    }
+}

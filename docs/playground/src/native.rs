@@ -1,0 +1,20 @@
+//! Answers the questions on standard input, one a line, with one line each: what the page is held against.
+//!
+//! An example of the package `tests`, which has the generator compiled already.
+
+mod keep;
+mod question;
+mod respond;
+
+use std::io::{BufRead, Write, stdin, stdout};
+
+use keep::Kept;
+use respond::respond;
+
+fn main() -> std::io::Result<()> {
+    let mut kept = Kept::new(|_| ());
+    for question in stdin().lock().lines() {
+        writeln!(stdout().lock(), "{}", respond(&mut kept, &question?).replace('\n', " "))?;
+    }
+    Ok(())
+}

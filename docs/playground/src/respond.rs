@@ -1,0 +1,181 @@
+//! From a question to its answer.
+
+use std::collections::BTreeMap;
+
+use pebo_gen::model::{Estimator, Model, json_schema};
+use pebo_gen::source::{Code, Diagnostic, Source};
+use pebo_gen::{Answer, Ask, AskRun, Derived, Solution, Tape, solve};
+use serde::Serialize;
+
+use super::keep::Kept;
+use super::question::Question;
+
+/// What a page calls the text of its editor.
+const NAME: &str = "model.yaml";
+
+/// The answer on a model, with what a page needs to offer more.
+#[derive(Debug, Serialize)]
+struct Checked {
+    #[serde(flatten)]
+    answer: Answer,
+    /// Of each diagnostic, what to write at its place, where that is all there is to do.
+    replacements: Vec<Option<String>>,
+    /// What there is to set of the simulation, where there is one and everything is proved.
+    knobs: Option<Knobs>,
+}
+
+/// What there is to set of a simulation.
+#[derive(Debug, Serialize)]
+struct Knobs {
+    duration: Option<f64>,
+    step: Option<f64>,
+    /// Outputs with the standard deviations of their samples.
+    noise: Vec<(String, f64)>,
+    /// Parameters that have a value.
+    parameters: Vec<String>,
+    estimator: &'static str,
+    estimators: &'static [&'static str],
+}
+
+impl Knobs {
+    fn of(model: &Model) -> Option<Self> {
+        let simulation = model.simulation.as_ref()?;
+        let deviation = |output: &str| {
+            let entry = simulation.noise.iter().find(|entry| entry.name.value == output);
+            entry.map_or(0.0, |entry| entry.value.value.to_f64())
+        };
+        let valued = model.parameters.iter().filter(|parameter| parameter.value.is_some());
+        Some(Self {
+            duration: simulation.duration.as_ref().map(|duration| duration.value.to_f64()),
+            step: simulation.step.as_ref().map(|step| step.value.to_f64()),
+            noise: model.y.iter().map(|output| (output.value.clone(), deviation(&output.value))).collect(),
+            parameters: valued.map(|parameter| parameter.name.value.clone()).collect(),
+            estimator: model.observer.estimator().name(),
+            estimators: Estimator::NAMES,
+        })
+    }
+}
+
+/// A run with its signals as CSV.
+#[derive(Debug, Serialize)]
+struct Ran {
+    #[serde(flatten)]
+    answer: Answer,
+    csv: Option<String>,
+}
+
+/// A replay with its figure as SVG, and its estimates as CSV.
+#[derive(Debug, Serialize)]
+struct Taped {
+    #[serde(flatten)]
+    answer: Answer,
+    figure: Option<String>,
+    csv: Option<String>,
+}
+
+/// The story of a diagnostic.
+#[derive(Debug, Serialize)]
+struct Story {
+    title: &'static str,
+    explanation: &'static str,
+    example: &'static str,
+    paper: Option<&'static str>,
+}
+
+/// What a question that is none gets.
+#[derive(Debug, Serialize)]
+struct Misasked {
+    error: String,
+}
+
+/// Answers a question.
+pub(super) fn respond(kept: &mut Kept, question: &str) -> String {
+    let question = match serde_json::from_str(question) {
+        Ok(question) => question,
+        Err(error) => return json(&Misasked { error: error.to_string() }),
+    };
+    match question {
+        Question::Check { text, limit } => {
+            let answer =
+                |kept: &Kept, derived: &Derived, source: &Source| Answer::on(derived, source, &kept.ask().sections());
+            let (answer, model) = of_model(kept, &text, limit, answer);
+            let accepted = answer.report.verdict == pebo_gen::analysis::Outcome::Accepted;
+            let knobs = model.filter(|_| accepted).and_then(|model| Knobs::of(&model));
+            let replacement = |diagnostic: &Diagnostic| diagnostic.replacement().map(str::to_owned);
+            let replacements = answer.diagnostics.iter().map(replacement).collect();
+            json(&Checked { answer, replacements, knobs })
+        }
+        Question::Emit { text, limit, scalar } => json(
+            &of_model(kept, &text, limit, |kept, derived, source| {
+                Answer::on(derived, source, &kept.ask().emit(scalar.into()))
+            })
+            .0,
+        ),
+        Question::Simulate { text, limit, set, csv } => {
+            let run = AskRun { overrides: set.into(), trace: csv, figure: true, runs: None };
+            let (mut answer, _) =
+                of_model(kept, &text, limit, |kept, derived, source| Answer::on(derived, source, &kept.ask().run(run)));
+            let trace = answer.run.as_mut().and_then(|run| run.trace.take());
+            json(&Ran { csv: trace.map(|trace| trace.csv()), answer })
+        }
+        Question::Solve { text, limit } => json(&match Source::new(NAME, text) {
+            Ok(source) => solve(&source, None, &limited(kept.ask(), limit)),
+            Err(diagnostic) => Solution::of_unread("model", vec![diagnostic], &Source::unread(NAME)),
+        }),
+        Question::Replay { text, limit, name, csv } => {
+            let mut estimates = Vec::new();
+            let (answer, _) = of_model(kept, &text, limit, |kept, derived, source| {
+                let tape = Tape { name: &name, recording: &mut csv.as_bytes(), estimates: Some(&mut estimates) };
+                Answer::replayed_on(derived, source, &kept.ask(), tape)
+            });
+            let csv = answer.replay.is_some().then(|| String::from_utf8_lossy(&estimates).into_owned());
+            let figure = answer.replay.as_ref().map(|replay| replay.figure.clone());
+            json(&Taped { answer, figure, csv })
+        }
+        Question::Stories => {
+            let story = |code: Code| Story {
+                title: code.title(),
+                explanation: code.explanation(),
+                example: code.example(),
+                paper: code.paper(),
+            };
+            json(&Code::ALL.iter().map(|code| (code.name(), story(*code))).collect::<BTreeMap<_, _>>())
+        }
+        Question::Version => json(&env!("CARGO_PKG_VERSION")),
+        Question::Schema => json_schema(),
+    }
+}
+
+fn limited(ask: Ask, limit: Option<f64>) -> Ask {
+    match limit {
+        Some(seconds) => ask.limit(seconds),
+        None => ask,
+    }
+}
+
+/// The answer on a text, and the model if it is one.
+fn of_model(
+    kept: &mut Kept,
+    text: &str,
+    limit: Option<f64>,
+    answer: impl FnOnce(&Kept, &Derived, &Source) -> Answer,
+) -> (Answer, Option<Model>) {
+    let source = match Source::new(NAME, text) {
+        Ok(source) => source,
+        Err(diagnostic) => {
+            return (Answer::of_unread("model", vec![diagnostic], &Source::unread(NAME)), None);
+        }
+    };
+    let derived = kept.take(&source, limit);
+    let answered = match &derived {
+        Ok(derived) => (answer(kept, derived, &source), Some(derived.model.clone())),
+        Err(diagnostics) => (Answer::of_unread("model", diagnostics.clone(), &source), None),
+    };
+    kept.keep(&source, limit, derived);
+    answered
+}
+
+/// Values of this crate always serialise: strings, numbers, and maps with string keys.
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_default()
+}

@@ -1,0 +1,97 @@
+//! What a call sets: the same as in a file, and what a file cannot say.
+
+use std::collections::BTreeMap;
+
+use crate::model::Estimator;
+use crate::simulate::Overrides;
+use crate::source::Code;
+
+use super::{CUK, CUK_CASE_2, SPRING, resolve, run, with};
+
+fn of(name: &str, value: f64) -> BTreeMap<String, f64> {
+    BTreeMap::from([(name.to_owned(), value)])
+}
+
+#[test]
+fn noise_of_the_call_is_that_of_a_file() {
+    let written = with(SPRING, "initial: {v: 0, q: 1}", "initial: {v: 0, q: 1}, noise: {q: 0.01}");
+    let called = Overrides { noise: of("q", 0.01), ..Overrides::default() };
+    assert_eq!(run(SPRING, &called).csv(), run(&written, &Overrides::default()).csv());
+    let silent = Overrides { noise: of("q", 0.0), ..Overrides::default() };
+    assert_eq!(run(&written, &silent).csv(), run(SPRING, &Overrides::default()).csv());
+}
+
+#[test]
+fn true_parameters_of_the_call_multiply_those_of_the_file() {
+    let section = "initial: {v: 0, q: 1}";
+    let called = Overrides { plant: of("k", 1.5), ..Overrides::default() };
+    let written = with(SPRING, section, &format!("{section}, plant: {{k: 1.5*k}}"));
+    assert_eq!(run(SPRING, &called).csv(), run(&written, &Overrides::default()).csv());
+    let stepping = with(SPRING, section, &format!("{section}, plant: {{k: {{0: k, 5: 2*k}}}}"));
+    let both = with(SPRING, section, &format!("{section}, plant: {{k: {{0: 1.5*k, 5: 1.5*(2*k)}}}}"));
+    assert_eq!(run(&stepping, &called).csv(), run(&both, &Overrides::default()).csv());
+}
+
+#[test]
+fn the_error_at_the_start_is_that_share_of_the_files() {
+    for text in [SPRING, CUK, CUK_CASE_2] {
+        let errors = |share| {
+            let called =
+                Overrides { initial_error: share, duration: Some(1e-3), step: Some(1e-5), ..Overrides::default() };
+            let trace = run(text, &called);
+            let own = trace.summary().estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
+            own.map(|rated| rated.score.first).collect::<Vec<_>>()
+        };
+        let usual = errors(None);
+        for share in [0.0, 0.5, 1.0, 2.0] {
+            for (error, usual) in errors(Some(share)).into_iter().zip(&usual) {
+                // The left inverses of these are affine in z: what remains is rounding of numbers of some tens.
+                assert!((error - share * usual).abs() <= 1e-13, "{share}: {error} {usual}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_estimator_can_be_tried_on_every_section() {
+    let sections = [
+        "gain: [5e-6, 0.1], filter: 1e3",
+        "estimator: least-squares, covariance: [1e6, 1e10], forgetting: 100, window: 100",
+        "estimator: finite-time-drem, gain: 1e5, regressor_gain: [2e-3, 40], forgetting: 200, clip: 0.1, filter: 1e3",
+        "estimator: least-squares-drem, gain: 1e5, covariance: [1e6, 1e10], filter: 1e3",
+    ];
+    let start = CUK_CASE_2.find("observer:\n").unwrap();
+    let end = CUK_CASE_2.find("simulation:\n").unwrap();
+    for section in sections {
+        let text = format!("{}observer: {{{section}}}\n{}", &CUK_CASE_2[..start], &CUK_CASE_2[end..]);
+        for estimator in Estimator::ALL {
+            let called = Overrides { estimator: Some(estimator), duration: Some(1e-3), ..Overrides::default() };
+            let scenario = resolve(&text, &called).unwrap();
+            assert!(scenario.run().is_ok(), "{section} with {}", estimator.name());
+        }
+    }
+    // The gain of the gradient is the covariance of least squares, and the other way round.
+    let gradient = "estimator: gradient, gain: [5e-6, 0.1], filter: 1e3";
+    let least = "estimator: least-squares, covariance: [5e-6, 0.1], filter: 1e3";
+    let text = |section: &str| format!("{}observer: {{{section}}}\n{}", &CUK_CASE_2[..start], &CUK_CASE_2[end..]);
+    for (from, to, other) in [(gradient, Estimator::LeastSquares, least), (least, Estimator::Gradient, gradient)] {
+        let called = Overrides { estimator: Some(to), duration: Some(1e-3), ..Overrides::default() };
+        let usual = Overrides { duration: Some(1e-3), ..Overrides::default() };
+        assert_eq!(run(&text(from), &called).csv(), run(&text(other), &usual).csv());
+    }
+}
+
+#[test]
+fn what_the_call_cannot_set_is_told() {
+    let cases = [
+        (Overrides { noise: of("w", 1.0), ..Overrides::default() }, Code::UnknownName),
+        (Overrides { noise: of("q", -1.0), ..Overrides::default() }, Code::NumberOutOfRange),
+        (Overrides { noise: of("q", f64::NAN), ..Overrides::default() }, Code::NumberOutOfRange),
+        (Overrides { plant: of("k", 0.0), ..Overrides::default() }, Code::NumberOutOfRange),
+        (Overrides { plant: of("q", 1.0), ..Overrides::default() }, Code::UnknownName),
+    ];
+    for (called, code) in cases {
+        let found = resolve(SPRING, &called).unwrap_err();
+        assert_eq!(found.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>(), [code], "{called:?}");
+    }
+}
