@@ -63,15 +63,11 @@ impl Derivation {
         let (regression, identifiability) = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
                 let given = (regression, identifiability);
-                forms::preferred(plant, &domain, (class, result, inverse), given, &mut found, before)
+                let claims = (class, result, inverse);
+                let given = forms::preferred(plant, &domain, claims, given, &mut found, before);
+                by_values(plant, &domain, claims, given, &mut found, before)
             }
             _ => (regression, identifiability),
-        };
-        let (regression, identifiability) = match &cascade.result {
-            Some(result) => {
-                by_values(plant, &domain, (class, result, inverse), (regression, identifiability), &mut found, before)
-            }
-            None => (regression, identifiability),
         };
         let (regression, identifiability) = match &cascade.result {
             Some(result) => {
