@@ -144,6 +144,11 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
             // The version of the runtime library: it computes nothing.
             Item::Const(item) if item.ident == "_" => {}
             Item::Const(item) if item.ident == tuning::WINDOW => window = Some(&*item.expr),
+            Item::Const(item) if item.ident == tuning::UNKNOWNS.0 => {
+                if item.expr.to_token_stream().to_string() != tuning::UNKNOWNS.1 {
+                    return Err(unreadable(item));
+                }
+            }
             Item::Const(item) if is_size(&item.ty) => {
                 let name = item.ident.to_string();
                 let size = definitions.sizes().into_iter().find(|size| name == size.name);

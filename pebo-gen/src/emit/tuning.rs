@@ -16,11 +16,14 @@ use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Opera
 /// The constant with the length of a window.
 pub(super) const WINDOW: &str = "NW";
 
+/// The constant with the number of unknowns of the output form, and its value.
+pub(super) const UNKNOWNS: (&str, &str) = ("NO", "NR + NZ");
+
 /// What a name is bound to.
 #[derive(Clone, Debug)]
 enum Made {
-    /// The model with its parameters, and bounds of its states.
-    Model([Option<Vec<Rational>>; 2]),
+    /// The model with its parameters, whether in its output form, and bounds of its states.
+    Model(bool, [Option<Vec<Rational>>; 2]),
     Number(Rational),
     List(Vec<Rational>),
     /// A vector of infinities, above or below all numbers.
@@ -94,7 +97,9 @@ impl Reader<'_> {
             Syntax::Try(attempt) => self.expression(&attempt.expr),
             Syntax::Reference(reference) => self.expression(&reference.expr),
             Syntax::Call(call) => match compact(&call.func).as_str() {
-                "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => Ok(Made::Model([None, None])),
+                "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => {
+                    Ok(Made::Model(false, [None, None]))
+                }
                 "SVector::from" => self.list(syntax),
                 "SVector::repeat" => match compact(&call.args).as_str() {
                     "f64::INFINITY" | "f32::INFINITY" => Ok(Made::Infinite { above: true }),
@@ -177,8 +182,13 @@ impl Reader<'_> {
             ("Bounded::new", [Some(Made::Estimator(estimator)), Some(lower), Some(upper), None]) => {
                 Bounded(estimator, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
-            ("Within::new", [Some(Model([None, None])), Some(lower), Some(upper), None]) => {
-                Model([bound(lower, false).ok()?, bound(upper, true).ok()?])
+            ("OutputForm::new", [Some(Model(false, [None, None])), None, None, None]) => Model(true, [None, None]),
+            ("Within::new", [Some(Model(output, [None, None])), Some(lower), Some(upper), None]) => {
+                Model(output, [bound(lower, false).ok()?, bound(upper, true).ok()?])
+            }
+            // Samples are joined to no signal: that they were, straight, is what the settings say.
+            ("SampledRegression::new", [Some(List(deviations)), None, None, None]) => {
+                Made::Operator(Operator::Sampled(deviations), true)
             }
             ("Filter::new", [Some(Number(alpha)), Some(Hold(straight)), None, None]) => {
                 Made::Operator(Operator::Filter(alpha), straight)
@@ -189,7 +199,7 @@ impl Reader<'_> {
             }
             (
                 "Tuned::new" | "Tuned::with_regression",
-                [Some(Model(within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
+                [Some(Model(output, within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
             ) => {
                 let filtered = matches!(operator, Operator::Filter(_));
                 let (estimator, [lower, upper]) = match estimator {
@@ -200,7 +210,17 @@ impl Reader<'_> {
                 if filtered != (function == "Tuned::new") {
                     return None;
                 }
-                Made::Observer(Settings { operator, straight, estimator, lower, upper, within, rebase: None, chi_0 })
+                Made::Observer(Settings {
+                    operator,
+                    output,
+                    straight,
+                    estimator,
+                    lower,
+                    upper,
+                    within,
+                    rebase: None,
+                    chi_0,
+                })
             }
             _ => return None,
         })

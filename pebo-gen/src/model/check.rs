@@ -34,6 +34,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
+        pass.belong(&model.observer.sensors, &y, "sensors");
+        pass.belong(&model.observer.start, &x, "start");
+        pass.belong(&model.observer.disturbance, &both, "disturbance");
         if let Some(recording) = &model.recording {
             pass.recording(recording, model);
         }
@@ -63,6 +66,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     }
     pass.units(model);
     pass.inverted(model);
+    pass.known(&model.observer.sensors, [&model.observer.start, &model.observer.disturbance]);
     model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
         pass.simulation(simulation, &scope, (&model.u, &model.w));
@@ -239,18 +243,21 @@ impl Pass<'_> {
                     let group = Group::new(states(), "a state of the baseline");
                     self.belong(&equations.initial, &group, "initial");
                 }
-                Baseline::Kalman(filter) => {
-                    for deviation in &filter.sensors {
-                        self.positive(Some(&deviation.value), "the standard deviation of a sensor");
-                    }
-                    for deviation in filter.start.iter().chain(&filter.disturbance) {
-                        self.not_negative(&deviation.value, "a standard deviation");
-                    }
-                }
+                Baseline::Kalman(filter) => self.known(&filter.sensors, [&filter.start, &filter.disturbance]),
                 Baseline::Luenberger(observer) => self.poles(&observer.poles),
             }
         }
         self.feedback(simulation);
+    }
+
+    /// Standard deviations are none below zero; a sensor has one.
+    fn known(&mut self, sensors: &[Entry<Spanned<Decimal>>], others: [&[Entry<Spanned<Decimal>>]; 2]) {
+        for deviation in sensors {
+            self.positive(Some(&deviation.value), "the standard deviation of a sensor");
+        }
+        for deviation in others.into_iter().flatten() {
+            self.not_negative(&deviation.value, "a standard deviation");
+        }
     }
 
     /// What sensors do to samples is possible.

@@ -10,6 +10,9 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 pub struct Settings<N> {
     /// What the regression goes through.
     pub operator: Operator<N>,
+    /// Whether the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
+    /// those of the outputs whose rates are used, and behind them those of the coordinates.
+    pub output: bool,
     /// Whether samples are joined by straight lines; else each is held.
     pub straight: bool,
     /// What estimates the unknowns.
@@ -27,12 +30,14 @@ pub struct Settings<N> {
 }
 
 /// What the regression goes through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Operator<N> {
     /// A filter of this bandwidth, in rad/s.
     Filter(N),
     /// The mean over so many samples, a whole number.
     Window(N),
+    /// Each sample by itself, weighed by the standard deviation of its errors in each row.
+    Sampled(Vec<N>),
 }
 
 /// An estimator of the runtime library.
@@ -56,6 +61,16 @@ pub enum Estimator<N> {
         /// What makes the equations square.
         extension: Extension<N>,
     },
+}
+
+impl<N> Estimator<N> {
+    /// The number of unknowns that it has settings for.
+    pub fn unknowns(&self) -> usize {
+        match self {
+            Self::Gradient(gain) | Self::NormalisedGradient { gain, .. } | Self::Drem { gain, .. } => gain.len(),
+            Self::LeastSquares(covariance) => covariance.start.len(),
+        }
+    }
 }
 
 /// What least squares need.
@@ -122,12 +137,59 @@ impl<N: Clone + PartialOrd> Settings<N> {
         };
         Some(Self {
             operator,
+            output: false,
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             estimator: estimator?,
             lower,
             upper,
             within,
             rebase,
+            chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
+        })
+    }
+}
+
+/// What a section says besides the kind of its estimator.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame<N> {
+    /// The diagonal of the covariance of the coordinates at the start, if it is written.
+    pub(crate) covariance: Option<Vec<N>>,
+    /// By how much it grows in a second, if that is written.
+    pub(crate) process_noise: Option<Vec<N>>,
+    /// Between what each recovered state is, from below and from above.
+    pub(crate) within: [Option<Vec<N>>; 2],
+    /// Samples after which the extension starts again.
+    pub(crate) rebase: Option<N>,
+    /// Whether samples are joined by straight lines.
+    pub(crate) straight: bool,
+    /// The extension at the start.
+    pub(crate) chi_0: Vec<N>,
+}
+
+impl<N: Clone + PartialOrd> Frame<N> {
+    /// The same of so many coordinates and recovered states, with what is wrong reported as by [`Settings::resolve`].
+    pub(crate) fn resolve(
+        written: &Observer,
+        (coordinates, states): (usize, usize),
+        read: impl Fn(&Decimal) -> Option<N>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let mut section = Section { written, unknowns: coordinates, read, problems };
+        let covariance = section.list(&written.covariance, coordinates, "a covariance for each component of phi");
+        let noise = section.list(&written.process_noise, coordinates, "process noise for each component of phi");
+        let within = section.bounds(&written.within, states, "recovered state");
+        let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
+        let rebase = match &written.rebase {
+            Some(samples) => Some(section.number(samples)?),
+            None => None,
+        };
+        let zero = section.zero()?;
+        Some(Self {
+            covariance: covariance.ok()?,
+            process_noise: noise.ok()?,
+            within: within?,
+            rebase,
+            straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
         })
     }

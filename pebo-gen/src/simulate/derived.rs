@@ -43,6 +43,9 @@ pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
 }
 
 fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    if design.settings.output {
+        return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
+    }
     Ok(match (&design.lambda, design.is_static) {
         (None, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
         (None, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
@@ -73,11 +76,18 @@ impl Kind for Static {
 trait Known<const N: usize>: Extension<f64, N> + 'static {
     /// Writes the first `n` coordinates of the extension, and of its fundamental matrix by rows.
     fn write(&self, n: usize, known: &mut Vec<f64>);
+
+    /// What stands for z beside theta, and the factor of theta.
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
 }
 
 impl<const N: usize> Known<N> for Integrator<f64, N> {
     fn write(&self, n: usize, known: &mut Vec<f64>) {
         known.extend(&self.chi().as_slice()[..n]);
+    }
+
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (*self.chi(), SMatrix::identity())
     }
 }
 
@@ -85,6 +95,10 @@ impl<const N: usize> Known<N> for Fundamental<f64, N> {
     fn write(&self, n: usize, known: &mut Vec<f64>) {
         known.extend(&self.xi().as_slice()[..n]);
         known.extend((0..n * n).map(|k| self.psi()[(k / n, k % n)]));
+    }
+
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (*self.xi(), *self.psi())
     }
 }
 
@@ -129,12 +143,19 @@ struct Derived<X, K, const N: usize> {
     primitives: Option<[RefCell<Function>; 2]>,
     theta: RefCell<Function>,
     phi_left: RefCell<Function>,
+    /// In the output form: the rows of the regression, and the model's extension at its start as its functions read it.
+    output: Option<(usize, Vec<f64>)>,
     kind: PhantomData<(X, K)>,
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
+        let nz = design.coordinates;
+        let identity = (0..nz * nz).map(|k| if k / nz == k % nz { 1.0 } else { 0.0 });
+        let identity = identity.take(if design.lambda.is_some() { nz * nz } else { 0 });
+        let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
+            output: design.settings.output.then(|| (design.phi_0.outputs.len(), start)),
             ny: design.outputs,
             nu: design.inputs,
             nz: design.coordinates,
@@ -151,12 +172,42 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
         }
     }
 
+    /// Writes the extension that the model's functions read: that of the output form is not the model's own.
+    fn write(&self, extension: &X, arguments: &mut Vec<f64>) {
+        match &self.output {
+            Some((_, start)) => arguments.extend(start),
+            None => extension.write(self.nz, arguments),
+        }
+    }
+
     /// The values of a function that stands under the derivative.
     fn held<'a>(&self, function: &'a mut Function, extension: &X, y: &SVector<f64, N>) -> &'a [f64] {
         function.call(|arguments| {
-            extension.write(self.nz, arguments);
+            self.write(extension, arguments);
             arguments.extend(&y.as_slice()[..self.ny]);
         })
+    }
+
+    /// The cascade of the model itself.
+    fn cascade(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
+        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
+        match &self.lambda {
+            Some(lambda) => {
+                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
+                Flow { lambda, h }
+            }
+            None => Flow::plain(h),
+        }
+    }
+
+    /// The sides of the model's own regression; in the output form, as a function of z.
+    fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        let at = |arguments: &mut Vec<f64>| {
+            self.write(extension, arguments);
+            self.sampled(arguments, y, u);
+        };
+        let known = pad(self.phi_0.borrow_mut().call(at));
+        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
     }
 
     fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
@@ -187,23 +238,32 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 
     fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
-        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
-        match &self.lambda {
-            Some(lambda) => {
-                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
-                Flow { lambda, h }
+        let inner = self.cascade(y, u);
+        let Some((rows, _)) = self.output else { return inner };
+        // As the runtime's `OutputForm`, whose sizes are constants.
+        let rate = self.sides(&X::new(SVector::zeros()), y, u);
+        let (mut lambda, mut h) = (SMatrix::zeros(), SVector::zeros());
+        for i in 0..rows + self.nz {
+            h[i] = if i < rows { rate.known[i] } else { inner.h[i - rows] };
+            for j in 0..self.nz {
+                lambda[(i, rows + j)] = if i < rows { rate.factor[(i, j)] } else { inner.lambda[(i - rows, j)] };
             }
-            None => Flow::plain(h),
         }
+        Flow { lambda, h }
     }
 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
-        let at = |arguments: &mut Vec<f64>| {
-            extension.write(self.nz, arguments);
-            self.sampled(arguments, y, u);
-        };
-        let known = pad(self.phi_0.borrow_mut().call(at));
-        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
+        let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
+        let held = self.primitive(extension, y);
+        let mut through = SMatrix::<f64, N, N>::zeros();
+        for i in 0..rows {
+            through[(i, i)] = 1.0;
+            for j in 0..self.nz {
+                through[(i, rows + j)] = -held.factor[(i, j)];
+            }
+        }
+        let (offset, map) = extension.parts();
+        Sides { known: held.known - through * offset, factor: through * map }
     }
 
     fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
@@ -221,12 +281,16 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 
     fn theta(&self, eta: &SVector<f64, N>) -> SVector<f64, N> {
+        if self.output.is_some() {
+            return *eta;
+        }
         pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
     }
 
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
         pad(self.phi_left.borrow_mut().call(|arguments| {
-            arguments.extend(&z.as_slice()[..self.nz]);
+            let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
+            arguments.extend(&z.as_slice()[first..first + self.nz]);
             arguments.extend(&y.as_slice()[..self.ny]);
         }))
     }
@@ -245,7 +309,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator = Bounded::new(Watched::new(&settings.estimator, design.unknowns)?, &lower, &upper)?;
+        let estimator = Bounded::new(Watched::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
         let passage = Passage::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;

@@ -16,6 +16,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
     let operator = Operator::Filter(number("0.5"));
     Settings {
         operator,
+        output: false,
         straight: true,
         estimator,
         lower: None,

@@ -2,7 +2,7 @@
 //!
 //! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
-use crate::model::observer::Estimator;
+use crate::model::observer::{Estimator, Form};
 use crate::model::{Baseline, CascadeClass, Class, Recording, RelationForm};
 
 /// The shape that a value must have.
@@ -285,6 +285,30 @@ const ELECTROMECHANICAL: &[Key] = &[
 
 /// Settings of the estimators belong to some of them: [`Estimator`] has which.
 const OBSERVER: &[Key] = &[
+    optional(
+        "sensors",
+        DEVIATIONS,
+        "sensors: {v2: 0.1}",
+        "The standard deviation of each output's samples, from which with `start` and `disturbance` all gains are derived; that of `noise` and `quantisation` together, or a thousandth of the output at the start, if left out",
+    ),
+    optional(
+        "start",
+        DEVIATIONS,
+        "start: {i1: 5}",
+        "How wrong the estimate of each state can be at the start, a standard deviation; ten times the state, or 10 of its unit, if left out",
+    ),
+    optional(
+        "disturbance",
+        DEVIATIONS,
+        "disturbance: {i1: 0.1}",
+        "By how much a state or output drifts besides its rate, in its unit per root second; 0 if left out beside `sensors` or `start`",
+    ),
+    optional(
+        "form",
+        Shape::Choice(Form::NAMES),
+        "form: output",
+        "What the regressand of a regression of rates is: rate, through a filter or window, or output, the outputs themselves; if left out, output unless gains are written",
+    ),
     optional(
         "estimator",
         Shape::Choice(Estimator::NAMES),

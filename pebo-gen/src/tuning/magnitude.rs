@@ -1,0 +1,76 @@
+//! What is assumed where nothing is known: magnitudes at the start, and how long a change takes.
+//!
+//! These numbers are no estimates of anything: they make an observer that converges on an exact model, whatever its units
+//! are, and follows changes of it within some hundred samples.
+
+use crate::cas::Symbol;
+use crate::model::{Decimal, Entry, Model, Spanned};
+use crate::plant::Plant;
+
+use super::point::Point;
+
+/// A sensor errs by this part of what it shows at the start.
+const SENSOR: f64 = 1e-3;
+
+/// The start may be wrong by so many times the state.
+const START: f64 = 10.0;
+
+/// Samples within which a state drifts by its own magnitude.
+const SAMPLES: f64 = 1000.0;
+
+/// A magnitude that is nowhere said: 1 of its unit.
+const UNIT: f64 = 1.0;
+
+/// Standard deviations in the order of the plant's states and outputs, written or assumed.
+#[derive(Clone, Debug)]
+pub(super) struct Deviations {
+    /// Of the samples of each output.
+    pub(super) sensors: Vec<f64>,
+    /// Of each state at the start.
+    pub(super) start: Vec<f64>,
+    /// Of what each state drifts by per root second.
+    pub(super) disturbance: Vec<f64>,
+    /// Of what each output drifts by besides its rate.
+    pub(super) of_outputs: Vec<f64>,
+}
+
+impl Deviations {
+    /// What the model says, and what is assumed in place of the rest; `period` is that of the samples.
+    pub(super) fn of(model: &Model, plant: &Plant, point: &Point, period: Option<f64>) -> Option<Self> {
+        let arena = &plant.arena;
+        let written = &model.observer;
+        let silent = [&written.sensors, &written.start, &written.disturbance].iter().all(|entries| entries.is_empty());
+        let of = |entries: &[Entry<Spanned<Decimal>>], symbol: Symbol| {
+            let name = arena.name(symbol);
+            entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
+        };
+        let magnitude = |symbol: Symbol| {
+            point.of_symbol(symbol).map(f64::abs).filter(|size| *size > 0.0).unwrap_or(UNIT)
+        };
+        let simulated = |symbol: Symbol| {
+            let simulation = model.simulation.as_ref()?;
+            let noise = of(&simulation.noise, symbol).unwrap_or_default();
+            // Rounding to the nearest multiple of a step errs evenly.
+            let rounding = of(&simulation.quantisation, symbol).unwrap_or_default() / 12.0_f64.sqrt();
+            Some(noise.hypot(rounding)).filter(|deviation| *deviation > 0.0)
+        };
+        let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+        let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
+        let sensor = |symbol: &Symbol| {
+            let assumed = || SENSOR * magnitude(*symbol);
+            of(&written.sensors, *symbol).or_else(|| simulated(*symbol)).unwrap_or_else(assumed)
+        };
+        let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| START * magnitude(*symbol));
+        let drift = |symbol: &Symbol| match of(&written.disturbance, *symbol) {
+            Some(deviation) => Some(deviation),
+            None if silent => Some(magnitude(*symbol) / (SAMPLES * period?).sqrt()),
+            None => Some(0.0),
+        };
+        Some(Self {
+            sensors: y.iter().map(sensor).collect(),
+            start: x.iter().map(start).collect(),
+            disturbance: x.iter().map(drift).collect::<Option<_>>()?,
+            of_outputs: y.iter().map(|output| of(&written.disturbance, *output).unwrap_or_default()).collect(),
+        })
+    }
+}

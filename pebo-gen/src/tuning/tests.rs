@@ -1,0 +1,1 @@
+//! Known numbers in, settings out.
