@@ -12,7 +12,7 @@ use super::names::camel;
 use super::parameters::decimal;
 use super::permission;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, Settings};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, PATIENCE, Settings};
 
 impl Module<'_> {
     /// The constructors, with the types that they name.
@@ -54,6 +54,7 @@ impl Module<'_> {
             Operator::Sampled(_) => "SampledRegression",
         });
         names.extend(settings.output.then_some("OutputForm"));
+        names.extend(settings.gate.is_some().then_some("Gate"));
         names.extend((settings.lower.is_some() || settings.upper.is_some()).then_some("Bounded"));
         names.extend(is_within(settings).then_some("Within"));
         names.extend_from_slice(match &settings.estimator {
@@ -183,7 +184,22 @@ impl Module<'_> {
             (quote!(Self::try_new(parameters)?), errors)
         };
         let errors = doc(errors);
+        let gate = settings.gate.as_ref().map(|limit| {
+            let limit = number(limit, &mut |ratio| scope.ratio(ratio)).tokens;
+            let scalar = ident(self.scalar.name());
+            let patience = syn::LitInt::new(&PATIENCE.to_string(), proc_macro2::Span::call_site());
+            quote! {
+                /// What refuses outliers by the observer's innovation: to be asked before each step.
+                ///
+                /// # Errors
+                /// A fault only where rounding moves the limit out of its range.
+                pub fn gate() -> Result<Gate<#scalar>, Fault> {
+                    Gate::new(#limit, #patience)
+                }
+            }
+        });
         quote! {
+            #gate
             /// The observer with the settings of the model, before its first sample.
             ///
             /// # Errors
@@ -370,9 +386,9 @@ fn is_within(settings: &Settings<Rational>) -> bool {
 
 /// All numbers of the settings but the length of a window.
 fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
-    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, .. } = settings;
+    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, .. } = settings;
     let mut numbers: Vec<&Rational> =
-        [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().collect();
+        [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().chain(gate).collect();
     match operator {
         Operator::Filter(alpha) => numbers.push(alpha),
         Operator::Window(_) => {}

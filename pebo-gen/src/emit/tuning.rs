@@ -11,7 +11,7 @@ use super::error::EmitError;
 use super::value::{self, Value, unreadable};
 use crate::cas::Arena;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, Settings};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, PATIENCE, Settings};
 
 /// The constant with the length of a window.
 pub(super) const WINDOW: &str = "NW";
@@ -37,11 +37,12 @@ enum Made {
     Hold(bool),
     Operator(Operator<Rational>, bool),
     Observer(Settings<Rational>),
+    Gate(Rational),
 }
 
 /// Whether these are the constructors beside `new`.
 pub(super) fn is_constructors(item: &ItemImpl) -> bool {
-    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if function.sig.ident == "try_new" || function.sig.ident == "observer");
+    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if ["try_new", "gate", "observer"].iter().any(|name| function.sig.ident == name));
     item.trait_.is_none() && !item.items.is_empty() && item.items.iter().all(named)
 }
 
@@ -52,7 +53,7 @@ pub(super) fn read(
     window: Option<&Syntax>,
     globals: &value::Scope,
 ) -> Result<Option<Settings<Rational>>, EmitError> {
-    let mut settings = None;
+    let (mut settings, mut gate) = (None, None);
     for entry in &item.items {
         let ImplItem::Fn(function) = entry else { return Err(unreadable(entry)) };
         if function.sig.ident == "try_new" {
@@ -74,13 +75,14 @@ pub(super) fn read(
                 }
                 Stmt::Expr(last, None) => match reader.expression(last)? {
                     Made::Observer(made) => settings = Some(made),
+                    Made::Gate(limit) if function.sig.ident == "gate" => gate = Some(limit),
                     _ => return Err(unreadable(last)),
                 },
                 other => return Err(unreadable(other)),
             }
         }
     }
-    Ok(settings)
+    Ok(settings.map(|settings| Settings { gate, ..settings }))
 }
 
 struct Reader<'a> {
@@ -182,6 +184,9 @@ impl Reader<'_> {
             ("Bounded::new", [Some(Made::Estimator(estimator)), Some(lower), Some(upper), None]) => {
                 Bounded(estimator, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
+            ("Gate::new", [Some(Number(limit)), Some(Number(patience)), None, None]) => {
+                (patience == Rational::from(i64::from(PATIENCE))).then_some(Made::Gate(limit))?
+            }
             ("OutputForm::new", [Some(Model(false, [None, None])), None, None, None]) => Model(true, [None, None]),
             ("Within::new", [Some(Model(output, [None, None])), Some(lower), Some(upper), None]) => {
                 Model(output, [bound(lower, false).ok()?, bound(upper, true).ok()?])
@@ -220,6 +225,7 @@ impl Reader<'_> {
                     within,
                     rebase: None,
                     chi_0,
+                    gate: None,
                 })
             }
             _ => return None,

@@ -47,6 +47,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
             pass.belong(&simulation.bias, &y, "bias");
             pass.belong(&simulation.quantisation, &y, "quantisation");
             pass.belong(&simulation.delay.each, &y, "delay");
+            pass.belong(&simulation.every, &y, "every");
             let parameters = model.parameters.iter().map(|entry| &entry.name);
             let true_values = Group::new(parameters.chain(&model.x), "a parameter or a state of x");
             pass.belong(&simulation.plant, &true_values, "plant");
@@ -267,6 +268,16 @@ impl Pass<'_> {
         }
         for step in &simulation.quantisation {
             self.not_negative(&step.value, "the step of a quantisation");
+        }
+        for every in &simulation.every {
+            let number = every.value.value.to_f64();
+            if number < 1.0 || number.fract() != 0.0 || number > f64::from(u32::MAX) {
+                let message = format!("`every` of `{}` is a number of samples", every.name.value);
+                self.diagnostics.push(
+                    Diagnostic::error(Code::NumberOutOfRange, every.value.span, message)
+                        .help("write a whole number above zero: 1 for every sample"),
+                );
+            }
         }
         for delay in simulation.delay.written() {
             self.not_negative(delay, "a delay");

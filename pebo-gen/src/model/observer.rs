@@ -50,6 +50,8 @@ pub struct Observer {
     pub hold: Option<Spanned<Hold>>,
     /// Samples after which the extension starts again from the estimate; never if absent.
     pub rebase: Option<Spanned<Decimal>>,
+    /// The normalised square of an innovation beyond which a sample is an outlier; none if absent.
+    pub gate: Option<Spanned<Decimal>>,
     /// The extension chi at the start: one value each; empty for zeros.
     pub extension: Vec<Spanned<Decimal>>,
 }
@@ -236,6 +238,7 @@ impl Observer {
             (self.regressor_gain.as_slice(), "a gain must be positive"),
             (self.period.as_slice(), "the period must be positive"),
             (self.filter.as_slice(), "the filter frequency must be positive"),
+            (self.gate.as_slice(), "the limit of the gate must be positive"),
         ];
         for (numbers, message) in positive {
             for number in numbers {
@@ -271,6 +274,13 @@ impl Observer {
         }
         if let Some(window) = &self.window {
             within(window, whole, "a window is a number of samples", "write a whole number above zero");
+        }
+        if let Some(gate) = self.gate.as_ref().filter(|_| self.has_gains()) {
+            let message = "`gate` stands beside gains, which do not say how far a sample may be from what is expected";
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, gate.span, message)
+                    .help("write `sensors`, `start` and `disturbance` in place of gains, or remove `gate`"),
+            );
         }
         if let (Some(filter), Some(window)) = (&self.filter, &self.window) {
             let message = "the observer has both a filter and a window";

@@ -27,7 +27,12 @@ pub struct Settings<N> {
     pub rebase: Option<N>,
     /// The extension at the start.
     pub chi_0: Vec<N>,
+    /// The normalised square of an innovation beyond which a sample is an outlier, if any is.
+    pub gate: Option<N>,
 }
+
+/// Outliers in a row that a gate refuses.
+pub const PATIENCE: u32 = 20;
 
 /// What the regression goes through.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,6 +150,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             within,
             rebase,
             chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
+            gate: None,
         })
     }
 }
@@ -160,10 +166,12 @@ pub(crate) struct Frame<N> {
     pub(crate) within: [Option<Vec<N>>; 2],
     /// Samples after which the extension starts again.
     pub(crate) rebase: Option<N>,
+    /// The limit of the gate.
+    pub(crate) gate: Option<N>,
     /// Whether samples are joined by straight lines.
     pub(crate) straight: bool,
-    /// The extension at the start.
-    pub(crate) chi_0: Vec<N>,
+    /// The extension at the start, if it is written.
+    pub(crate) chi_0: Option<Vec<N>>,
 }
 
 impl<N: Clone + PartialOrd> Frame<N> {
@@ -183,14 +191,17 @@ impl<N: Clone + PartialOrd> Frame<N> {
             Some(samples) => Some(section.number(samples)?),
             None => None,
         };
-        let zero = section.zero()?;
         Some(Self {
             covariance: covariance.ok()?,
             process_noise: noise.ok()?,
             within: within?,
             rebase,
+            gate: match &written.gate {
+                Some(limit) => Some(section.number(limit)?),
+                None => None,
+            },
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
-            chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
+            chi_0: chi_0.ok()?,
         })
     }
 }

@@ -10,21 +10,33 @@ use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Extension, Fault, Flow, Fundamental, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
+    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
 };
 
 use crate::program::{Interpreter, Program};
 
 use super::excitation::Said;
 use super::observer::Design;
+use super::settings::Operator;
 use super::sizes::{LARGEST, MOST_MIXED, pad};
+use super::stepping::PATIENCE_OF_GATE as PATIENCE;
 use super::watched::Watched;
 use super::window::Passage;
 
 /// An observer of some size.
 pub(super) trait Estimation: fmt::Debug {
-    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates.
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An output
+    /// that is missing is NaN, where [`has_parts`](Self::has_parts).
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+
+    /// Whether a sample may lack outputs.
+    fn has_parts(&self) -> bool;
+
+    /// The standard errors of the estimates; nothing where they are not known.
+    fn standard_errors(&self) -> Option<Vec<f64>>;
+
+    /// How far a sample is from what is expected of it: the normalised square of its innovation, of each row on average.
+    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
 
     /// What the data so far say of each component of the unknown.
     fn said(&self) -> Said;
@@ -303,7 +315,17 @@ type Inner<X, K, const N: usize> =
     Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
 
 /// The runtime's observer at size N.
-struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
+struct Padded<X: Known<N>, K: Kind, const N: usize> {
+    observer: Inner<X, K, N>,
+    /// What refuses outliers.
+    gate: Option<Gate<f64>>,
+    /// The place of the output of each row, where rows may be left out.
+    rows: Option<[usize; N]>,
+    /// The recovered states, and the rows of the regression.
+    sizes: (usize, usize),
+    /// Whether the covariance is that of sensors.
+    is_certain: bool,
+}
 
 impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
@@ -314,32 +336,62 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
-        Ok(Self(match settings.rebase {
-            Some(every) => observer.rebasing(every)?,
-            None => observer,
-        }))
+        let mut rows = [usize::MAX; N];
+        rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
+        let whole = settings.output && design.primitives.is_none();
+        Ok(Self {
+            observer: match settings.rebase {
+                Some(every) => observer.rebasing(every)?,
+                None => observer,
+            },
+            gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,
+            rows: whole.then_some(rows),
+            sizes: (design.recovered.len(), design.phi_0.outputs.len()),
+            is_certain: matches!(settings.operator, Operator::Sampled(_)),
+        })
     }
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Padded").field(self.0.model()).finish()
+        f.debug_tuple("Padded").field(self.observer.model()).finish()
     }
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
-        let estimate = self.0.step(pad(y), pad(u), dt)?;
+        let parted = self.rows.filter(|_| y.iter().any(|output| output.is_nan()));
+        if let (Some(gate), None) = (&mut self.gate, parted) {
+            gate.admit(&self.observer.innovation(pad(y), pad(u), dt)?)?;
+        }
+        let estimate = match parted {
+            Some(rows) => self.observer.step_partly(pad(y), &rows, pad(u), dt)?,
+            None => self.observer.step(pad(y), pad(u), dt)?,
+        };
         hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
         Ok(())
     }
 
+    fn has_parts(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn standard_errors(&self) -> Option<Vec<f64>> {
+        let errors = self.is_certain.then(|| self.observer.standard_error())??;
+        Some(errors.as_slice()[..self.sizes.0].to_vec())
+    }
+
+    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64> {
+        let innovation = self.is_certain.then(|| self.observer.innovation(pad(y), pad(u), dt).ok())??;
+        Some(innovation.normalised_square / super::timing::real(u64::try_from(self.sizes.1).ok()?))
+    }
+
     fn said(&self) -> Said {
-        self.0.estimator().estimator().said()
+        self.observer.estimator().estimator().said()
     }
 
     #[cfg(test)]
     fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
-        self.0.extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
+        self.observer.extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
     }
 }

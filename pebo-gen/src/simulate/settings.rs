@@ -30,6 +30,8 @@ pub(super) struct Settings {
     pub(super) rebase: Option<u32>,
     /// The extension at the start.
     pub(super) chi_0: Vec<f64>,
+    /// The limit of the gate that refuses outliers.
+    pub(super) gate: Option<f64>,
     /// What the settings were derived from, if the author did not choose them.
     pub(super) known: Option<Known>,
 }
@@ -97,6 +99,7 @@ impl Settings {
             bounds: bounds([resolved.lower, resolved.upper], unknowns),
             within: bounds(resolved.within, states),
             chi_0: resolved.chi_0,
+            gate: None,
             known: None,
         })
     }
@@ -148,6 +151,7 @@ impl Settings {
             within: bounds(settings.within.map(|bound| bound.as_deref().map(all)), states),
             estimator,
             chi_0,
+            gate: settings.gate.as_ref().map(Rational::to_f64),
             known: tuned.known,
         })
     }

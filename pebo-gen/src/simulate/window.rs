@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Filter, FilteredRegression, Hold, Outcome, RegressionOperator, SampledRegression, Sides, Sum, Turn,
+    Filter, FilteredRegression, Hold, Outcome, RegressionOperator, Rows, SampledRegression, Sides, Sum, Turn,
 };
 
 use super::settings::{Operator, Settings};
@@ -127,6 +127,23 @@ impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
             Self::Filtered(step) => Outcome::blemish(&**step),
             Self::Windowed(step) => step.blemish(),
             Self::Sampled(step) => step.blemish(),
+        }
+    }
+}
+
+/// Of samples; of what went through a filter or window no row can be left out, and nobody asks.
+impl<const N: usize> Rows<f64, N> for Taken<N> {
+    fn weights(&self, dt: f64) -> SVector<f64, N> {
+        match self {
+            Self::Sampled(step) => step.weights(dt),
+            Self::Filtered(_) | Self::Windowed(_) => SVector::repeat(1.0),
+        }
+    }
+
+    fn without(self, left_out: &[bool; N]) -> Self {
+        match self {
+            Self::Sampled(step) => Self::Sampled(Box::new(step.without(left_out))),
+            other => other,
         }
     }
 }

@@ -67,11 +67,15 @@ pub(super) fn derive(
         }
         return None;
     }
-    let point = completed(&said, plant, &formulas, &frame.chi_0)?;
+    let start = match frame.chi_0 {
+        Some(written) => written,
+        None => somewhere(&said, plant, derivation)?,
+    };
+    let point = completed(&said, plant, &formulas, &start)?;
     let Some(deviations) = Deviations::of(model, plant, &said, period) else { return None };
 
     let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
-    let start = formulas.phi.wide_variances(&point, &x_and_y)?;
+    let at_start = formulas.phi.wide_variances(&point, &x_and_y)?;
     let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
     let mut noise = formulas.phi.variances(&point, &drifts)?;
     let heard = |slopes: &Slopes, into: &mut [f64]| -> Option<()> {
@@ -80,12 +84,12 @@ pub(super) fn derive(
         Some(())
     };
     heard(&formulas.flow, &mut noise)?;
-    let covariance = frame.covariance.as_ref().map_or(start, |written| written.iter().map(Rational::to_f64).collect());
+    let covariance = frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
     let noise = frame.process_noise.as_ref().map_or(noise, |written| written.iter().map(Rational::to_f64).collect());
     let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
-    let mut chi_0 = frame.chi_0;
+    let mut chi_0 = start;
     let (operator, covariance, noise) = match kind {
         Kind::Output => {
             let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
@@ -143,6 +147,7 @@ pub(super) fn derive(
         within: frame.within,
         rebase: if can_rebase { Some(frame.rebase.unwrap_or(Rational::ONE)) } else { None },
         chi_0,
+        gate: frame.gate,
     };
     Some(Tuned { settings, known: Some(known) })
 }
@@ -195,6 +200,26 @@ fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
     let message = format!("the filter of `{}` depends on the period of its samples", plant.name);
     Diagnostic::error(Code::SimulationIncomplete, span, message)
         .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
+}
+
+/// The extension at the start: zeros, unless `phi_left` has no value there, as a flux of 0 has no position. Then phi of
+/// states that are zero.
+fn somewhere(said: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
+    let zeros = vec![Rational::from(0); plant.phi.len()];
+    let inverse = derivation.left_inverse.result.as_ref()?;
+    let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+    let is_inside = |z: &[f64]| {
+        let values = said.with(&plant.z, z).values(&states);
+        values.is_none_or(|values| values.iter().all(|value| value.is_finite()))
+    };
+    if is_inside(&vec![0.0; zeros.len()]) {
+        return Some(zeros);
+    }
+    let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+    let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
+    let z = said.with(&x, &vec![0.0; x.len()]).values(&phi).filter(|z| is_inside(z));
+    let start = z.and_then(|z| z.iter().map(|value| rounded(*value)).collect::<Option<Vec<_>>>());
+    Some(start.unwrap_or(zeros))
 }
 
 /// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
@@ -337,11 +362,11 @@ fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<
     Some((operator, all(&covariance)?, all(noise)?))
 }
 
-/// A number in four digits; none where it has no room in single precision's square root of its range.
+/// A number in four digits, if it is one with which can be computed.
 fn rounded(value: f64) -> Option<Rational> {
     const RANGE: std::ops::Range<f64> = 1e-100..1e100;
     if value == 0.0 {
         return Some(Rational::from(0));
     }
-    RANGE.contains(&value).then(|| Rational::from_decimal(&format!("{value:.3e}")).ok())?
+    RANGE.contains(&value.abs()).then(|| Rational::from_decimal(&format!("{value:.3e}")).ok())?
 }

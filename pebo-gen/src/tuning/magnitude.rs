@@ -5,7 +5,7 @@
 
 use crate::cas::Symbol;
 use crate::model::{Decimal, Entry, Model, Spanned};
-use crate::plant::Plant;
+use crate::plant::{Plant, State};
 
 use super::point::Point;
 
@@ -15,8 +15,11 @@ const SENSOR: f64 = 1e-3;
 /// The start may be wrong by so many times the state.
 const START: f64 = 10.0;
 
-/// Samples within which a state drifts by its own magnitude.
+/// Samples within which a constant drifts by its own magnitude.
 const SAMPLES: f64 = 1000.0;
+
+/// A state that has a rate drifts by this part of that: its rate says the rest.
+const MOVED: f64 = 0.02;
 
 /// A magnitude that is nowhere said: 1 of its unit.
 const UNIT: f64 = 1.0;
@@ -61,15 +64,18 @@ impl Deviations {
             of(&written.sensors, *symbol).or_else(|| simulated(*symbol)).unwrap_or_else(assumed)
         };
         let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| START * magnitude(*symbol));
-        let drift = |symbol: &Symbol| match of(&written.disturbance, *symbol) {
+        let drift = |state: &State| match of(&written.disturbance, state.symbol) {
             Some(deviation) => Some(deviation),
-            None if silent => Some(magnitude(*symbol) / (SAMPLES * period?).sqrt()),
+            None if silent => {
+                let share = if arena.is_zero(state.rate.expr) { 1.0 } else { MOVED };
+                Some(share * magnitude(state.symbol) / (SAMPLES * period?).sqrt())
+            }
             None => Some(0.0),
         };
         Some(Self {
             sensors: y.iter().map(sensor).collect(),
             start: x.iter().map(start).collect(),
-            disturbance: x.iter().map(drift).collect::<Option<_>>()?,
+            disturbance: plant.x.iter().map(drift).collect::<Option<_>>()?,
             of_outputs: y.iter().map(|output| of(&written.disturbance, *output).unwrap_or_default()).collect(),
         })
     }

@@ -28,7 +28,7 @@ use crate::plant::settings::cannot_rebase;
 use crate::plant::{Plant, Settings};
 use crate::source::Diagnostics;
 
-pub(crate) use told::Known;
+pub use told::{Known, Numbers, Value};
 
 /// Settings, and what they were derived from where they were.
 #[derive(Clone, Debug)]

@@ -24,6 +24,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
         within: [None, None],
         rebase: None,
         chi_0: numbers(["0", "-2"]),
+        gate: None,
     }
 }
 

@@ -380,6 +380,12 @@ const OBSERVER: &[Key] = &[
         "Samples after which the extension starts again from the estimate, with all memory carried over; never if left out",
     ),
     optional(
+        "gate",
+        Shape::Number,
+        "gate: 25",
+        "The normalised square of the innovation beyond which a sample is refused as an outlier; without gains only",
+    ),
+    optional(
         "extension",
         NUMBERS,
         "extension: [0, 0]",
@@ -442,6 +448,12 @@ const SIMULATION: &[Key] = &[
         Shape::Number,
         "dropped: 0.2",
         "The probability that the sample of an instant never arrives, from 0 to below 1; the first one does",
+    ),
+    optional(
+        "every",
+        OFFSETS,
+        "every: {v4: 10}",
+        "Of an output only each so many-th sample arrives, the first included; 1 if left out",
     ),
     optional(
         "plant",
