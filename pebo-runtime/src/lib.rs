@@ -136,7 +136,7 @@ pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
 pub use observer::{Innovation, Observer, State};
-pub use output_form::OutputForm;
+pub use output_form::{Measured, OutputForm};
 pub use real::Real;
 pub use regression::{FilteredRegression, Outcome, RegressionOperator, Rows, Sides};
 pub use sampled::SampledRegression;

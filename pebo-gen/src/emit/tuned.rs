@@ -103,12 +103,20 @@ impl Module<'_> {
         let estimator = if bounded { quote!(Bounded<#scalar, #estimator, #unknowns>) } else { estimator };
         let summary = doc(&format!("The observer with the settings of the model. {}", self.words(settings)));
         let type_name = ident(&camel(&self.plant.name));
-        let model = if settings.output { quote!(OutputForm<#type_name, NZ>) } else { quote!(#type_name) };
+        let model = if settings.output { quote!(OutputForm<#type_name, NR, NZ>) } else { quote!(#type_name) };
         let model = if is_within(settings) { quote!(Within<#model, #scalar, NX>) } else { model };
+        let rows = settings.expected.as_ref().map(|places| {
+            let places = places.iter().map(|place| proc_macro2::Literal::usize_unsuffixed(*place));
+            quote! {
+                /// The place in `y` of the output of each row of the regression.
+                pub const ROWS: [usize; NR] = [#(#places),*];
+            }
+        });
         match &settings.operator {
             Operator::Sampled(_) if settings.output => quote! {
                 /// The unknowns of the output form: the outputs whose rates are used, and the coordinates.
                 pub const NO: usize = NR + NZ;
+                #rows
                 #summary
                 pub type Tuned = pebo_runtime::Observer<
                     #model, #estimator, NX, NY, NU, NO, NR, NO, SampledRegression<#scalar, NR, NO>
@@ -302,7 +310,10 @@ impl Module<'_> {
                 }
             },
         };
-        let output = settings.output.then(|| quote!(let model = OutputForm::new(model);));
+        let output = settings.output.then(|| match &settings.expected {
+            Some(_) => quote!(let model = OutputForm::expecting(model, ROWS)?;),
+            None => quote!(let model = OutputForm::new(model);),
+        });
         quote!(#output #within #lists #estimator #bounded)
     }
 

@@ -19,11 +19,25 @@ pub(super) const WINDOW: &str = "NW";
 /// The constant with the number of unknowns of the output form, and its value.
 pub(super) const UNKNOWNS: (&str, &str) = ("NO", "NR + NZ");
 
+/// The constant with the places of the outputs of the rows.
+pub(super) const ROWS: &str = "ROWS";
+
+/// What the regressand of a model is.
+#[derive(Clone, Debug)]
+enum Form {
+    /// That of its regression.
+    Own,
+    /// Its outputs, and estimates are made of those that are expected, at these places, if there are any.
+    Outputs(Option<Vec<usize>>),
+}
+
 /// What a name is bound to.
 #[derive(Clone, Debug)]
 enum Made {
     /// The model with its parameters, whether in its output form, and bounds of its states.
-    Model(bool, [Option<Vec<Rational>>; 2]),
+    Model(Form, [Option<Vec<Rational>>; 2]),
+    /// The places of the outputs of the rows.
+    Rows(Vec<usize>),
     Number(Rational),
     List(Vec<Rational>),
     /// A vector of infinities, above or below all numbers.
@@ -50,7 +64,7 @@ pub(super) fn is_constructors(item: &ItemImpl) -> bool {
 pub(super) fn read(
     arena: &Arena,
     item: &ItemImpl,
-    window: Option<&Syntax>,
+    constants: (Option<&Syntax>, Option<&Syntax>),
     globals: &value::Scope,
 ) -> Result<Option<Settings<Rational>>, EmitError> {
     let (mut settings, mut gate) = (None, None);
@@ -63,7 +77,7 @@ pub(super) fn read(
             }
             continue;
         }
-        let mut reader = Reader { arena, globals, window, made: BTreeMap::new() };
+        let mut reader = Reader { arena, globals, constants, made: BTreeMap::new() };
         for statement in &function.block.stmts {
             match statement {
                 Stmt::Local(local) => {
@@ -88,7 +102,8 @@ pub(super) fn read(
 struct Reader<'a> {
     arena: &'a Arena,
     globals: &'a value::Scope,
-    window: Option<&'a Syntax>,
+    /// The constants with the length of a window, and with the places of the outputs of the rows.
+    constants: (Option<&'a Syntax>, Option<&'a Syntax>),
     made: BTreeMap<String, Made>,
 }
 
@@ -100,7 +115,7 @@ impl Reader<'_> {
             Syntax::Reference(reference) => self.expression(&reference.expr),
             Syntax::Call(call) => match compact(&call.func).as_str() {
                 "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => {
-                    Ok(Made::Model(false, [None, None]))
+                    Ok(Made::Model(Form::Own, [None, None]))
                 }
                 "SVector::from" => self.list(syntax),
                 "SVector::repeat" => match compact(&call.args).as_str() {
@@ -127,6 +142,7 @@ impl Reader<'_> {
             Syntax::Path(_) => match compact(syntax).as_str() {
                 "Hold::First" => Ok(Made::Hold(true)),
                 "Hold::Zero" => Ok(Made::Hold(false)),
+                ROWS => places(self.constants.1.ok_or_else(unknown)?).map(Made::Rows).ok_or_else(unknown),
                 name => self.made.get(name).cloned().map_or_else(|| self.number(syntax), Ok),
             },
             _ => self.number(syntax),
@@ -187,9 +203,14 @@ impl Reader<'_> {
             ("Gate::new", [Some(Number(limit)), Some(Number(patience)), None, None]) => {
                 (patience == Rational::from(i64::from(PATIENCE))).then_some(Made::Gate(limit))?
             }
-            ("OutputForm::new", [Some(Model(false, [None, None])), None, None, None]) => Model(true, [None, None]),
-            ("Within::new", [Some(Model(output, [None, None])), Some(lower), Some(upper), None]) => {
-                Model(output, [bound(lower, false).ok()?, bound(upper, true).ok()?])
+            ("OutputForm::new", [Some(Model(Form::Own, [None, None])), None, None, None]) => {
+                Model(Form::Outputs(None), [None, None])
+            }
+            ("OutputForm::expecting", [Some(Model(Form::Own, [None, None])), Some(Made::Rows(rows)), None, None]) => {
+                Model(Form::Outputs(Some(rows)), [None, None])
+            }
+            ("Within::new", [Some(Model(form, [None, None])), Some(lower), Some(upper), None]) => {
+                Model(form, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
             // Samples are joined to no signal: that they were, straight, is what the settings say.
             ("SampledRegression::new", [Some(List(deviations)), None, None, None]) => {
@@ -199,12 +220,12 @@ impl Reader<'_> {
                 Made::Operator(Operator::Filter(alpha), straight)
             }
             ("WindowedRegression::new", [Some(Hold(straight)), None, None, None]) => {
-                let samples = Rational::from_decimal(&compact(self.window?)).ok()?;
+                let samples = Rational::from_decimal(&compact(self.constants.0?)).ok()?;
                 Made::Operator(Operator::Window(samples), straight)
             }
             (
                 "Tuned::new" | "Tuned::with_regression",
-                [Some(Model(output, within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
+                [Some(Model(form, within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
             ) => {
                 let filtered = matches!(operator, Operator::Filter(_));
                 let (estimator, [lower, upper]) = match estimator {
@@ -215,9 +236,14 @@ impl Reader<'_> {
                 if filtered != (function == "Tuned::new") {
                     return None;
                 }
+                let (output, expected) = match form {
+                    Form::Own => (false, None),
+                    Form::Outputs(expected) => (true, expected),
+                };
                 Made::Observer(Settings {
                     operator,
                     output,
+                    expected,
                     straight,
                     estimator,
                     lower,
@@ -255,6 +281,12 @@ fn bound(made: Made, side: bool) -> Result<Option<Vec<Rational>>, ()> {
         Made::Infinite { above } if above == side => Ok(None),
         _ => Err(()),
     }
+}
+
+/// The numbers of an array of places.
+fn places(array: &Syntax) -> Option<Vec<usize>> {
+    let Syntax::Array(array) = array else { return None };
+    array.elems.iter().map(|place| compact(place).parse().ok()).collect()
 }
 
 /// DREM that is exact after a finite time.

@@ -13,6 +13,8 @@ pub struct Settings<N> {
     /// Whether the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
     /// those of the outputs whose rates are used, and behind them those of the coordinates.
     pub output: bool,
+    /// Of the output form: the places of the outputs in y, where estimates are made of the outputs that the observer expects.
+    pub expected: Option<Vec<usize>>,
     /// Whether samples are joined by straight lines; else each is held.
     pub straight: bool,
     /// What estimates the unknowns.
@@ -143,6 +145,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
         Some(Self {
             operator,
             output: false,
+            expected: None,
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             estimator: estimator?,
             lower,

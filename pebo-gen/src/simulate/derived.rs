@@ -157,6 +157,8 @@ struct Derived<X, K, const N: usize> {
     phi_left: RefCell<Function>,
     /// In the output form: the rows of the regression, and the model's extension at its start as its functions read it.
     output: Option<(usize, Vec<f64>)>,
+    /// There, the places of the outputs that estimates are made of as they are expected.
+    expected: Option<Vec<usize>>,
     kind: PhantomData<(X, K)>,
 }
 
@@ -167,6 +169,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
         let identity = identity.take(if design.lambda.is_some() { nz * nz } else { 0 });
         let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
+            expected: design.settings.expected.clone(),
             output: design.settings.output.then(|| (design.phi_0.outputs.len(), start)),
             ny: design.outputs,
             nu: design.inputs,
@@ -299,7 +302,21 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
     }
 
+    fn begin(&self, extension: &X, y: &SVector<f64, N>) -> X {
+        if self.output.is_none() {
+            return *extension;
+        }
+        let seen = self.regression(extension, y, &SVector::zeros()).known;
+        let mut begun = *extension;
+        begun.rebase(&-seen);
+        begun
+    }
+
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut y = *y;
+        for (row, place) in self.expected.iter().flatten().enumerate() {
+            y[*place] = z[row];
+        }
         pad(self.phi_left.borrow_mut().call(|arguments| {
             let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
             arguments.extend(&z.as_slice()[first..first + self.nz]);

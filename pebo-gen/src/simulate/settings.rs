@@ -19,6 +19,8 @@ pub(super) struct Settings {
     pub(super) operator: Operator,
     /// Whether the outputs themselves are the regressand.
     pub(super) output: bool,
+    /// The places of the outputs of the rows, where estimates are made of the outputs that are expected.
+    pub(super) expected: Option<Vec<usize>>,
     /// How samples are joined.
     pub(super) hold: Hold,
     pub(super) estimator: Estimator,
@@ -90,6 +92,7 @@ impl Settings {
                 settings::Operator::Sampled(deviations) => Operator::Sampled(deviations),
             },
             output: resolved.output,
+            expected: resolved.expected,
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
@@ -142,6 +145,7 @@ impl Settings {
                 settings::Operator::Sampled(deviations) => Operator::Sampled(all(deviations)),
             },
             output: settings.output,
+            expected: settings.expected,
             hold: if settings.straight { Hold::First } else { Hold::Zero },
             rebase: match &settings.rebase {
                 Some(wanted) => Some(whole(wanted.to_f64())?),

@@ -21,10 +21,6 @@ use super::point::Point;
 use super::spread::Slopes;
 use super::told::Known;
 
-/// Of the outputs at the start, which are unknowns of the output form, nothing is known: so many times their sensors'
-/// standard deviation. The first sample tells them all the same, and the prior weighs a millionth of a millionth beside it.
-const UNKNOWN: f64 = 1e6;
-
 /// The bandwidth of a filter, times the period of the samples: ten of them to a time constant.
 const BANDWIDTH: f64 = 0.1;
 
@@ -94,7 +90,8 @@ pub(super) fn derive(
         Kind::Output => {
             let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
             heard(&formulas.rates, &mut of_rows)?;
-            let start = rows.iter().map(|deviation| (UNKNOWN * deviation).powi(2));
+            // The first sample is where the outputs begin.
+            let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
             chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
             (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
@@ -136,6 +133,7 @@ pub(super) fn derive(
     let settings = Settings {
         operator,
         output: kind == Kind::Output,
+        expected: if kind == Kind::Output { expected(plant, derivation) } else { None },
         straight: frame.straight || kind != Kind::Filtered,
         estimator: Estimator::LeastSquares(Covariance {
             start,
@@ -150,6 +148,16 @@ pub(super) fn derive(
         gate: frame.gate,
     };
     Some(Tuned { settings, known: Some(known) })
+}
+
+/// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
+/// outputs: then from those that are expected.
+fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
+    let regression = derivation.regression.result.as_ref()?;
+    let inverse = derivation.left_inverse.result.as_ref()?;
+    let y = plant.y.iter().map(|output| output.symbol).collect();
+    let depends = inverse.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y));
+    (depends && regression.kind == RegressionKind::Dynamic).then(|| regression.rows.clone())
 }
 
 /// What the regression admits and the section asks for.

@@ -21,6 +21,9 @@ const SAMPLES: f64 = 1000.0;
 /// A state that has a rate drifts by this part of that: its rate says the rest.
 const MOVED: f64 = 0.02;
 
+/// Or as much as it would if all the summands of its rate erred by this part for so long.
+const RATE: f64 = 0.01;
+
 /// A magnitude that is nowhere said: 1 of its unit.
 const UNIT: f64 = 1.0;
 
@@ -67,8 +70,13 @@ impl Deviations {
         let drift = |state: &State| match of(&written.disturbance, state.symbol) {
             Some(deviation) => Some(deviation),
             None if silent => {
-                let share = if arena.is_zero(state.rate.expr) { 1.0 } else { MOVED };
-                Some(share * magnitude(state.symbol) / (SAMPLES * period?).sqrt())
+                let (size, root) = (magnitude(state.symbol), (SAMPLES * period?).sqrt());
+                let summands = plant.terms.get(&state.symbol).into_iter().flatten();
+                let rate: f64 = summands.filter_map(|summand| point.value(summand.expr)).map(f64::abs).sum();
+                if arena.is_zero(state.rate.expr) {
+                    return Some(size / root);
+                }
+                Some((MOVED * size / root).max(if rate.is_finite() { RATE * rate * root } else { 0.0 }))
             }
             None => Some(0.0),
         };

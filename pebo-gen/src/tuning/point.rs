@@ -114,7 +114,8 @@ impl<'a> Point<'a> {
         Some(values)
     }
 
-    fn value(&self, formula: Expr) -> Option<f64> {
+    /// The value of a formula, if its symbols have numbers.
+    pub(super) fn value(&self, formula: Expr) -> Option<f64> {
         Some(self.values(&[formula])?[0])
     }
 }

@@ -264,10 +264,15 @@ where
 
     /// Takes the first sample, which has no interval behind it.
     fn begin(&mut self, terms: M::Terms, y: &SVector<M::Scalar, NY>) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let estimate = self.estimate_with(&terms);
+        let extension = self.model.begin(&self.state.extension, &terms);
+        let estimate = self.model.recover(&extension.coordinates(&self.theta()), &terms);
         if !all_finite(&estimate) {
             return Err(Fault::Estimate);
         }
+        if !extension.is_finite() {
+            return Err(Fault::State);
+        }
+        self.state.extension = extension;
         self.state.y = Some(*y);
         self.terms = Some(terms);
         Ok(estimate)

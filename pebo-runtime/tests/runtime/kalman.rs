@@ -136,10 +136,11 @@ fn the_output_form_of_a_plant_free_of_its_outputs_is_too() -> Result<(), Fault> 
     let (prior, process) = (Vector3::new(2.0, 4.0, 4.0), Vector3::new(0.0, 0.1, 0.3));
     let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&process)?;
     let sampled = SampledRegression::new(&Vector1::new(sigma))?;
-    let model = OutputForm::<_, 2>::new(Pair::<f64>::new(lambda));
+    let model = OutputForm::<_, 1, 2>::new(Pair::<f64>::new(lambda));
     let mut observer = Observer::with_regression(model, squares, sampled, Vector3::zeros())?.rebasing(1)?;
     let mut kalman = Kalman {
-        z: Vector3::zeros(),
+        // The first sample is where the observer begins.
+        z: Vector3::new(0.3, 0.0, 0.0),
         p: SMatrix::from_diagonal(&prior),
         output: SMatrix::<f64, 1, 3>::new(1.0, 0.0, 0.0),
         sensor: Vector1::new(sigma * sigma),
@@ -174,7 +175,7 @@ fn output_form_of_cuk(process: f64, offset: f64) -> Result<f64, Fault> {
     let wander = process * process;
     let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&Vector4::new(0.0, 0.0, wander, wander))?;
     let sampled = SampledRegression::new(&Vector2::repeat(sigma))?;
-    let model = OutputForm::<_, 2>::new(CaseOne::<f64>::new());
+    let model = OutputForm::<_, 2, 2>::new(CaseOne::<f64>::new());
     let mut observer =
         Observer::<_, _, 2, 2, 1, 4, 2, 4, _>::with_regression(model, squares, sampled, Vector4::zeros())?
             .rebasing(1)?;

@@ -17,6 +17,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
     Settings {
         operator,
         output: false,
+        expected: None,
         straight: true,
         estimator,
         lower: None,
