@@ -19,6 +19,7 @@ use super::Tuned;
 use super::magnitude::Deviations;
 use super::point::Point;
 use super::spread::Slopes;
+#[cfg(feature = "simulate")]
 use super::told::Known;
 
 /// The bandwidth of a filter, times the period of the samples: ten of them to a time constant.
@@ -82,6 +83,7 @@ pub(super) fn derive(
     heard(&formulas.flow, &mut noise)?;
     let covariance = frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
     let noise = frame.process_noise.as_ref().map_or(noise, |written| written.iter().map(Rational::to_f64).collect());
+    #[cfg(feature = "simulate")]
     let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
@@ -147,7 +149,11 @@ pub(super) fn derive(
         chi_0,
         gate: frame.gate,
     };
-    Some(Tuned { settings, known: Some(known) })
+    Some(Tuned {
+        settings,
+        #[cfg(feature = "simulate")]
+        known: Some(known),
+    })
 }
 
 /// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from

@@ -16,6 +16,7 @@ mod derive;
 mod magnitude;
 mod point;
 mod spread;
+#[cfg(feature = "simulate")]
 mod told;
 
 #[cfg(test)]
@@ -28,6 +29,7 @@ use crate::plant::settings::cannot_rebase;
 use crate::plant::{Plant, Settings};
 use crate::source::Diagnostics;
 
+#[cfg(feature = "simulate")]
 pub use told::{Known, Numbers, Value};
 
 /// Settings, and what they were derived from where they were.
@@ -36,6 +38,7 @@ pub(crate) struct Tuned {
     /// With which an observer can be built.
     pub settings: Settings<Rational>,
     /// What they were derived from; none where the author chose them.
+    #[cfg(feature = "simulate")]
     pub known: Option<Known>,
 }
 
@@ -59,7 +62,11 @@ impl Tuned {
         if model.observer.has_gains() {
             let sizes = (regression.eta.len(), plant.phi.len(), inverse.x.len());
             let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
-            return Some(Self { settings, known: None });
+            return Some(Self {
+                settings,
+                #[cfg(feature = "simulate")]
+                known: None,
+            });
         }
         derive::derive(model, plant, derivation, period, problems)
     }
