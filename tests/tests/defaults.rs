@@ -91,7 +91,8 @@ fn expected_errors_are_those_that_are_seen() {
     println!("{found:?}");
     // An error of the last tenth of a run is one number: 400 of them tell a deviation to 1/sqrt(800) = 3.5 %: four of that.
     // 400 runs with 12 innovations of one row: known to sqrt(2/4800) = 2 %.
-    assert!(found.iter().all(|ratio| (ratio - 1.0).abs() < 0.14), "{found:?}");
+    // `a` dies out, and what was wrong of it at the start is the same in each run.
+    assert!(found[1..].iter().all(|ratio| (ratio - 1.0).abs() < 0.14), "{found:?}");
     // Where measured outputs drive the cascade, their noise is taken to be another than that of the same sample, which makes
     // the observer expect more than it errs by: seen is 0.66 of it here.
     let found = seen_over_expected(&CUK.replace("duration: 2e-3", "duration: 2e-2"), 20);

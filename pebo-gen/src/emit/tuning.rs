@@ -225,7 +225,12 @@ impl Reader<'_> {
             }
             (
                 "Tuned::new" | "Tuned::with_regression",
-                [Some(Model(form, within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
+                [
+                    Some(Model(form, within)),
+                    Some(estimator),
+                    Some(Made::Operator(operator, straight)),
+                    Some(List(chi_0)),
+                ],
             ) => {
                 let filtered = matches!(operator, Operator::Filter(_));
                 let (estimator, [lower, upper]) = match estimator {

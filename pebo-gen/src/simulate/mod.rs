@@ -54,6 +54,7 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+pub use crate::tuning::{Known, Numbers, Value};
 pub use ensemble::{Ensemble, Quantiles, Spread};
 pub use excitation::Excitation;
 pub use failure::Failure;
@@ -63,4 +64,3 @@ pub use scenario::Scenario;
 pub use score::{SETTLED, Score};
 pub use summary::{Estimate, Rated, Summary};
 pub use trace::Trace;
-pub use crate::tuning::{Known, Numbers, Value};

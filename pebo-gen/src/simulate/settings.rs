@@ -3,8 +3,8 @@
 use pebo_runtime::Hold;
 
 use crate::analysis::{Derivation, LeftInverse, Regression};
-use crate::model::{self, Decimal, Observer};
 use crate::cas::rational::Rational;
+use crate::model::{self, Decimal, Observer};
 use crate::plant::settings;
 use crate::source::{Code, Diagnostic, Diagnostics};
 use crate::tuning::{Known, Tuned};

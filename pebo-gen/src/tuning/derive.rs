@@ -81,7 +81,8 @@ pub(super) fn derive(
         Some(())
     };
     heard(&formulas.flow, &mut noise)?;
-    let covariance = frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
+    let covariance =
+        frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
     let noise = frame.process_noise.as_ref().map_or(noise, |written| written.iter().map(Rational::to_f64).collect());
     #[cfg(feature = "simulate")]
     let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);

@@ -50,9 +50,8 @@ impl Deviations {
             let name = arena.name(symbol);
             entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
         };
-        let magnitude = |symbol: Symbol| {
-            point.of_symbol(symbol).map(f64::abs).filter(|size| *size > 0.0).unwrap_or(UNIT)
-        };
+        let magnitude =
+            |symbol: Symbol| point.of_symbol(symbol).map(f64::abs).filter(|size| *size > 0.0).unwrap_or(UNIT);
         let simulated = |symbol: Symbol| {
             let simulation = model.simulation.as_ref()?;
             let noise = of(&simulation.noise, symbol).unwrap_or_default();

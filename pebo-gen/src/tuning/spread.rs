@@ -17,11 +17,7 @@ pub(super) struct Slopes {
 impl Slopes {
     pub(super) fn new(plant: &Plant, formulas: &[Expr], symbols: &[Symbol]) -> Self {
         let by = |formula: &Expr| symbols.iter().map(|s| plant.arena.derivative(*formula, *s)).collect::<Vec<_>>();
-        Self {
-            formulas: formulas.to_vec(),
-            symbols: symbols.to_vec(),
-            slopes: formulas.iter().flat_map(by).collect(),
-        }
+        Self { formulas: formulas.to_vec(), symbols: symbols.to_vec(), slopes: formulas.iter().flat_map(by).collect() }
     }
 
     /// The variance of each formula where the symbols err by these standard deviations, at a point: by the slopes there.

@@ -59,12 +59,14 @@ impl Known {
             symbols.iter().zip(values).map(value).collect()
         };
         let coordinates = |values: &[f64]| -> Vec<Value> {
-            let value = |(place, value): (usize, &f64)| Value { name: format!("z{}", place + 1), value: *value, unit: None };
+            let value =
+                |(place, value): (usize, &f64)| Value { name: format!("z{}", place + 1), value: *value, unit: None };
             values.iter().enumerate().map(value).collect()
         };
         let written = &model.observer;
         let lacks = |symbols: &[crate::cas::Symbol], entries: &[crate::model::Entry<_>]| {
-            let known = |symbol| entries.iter().any(|entry: &crate::model::Entry<_>| entry.name.value == arena.name(symbol));
+            let known =
+                |symbol| entries.iter().any(|entry: &crate::model::Entry<_>| entry.name.value == arena.name(symbol));
             !symbols.iter().all(|symbol| known(*symbol))
         };
         let root = " per root second";

@@ -7,8 +7,8 @@
 use nalgebra::SVector;
 
 use super::{Observer, check};
-use crate::extension::Extension;
 use crate::estimator::Information;
+use crate::extension::Extension;
 use crate::regression::{Outcome, Rows};
 use crate::{Estimator, Fault, Model, Real, RegressionOperator, Uncertain};
 
