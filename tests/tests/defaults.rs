@@ -74,8 +74,11 @@ simulation: {duration: 10, step: 0.05, initial: {a: 1, b: 1, q: 0}, noise: {q: 1
 /// expected.
 fn seen_over_expected(text: &str, runs: u32) -> [f64; 3] {
     let (mut seen, mut expected, mut surprise) = ([0.0; 2], [0.0; 2], 0.0);
+    let derived = derive(&Source::new("model", text).unwrap()).unwrap();
     for seed in 0..runs {
-        let summary = run(text, seed.into());
+        let overrides = Overrides { seed: Some(seed.into()), ..Overrides::default() };
+        let trace = derived.scenario(&overrides).unwrap().run().unwrap();
+        let summary = trace.summary();
         for (state, rated) in summary.estimates.iter().enumerate() {
             seen[state] += rated.score.rms.powi(2);
             expected[state] += rated.expected.unwrap().powi(2);

@@ -32,7 +32,8 @@ pub(super) struct Stepping {
     dropped: u64,
     /// The samples that lacked outputs.
     parted: u64,
-    samples: u64,
+    /// Samples since an innovation was judged.
+    unjudged: u64,
     /// The sum of the normalised squares of innovations, and their number.
     surprise: (f64, u64),
 }
@@ -48,7 +49,7 @@ impl Stepping {
             faults: Faults::default(),
             dropped: 0,
             parted: 0,
-            samples: 0,
+            unjudged: 0,
             surprise: (0.0, 0),
         }
     }
@@ -60,12 +61,13 @@ impl Stepping {
     /// The fault of a sample that was refused.
     pub(super) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let is_parted = y.iter().any(|output| output.is_nan());
-        self.samples += 1;
-        if self.samples % JUDGED == 0
+        self.unjudged += 1;
+        if self.unjudged >= JUDGED
             && self.gap.is_none()
             && !is_parted
             && let Some(square) = self.observer.surprise(y, u, dt)
         {
+            self.unjudged = 0;
             self.surprise = (self.surprise.0 + square, self.surprise.1 + 1);
         }
         let taken = match &self.gap {
