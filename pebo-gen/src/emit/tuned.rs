@@ -310,9 +310,12 @@ impl Module<'_> {
                 }
             },
         };
-        let output = settings.output.then(|| match &settings.expected {
-            Some(_) => quote!(let model = OutputForm::expecting(model, ROWS)?;),
-            None => quote!(let model = OutputForm::new(model);),
+        let output = settings.output.then(|| {
+            if settings.expected.is_some() {
+                quote!(let model = OutputForm::expecting(model, ROWS)?;)
+            } else {
+                quote!(let model = OutputForm::new(model);)
+            }
         });
         quote!(#output #within #lists #estimator #bounded)
     }

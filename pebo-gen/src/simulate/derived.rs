@@ -13,13 +13,13 @@ use pebo_runtime::{
     Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
 };
 
+use crate::plant::settings::PATIENCE;
 use crate::program::{Interpreter, Program};
 
 use super::excitation::Said;
 use super::observer::Design;
 use super::settings::Operator;
 use super::sizes::{LARGEST, MOST_MIXED, pad};
-use super::stepping::PATIENCE_OF_GATE as PATIENCE;
 use super::watched::Watched;
 use super::window::Passage;
 
@@ -170,7 +170,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
         let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
             expected: design.settings.expected.clone(),
-            output: design.settings.output.then(|| (design.phi_0.outputs.len(), start)),
+            output: design.settings.output.then_some((design.phi_0.outputs.len(), start)),
             ny: design.outputs,
             nu: design.inputs,
             nz: design.coordinates,

@@ -114,10 +114,8 @@ impl Sensing<'_> {
         let values = sensors.each.iter().zip(past).zip(outputs).zip(shown).zip(0_u64..);
         for ((((sensor, past), value), shown), output) in values {
             let value = if sensor.delay > 0.0 { delayed(past, (t, *value), t - sensor.delay, *slack) } else { *value };
-            if arrives {
-                if sample % sensor.every == 0 {
-                    *shown = sensor.show(value, || normal(*seed, output, sample));
-                }
+            if arrives && sample.is_multiple_of(sensor.every) {
+                *shown = sensor.show(value, || normal(*seed, output, sample));
             }
         }
         arrives
@@ -128,7 +126,7 @@ impl Sensors {
     /// What of an instant's sample is there: an output whose sensor has another period is NaN.
     pub(super) fn leave_out(&self, sample: u64, outputs: &mut [f64]) {
         for (sensor, output) in self.each.iter().zip(outputs) {
-            if sample % sensor.every != 0 {
+            if !sample.is_multiple_of(sensor.every) {
                 *output = f64::NAN;
             }
         }

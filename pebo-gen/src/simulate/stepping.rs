@@ -14,9 +14,6 @@ use super::sizes::{LARGEST, pad};
 /// bring it back.
 const PATIENCE: u64 = 100;
 
-/// Outliers in a row that a gate refuses: fewer, so that an observer that has lost its state finds it again.
-pub(super) const PATIENCE_OF_GATE: u32 = crate::plant::settings::PATIENCE;
-
 /// Samples from one innovation that is judged to the next: each costs a step.
 const JUDGED: u64 = 16;
 

@@ -103,7 +103,9 @@ impl Summary {
         }
         // A column that nobody has anything in is none.
         if self.estimates.iter().all(|rated| rated.expected.is_none()) {
-            rows.iter_mut().for_each(|row| row[6].clear());
+            for row in &mut rows {
+                row[6].clear();
+            }
         }
         let mut text = if self.estimates.is_empty() { String::new() } else { table(&rows) };
         let mut line = |name: &str, what: &str| {

@@ -15,29 +15,19 @@ use crate::plant::Plant;
 use crate::plant::settings::{Covariance, Estimator, Frame, Operator, Settings};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::Tuned;
+use super::kind::Kind;
 use super::magnitude::Deviations;
 use super::point::Point;
 use super::spread::Slopes;
 #[cfg(feature = "simulate")]
 use super::told::Known;
+use super::tuned::Tuned;
 
 /// The bandwidth of a filter, times the period of the samples: ten of them to a time constant.
 const BANDWIDTH: f64 = 0.1;
 
 /// Of what is known exactly at the start, this part of the largest variance is left: none would be no covariance.
 const CERTAIN: f64 = 1e-12;
-
-/// What the observer of known numbers is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// The outputs themselves as the regressand.
-    Output,
-    /// A static regression, sample by sample.
-    Sampled,
-    /// Rates through a filter.
-    Filtered,
-}
 
 /// The settings that known numbers come to.
 pub(super) fn derive(
@@ -69,7 +59,7 @@ pub(super) fn derive(
         None => somewhere(&said, plant, derivation)?,
     };
     let point = completed(&said, plant, &formulas, &start)?;
-    let Some(deviations) = Deviations::of(model, plant, &said, period) else { return None };
+    let deviations = Deviations::of(model, plant, &said, period)?;
 
     let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
     let at_start = formulas.phi.wide_variances(&point, &x_and_y)?;
@@ -99,28 +89,18 @@ pub(super) fn derive(
             chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
             (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
         }
-        Kind::Sampled | Kind::Filtered => {
-            let roots: Vec<f64> = covariance.iter().map(|variance| variance.sqrt()).collect();
-            let drifts: Vec<f64> = noise.iter().map(|variance| variance.sqrt()).collect();
-            let covariance = formulas.unknowns.wide_variances(&point, &roots)?;
-            let noise = formulas.unknowns.variances(&point, &drifts)?;
-            match period.filter(|_| kind == Kind::Filtered) {
-                None if kind == Kind::Filtered => {
-                    if let Some((key, span)) = asked {
-                        problems.push(no_period(plant, (key, span)));
-                    }
-                    return None;
+        Kind::Sampled => {
+            let [covariance, noise] = formulas.of_unknowns(&point, [&covariance, &noise])?;
+            (Operator::Sampled(rows), covariance, noise)
+        }
+        Kind::Filtered => {
+            let Some(period) = period else {
+                if let Some(asked) = asked {
+                    problems.push(no_period(plant, asked));
                 }
-                None => (Operator::Sampled(rows), covariance, noise),
-                Some(period) => {
-                    let alpha = BANDWIDTH / period;
-                    // The rate of white samples through the filter errs by `alpha s` at once, and no two time constants are
-                    // independent: an intensity that is not too small for any time.
-                    let intensity = rows.iter().fold(0.0, |most: f64, s| most.max(2.0 * alpha * s * s));
-                    let over = |values: Vec<f64>| values.into_iter().map(|value| value / intensity).collect();
-                    (Operator::Filter(alpha), over(covariance), over(noise))
-                }
-            }
+                return None;
+            };
+            filtered(&rows, formulas.of_unknowns(&point, [&covariance, &noise])?, period)
         }
     };
     let exact = exact(&operator, &covariance, &noise);
@@ -165,6 +145,15 @@ fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     let y = plant.y.iter().map(|output| output.symbol).collect();
     let depends = inverse.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y));
     (depends && regression.kind == RegressionKind::Dynamic).then(|| regression.rows.clone())
+}
+
+/// The rates through a filter. The rate of white samples errs by `alpha s` there at once, and no two time constants are
+/// independent: an intensity that is not too small for any time, over which least squares have their covariances.
+fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (Operator<f64>, Vec<f64>, Vec<f64>) {
+    let alpha = BANDWIDTH / period;
+    let intensity = rows.iter().fold(0.0, |most: f64, s| most.max(2.0 * alpha * s * s));
+    let over = |values: Vec<f64>| values.into_iter().map(|value| value / intensity).collect();
+    (Operator::Filter(alpha), over(covariance), over(noise))
 }
 
 /// What the regression admits and the section asks for.
@@ -329,13 +318,20 @@ impl Formulas {
 
     /// What must have numbers: all slopes, and phi itself, at which most of them are taken.
     fn needed(&self, plant: &Plant) -> Vec<Expr> {
-        let slopes = [&self.phi.slopes, &self.flow.slopes, &self.held.slopes, &self.rates.slopes, &self.bends];
+        let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.bends];
         let mut needed: Vec<Expr> = slopes.into_iter().flatten().copied().collect();
         let here = plant.z.iter().chain(&self.eta).chain(&plant.chi).chain(&plant.xi).copied().collect();
         if needed.iter().any(|slope| plant.arena.depends_on(*slope, &here)) {
             needed.extend(&self.phi.formulas);
         }
         needed
+    }
+
+    /// Variances of the unknowns at the start and of their drift, from those of theta.
+    fn of_unknowns(&self, point: &Point, [covariance, noise]: [&[f64]; 2]) -> Option<[Vec<f64>; 2]> {
+        let roots = |variances: &[f64]| variances.iter().map(|variance| variance.sqrt()).collect::<Vec<_>>();
+        let start = self.unknowns.wide_variances(point, &roots(covariance))?;
+        Some([start, self.unknowns.variances(point, &roots(noise))?])
     }
 
     /// The standard deviation of each row's samples.

@@ -13,11 +13,13 @@
 //! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
 
 mod derive;
+mod kind;
 mod magnitude;
 mod point;
 mod spread;
 #[cfg(feature = "simulate")]
 mod told;
+mod tuned;
 
 #[cfg(test)]
 mod tests;
@@ -29,18 +31,10 @@ use crate::plant::settings::cannot_rebase;
 use crate::plant::{Plant, Settings};
 use crate::source::Diagnostics;
 
+pub(crate) use tuned::Tuned;
+
 #[cfg(feature = "simulate")]
 pub use told::{Known, Numbers, Value};
-
-/// Settings, and what they were derived from where they were.
-#[derive(Clone, Debug)]
-pub(crate) struct Tuned {
-    /// With which an observer can be built.
-    pub settings: Settings<Rational>,
-    /// What they were derived from; none where the author chose them.
-    #[cfg(feature = "simulate")]
-    pub known: Option<Known>,
-}
 
 impl Tuned {
     /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what

@@ -11,18 +11,18 @@ pub(super) struct Slopes {
     pub(super) formulas: Vec<Expr>,
     symbols: Vec<Symbol>,
     /// The derivatives.
-    pub(super) slopes: Vec<Expr>,
+    pub(super) by: Vec<Expr>,
 }
 
 impl Slopes {
     pub(super) fn new(plant: &Plant, formulas: &[Expr], symbols: &[Symbol]) -> Self {
         let by = |formula: &Expr| symbols.iter().map(|s| plant.arena.derivative(*formula, *s)).collect::<Vec<_>>();
-        Self { formulas: formulas.to_vec(), symbols: symbols.to_vec(), slopes: formulas.iter().flat_map(by).collect() }
+        Self { formulas: formulas.to_vec(), symbols: symbols.to_vec(), by: formulas.iter().flat_map(by).collect() }
     }
 
     /// The variance of each formula where the symbols err by these standard deviations, at a point: by the slopes there.
     pub(super) fn variances(&self, point: &Point, deviations: &[f64]) -> Option<Vec<f64>> {
-        let slopes = point.values(&self.slopes)?;
+        let slopes = point.values(&self.by)?;
         let row = |row: &[f64]| row.iter().zip(deviations).map(|(slope, d)| square(slope * d)).sum();
         Some(slopes.chunks(self.symbols.len().max(1)).take(self.formulas.len()).map(row).collect())
     }
@@ -31,7 +31,7 @@ impl Slopes {
     /// either side, where they have a value there.
     pub(super) fn wide_variances(&self, point: &Point, deviations: &[f64]) -> Option<Vec<f64>> {
         let mut variances = vec![0.0; self.formulas.len()];
-        let slopes = point.values(&self.slopes)?;
+        let slopes = point.values(&self.by)?;
         let middle = point.values(&self.formulas)?;
         for (column, (symbol, deviation)) in self.symbols.iter().zip(deviations).enumerate() {
             let at = point.of_symbol(*symbol)?;

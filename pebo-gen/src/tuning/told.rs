@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::model::Model;
 use crate::plant::Plant;
 
-use super::derive::Kind;
+use super::kind::Kind;
 use super::magnitude::Deviations;
 
 /// What is known of sensors, start and disturbances, with what was derived of it.
