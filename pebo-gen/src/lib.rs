@@ -39,3 +39,8 @@ pub use builder::{BuildError, Builder, Built};
 pub use derived::Derived;
 #[cfg(feature = "yaml")]
 pub use derived::{derive, derive_within};
+
+/// The package's front page, of which the example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod front_page {}

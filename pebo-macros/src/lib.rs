@@ -90,3 +90,8 @@ fn expand(arguments: TokenStream, item: TokenStream) -> Result<TokenStream, Erro
         )),
     }
 }
+
+/// The package's front page, of which the example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod front_page {}

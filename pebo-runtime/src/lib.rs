@@ -144,3 +144,8 @@ pub use sum::Sum;
 pub use turn::Turn;
 pub use window::{Moved, WindowedRegression};
 pub use within::Within;
+
+/// The package's front page, of which the example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod front_page {}

@@ -88,7 +88,11 @@ impl Arena {
 
     /// `constant + sum of coefficient * term`.
     pub fn combine(&self, constant: &Rational, terms: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
-        let mut open: Vec<(Expr, Rational)> = terms.into_iter().collect();
+        self.combine_all(constant, terms.into_iter().collect())
+    }
+
+    /// The work of `combine`, apart so that it is compiled once and not for every iterator.
+    fn combine_all(&self, constant: &Rational, mut open: Vec<(Expr, Rational)>) -> Expr {
         // Numbers as two factors, the second by its place among the scales: they are multiplied where they are added.
         let mut scales = vec![Rational::ONE];
         let mut constants: SmallVec<[(Rational, usize); 4]> = SmallVec::from_elem((constant.clone(), 0), 1);
@@ -132,8 +136,11 @@ impl Arena {
 
     /// `coefficient * product of base ^ exponent`.
     pub fn multiply(&self, coefficient: &Rational, factors: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
-        let mut coefficient = coefficient.clone();
-        let mut open: Vec<(Expr, Rational)> = factors.into_iter().collect();
+        self.multiply_all(coefficient.clone(), factors.into_iter().collect())
+    }
+
+    /// The work of `multiply`, compiled once.
+    fn multiply_all(&self, mut coefficient: Rational, mut open: Vec<(Expr, Rational)>) -> Expr {
         let mut flat: Vec<(Expr, Rational)> = Vec::with_capacity(open.len());
         while let Some((base, exponent)) = open.pop() {
             if exponent.is_zero() {
@@ -172,7 +179,7 @@ impl Arena {
         factors.retain(|entry| !entry.1.is_zero());
         if merged && factors.iter().any(|(base, exponent)| self.opens(*base, exponent)) {
             // Merging made an exponent under which a number or a product splits after all.
-            return self.multiply(&coefficient, factors);
+            return self.multiply_all(coefficient, factors);
         }
         if coefficient.is_zero() && !factors.iter().any(|(base, _)| self.is_zero(*base)) {
             return self.zero();
