@@ -8,13 +8,13 @@ use crate::cas;
 use crate::cas::budget::Budget;
 use crate::cas::rational::Rational;
 use crate::emit::{self, EmitError, Emitted, Scalar};
-use crate::model::{Decimal, Model};
-use crate::plant::settings::cannot_rebase;
+use crate::model::Model;
 use crate::plant::{Class, Plant, Settings, TransformOrigin};
 use crate::search::{self, Found};
 #[cfg(feature = "yaml")]
 use crate::source::Source;
 use crate::source::{Code, Diagnostic, Diagnostics};
+use crate::tuning::Tuned;
 
 /// A model with everything that was derived of it.
 #[derive(Debug)]
@@ -104,17 +104,8 @@ impl Derived {
     /// With it what is wrong with the section.
     fn settings(&self) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
         let mut problems = Diagnostics::default();
-        let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
-        let results = (self.derivation.regression.result.as_ref()).zip(self.derivation.left_inverse.result.as_ref());
-        let settings = results.and_then(|(regression, inverse)| {
-            let sizes = (regression.eta.len(), self.plant.phi.len(), inverse.x.len());
-            Settings::resolve(&self.model.observer, sizes, read, &mut problems)
-        });
-        if let Some(rebase) = &self.model.observer.rebase
-            && !self.derivation.can_rebase(&self.plant)
-        {
-            problems.push(cannot_rebase(&self.plant.name, rebase.span));
-        }
+        let tuned = Tuned::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
+        let settings = tuned.map(|tuned| tuned.settings);
         (settings.filter(|_| !problems.has_errors()), problems.into_vec())
     }
 

@@ -28,6 +28,7 @@ pub mod search;
 #[cfg(feature = "simulate")]
 pub mod simulate;
 pub mod source;
+mod tuning;
 
 #[cfg(feature = "yaml")]
 pub use answer::{Answer, Ask, Section, Solution, Stage, Standing, Typeset, answer, solve};

@@ -30,6 +30,8 @@ pub enum Fault {
     },
     /// The sample time is not a positive finite number.
     Step,
+    /// The sample is further from what was expected of it than the application allows.
+    Outlier,
     /// More time has passed since the last accepted sample than the application allows.
     Gap,
     /// A range is empty or the longest time between two samples is not positive.
@@ -70,6 +72,7 @@ impl fmt::Display for Fault {
             Self::Input { index } => write!(f, "input sample {index} is not finite"),
             Self::OutputRange { index } => write!(f, "output sample {index} is out of range"),
             Self::InputRange { index } => write!(f, "input sample {index} is out of range"),
+            Self::Outlier => f.write_str("the sample is an outlier"),
             Self::Gap => f.write_str("too much time since the last accepted sample"),
             Self::Limits => f.write_str("a range is empty or a time not positive"),
             Self::Step => f.write_str("the sample time is not positive and finite"),

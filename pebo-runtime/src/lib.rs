@@ -13,6 +13,7 @@
 //! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step; or [`WindowedRegression`], the integral form;
 //! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
 //! - [`Monitor`]: whether the data so far determine the unknown, and how well;
+//! - [`Observer::standard_error`], [`Observer::innovation`] and [`Gate`]: how far an estimate and a sample can be trusted;
 //! - [`OutputForm`] and [`SampledRegression`]: the outputs themselves as the regressand, nothing differentiated;
 //! - [`Limits`], [`Gap`], [`Drift`], [`State`]: what samples may be, intervals without one, forms without drift, saving;
 //! - [`Within`]: bounds of the state;
@@ -103,6 +104,7 @@ mod extension;
 mod fault;
 mod filter;
 mod gap;
+mod gate;
 mod interface;
 mod limits;
 mod linear;
@@ -122,20 +124,21 @@ mod within;
 pub use drift::Drift;
 pub use estimator::{
     Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
-    RegressorExtension, Response,
+    RegressorExtension, Response, Uncertain,
 };
 pub use extension::{Extension, Flow, Fundamental, Integrator};
 pub use fault::Fault;
 pub use filter::{Filter, Filtered, Hold, Weights};
 pub use gap::Gap;
+pub use gate::Gate;
 pub use interface::{INTERFACE, emitted_for};
 pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
-pub use observer::{Observer, State};
-pub use output_form::OutputForm;
+pub use observer::{Innovation, Observer, State};
+pub use output_form::{Measured, OutputForm};
 pub use real::Real;
-pub use regression::{FilteredRegression, Outcome, RegressionOperator, Sides};
+pub use regression::{FilteredRegression, Outcome, RegressionOperator, Rows, Sides};
 pub use sampled::SampledRegression;
 pub use sum::Sum;
 pub use turn::Turn;

@@ -88,6 +88,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// nothing.
     fn recover(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NX>;
 
+    /// The extension at the first sample, made of the one that the observer starts with: a model whose coordinates are
+    /// measured puts in what it sees. As it is, if nothing is written.
+    fn begin(&self, extension: &Self::Extension, _terms: &Self::Terms) -> Self::Extension {
+        *extension
+    }
+
     /// `h` of the cascade `z' = Lambda z + h(y, u)`.
     fn h(&self, y: &SVector<Self::Scalar, NY>, u: &SVector<Self::Scalar, NU>) -> SVector<Self::Scalar, NZ> {
         self.flow(&self.terms(y), u).h

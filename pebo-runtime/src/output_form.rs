@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Extension, Flow, Fundamental, Model, Rebase, Regression, Sides};
+use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression, Sides};
 
 /// The output form of a model with a dynamic regression.
 ///
@@ -21,25 +21,54 @@ use crate::{Extension, Flow, Fundamental, Model, Rebase, Regression, Sides};
 /// they are not, the filter in which measured outputs drive the model.
 ///
 /// Sizes: `NW = NR + NZ` unknowns, those of `w` first. The unknown of the start is `(w, z)` there less `chi_0`, of this
-/// length.
+/// length; the first sample is added to the part of `chi_0` that is of `w`, whose unknown is then the error of that sample:
+/// its variance at the start is the sensor's.
 ///
 /// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based, the
 /// Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutputForm<M, const NZ: usize> {
+pub struct OutputForm<M, const NR: usize, const NZ: usize> {
     model: M,
+    /// Of each row the place in `y` of the output that it is, where estimates are made of expected outputs.
+    rows: Option<[usize; NR]>,
 }
 
-impl<M, const NZ: usize> OutputForm<M, NZ> {
+/// What the functions of an [`OutputForm`] need of a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured<T, S: Real, const NY: usize> {
+    terms: T,
+    y: SVector<S, NY>,
+}
+
+impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
     /// The output form of a model, whose regression must be dynamic.
-    pub fn new<const NX: usize, const NY: usize, const NU: usize, const NR: usize>(model: M) -> Self
+    pub fn new<const NX: usize, const NY: usize, const NU: usize>(model: M) -> Self
     where
         M: Rebase<NX, NY, NU, NZ, NR>,
     {
         const {
             assert!(matches!(M::REGRESSION, Regression::Dynamic), "a static regression has no rate to integrate");
         }
-        Self { model }
+        Self { model, rows: None }
+    }
+
+    /// The same of a model whose `p_0` are outputs, at these places in `y`, and whose `p_1` is 0. Its estimates are made of
+    /// the outputs as the observer expects them, `phi_left(z, w)`, and not of samples with their noise: worth it where
+    /// `phi_left` depends on outputs.
+    ///
+    /// # Errors
+    /// [`Fault::Limits`] if a place is none of `y`.
+    pub fn expecting<const NX: usize, const NY: usize, const NU: usize>(
+        model: M,
+        rows: [usize; NR],
+    ) -> Result<Self, Fault>
+    where
+        M: Rebase<NX, NY, NU, NZ, NR>,
+    {
+        if rows.iter().any(|&place| place >= NY) {
+            return Err(Fault::Limits);
+        }
+        Ok(Self { rows: Some(rows), ..Self::new(model) })
     }
 
     /// The model within.
@@ -49,7 +78,7 @@ impl<M, const NZ: usize> OutputForm<M, NZ> {
 }
 
 impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NW: usize>
-    Model<NX, NY, NU, NW, NR, NW> for OutputForm<M, NZ>
+    Model<NX, NY, NU, NW, NR, NW> for OutputForm<M, NR, NZ>
 where
     M: Rebase<NX, NY, NU, NZ, NR>,
 {
@@ -58,14 +87,14 @@ where
     type X = M::X;
     type Y = M::Y;
     type U = M::U;
-    type Terms = M::Terms;
+    type Terms = Measured<M::Terms, M::Scalar, NY>;
     const REGRESSION: Regression = Regression::Static;
 
-    fn terms(&self, y: &SVector<M::Scalar, NY>) -> M::Terms {
-        self.model.terms(y)
+    fn terms(&self, y: &SVector<M::Scalar, NY>) -> Self::Terms {
+        Measured { terms: self.model.terms(y), y: *y }
     }
 
-    fn flow(&self, terms: &M::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
+    fn flow(&self, Measured { terms, .. }: &Self::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
         const { assert!(NW == NR + NZ, "the unknowns are those of the outputs and those of z") };
         let inner = self.model.flow(terms, u);
         // At the extension's start `z = theta`: the regression is then known as a function of z.
@@ -86,7 +115,7 @@ where
     fn regression(
         &self,
         extension: &Self::Extension,
-        terms: &M::Terms,
+        Measured { terms, .. }: &Self::Terms,
         _: &SVector<M::Scalar, NU>,
     ) -> Sides<M::Scalar, NR, NW> {
         let held = self.model.primitive(&M::Extension::new(SVector::zeros()), terms);
@@ -102,13 +131,29 @@ where
         *eta
     }
 
-    fn recover(&self, z: &SVector<M::Scalar, NW>, terms: &M::Terms) -> SVector<M::Scalar, NX> {
-        self.model.recover(&SVector::from_fn(|i, _| z[NR + i]), terms)
+    fn begin(&self, extension: &Self::Extension, terms: &Self::Terms) -> Self::Extension {
+        // The unknown of the outputs is then by how much the first sample errs.
+        let seen = self.regression(extension, terms, &SVector::zeros()).known;
+        let mut begun = *extension;
+        begun.rebase(&SVector::from_fn(|i, _| seen.get(i).map_or_else(nalgebra::zero, |&seen| -seen)));
+        begun
+    }
+
+    fn recover(&self, z: &SVector<M::Scalar, NW>, Measured { terms, y }: &Self::Terms) -> SVector<M::Scalar, NX> {
+        let inner = SVector::from_fn(|i, _| z[NR + i]);
+        let Some(rows) = &self.rows else { return self.model.recover(&inner, terms) };
+        let mut expected = *y;
+        for (row, &place) in rows.iter().enumerate() {
+            if let Some(output) = expected.get_mut(place) {
+                *output = z[row];
+            }
+        }
+        self.model.recover(&inner, &self.model.terms(&expected))
     }
 }
 
 impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NW: usize>
-    Rebase<NX, NY, NU, NW, NR> for OutputForm<M, NZ>
+    Rebase<NX, NY, NU, NW, NR> for OutputForm<M, NR, NZ>
 where
     M: Rebase<NX, NY, NU, NZ, NR>,
 {

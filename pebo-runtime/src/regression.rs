@@ -68,6 +68,16 @@ pub trait Outcome<S: Real, const NR: usize, const NE: usize> {
     fn blemish(&self) -> S;
 }
 
+/// An outcome of samples, of which rows may be left out.
+pub trait Rows<S: Real, const NR: usize> {
+    /// By what the rows of the regression are multiplied, `dt` seconds after the sample before.
+    fn weights(&self, dt: S) -> SVector<S, NR>;
+
+    /// The same outcome without these rows, of which it then says nothing.
+    #[must_use]
+    fn without(self, left_out: &[bool; NR]) -> Self;
+}
+
 /// The filtered regression.
 ///
 /// This equals `alpha (primitive_0 - F primitive_0) - F phi_0` of the paper (Section 5.3, `F = alpha/(p + alpha)`,

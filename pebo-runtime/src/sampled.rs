@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::regression::{Outcome, RegressionOperator, Sides};
+use crate::regression::{Outcome, RegressionOperator, Rows, Sides};
 use crate::sum::blemish;
 use crate::{Fault, Real, Turn};
 
@@ -36,12 +36,26 @@ impl<S: Real, const NR: usize, const NE: usize> SampledRegression<S, NR, NE> {
     }
 }
 
+impl<S: Real, const NR: usize, const NE: usize> Rows<S, NR> for SampledRegression<S, NR, NE> {
+    fn weights(&self, dt: S) -> SVector<S, NR> {
+        let root = S::one() / Real::sqrt(dt);
+        self.deviations.map(|deviation| root / deviation)
+    }
+
+    fn without(mut self, left_out: &[bool; NR]) -> Self {
+        for row in (0..NR).filter(|row| left_out[*row]) {
+            self.regressand[row] = S::zero();
+            self.regressor.row_mut(row).fill(S::zero());
+        }
+        self
+    }
+}
+
 impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> for SampledRegression<S, NR, NE> {
     type Step = Self;
 
     fn step(&self, [_, end]: [&Sides<S, NR, NE>; 2], dt: S) -> Self {
-        let root = S::one() / Real::sqrt(dt);
-        let weights = self.deviations.map(|deviation| root / deviation);
+        let weights = self.weights(dt);
         let regressor = SMatrix::from_fn(|i, j| end.factor[(i, j)] * weights[i]);
         Self { deviations: self.deviations, regressand: end.known.component_mul(&weights), regressor }
     }

@@ -68,6 +68,10 @@ where
         self.model.theta(eta)
     }
 
+    fn begin(&self, extension: &M::Extension, terms: &M::Terms) -> M::Extension {
+        self.model.begin(extension, terms)
+    }
+
     fn recover(&self, z: &SVector<S, NZ>, terms: &M::Terms) -> SVector<S, NX> {
         let x = self.model.recover(z, terms);
         SVector::from_fn(|i, _| match (x[i], self.lower[i], self.upper[i]) {

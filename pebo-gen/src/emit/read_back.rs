@@ -137,13 +137,19 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
     let mut globals = Scope::default();
     let mut fields: BTreeMap<String, Expr> = BTreeMap::new();
     let mut stored: BTreeMap<String, Expr> = BTreeMap::new();
-    let mut window = None;
+    let (mut window, mut rows) = (None, None);
     for item in &file.items {
         match item {
             Item::Use(item) => globals.import(arena, &item.to_token_stream().to_string()),
             // The version of the runtime library: it computes nothing.
             Item::Const(item) if item.ident == "_" => {}
             Item::Const(item) if item.ident == tuning::WINDOW => window = Some(&*item.expr),
+            Item::Const(item) if item.ident == tuning::ROWS => rows = Some(&*item.expr),
+            Item::Const(item) if item.ident == tuning::UNKNOWNS.0 => {
+                if item.expr.to_token_stream().to_string() != tuning::UNKNOWNS.1 {
+                    return Err(unreadable(item));
+                }
+            }
             Item::Const(item) if is_size(&item.ty) => {
                 let name = item.ident.to_string();
                 let size = definitions.sizes().into_iter().find(|size| name == size.name);
@@ -180,7 +186,7 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                 Some("Rebase") if item.items.is_empty() => {}
                 Some("Model") => model(plant, definitions, item, &globals, &stored, &mut read)?,
                 None if tuning::is_constructors(item) => {
-                    read.settings = tuning::read(arena, item, window, &globals)?;
+                    read.settings = tuning::read(arena, item, (window, rows), &globals)?;
                 }
                 None if only_function(item)?.sig.ident == VELOCITY => {
                     model(plant, definitions, item, &globals, &stored, &mut read)?;

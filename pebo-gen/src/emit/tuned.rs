@@ -12,7 +12,7 @@ use super::names::camel;
 use super::parameters::decimal;
 use super::permission;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, Settings};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, PATIENCE, Settings};
 
 impl Module<'_> {
     /// The constructors, with the types that they name.
@@ -46,11 +46,15 @@ impl Module<'_> {
     /// The items of the runtime that the constructors use.
     pub(super) fn constructors_use(&self) -> Vec<&'static str> {
         let Some(settings) = self.settings else { return Vec::new() };
-        let mut names = vec!["Fault", "Hold"];
+        let mut names = vec!["Fault"];
+        names.extend((!matches!(settings.operator, Operator::Sampled(_))).then_some("Hold"));
         names.push(match settings.operator {
             Operator::Filter(_) => "Filter",
             Operator::Window(_) => "WindowedRegression",
+            Operator::Sampled(_) => "SampledRegression",
         });
+        names.extend(settings.output.then_some("OutputForm"));
+        names.extend(settings.gate.is_some().then_some("Gate"));
         names.extend((settings.lower.is_some() || settings.upper.is_some()).then_some("Bounded"));
         names.extend(is_within(settings).then_some("Within"));
         names.extend_from_slice(match &settings.estimator {
@@ -75,8 +79,9 @@ impl Module<'_> {
     /// The type of the observer, and the length of its window.
     fn tuned(&self, settings: &Settings<Rational>) -> TokenStream {
         let scalar = ident(self.scalar.name());
+        let unknowns = ident(if settings.output { "NO" } else { "NE" });
         let gradient = quote!(Gradient<#scalar, NE>);
-        let squares = quote!(LeastSquares<#scalar, NE>);
+        let squares = quote!(LeastSquares<#scalar, #unknowns>);
         let estimator = match &settings.estimator {
             Estimator::Gradient(_) => gradient,
             Estimator::NormalisedGradient { .. } => quote!(NormalisedGradient<#scalar, NE>),
@@ -95,11 +100,34 @@ impl Module<'_> {
             }
         };
         let bounded = settings.lower.is_some() || settings.upper.is_some();
-        let estimator = if bounded { quote!(Bounded<#scalar, #estimator, NE>) } else { estimator };
+        let estimator = if bounded { quote!(Bounded<#scalar, #estimator, #unknowns>) } else { estimator };
         let summary = doc(&format!("The observer with the settings of the model. {}", self.words(settings)));
         let type_name = ident(&camel(&self.plant.name));
-        let model = if is_within(settings) { quote!(Within<#type_name, #scalar, NX>) } else { quote!(#type_name) };
+        let model = if settings.output { quote!(OutputForm<#type_name, NR, NZ>) } else { quote!(#type_name) };
+        let model = if is_within(settings) { quote!(Within<#model, #scalar, NX>) } else { model };
+        let rows = settings.expected.as_ref().map(|places| {
+            let places = places.iter().map(|place| proc_macro2::Literal::usize_unsuffixed(*place));
+            quote! {
+                /// The place in `y` of the output of each row of the regression.
+                pub const ROWS: [usize; NR] = [#(#places),*];
+            }
+        });
         match &settings.operator {
+            Operator::Sampled(_) if settings.output => quote! {
+                /// The unknowns of the output form: the outputs whose rates are used, and the coordinates.
+                pub const NO: usize = NR + NZ;
+                #rows
+                #summary
+                pub type Tuned = pebo_runtime::Observer<
+                    #model, #estimator, NX, NY, NU, NO, NR, NO, SampledRegression<#scalar, NR, NO>
+                >;
+            },
+            Operator::Sampled(_) => quote! {
+                #summary
+                pub type Tuned = pebo_runtime::Observer<
+                    #model, #estimator, NX, NY, NU, NZ, NR, NE, SampledRegression<#scalar, NR, NE>
+                >;
+            },
             Operator::Filter(_) if is_within(settings) => quote! {
                 #summary
                 pub type Tuned = pebo_runtime::Observer<#model, #estimator, NX, NY, NU, NZ, NR, NE>;
@@ -136,6 +164,14 @@ impl Module<'_> {
                 let window = quote!(let window = WindowedRegression::new(Hold::#hold););
                 (window, quote!(Tuned::with_regression(model, estimator, window, chi_0)))
             }
+            Operator::Sampled(deviations) => {
+                let deviations = deviations.iter().map(&mut one);
+                let sampled = quote! {
+                    let deviations = SVector::from([#(#deviations),*]);
+                    let sampled = SampledRegression::new(&deviations)?;
+                };
+                (sampled, quote!(Tuned::with_regression(model, estimator, sampled, chi_0)))
+            }
         };
         let built = match &settings.rebase {
             Some(samples) => {
@@ -156,7 +192,22 @@ impl Module<'_> {
             (quote!(Self::try_new(parameters)?), errors)
         };
         let errors = doc(errors);
+        let gate = settings.gate.as_ref().map(|limit| {
+            let limit = number(limit, &mut |ratio| scope.ratio(ratio)).tokens;
+            let scalar = ident(self.scalar.name());
+            let patience = syn::LitInt::new(&PATIENCE.to_string(), proc_macro2::Span::call_site());
+            quote! {
+                /// What refuses outliers by the observer's innovation: to be asked before each step.
+                ///
+                /// # Errors
+                /// A fault only where rounding moves the limit out of its range.
+                pub fn gate() -> Result<Gate<#scalar>, Fault> {
+                    Gate::new(#limit, #patience)
+                }
+            }
+        });
         quote! {
+            #gate
             /// The observer with the settings of the model, before its first sample.
             ///
             /// # Errors
@@ -259,7 +310,14 @@ impl Module<'_> {
                 }
             },
         };
-        quote!(#within #lists #estimator #bounded)
+        let output = settings.output.then(|| {
+            if settings.expected.is_some() {
+                quote!(let model = OutputForm::expecting(model, ROWS)?;)
+            } else {
+                quote!(let model = OutputForm::new(model);)
+            }
+        });
+        quote!(#output #within #lists #estimator #bounded)
     }
 
     /// The settings in words, as a sentence.
@@ -314,8 +372,12 @@ impl Module<'_> {
         parts.push(match &settings.operator {
             Operator::Filter(alpha) => format!("filter of {} rad/s", one(alpha)),
             Operator::Window(samples) => format!("window of {} samples", one(samples)),
+            Operator::Sampled(deviations) => format!("samples of standard deviation {}", list(deviations)),
         });
-        parts.push(format!("{}-order hold", if settings.straight { "first" } else { "zero" }));
+        parts.extend(settings.output.then(|| "output form".to_owned()));
+        if !matches!(settings.operator, Operator::Sampled(_)) {
+            parts.push(format!("{}-order hold", if settings.straight { "first" } else { "zero" }));
+        }
         parts.extend(settings.rebase.as_ref().map(|samples| {
             let one_each = *samples == Rational::ONE;
             if one_each {
@@ -338,11 +400,13 @@ fn is_within(settings: &Settings<Rational>) -> bool {
 
 /// All numbers of the settings but the length of a window.
 fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
-    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, .. } = settings;
+    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, .. } = settings;
     let mut numbers: Vec<&Rational> =
-        [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().collect();
-    if let Operator::Filter(alpha) = operator {
-        numbers.push(alpha);
+        [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().chain(gate).collect();
+    match operator {
+        Operator::Filter(alpha) => numbers.push(alpha),
+        Operator::Window(_) => {}
+        Operator::Sampled(deviations) => numbers.extend(deviations),
     }
     match estimator {
         Estimator::Gradient(gain) => numbers.extend(gain),

@@ -11,16 +11,33 @@ use super::error::EmitError;
 use super::value::{self, Value, unreadable};
 use crate::cas::Arena;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, Settings};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, PATIENCE, Settings};
 
 /// The constant with the length of a window.
 pub(super) const WINDOW: &str = "NW";
 
+/// The constant with the number of unknowns of the output form, and its value.
+pub(super) const UNKNOWNS: (&str, &str) = ("NO", "NR + NZ");
+
+/// The constant with the places of the outputs of the rows.
+pub(super) const ROWS: &str = "ROWS";
+
+/// What the regressand of a model is.
+#[derive(Clone, Debug)]
+enum Form {
+    /// That of its regression.
+    Own,
+    /// Its outputs, and estimates are made of those that are expected, at these places, if there are any.
+    Outputs(Option<Vec<usize>>),
+}
+
 /// What a name is bound to.
 #[derive(Clone, Debug)]
 enum Made {
-    /// The model with its parameters, and bounds of its states.
-    Model([Option<Vec<Rational>>; 2]),
+    /// The model with its parameters, whether in its output form, and bounds of its states.
+    Model(Form, [Option<Vec<Rational>>; 2]),
+    /// The places of the outputs of the rows.
+    Rows(Vec<usize>),
     Number(Rational),
     List(Vec<Rational>),
     /// A vector of infinities, above or below all numbers.
@@ -34,11 +51,12 @@ enum Made {
     Hold(bool),
     Operator(Operator<Rational>, bool),
     Observer(Settings<Rational>),
+    Gate(Rational),
 }
 
 /// Whether these are the constructors beside `new`.
 pub(super) fn is_constructors(item: &ItemImpl) -> bool {
-    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if function.sig.ident == "try_new" || function.sig.ident == "observer");
+    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if ["try_new", "gate", "observer"].iter().any(|name| function.sig.ident == name));
     item.trait_.is_none() && !item.items.is_empty() && item.items.iter().all(named)
 }
 
@@ -46,10 +64,10 @@ pub(super) fn is_constructors(item: &ItemImpl) -> bool {
 pub(super) fn read(
     arena: &Arena,
     item: &ItemImpl,
-    window: Option<&Syntax>,
+    constants: (Option<&Syntax>, Option<&Syntax>),
     globals: &value::Scope,
 ) -> Result<Option<Settings<Rational>>, EmitError> {
-    let mut settings = None;
+    let (mut settings, mut gate) = (None, None);
     for entry in &item.items {
         let ImplItem::Fn(function) = entry else { return Err(unreadable(entry)) };
         if function.sig.ident == "try_new" {
@@ -59,7 +77,7 @@ pub(super) fn read(
             }
             continue;
         }
-        let mut reader = Reader { arena, globals, window, made: BTreeMap::new() };
+        let mut reader = Reader { arena, globals, constants, made: BTreeMap::new() };
         for statement in &function.block.stmts {
             match statement {
                 Stmt::Local(local) => {
@@ -71,19 +89,21 @@ pub(super) fn read(
                 }
                 Stmt::Expr(last, None) => match reader.expression(last)? {
                     Made::Observer(made) => settings = Some(made),
+                    Made::Gate(limit) if function.sig.ident == "gate" => gate = Some(limit),
                     _ => return Err(unreadable(last)),
                 },
                 other => return Err(unreadable(other)),
             }
         }
     }
-    Ok(settings)
+    Ok(settings.map(|settings| Settings { gate, ..settings }))
 }
 
 struct Reader<'a> {
     arena: &'a Arena,
     globals: &'a value::Scope,
-    window: Option<&'a Syntax>,
+    /// The constants with the length of a window, and with the places of the outputs of the rows.
+    constants: (Option<&'a Syntax>, Option<&'a Syntax>),
     made: BTreeMap<String, Made>,
 }
 
@@ -94,7 +114,9 @@ impl Reader<'_> {
             Syntax::Try(attempt) => self.expression(&attempt.expr),
             Syntax::Reference(reference) => self.expression(&reference.expr),
             Syntax::Call(call) => match compact(&call.func).as_str() {
-                "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => Ok(Made::Model([None, None])),
+                "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => {
+                    Ok(Made::Model(Form::Own, [None, None]))
+                }
                 "SVector::from" => self.list(syntax),
                 "SVector::repeat" => match compact(&call.args).as_str() {
                     "f64::INFINITY" | "f32::INFINITY" => Ok(Made::Infinite { above: true }),
@@ -120,6 +142,7 @@ impl Reader<'_> {
             Syntax::Path(_) => match compact(syntax).as_str() {
                 "Hold::First" => Ok(Made::Hold(true)),
                 "Hold::Zero" => Ok(Made::Hold(false)),
+                ROWS => places(self.constants.1.ok_or_else(unknown)?).map(Made::Rows).ok_or_else(unknown),
                 name => self.made.get(name).cloned().map_or_else(|| self.number(syntax), Ok),
             },
             _ => self.number(syntax),
@@ -177,19 +200,37 @@ impl Reader<'_> {
             ("Bounded::new", [Some(Made::Estimator(estimator)), Some(lower), Some(upper), None]) => {
                 Bounded(estimator, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
-            ("Within::new", [Some(Model([None, None])), Some(lower), Some(upper), None]) => {
-                Model([bound(lower, false).ok()?, bound(upper, true).ok()?])
+            ("Gate::new", [Some(Number(limit)), Some(Number(patience)), None, None]) => {
+                (patience == Rational::from(i64::from(PATIENCE))).then_some(Made::Gate(limit))?
+            }
+            ("OutputForm::new", [Some(Model(Form::Own, [None, None])), None, None, None]) => {
+                Model(Form::Outputs(None), [None, None])
+            }
+            ("OutputForm::expecting", [Some(Model(Form::Own, [None, None])), Some(Made::Rows(rows)), None, None]) => {
+                Model(Form::Outputs(Some(rows)), [None, None])
+            }
+            ("Within::new", [Some(Model(form, [None, None])), Some(lower), Some(upper), None]) => {
+                Model(form, [bound(lower, false).ok()?, bound(upper, true).ok()?])
+            }
+            // Samples are joined to no signal: that they were, straight, is what the settings say.
+            ("SampledRegression::new", [Some(List(deviations)), None, None, None]) => {
+                Made::Operator(Operator::Sampled(deviations), true)
             }
             ("Filter::new", [Some(Number(alpha)), Some(Hold(straight)), None, None]) => {
                 Made::Operator(Operator::Filter(alpha), straight)
             }
             ("WindowedRegression::new", [Some(Hold(straight)), None, None, None]) => {
-                let samples = Rational::from_decimal(&compact(self.window?)).ok()?;
+                let samples = Rational::from_decimal(&compact(self.constants.0?)).ok()?;
                 Made::Operator(Operator::Window(samples), straight)
             }
             (
                 "Tuned::new" | "Tuned::with_regression",
-                [Some(Model(within)), Some(estimator), Some(Made::Operator(operator, straight)), Some(List(chi_0))],
+                [
+                    Some(Model(form, within)),
+                    Some(estimator),
+                    Some(Made::Operator(operator, straight)),
+                    Some(List(chi_0)),
+                ],
             ) => {
                 let filtered = matches!(operator, Operator::Filter(_));
                 let (estimator, [lower, upper]) = match estimator {
@@ -200,7 +241,23 @@ impl Reader<'_> {
                 if filtered != (function == "Tuned::new") {
                     return None;
                 }
-                Made::Observer(Settings { operator, straight, estimator, lower, upper, within, rebase: None, chi_0 })
+                let (output, expected) = match form {
+                    Form::Own => (false, None),
+                    Form::Outputs(expected) => (true, expected),
+                };
+                Made::Observer(Settings {
+                    operator,
+                    output,
+                    expected,
+                    straight,
+                    estimator,
+                    lower,
+                    upper,
+                    within,
+                    rebase: None,
+                    chi_0,
+                    gate: None,
+                })
             }
             _ => return None,
         })
@@ -229,6 +286,12 @@ fn bound(made: Made, side: bool) -> Result<Option<Vec<Rational>>, ()> {
         Made::Infinite { above } if above == side => Ok(None),
         _ => Err(()),
     }
+}
+
+/// The numbers of an array of places.
+fn places(array: &Syntax) -> Option<Vec<usize>> {
+    let Syntax::Array(array) = array else { return None };
+    array.elems.iter().map(|place| compact(place).parse().ok()).collect()
 }
 
 /// DREM that is exact after a finite time.

@@ -34,6 +34,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
+        pass.belong(&model.observer.sensors, &y, "sensors");
+        pass.belong(&model.observer.start, &x, "start");
+        pass.belong(&model.observer.disturbance, &both, "disturbance");
         if let Some(recording) = &model.recording {
             pass.recording(recording, model);
         }
@@ -44,6 +47,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
             pass.belong(&simulation.bias, &y, "bias");
             pass.belong(&simulation.quantisation, &y, "quantisation");
             pass.belong(&simulation.delay.each, &y, "delay");
+            pass.belong(&simulation.every, &y, "every");
             let parameters = model.parameters.iter().map(|entry| &entry.name);
             let true_values = Group::new(parameters.chain(&model.x), "a parameter or a state of x");
             pass.belong(&simulation.plant, &true_values, "plant");
@@ -63,6 +67,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     }
     pass.units(model);
     pass.inverted(model);
+    pass.known(&model.observer.sensors, [&model.observer.start, &model.observer.disturbance]);
     model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
         pass.simulation(simulation, &scope, (&model.u, &model.w));
@@ -239,18 +244,21 @@ impl Pass<'_> {
                     let group = Group::new(states(), "a state of the baseline");
                     self.belong(&equations.initial, &group, "initial");
                 }
-                Baseline::Kalman(filter) => {
-                    for deviation in &filter.sensors {
-                        self.positive(Some(&deviation.value), "the standard deviation of a sensor");
-                    }
-                    for deviation in filter.start.iter().chain(&filter.disturbance) {
-                        self.not_negative(&deviation.value, "a standard deviation");
-                    }
-                }
+                Baseline::Kalman(filter) => self.known(&filter.sensors, [&filter.start, &filter.disturbance]),
                 Baseline::Luenberger(observer) => self.poles(&observer.poles),
             }
         }
         self.feedback(simulation);
+    }
+
+    /// Standard deviations are none below zero; a sensor has one.
+    fn known(&mut self, sensors: &[Entry<Spanned<Decimal>>], others: [&[Entry<Spanned<Decimal>>]; 2]) {
+        for deviation in sensors {
+            self.positive(Some(&deviation.value), "the standard deviation of a sensor");
+        }
+        for deviation in others.into_iter().flatten() {
+            self.not_negative(&deviation.value, "a standard deviation");
+        }
     }
 
     /// What sensors do to samples is possible.
@@ -260,6 +268,16 @@ impl Pass<'_> {
         }
         for step in &simulation.quantisation {
             self.not_negative(&step.value, "the step of a quantisation");
+        }
+        for every in &simulation.every {
+            let number = every.value.value.to_f64();
+            if number < 1.0 || number.fract() != 0.0 || number > f64::from(u32::MAX) {
+                let message = format!("`every` of `{}` is a number of samples", every.name.value);
+                self.diagnostics.push(
+                    Diagnostic::error(Code::NumberOutOfRange, every.value.span, message)
+                        .help("write a whole number above zero: 1 for every sample"),
+                );
+            }
         }
         for delay in simulation.delay.written() {
             self.not_negative(delay, "a delay");

@@ -30,7 +30,7 @@ pub use check::check;
 pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub use names::unknown_name;
-pub use observer::{Bounds, Estimator, Hold, Observer};
+pub use observer::{Bounds, Estimator, Form, Hold, Observer};
 pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
 pub use written::{

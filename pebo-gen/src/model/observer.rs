@@ -4,7 +4,7 @@
 use serde::Deserialize;
 
 use super::formula::Decimal;
-use super::spanned::Spanned;
+use super::spanned::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
 /// How the observer is built; what is left out, the generator chooses.
@@ -12,7 +12,15 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Observer {
-    /// The estimator; a gradient if absent.
+    /// What the regressand is made of; chosen for the settings that there are if absent.
+    pub form: Option<Spanned<Form>>,
+    /// The standard deviation of the samples of each output.
+    pub sensors: Vec<Entry<Spanned<Decimal>>>,
+    /// How wrong each state is at the start, a standard deviation.
+    pub start: Vec<Entry<Spanned<Decimal>>>,
+    /// By how much states and outputs drift besides their rates, in their units per root second.
+    pub disturbance: Vec<Entry<Spanned<Decimal>>>,
+    /// The estimator; if absent, least squares of known numbers, or a gradient where gains are written.
     pub estimator: Option<Spanned<Estimator>>,
     /// One gain for each unknown, or one for all: of a gradient, or of the scalar estimators of DREM in 1/s.
     pub gain: Vec<Spanned<Decimal>>,
@@ -42,6 +50,8 @@ pub struct Observer {
     pub hold: Option<Spanned<Hold>>,
     /// Samples after which the extension starts again from the estimate; never if absent.
     pub rebase: Option<Spanned<Decimal>>,
+    /// The normalised square of an innovation beyond which a sample is an outlier; none if absent.
+    pub gate: Option<Spanned<Decimal>>,
     /// The extension chi at the start: one value each; empty for zeros.
     pub extension: Vec<Spanned<Decimal>>,
 }
@@ -66,6 +76,22 @@ pub enum Hold {
     ZeroOrder,
     /// Straight lines between samples.
     FirstOrder,
+}
+
+/// What the regressand of a regression of rates is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
+pub enum Form {
+    /// The rates of the outputs, through a filter or window.
+    Rate,
+    /// The outputs themselves, whose values at the start are unknowns too.
+    Output,
+}
+
+impl Form {
+    /// Their names in a file.
+    pub const NAMES: &[&str] = &["rate", "output"];
 }
 
 /// The estimators of the runtime library.
@@ -145,10 +171,31 @@ impl Estimator {
     }
 }
 
+/// The settings that belong to estimators.
+const SETTINGS: [&str; 8] =
+    ["gain", "covariance", "regressor_gain", "forgetting", "process_noise", "normalisation", "clip", "period"];
+
 impl Observer {
     /// The estimator, whether or not it is written.
     pub fn estimator(&self) -> Estimator {
-        self.estimator.as_ref().map_or_else(Estimator::default, |estimator| estimator.value)
+        let otherwise = if self.has_gains() { Estimator::default() } else { Estimator::LeastSquares };
+        self.estimator.as_ref().map_or(otherwise, |estimator| estimator.value)
+    }
+
+    /// Whether the author chose the numbers of an estimator, and not what is known of sensors, start and disturbances.
+    pub fn has_gains(&self) -> bool {
+        let written = self.filter.is_some() || self.window.is_some() || self.estimator.is_some();
+        self.known().is_none() && (written || SETTINGS.iter().any(|key| self.place(key).is_some()))
+    }
+
+    /// The first of the keys that ask for an observer of known numbers, with its place.
+    pub fn known(&self) -> Option<(&'static str, Span)> {
+        let first = |key, entries: &[Entry<Spanned<Decimal>>]| Some((key, entries.first()?.name.span));
+        let output = self.form.as_ref().filter(|form| form.value == Form::Output).map(|form| ("form", form.span));
+        first("sensors", &self.sensors)
+            .or_else(|| first("start", &self.start))
+            .or_else(|| first("disturbance", &self.disturbance))
+            .or(output)
     }
 
     /// Where a setting of estimators is, if it is written.
@@ -172,9 +219,8 @@ impl Observer {
     pub(super) fn check(&self, diagnostics: &mut Diagnostics) {
         // An estimator that was misspelt is absent, and nobody knows what it has.
         let known = self.estimator.is_some() || !diagnostics.has_errors();
-        let keys =
-            ["gain", "covariance", "regressor_gain", "forgetting", "process_noise", "normalisation", "clip", "period"];
-        for key in keys {
+        self.contradictions(diagnostics);
+        for key in SETTINGS.iter().copied().filter(|_| self.known().is_none()) {
             let estimator = self.estimator();
             if let Some(place) = self.place(key).filter(|_| known && !estimator.has(key)) {
                 diagnostics.push(self.stranger(key, place));
@@ -192,6 +238,7 @@ impl Observer {
             (self.regressor_gain.as_slice(), "a gain must be positive"),
             (self.period.as_slice(), "the period must be positive"),
             (self.filter.as_slice(), "the filter frequency must be positive"),
+            (self.gate.as_slice(), "the limit of the gate must be positive"),
         ];
         for (numbers, message) in positive {
             for number in numbers {
@@ -228,12 +275,60 @@ impl Observer {
         if let Some(window) = &self.window {
             within(window, whole, "a window is a number of samples", "write a whole number above zero");
         }
+        if let Some(gate) = self.gate.as_ref().filter(|_| self.has_gains()) {
+            let message = "`gate` stands beside gains, which do not say how far a sample may be from what is expected";
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, gate.span, message)
+                    .help("write `sensors`, `start` and `disturbance` in place of gains, or remove `gate`"),
+            );
+        }
         if let (Some(filter), Some(window)) = (&self.filter, &self.window) {
             let message = "the observer has both a filter and a window";
             diagnostics.push(
                 Diagnostic::error(Code::SettingConflict, window.span, message)
                     .also(filter.span, "the filter")
                     .help("remove one of them: the regression goes through a filter or a window"),
+            );
+        }
+    }
+
+    /// Reports gains beside the numbers that they would be derived from.
+    fn contradictions(&self, diagnostics: &mut Diagnostics) {
+        let Some((key, known)) = self.known() else { return };
+        let instead = [("covariance", &self.start, "start"), ("process_noise", &self.disturbance, "disturbance")];
+        for (gain, entries, name) in instead {
+            if let (Some(place), Some(first)) = (self.place(gain), entries.first()) {
+                let message = format!("`{gain}` stands beside the `{name}` that it would be derived from");
+                diagnostics.push(
+                    Diagnostic::error(Code::SettingConflict, place, message)
+                        .also(first.name.span, format!("`{name}` begins here"))
+                        .help(format!("remove one of them: `{name}` is in units of the states, `{gain}` of phi")),
+                );
+            }
+        }
+        let others = ["gain", "regressor_gain", "forgetting", "normalisation", "clip", "period"];
+        let mut strangers: Vec<(&str, Span)> =
+            others.into_iter().filter_map(|key| Some((key, self.place(key)?))).collect();
+        let operators = [("filter", &self.filter), ("window", &self.window)];
+        strangers.extend(operators.iter().filter_map(|(key, number)| Some((*key, number.as_ref()?.span))));
+        strangers.extend(
+            [("bounds", &self.bounds.lower), ("bounds", &self.bounds.upper)]
+                .iter()
+                .filter_map(|(key, numbers)| Some((*key, numbers.first()?.span))),
+        );
+        let other = self.estimator.as_ref().filter(|estimator| estimator.value != Estimator::LeastSquares);
+        strangers.extend(other.map(|estimator| ("estimator", estimator.span)));
+        for (stranger, place) in strangers {
+            let message = format!("`{stranger}` stands beside `{key}`, from which the observer is derived");
+            let help = match stranger {
+                "bounds" => "bound the states instead, by `within`".to_owned(),
+                "estimator" => format!("write `least-squares`, or gains in place of `{key}`"),
+                _ => format!("remove `{stranger}`: the observer is least squares, whose numbers are derived"),
+            };
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, place, message)
+                    .also(known, format!("`{key}` is here"))
+                    .help(help),
             );
         }
     }

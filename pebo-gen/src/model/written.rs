@@ -92,6 +92,8 @@ pub struct Simulation {
     pub jitter: Option<Spanned<Decimal>>,
     /// The probability that a sample never arrives.
     pub dropped: Option<Spanned<Decimal>>,
+    /// Of some outputs, how many samples there are to one that arrives; one where absent.
+    pub every: Vec<Entry<Spanned<Decimal>>>,
     /// True values in time of parameters, and of states whose rate is 0, in `t` and the model's parameters: where they
     /// differ from what the model says.
     pub plant: Vec<Entry<Vec<Piece>>>,
@@ -298,7 +300,7 @@ impl Simulation {
     /// Whether a sample may be other than the output that it is of, or not be there.
     pub fn is_imperfect(&self) -> bool {
         let lists = [&self.noise, &self.bias, &self.quantisation].iter().any(|entries| !entries.is_empty());
-        lists || self.delay.written().next().is_some() || self.dropped.is_some()
+        lists || self.delay.written().next().is_some() || self.dropped.is_some() || !self.every.is_empty()
     }
 
     /// The keys that make the plant and its sensors differ from what the model says.
@@ -311,6 +313,7 @@ impl Simulation {
             ("noise", !self.noise.is_empty()),
             ("quantisation", !self.quantisation.is_empty()),
             ("dropped", self.dropped.is_some()),
+            ("every", !self.every.is_empty()),
         ];
         keys.into_iter().filter_map(|(key, is_there)| is_there.then_some(key)).collect()
     }

@@ -10,6 +10,11 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 pub struct Settings<N> {
     /// What the regression goes through.
     pub operator: Operator<N>,
+    /// Whether the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
+    /// those of the outputs whose rates are used, and behind them those of the coordinates.
+    pub output: bool,
+    /// Of the output form: the places of the outputs in y, where estimates are made of the outputs that the observer expects.
+    pub expected: Option<Vec<usize>>,
     /// Whether samples are joined by straight lines; else each is held.
     pub straight: bool,
     /// What estimates the unknowns.
@@ -24,15 +29,22 @@ pub struct Settings<N> {
     pub rebase: Option<N>,
     /// The extension at the start.
     pub chi_0: Vec<N>,
+    /// The normalised square of an innovation beyond which a sample is an outlier, if any is.
+    pub gate: Option<N>,
 }
 
+/// Outliers in a row that a gate refuses.
+pub const PATIENCE: u32 = 20;
+
 /// What the regression goes through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Operator<N> {
     /// A filter of this bandwidth, in rad/s.
     Filter(N),
     /// The mean over so many samples, a whole number.
     Window(N),
+    /// Each sample by itself, weighed by the standard deviation of its errors in each row.
+    Sampled(Vec<N>),
 }
 
 /// An estimator of the runtime library.
@@ -56,6 +68,16 @@ pub enum Estimator<N> {
         /// What makes the equations square.
         extension: Extension<N>,
     },
+}
+
+impl<N> Estimator<N> {
+    /// The number of unknowns that it has settings for.
+    pub fn unknowns(&self) -> usize {
+        match self {
+            Self::Gradient(gain) | Self::NormalisedGradient { gain, .. } | Self::Drem { gain, .. } => gain.len(),
+            Self::LeastSquares(covariance) => covariance.start.len(),
+        }
+    }
 }
 
 /// What least squares need.
@@ -122,6 +144,8 @@ impl<N: Clone + PartialOrd> Settings<N> {
         };
         Some(Self {
             operator,
+            output: false,
+            expected: None,
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             estimator: estimator?,
             lower,
@@ -129,6 +153,58 @@ impl<N: Clone + PartialOrd> Settings<N> {
             within,
             rebase,
             chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
+            gate: None,
+        })
+    }
+}
+
+/// What a section says besides the kind of its estimator.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame<N> {
+    /// The diagonal of the covariance of the coordinates at the start, if it is written.
+    pub(crate) covariance: Option<Vec<N>>,
+    /// By how much it grows in a second, if that is written.
+    pub(crate) process_noise: Option<Vec<N>>,
+    /// Between what each recovered state is, from below and from above.
+    pub(crate) within: [Option<Vec<N>>; 2],
+    /// Samples after which the extension starts again.
+    pub(crate) rebase: Option<N>,
+    /// The limit of the gate.
+    pub(crate) gate: Option<N>,
+    /// Whether samples are joined by straight lines.
+    pub(crate) straight: bool,
+    /// The extension at the start, if it is written.
+    pub(crate) chi_0: Option<Vec<N>>,
+}
+
+impl<N: Clone + PartialOrd> Frame<N> {
+    /// The same of so many coordinates and recovered states, with what is wrong reported as by [`Settings::resolve`].
+    pub(crate) fn resolve(
+        written: &Observer,
+        (coordinates, states): (usize, usize),
+        read: impl Fn(&Decimal) -> Option<N>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let mut section = Section { written, unknowns: coordinates, read, problems };
+        let covariance = section.list(&written.covariance, coordinates, "a covariance for each component of phi");
+        let noise = section.list(&written.process_noise, coordinates, "process noise for each component of phi");
+        let within = section.bounds(&written.within, states, "recovered state");
+        let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
+        let rebase = match &written.rebase {
+            Some(samples) => Some(section.number(samples)?),
+            None => None,
+        };
+        Some(Self {
+            covariance: covariance.ok()?,
+            process_noise: noise.ok()?,
+            within: within?,
+            rebase,
+            gate: match &written.gate {
+                Some(limit) => Some(section.number(limit)?),
+                None => None,
+            },
+            straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
+            chi_0: chi_0.ok()?,
         })
     }
 }

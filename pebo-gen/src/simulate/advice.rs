@@ -93,6 +93,7 @@ fn mend(departure: &str) -> &'static str {
             "give the observer the time that has passed in place of the period, as `step` takes it in the emitted code"
         }
         "quantisation" => "choose a finer converter, or a lower `filter` or `gain`, which averages more samples",
+        "every" => "let that output be sampled more often, or simulate longer",
         "dropped" => "choose a shorter `step`, so that less happens in a gap",
         _ => "choose a lower `filter` or `gain`, which averages more samples, or a better sensor",
     }

@@ -10,21 +10,33 @@ use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Extension, Fault, Flow, Fundamental, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
+    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
 };
 
+use crate::plant::settings::PATIENCE;
 use crate::program::{Interpreter, Program};
 
 use super::excitation::Said;
 use super::observer::Design;
+use super::settings::Operator;
 use super::sizes::{LARGEST, MOST_MIXED, pad};
 use super::watched::Watched;
 use super::window::Passage;
 
 /// An observer of some size.
 pub(super) trait Estimation: fmt::Debug {
-    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates.
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An output
+    /// that is missing is NaN, where [`has_parts`](Self::has_parts).
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+
+    /// Whether a sample may lack outputs.
+    fn has_parts(&self) -> bool;
+
+    /// The standard errors of the estimates; nothing where they are not known.
+    fn standard_errors(&self) -> Option<Vec<f64>>;
+
+    /// How far a sample is from what is expected of it: the normalised square of its innovation, of each row on average.
+    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
 
     /// What the data so far say of each component of the unknown.
     fn said(&self) -> Said;
@@ -43,6 +55,9 @@ pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
 }
 
 fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    if design.settings.output {
+        return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
+    }
     Ok(match (&design.lambda, design.is_static) {
         (None, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
         (None, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
@@ -73,11 +88,18 @@ impl Kind for Static {
 trait Known<const N: usize>: Extension<f64, N> + 'static {
     /// Writes the first `n` coordinates of the extension, and of its fundamental matrix by rows.
     fn write(&self, n: usize, known: &mut Vec<f64>);
+
+    /// What stands for z beside theta, and the factor of theta.
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
 }
 
 impl<const N: usize> Known<N> for Integrator<f64, N> {
     fn write(&self, n: usize, known: &mut Vec<f64>) {
         known.extend(&self.chi().as_slice()[..n]);
+    }
+
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (*self.chi(), SMatrix::identity())
     }
 }
 
@@ -85,6 +107,10 @@ impl<const N: usize> Known<N> for Fundamental<f64, N> {
     fn write(&self, n: usize, known: &mut Vec<f64>) {
         known.extend(&self.xi().as_slice()[..n]);
         known.extend((0..n * n).map(|k| self.psi()[(k / n, k % n)]));
+    }
+
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (*self.xi(), *self.psi())
     }
 }
 
@@ -129,12 +155,22 @@ struct Derived<X, K, const N: usize> {
     primitives: Option<[RefCell<Function>; 2]>,
     theta: RefCell<Function>,
     phi_left: RefCell<Function>,
+    /// In the output form: the rows of the regression, and the model's extension at its start as its functions read it.
+    output: Option<(usize, Vec<f64>)>,
+    /// There, the places of the outputs that estimates are made of as they are expected.
+    expected: Option<Vec<usize>>,
     kind: PhantomData<(X, K)>,
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
+        let nz = design.coordinates;
+        let identity = (0..nz * nz).map(|k| if k / nz == k % nz { 1.0 } else { 0.0 });
+        let identity = identity.take(if design.lambda.is_some() { nz * nz } else { 0 });
+        let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
+            expected: design.settings.expected.clone(),
+            output: design.settings.output.then_some((design.phi_0.outputs.len(), start)),
             ny: design.outputs,
             nu: design.inputs,
             nz: design.coordinates,
@@ -151,12 +187,42 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
         }
     }
 
+    /// Writes the extension that the model's functions read: that of the output form is not the model's own.
+    fn write(&self, extension: &X, arguments: &mut Vec<f64>) {
+        match &self.output {
+            Some((_, start)) => arguments.extend(start),
+            None => extension.write(self.nz, arguments),
+        }
+    }
+
     /// The values of a function that stands under the derivative.
     fn held<'a>(&self, function: &'a mut Function, extension: &X, y: &SVector<f64, N>) -> &'a [f64] {
         function.call(|arguments| {
-            extension.write(self.nz, arguments);
+            self.write(extension, arguments);
             arguments.extend(&y.as_slice()[..self.ny]);
         })
+    }
+
+    /// The cascade of the model itself.
+    fn cascade(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
+        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
+        match &self.lambda {
+            Some(lambda) => {
+                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
+                Flow { lambda, h }
+            }
+            None => Flow::plain(h),
+        }
+    }
+
+    /// The sides of the model's own regression; in the output form, as a function of z.
+    fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        let at = |arguments: &mut Vec<f64>| {
+            self.write(extension, arguments);
+            self.sampled(arguments, y, u);
+        };
+        let known = pad(self.phi_0.borrow_mut().call(at));
+        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
     }
 
     fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
@@ -187,23 +253,32 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 
     fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
-        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
-        match &self.lambda {
-            Some(lambda) => {
-                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
-                Flow { lambda, h }
+        let inner = self.cascade(y, u);
+        let Some((rows, _)) = self.output else { return inner };
+        // As the runtime's `OutputForm`, whose sizes are constants.
+        let rate = self.sides(&X::new(SVector::zeros()), y, u);
+        let (mut lambda, mut h) = (SMatrix::zeros(), SVector::zeros());
+        for i in 0..rows + self.nz {
+            h[i] = if i < rows { rate.known[i] } else { inner.h[i - rows] };
+            for j in 0..self.nz {
+                lambda[(i, rows + j)] = if i < rows { rate.factor[(i, j)] } else { inner.lambda[(i - rows, j)] };
             }
-            None => Flow::plain(h),
         }
+        Flow { lambda, h }
     }
 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
-        let at = |arguments: &mut Vec<f64>| {
-            extension.write(self.nz, arguments);
-            self.sampled(arguments, y, u);
-        };
-        let known = pad(self.phi_0.borrow_mut().call(at));
-        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
+        let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
+        let held = self.primitive(extension, y);
+        let mut through = SMatrix::<f64, N, N>::zeros();
+        for i in 0..rows {
+            through[(i, i)] = 1.0;
+            for j in 0..self.nz {
+                through[(i, rows + j)] = -held.factor[(i, j)];
+            }
+        }
+        let (offset, map) = extension.parts();
+        Sides { known: held.known - through * offset, factor: through * map }
     }
 
     fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
@@ -221,12 +296,30 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 
     fn theta(&self, eta: &SVector<f64, N>) -> SVector<f64, N> {
+        if self.output.is_some() {
+            return *eta;
+        }
         pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
     }
 
+    fn begin(&self, extension: &X, y: &SVector<f64, N>) -> X {
+        if self.output.is_none() {
+            return *extension;
+        }
+        let seen = self.regression(extension, y, &SVector::zeros()).known;
+        let mut begun = *extension;
+        begun.rebase(&-seen);
+        begun
+    }
+
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut y = *y;
+        for (row, place) in self.expected.iter().flatten().enumerate() {
+            y[*place] = z[row];
+        }
         pad(self.phi_left.borrow_mut().call(|arguments| {
-            arguments.extend(&z.as_slice()[..self.nz]);
+            let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
+            arguments.extend(&z.as_slice()[first..first + self.nz]);
             arguments.extend(&y.as_slice()[..self.ny]);
         }))
     }
@@ -239,43 +332,83 @@ type Inner<X, K, const N: usize> =
     Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
 
 /// The runtime's observer at size N.
-struct Padded<X: Known<N>, K: Kind, const N: usize>(Inner<X, K, N>);
+struct Padded<X: Known<N>, K: Kind, const N: usize> {
+    observer: Inner<X, K, N>,
+    /// What refuses outliers.
+    gate: Option<Gate<f64>>,
+    /// The place of the output of each row, where rows may be left out.
+    rows: Option<[usize; N]>,
+    /// The recovered states, and the rows of the regression.
+    sizes: (usize, usize),
+    /// Whether the covariance is that of sensors.
+    is_certain: bool,
+}
 
 impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator = Bounded::new(Watched::new(&settings.estimator, design.unknowns)?, &lower, &upper)?;
+        let estimator = Bounded::new(Watched::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
         let passage = Passage::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
-        Ok(Self(match settings.rebase {
-            Some(every) => observer.rebasing(every)?,
-            None => observer,
-        }))
+        let mut rows = [usize::MAX; N];
+        rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
+        let whole = settings.output && design.primitives.is_none();
+        Ok(Self {
+            observer: match settings.rebase {
+                Some(every) => observer.rebasing(every)?,
+                None => observer,
+            },
+            gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,
+            rows: whole.then_some(rows),
+            sizes: (design.recovered.len(), design.phi_0.outputs.len()),
+            is_certain: matches!(settings.operator, Operator::Sampled(_)),
+        })
     }
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Padded").field(self.0.model()).finish()
+        f.debug_tuple("Padded").field(self.observer.model()).finish()
     }
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
-        let estimate = self.0.step(pad(y), pad(u), dt)?;
+        let parted = self.rows.filter(|_| y.iter().any(|output| output.is_nan()));
+        if let (Some(gate), None) = (&mut self.gate, parted) {
+            gate.admit(&self.observer.innovation(pad(y), pad(u), dt)?)?;
+        }
+        let estimate = match parted {
+            Some(rows) => self.observer.step_partly(pad(y), &rows, pad(u), dt)?,
+            None => self.observer.step(pad(y), pad(u), dt)?,
+        };
         hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
         Ok(())
     }
 
+    fn has_parts(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn standard_errors(&self) -> Option<Vec<f64>> {
+        let errors = self.is_certain.then(|| self.observer.standard_error())??;
+        Some(errors.as_slice()[..self.sizes.0].to_vec())
+    }
+
+    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64> {
+        let innovation = self.is_certain.then(|| self.observer.innovation(pad(y), pad(u), dt).ok())??;
+        Some(innovation.normalised_square / super::timing::real(u64::try_from(self.sizes.1).ok()?))
+    }
+
     fn said(&self) -> Said {
-        self.0.estimator().estimator().said()
+        self.observer.estimator().estimator().said()
     }
 
     #[cfg(test)]
     fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
-        self.0.extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
+        self.observer.extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
     }
 }

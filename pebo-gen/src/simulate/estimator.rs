@@ -10,7 +10,7 @@ use std::fmt;
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
     Drem, Estimator, Fault, FiniteTime, Gradient, Kreisselmeier, LeastSquares, NormalisedGradient, RegressorExtension,
-    Response, Turn,
+    Response, Turn, Uncertain,
 };
 
 use super::settings::{self, Covariance, Extension};
@@ -18,24 +18,28 @@ use super::sizes::{LARGEST, MOST_MIXED, pad, padded};
 
 /// An estimator of a model that was padded to the size N.
 #[derive(Debug)]
-pub(super) struct Chosen<const N: usize>(Box<dyn Face<N>>);
+pub(super) enum Chosen<const N: usize> {
+    /// The one that knows how uncertain it is.
+    Squares(Box<LeastSquares<f64, N>>),
+    Other(Box<dyn Face<N>>),
+}
 
 impl<const N: usize> Chosen<N> {
     /// The estimator with its settings, which have a value for each of the unknowns.
     pub(super) fn new(settings: &settings::Estimator) -> Result<Self, Fault> {
         // What is set for a padded unknown has no effect, but must be positive.
         let all = |values: &[f64]| -> SVector<f64, N> { padded(values, 1.0) };
-        Ok(Self(match settings {
+        Ok(Self::Other(match settings {
             settings::Estimator::Gradient(gain) => Box::new(Gradient::diagonal(&all(gain))?),
             settings::Estimator::NormalisedGradient { gain, mu } => {
                 Box::new(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
             }
             settings::Estimator::LeastSquares(Covariance { start, forgetting, process_noise }) => {
                 let squares = LeastSquares::diagonal(&all(start), *forgetting)?;
-                Box::new(match process_noise {
+                return Ok(Self::Squares(Box::new(match process_noise {
                     Some(noise) => squares.with_process_noise(&pad(noise))?,
                     None => squares,
-                })
+                })));
             }
             settings::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => mixed(gain, extension)?,
             // Refused with the settings.
@@ -46,38 +50,66 @@ impl<const N: usize> Chosen<N> {
 
 impl<const N: usize> Clone for Chosen<N> {
     fn clone(&self) -> Self {
-        Self(self.0.boxed())
+        match self {
+            Self::Squares(squares) => Self::Squares(squares.clone()),
+            Self::Other(other) => Self::Other(other.boxed()),
+        }
+    }
+}
+
+impl<const N: usize> Chosen<N> {
+    fn face(&self) -> &dyn Face<N> {
+        match self {
+            Self::Squares(squares) => &**squares,
+            Self::Other(other) => &**other,
+        }
+    }
+
+    fn face_mut(&mut self) -> &mut dyn Face<N> {
+        match self {
+            Self::Squares(squares) => &mut **squares,
+            Self::Other(other) => &mut **other,
+        }
+    }
+}
+
+impl<const N: usize> Uncertain<f64, N> for Chosen<N> {
+    fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
+        match self {
+            Self::Squares(squares) => squares.covariance_root(dt),
+            Self::Other(_) => None,
+        }
     }
 }
 
 impl<const N: usize> Estimator<f64, N, N> for Chosen<N> {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
-        self.0.advance(regressor, regressand, dt)
+        self.face_mut().advance(regressor, regressand, dt)
     }
 
     fn estimate(&self) -> SVector<f64, N> {
-        self.0.estimate()
+        self.face().estimate()
     }
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
-        self.0.shift(shift);
+        self.face_mut().shift(shift);
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {
-        self.0.turn(turn);
+        self.face_mut().turn(turn);
     }
 
     fn reset(&mut self, estimate: &SVector<f64, N>) {
-        self.0.reset(estimate);
+        self.face_mut().reset(estimate);
     }
 
     fn is_finite(&self) -> bool {
-        self.0.is_finite()
+        self.face().is_finite()
     }
 }
 
 /// An estimator whose type is not known.
-trait Face<const N: usize>: fmt::Debug {
+pub(super) trait Face<const N: usize>: fmt::Debug {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault>;
     fn estimate(&self) -> SVector<f64, N>;
     fn shift(&mut self, shift: &SVector<f64, N>);

@@ -22,6 +22,7 @@ mod derived;
 mod ensemble;
 mod estimator;
 mod excitation;
+mod expected;
 mod failure;
 mod faults;
 pub mod figure;
@@ -54,6 +55,7 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+pub use crate::tuning::{Known, Numbers, Value};
 pub use ensemble::{Ensemble, Quantiles, Spread};
 pub use excitation::Excitation;
 pub use failure::Failure;

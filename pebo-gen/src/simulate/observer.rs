@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use crate::analysis::{Derivation, RegressionKind};
 use crate::cas::{Expr, Symbol};
-use crate::plant::settings::cannot_rebase;
 use crate::program::Program;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
@@ -43,9 +42,9 @@ pub(super) struct Design {
     pub(super) theta: Program,
     /// From z, y to the recovered states.
     pub(super) phi_left: Program,
-    /// The number of unknowns eta.
+    /// The number of unknowns eta of the model's regression.
     pub(super) unknowns: usize,
-    /// The unknowns as formulas in theta.
+    /// What is estimated, as formulas in theta.
     pub(super) unknown_names: Vec<String>,
     /// Regression and estimator.
     pub(super) settings: Settings,
@@ -57,6 +56,7 @@ impl Design {
         asked: &Asked,
         derivation: &Derivation,
         numbers: &BTreeMap<Symbol, Expr>,
+        period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let plant = asked.plant;
@@ -64,11 +64,7 @@ impl Design {
         let cascade = derivation.cascade.result.as_ref()?;
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        let settings = Settings::resolve(asked, (regression, inverse), problems)?;
-        if let Some(rebase) = asked.model.observer.rebase.as_ref().filter(|_| !derivation.can_rebase(plant)) {
-            problems.push(cannot_rebase(&plant.name, rebase.span));
-            return None;
-        }
+        let settings = Settings::resolve(asked, derivation, (regression, inverse), period, problems)?;
         let arena = &plant.arena;
         let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {
             let outputs = arena.substitute_all(outputs, numbers);
@@ -81,6 +77,9 @@ impl Design {
         };
         let at_sample: [&[Symbol]; 2] = [&y, &plant.u];
         let regressed: [&[Symbol]; 3] = [&extension, &y, &plant.u];
+        // The unknowns of the output form are what stands under the derivative at the start, then those of z.
+        let outputs = regression.rows.iter().map(|row| format!("{}(0)", arena.name(plant.y[*row].symbol)));
+        let starts: Vec<String> = if settings.output { outputs.collect() } else { Vec::new() };
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
         let design = Self {
             h: compile(&at_sample, &cascade.h)?,
@@ -106,7 +105,10 @@ impl Design {
             inputs: plant.u.len(),
             coordinates: plant.phi.len(),
             unknowns: regression.eta.len(),
-            unknown_names: regression.eta.iter().map(|unknown| arena.print(*unknown)).collect(),
+            unknown_names: starts
+                .into_iter()
+                .chain(regression.eta.iter().map(|unknown| arena.print(*unknown)))
+                .collect(),
             settings,
         };
         problems.keep(design.admit_size(span))?;
@@ -117,7 +119,12 @@ impl Design {
     pub(super) fn size(&self) -> usize {
         let regression = self.phi_0.outputs.len().max(self.unknowns);
         let plant = self.outputs.max(self.inputs).max(self.coordinates);
-        plant.max(regression).max(self.recovered.len())
+        plant.max(regression).max(self.recovered.len()).max(self.settings.chi_0.len())
+    }
+
+    /// The number of unknowns that are estimated.
+    pub(super) fn estimated(&self) -> usize {
+        self.unknown_names.len()
     }
 
     fn admit_size(&self, span: Span) -> Result<(), Diagnostic> {

@@ -14,6 +14,7 @@ use crate::program::{Interpreter, Program};
 use super::curve::Curve;
 use super::derived::observer;
 use super::excitation::Watch;
+use super::expected::Expected;
 use super::failure::Failure;
 use super::flow::Flow;
 use super::layout::TIME;
@@ -53,7 +54,7 @@ impl Scenario {
         let mut machine = Machine::start(self)?;
         let mut errors = Formulas::new(&self.errors);
         let mut scores: Vec<Scoring> = self.judged.iter().map(|judged| Scoring::new(judged.period)).collect();
-        let mut watch = Watch::default();
+        let (mut watch, mut expected) = (Watch::default(), Expected::default());
         let samples = self.timing.samples;
         let stride = (samples / REPORTS).max(1);
         for sample in 0..=samples {
@@ -69,20 +70,28 @@ impl Scenario {
             show(sample, Shown { table, errors });
             if sample % stride == 0 || sample == samples {
                 watch.look(table[TIME], &machine.stepping.observer.said());
+                expected.add(table[TIME], machine.stepping.observer.standard_errors());
             }
             if sample % stride == 0 && progress(real(sample) / real(samples)).is_break() {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
-        let rated =
-            |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
+        let rated = |(place, (judged, score)): (usize, (&Judged, &Scoring))| {
+            let score = score.finish();
+            let own = judged.estimate.baseline.is_none();
+            let expected = own.then(|| expected.since(score.since, place)).flatten();
+            Rated { estimate: judged.estimate.clone(), score, expected }
+        };
         Ok(Summary {
             end: machine.table[TIME],
             samples,
-            estimates: self.judged.iter().zip(&scores).map(rated).collect(),
+            estimates: self.judged.iter().zip(&scores).enumerate().map(rated).collect(),
             excitation: watch.excitation(&self.design.unknown_names),
             faults: machine.stepping.faults().clone(),
             dropped: machine.stepping.dropped(),
+            parted: machine.stepping.parted(),
+            surprise: machine.stepping.surprise(),
+            known: self.design.settings.known.clone(),
         })
     }
 }
@@ -168,7 +177,7 @@ impl<'a> Machine<'a> {
         let (x, y) = (&machine.table[layout.x.clone()], machine.measured.of(&machine.table));
         let followers = scenario.followers.iter();
         machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
-        machine.estimate(true)?;
+        machine.estimate(0, true)?;
         Ok(machine)
     }
 
@@ -186,10 +195,12 @@ impl<'a> Machine<'a> {
         }
         let arrives = self.measure(sample);
         self.admit(self.scenario.layout.state.clone())?;
-        let y = Some(self.measured.of(&self.table)).filter(|_| arrives);
+        let mut y = self.measured.of(&self.table).to_vec();
+        self.scenario.sensors.leave_out(sample, &mut y);
+        let y = Some(y.as_slice()).filter(|_| arrives);
         let u = &self.table[self.scenario.layout.u.clone()];
         self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
-        self.estimate(arrives)
+        self.estimate(sample, arrives)
     }
 
     /// Sets the inputs for the interval to come.
@@ -216,7 +227,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Lets all observers have the sample of now, if it arrives, and the inputs of the interval before.
-    fn estimate(&mut self, arrives: bool) -> Result<(), Failure> {
+    fn estimate(&mut self, sample: u64, arrives: bool) -> Result<(), Failure> {
         let layout = &self.scenario.layout;
         for ((place, _), follower) in self.scenario.followers.iter().zip(&self.followers) {
             follower.write(&mut self.table[place.clone()]);
@@ -225,7 +236,10 @@ impl<'a> Machine<'a> {
         let estimates = self.rivals.of(&self.table);
         self.table[layout.rivals.clone()].copy_from_slice(estimates);
         // The observer's first call gives its inputs and its step no effect.
-        let y = self.measured.of(&self.table);
+        let mut y = self.measured.of(&self.table).to_vec();
+        if self.stepping.observer.has_parts() {
+            self.scenario.sensors.leave_out(sample, &mut y);
+        }
         let (before, after) = self.table.split_at_mut(layout.hat.start);
         let hat = &mut after[..layout.hat.len()];
         let (u, step) = (&before[layout.u.clone()], self.scenario.timing.step);
@@ -233,7 +247,7 @@ impl<'a> Machine<'a> {
             self.stepping.miss(u, step);
             return Ok(());
         }
-        match self.stepping.arrive(y, u, step, hat) {
+        match self.stepping.arrive(&y, u, step, hat) {
             Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
             _ => Ok(()),
         }

@@ -160,7 +160,7 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names.asked(), derivation, &numbers, problems);
+        let design = Design::resolve(&names.asked(), derivation, &numbers, overrides.step, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);

@@ -18,7 +18,7 @@ use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::noise::{DROPPED, JITTER, even, normal};
-use super::timing::Timing;
+use super::timing::{Timing, whole};
 
 /// Steps that a delay may have: all samples in between are kept.
 const LONGEST: f64 = 1e6;
@@ -39,6 +39,8 @@ struct Sensor {
     deviation: f64,
     /// Of which a sample is a multiple; 0 for none.
     step: f64,
+    /// Instants to one whose sample arrives.
+    every: u64,
 }
 
 impl Sensors {
@@ -67,6 +69,7 @@ impl Sensors {
                 bias: of(&simulation.bias),
                 deviation: of(&simulation.noise),
                 step: of(&simulation.quantisation),
+                every: whole(of(&simulation.every)).max(1),
             }
         };
         let outputs = plant.y.iter().map(|output| plant.arena.name(output.symbol));
@@ -111,11 +114,22 @@ impl Sensing<'_> {
         let values = sensors.each.iter().zip(past).zip(outputs).zip(shown).zip(0_u64..);
         for ((((sensor, past), value), shown), output) in values {
             let value = if sensor.delay > 0.0 { delayed(past, (t, *value), t - sensor.delay, *slack) } else { *value };
-            if arrives {
+            if arrives && sample.is_multiple_of(sensor.every) {
                 *shown = sensor.show(value, || normal(*seed, output, sample));
             }
         }
         arrives
+    }
+}
+
+impl Sensors {
+    /// What of an instant's sample is there: an output whose sensor has another period is NaN.
+    pub(super) fn leave_out(&self, sample: u64, outputs: &mut [f64]) {
+        for (sensor, output) in self.each.iter().zip(outputs) {
+            if !sample.is_multiple_of(sensor.every) {
+                *output = f64::NAN;
+            }
+        }
     }
 }
 

@@ -2,10 +2,12 @@
 
 use pebo_runtime::Hold;
 
-use crate::analysis::{LeftInverse, Regression};
+use crate::analysis::{Derivation, LeftInverse, Regression};
+use crate::cas::rational::Rational;
 use crate::model::{self, Decimal, Observer};
 use crate::plant::settings;
 use crate::source::{Code, Diagnostic, Diagnostics};
+use crate::tuning::{Known, Tuned};
 
 use super::asked::Asked;
 use super::sizes::{LONGEST, MOST_MIXED};
@@ -15,6 +17,10 @@ use super::sizes::{LONGEST, MOST_MIXED};
 pub(super) struct Settings {
     /// What the regression goes through.
     pub(super) operator: Operator,
+    /// Whether the outputs themselves are the regressand.
+    pub(super) output: bool,
+    /// The places of the outputs of the rows, where estimates are made of the outputs that are expected.
+    pub(super) expected: Option<Vec<usize>>,
     /// How samples are joined.
     pub(super) hold: Hold,
     pub(super) estimator: Estimator,
@@ -26,15 +32,21 @@ pub(super) struct Settings {
     pub(super) rebase: Option<u32>,
     /// The extension at the start.
     pub(super) chi_0: Vec<f64>,
+    /// The limit of the gate that refuses outliers.
+    pub(super) gate: Option<f64>,
+    /// What the settings were derived from, if the author did not choose them.
+    pub(super) known: Option<Known>,
 }
 
 /// What the regression goes through.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Operator {
     /// A filter of this bandwidth, in rad/s.
     Filter(f64),
     /// The mean over so many samples.
     Window(usize),
+    /// Each sample by itself, weighed by the standard deviation of each row.
+    Sampled(Vec<f64>),
 }
 
 /// An estimator of the runtime library.
@@ -53,11 +65,16 @@ impl Settings {
     /// The settings of a model with this regression; what is missing in the section is reported.
     pub(super) fn resolve(
         asked: &Asked,
+        derivation: &Derivation,
         (regression, inverse): (&Regression, &LeftInverse),
+        period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let (unknowns, states) = (regression.eta.len(), inverse.x.len());
         let written = &asked.model.observer;
+        if !written.has_gains() {
+            return Self::of_known(asked, (derivation, states), period, problems);
+        }
         let mut section = Section { asked, written, problems };
         section.operator();
         section.estimator(unknowns);
@@ -72,7 +89,10 @@ impl Settings {
             operator: match resolved.operator {
                 settings::Operator::Filter(alpha) => Operator::Filter(alpha),
                 settings::Operator::Window(wanted) => Operator::Window(samples(wanted)?),
+                settings::Operator::Sampled(deviations) => Operator::Sampled(deviations),
             },
+            output: resolved.output,
+            expected: resolved.expected,
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
@@ -82,6 +102,61 @@ impl Settings {
             bounds: bounds([resolved.lower, resolved.upper], unknowns),
             within: bounds(resolved.within, states),
             chi_0: resolved.chi_0,
+            gate: None,
+            known: None,
+        })
+    }
+
+    /// The settings that known numbers come to: those of the emitted code.
+    fn of_known(
+        asked: &Asked,
+        (derivation, states): (&Derivation, usize),
+        period: Option<f64>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let before = problems.has_errors();
+        let Some(tuned) = Tuned::of(asked.model, asked.plant, derivation, period, problems) else {
+            if before || !problems.has_errors() {
+                let message = format!("{} needs the observer's numbers", asked.who);
+                problems.push(Diagnostic::error(Code::SimulationIncomplete, asked.section, message).help(
+                    "add `observer: {sensors: .., start: .., disturbance: ..}` with standard deviations:                      docs/estimators.md has examples",
+                ));
+            }
+            return None;
+        };
+        let settings = tuned.settings;
+        let all = |values: &[Rational]| values.iter().map(Rational::to_f64).collect::<Vec<f64>>();
+        let estimator = match &settings.estimator {
+            settings::Estimator::LeastSquares(settings::Covariance { start, forgetting, process_noise }) => {
+                Estimator::LeastSquares(Covariance {
+                    start: all(start),
+                    forgetting: forgetting.to_f64(),
+                    process_noise: process_noise.as_deref().map(all),
+                })
+            }
+            // Known numbers come to least squares.
+            _ => return None,
+        };
+        let chi_0 = all(&settings.chi_0);
+        Some(Self {
+            operator: match &settings.operator {
+                settings::Operator::Filter(alpha) => Operator::Filter(alpha.to_f64()),
+                settings::Operator::Window(wanted) => Operator::Window(samples(wanted.to_f64())?),
+                settings::Operator::Sampled(deviations) => Operator::Sampled(all(deviations)),
+            },
+            output: settings.output,
+            expected: settings.expected,
+            hold: if settings.straight { Hold::First } else { Hold::Zero },
+            rebase: match &settings.rebase {
+                Some(wanted) => Some(whole(wanted.to_f64())?),
+                None => None,
+            },
+            bounds: bounds([None, None], estimator.unknowns()),
+            within: bounds(settings.within.map(|bound| bound.as_deref().map(all)), states),
+            estimator,
+            chi_0,
+            gate: settings.gate.as_ref().map(Rational::to_f64),
+            known: tuned.known,
         })
     }
 }

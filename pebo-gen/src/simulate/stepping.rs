@@ -14,6 +14,9 @@ use super::sizes::{LARGEST, pad};
 /// bring it back.
 const PATIENCE: u64 = 100;
 
+/// Samples from one innovation that is judged to the next: each costs a step.
+const JUDGED: u64 = 16;
+
 /// An observer at work.
 #[derive(Debug)]
 pub(super) struct Stepping {
@@ -24,12 +27,28 @@ pub(super) struct Stepping {
     refused: u64,
     faults: Faults,
     dropped: u64,
+    /// The samples that lacked outputs.
+    parted: u64,
+    /// Samples since an innovation was judged.
+    unjudged: u64,
+    /// The sum of the normalised squares of innovations, and their number.
+    surprise: (f64, u64),
 }
 
 impl Stepping {
     /// Before the first sample.
     pub(super) fn new(observer: Box<dyn Estimation>) -> Self {
-        Self { observer, gap: None, started: false, refused: 0, faults: Faults::default(), dropped: 0 }
+        Self {
+            observer,
+            gap: None,
+            started: false,
+            refused: 0,
+            faults: Faults::default(),
+            dropped: 0,
+            parted: 0,
+            unjudged: 0,
+            surprise: (0.0, 0),
+        }
     }
 
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A fault
@@ -38,6 +57,16 @@ impl Stepping {
     /// # Errors
     /// The fault of a sample that was refused.
     pub(super) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+        let is_parted = y.iter().any(|output| output.is_nan());
+        self.unjudged += 1;
+        if self.unjudged >= JUDGED
+            && self.gap.is_none()
+            && !is_parted
+            && let Some(square) = self.observer.surprise(y, u, dt)
+        {
+            self.unjudged = 0;
+            self.surprise = (self.surprise.0 + square, self.surprise.1 + 1);
+        }
         let taken = match &self.gap {
             None => self.observer.sample(y, u, dt, hat),
             Some(gap) => {
@@ -49,6 +78,7 @@ impl Stepping {
         };
         let Err(fault) = taken else {
             (self.gap, self.started, self.refused) = (None, true, 0);
+            self.parted += u64::from(is_parted);
             return Ok(());
         };
         self.faults.add(fault);
@@ -82,6 +112,16 @@ impl Stepping {
     /// The samples that were refused.
     pub(super) fn faults(&self) -> &Faults {
         &self.faults
+    }
+
+    /// The samples that were taken without some of their outputs.
+    pub(super) fn parted(&self) -> u64 {
+        self.parted
+    }
+
+    /// The normalised square of innovations, on average over samples and rows: 1 where model and numbers are right.
+    pub(super) fn surprise(&self) -> Option<f64> {
+        (self.surprise.1 > 0).then(|| self.surprise.0 / super::timing::real(self.surprise.1))
     }
 
     /// The samples that never arrived.

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::excitation::Excitation;
 use super::faults::Faults;
 use super::score::Score;
+use crate::tuning::{Known, Numbers, Value};
 
 /// What a run comes to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,6 +28,13 @@ pub struct Summary {
     pub faults: Faults,
     /// The samples that never arrived.
     pub dropped: u64,
+    /// The samples that were taken without some of their outputs.
+    pub parted: u64,
+    /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right; none
+    /// where the observer does not know its sensors.
+    pub surprise: Option<f64>,
+    /// What the settings of the model's observer were derived from; none where the author chose them.
+    pub known: Option<Known>,
 }
 
 /// The estimate of a state, with how good it was.
@@ -39,6 +47,8 @@ pub struct Rated {
     /// How good it was.
     #[serde(flatten)]
     pub score: Score,
+    /// The standard error that the observer expects, from when the errors are told on; none where it does not know.
+    pub expected: Option<f64>,
 }
 
 /// Whose estimate, and of what.
@@ -78,16 +88,24 @@ impl Summary {
 
     /// A table of the estimates, and a line each for excitation, faults and lost samples.
     pub fn text(&self) -> String {
-        let headings = ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then"];
+        let headings =
+            ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then", "expected"];
         let mut rows = vec![headings.map(str::to_owned)];
-        for Rated { estimate, score } in &self.estimates {
+        for Rated { estimate, score, expected } in &self.estimates {
             let settled = match score.settled {
                 Some(t) => format!("{} s", short(t)),
                 None => "no".to_owned(),
             };
             let errors = [score.first, score.last].map(short);
             let [first, last] = errors;
-            rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst)]);
+            let expected = expected.map_or_else(|| "-".to_owned(), short);
+            rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst), expected]);
+        }
+        // A column that nobody has anything in is none.
+        if self.estimates.iter().all(|rated| rated.expected.is_none()) {
+            for row in &mut rows {
+                row[6].clear();
+            }
         }
         let mut text = if self.estimates.is_empty() { String::new() } else { table(&rows) };
         let mut line = |name: &str, what: &str| {
@@ -101,11 +119,28 @@ impl Summary {
                 line("excitation", &format!("lost at t = {} s, `{weakest}` has been forgotten", short(*since)));
             }
         }
+        if let Some(surprise) = self.surprise {
+            line("innovation", &format!("normalised square {} on average, where 1 is expected", short(surprise)));
+        }
+        if self.parted > 0 {
+            line("in part", &format!("{} of {} samples lack an output", self.parted, self.samples));
+        }
         if self.dropped > 0 {
             line("dropped", &format!("{} of {} samples", self.dropped, self.samples));
         }
         for (reason, count) in self.faults.iter() {
             line("refused", &format!("{count} of {} samples: {reason}", self.samples));
+        }
+        if let Some(known) = &self.known {
+            line("observer", &known.observer);
+            for Numbers { what, assumed, values } in &known.numbers {
+                let value = |value: &Value| {
+                    let unit = value.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+                    format!("{} {}{unit}", value.name, short(value.value))
+                };
+                let values = values.iter().map(value).collect::<Vec<_>>().join(", ");
+                line(&format!("  {what}"), &(values + if *assumed { " (assumed)" } else { "" }));
+            }
         }
         text
     }

@@ -1,7 +1,7 @@
 //! An estimator beside which the information in its data is kept.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Estimator, Fault, Turn};
+use pebo_runtime::{Estimator, Fault, Turn, Uncertain};
 
 use super::estimator::Chosen;
 use super::excitation::{Information, Said};
@@ -60,5 +60,11 @@ impl<const N: usize> Estimator<f64, N, N> for Watched<N> {
 
     fn is_finite(&self) -> bool {
         self.estimator.is_finite()
+    }
+}
+
+impl<const N: usize> Uncertain<f64, N> for Watched<N> {
+    fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
+        self.estimator.covariance_root(dt)
     }
 }

@@ -3,22 +3,27 @@
 use std::collections::VecDeque;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Filter, FilteredRegression, Hold, Outcome, RegressionOperator, Sides, Sum, Turn};
+use pebo_runtime::{
+    Filter, FilteredRegression, Hold, Outcome, RegressionOperator, Rows, SampledRegression, Sides, Sum, Turn,
+};
 
 use super::settings::{Operator, Settings};
+use super::sizes::padded;
 
 /// The operator of a padded model.
 #[derive(Clone, Debug)]
 pub(super) enum Passage<const N: usize> {
     Filtered(FilteredRegression<f64, N, N>),
     Windowed(Window<N>),
+    Sampled(SampledRegression<f64, N, N>),
 }
 
 impl<const N: usize> Passage<N> {
     pub(super) fn new(settings: &Settings) -> Result<Self, pebo_runtime::Fault> {
-        Ok(match settings.operator {
-            Operator::Filter(alpha) => Self::Filtered(FilteredRegression::new(Filter::new(alpha, settings.hold)?)),
-            Operator::Window(samples) => Self::Windowed(Window::new(samples, settings.hold)),
+        Ok(match &settings.operator {
+            Operator::Filter(alpha) => Self::Filtered(FilteredRegression::new(Filter::new(*alpha, settings.hold)?)),
+            Operator::Window(samples) => Self::Windowed(Window::new(*samples, settings.hold)),
+            Operator::Sampled(deviations) => Self::Sampled(SampledRegression::new(&padded(deviations, 1.0))?),
         })
     }
 }
@@ -30,6 +35,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => Taken::Filtered(Box::new(filtered.step(sides, dt))),
             Self::Windowed(window) => Taken::Windowed(Box::new(window.step(sides, dt))),
+            Self::Sampled(sampled) => Taken::Sampled(Box::new(sampled.step(sides, dt))),
         }
     }
 
@@ -37,6 +43,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match (self, step) {
             (Self::Filtered(filtered), Taken::Filtered(step)) => filtered.take(*step),
             (Self::Windowed(window), Taken::Windowed(step)) => window.take(*step),
+            (Self::Sampled(sampled), Taken::Sampled(step)) => sampled.take(*step),
             _ => unreachable!("a step is taken by what worked it out"),
         }
     }
@@ -45,6 +52,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => RegressionOperator::regressand(filtered),
             Self::Windowed(window) => window.regressand(),
+            Self::Sampled(sampled) => RegressionOperator::regressand(sampled),
         }
     }
 
@@ -52,6 +60,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => RegressionOperator::regressor(filtered),
             Self::Windowed(window) => window.regressor(),
+            Self::Sampled(sampled) => RegressionOperator::regressor(sampled),
         }
     }
 
@@ -59,6 +68,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => filtered.shift(shift),
             Self::Windowed(window) => window.shift(shift),
+            Self::Sampled(sampled) => sampled.shift(shift),
         }
     }
 
@@ -66,6 +76,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => filtered.turn(turn),
             Self::Windowed(window) => window.turn(turn),
+            Self::Sampled(sampled) => sampled.turn(turn),
         }
     }
 
@@ -73,6 +84,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => filtered.reset(),
             Self::Windowed(window) => window.reset(),
+            Self::Sampled(sampled) => sampled.reset(),
         }
     }
 
@@ -80,15 +92,17 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
         match self {
             Self::Filtered(filtered) => filtered.is_finite(),
             Self::Windowed(window) => window.is_finite(),
+            Self::Sampled(sampled) => RegressionOperator::is_finite(sampled),
         }
     }
 }
 
-/// A step of either kind.
+/// A step of each kind.
 #[derive(Clone, Debug)]
 pub(super) enum Taken<const N: usize> {
     Filtered(Box<FilteredRegression<f64, N, N>>),
     Windowed(Box<Moved<N>>),
+    Sampled(Box<SampledRegression<f64, N, N>>),
 }
 
 impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
@@ -96,6 +110,7 @@ impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
         match self {
             Self::Filtered(step) => Outcome::regressand(&**step),
             Self::Windowed(step) => step.regressand(),
+            Self::Sampled(step) => Outcome::regressand(&**step),
         }
     }
 
@@ -103,6 +118,7 @@ impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
         match self {
             Self::Filtered(step) => Outcome::regressor(&**step),
             Self::Windowed(step) => step.regressor(),
+            Self::Sampled(step) => Outcome::regressor(&**step),
         }
     }
 
@@ -110,6 +126,24 @@ impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
         match self {
             Self::Filtered(step) => Outcome::blemish(&**step),
             Self::Windowed(step) => step.blemish(),
+            Self::Sampled(step) => step.blemish(),
+        }
+    }
+}
+
+/// Of samples; of what went through a filter or window no row can be left out, and nobody asks.
+impl<const N: usize> Rows<f64, N> for Taken<N> {
+    fn weights(&self, dt: f64) -> SVector<f64, N> {
+        match self {
+            Self::Sampled(step) => step.weights(dt),
+            Self::Filtered(_) | Self::Windowed(_) => SVector::repeat(1.0),
+        }
+    }
+
+    fn without(self, left_out: &[bool; N]) -> Self {
+        match self {
+            Self::Sampled(step) => Self::Sampled(Box::new(step.without(left_out))),
+            other => other,
         }
     }
 }

@@ -123,7 +123,10 @@ codes! {
         "Each estimator has settings of its own: gain for gradient; gain, normalisation for normalised-gradient; \
          covariance, forgetting, process_noise for least-squares; gain, regressor_gain, forgetting for drem, and clip, period \
          besides for finite-time-drem; gain, regressor_gain for gradient-drem; gain, covariance, forgetting for \
-         least-squares-drem. All have bounds, and rebase where the regression is affine in z. The regression goes through a filter or through a window, not both."
+         least-squares-drem. All have bounds, and rebase where the regression is affine in z. The regression goes through a filter \
+         or through a window, not both. What is known of sensors, start and disturbance stands in place of all these: \
+         gains are derived of it, and beside it only covariance in place of start, and process_noise in place of \
+         disturbance, may be written. form: output needs a regression of rates that is affine in z."
     EmptyList "empty-list" "a list must not be empty"
         "A model has at least one unmeasured state, one output and one component of phi."
     ClassConflict "class-conflict" "a class beside keys that the class gives"
@@ -324,7 +327,8 @@ codes! {
          control law for each input, and a section `observer` with the estimator's gains and the filter."
     SimulationIncomplete "simulation-incomplete" "a simulation lacks something that it needs"
         "Every parameter needs a value, every state and output a start and a rate, every input a control law, every \
-         unmeasured signal w its values over time under signals, and the observer its gains and its filter."
+         unmeasured signal w its values over time under signals, and the observer its gains and its filter where some of them \
+         are written. What known numbers come to may depend on where the plant operates, which initial, control and step say."
     SimulationTooLong "simulation-too-long" "a simulation has too many samples"
         "The number of samples, duration over step, and the size of the table that is written are limited, so that a \
          wrong power of ten does not make a run of days."

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Estimator;
+use super::{Estimator, Uncertain};
 use crate::linear::solve;
 use crate::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
@@ -92,5 +92,12 @@ where
 
     fn is_finite(&self) -> bool {
         self.estimator.is_finite() && self.moved.is_finite() && all_finite(&self.estimate())
+    }
+}
+
+/// That of the estimator within: bounds make an estimate no less certain.
+impl<S: Real, E: Uncertain<S, NE>, const NE: usize> Uncertain<S, NE> for Bounded<S, E, NE> {
+    fn covariance_root(&self, dt: S) -> Option<SMatrix<S, NE, NE>> {
+        self.estimator.covariance_root(dt)
     }
 }

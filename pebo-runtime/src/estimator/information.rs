@@ -91,10 +91,17 @@ impl<S: Real, const N: usize> Information<S, N> {
         self.rotate::<false>(row, value, weight);
     }
 
-    /// [`absorb`](Self::absorb); `VAGUE` if weights may be zero before. It is asked at compile time, as each step of an
-    /// estimator comes here.
+    /// Adds the equation `row * d = value` with the weight 1; by how much the sum of weighted squares grows by it where it is
+    /// least.
+    pub(crate) fn absorb_and_judge(&mut self, row: &SVector<S, N>, value: S) -> S {
+        let (rest, weight) = self.rotate::<false>(row, value, S::one());
+        weight * rest * rest
+    }
+
+    /// [`absorb`](Self::absorb), and what is left of the equation: value and weight. `VAGUE` if weights may be zero before: it
+    /// is asked at compile time, as each step of an estimator comes here.
     #[inline]
-    fn rotate<const VAGUE: bool>(&mut self, row: &SVector<S, N>, value: S, weight: S) {
+    fn rotate<const VAGUE: bool>(&mut self, row: &SVector<S, N>, value: S, weight: S) -> (S, S) {
         let (mut row, mut value, mut weight) = (*row, value, weight);
         for i in 0..N {
             let lead = row[i];
@@ -119,6 +126,7 @@ impl<S: Real, const N: usize> Information<S, N> {
                 self.target[i] = kept * above + taken * entry;
             }
         }
+        (value, weight)
     }
 
     /// The same problem in `d_new = T d`: each row times `T^-1`.
@@ -219,6 +227,26 @@ impl<S: Real, const N: usize> Information<S, N> {
             }
         }
         if all_finite(&self.weight) { Ok(solution) } else { Err(Fault::State) }
+    }
+
+    /// A root of the inverse of the information matrix: `L = U^-1 D^-1/2`, so that `(U^T D U)^-1 = L L^T`. None where it is
+    /// not finite.
+    pub fn covariance_root(&self) -> Option<SMatrix<S, N, N>> {
+        let mut root = SMatrix::identity();
+        for j in 0..N {
+            for i in (0..j).rev() {
+                let mut entry = self.upper[(i, j)];
+                for k in i + 1..j {
+                    entry += self.upper[(i, k)] * root[(k, j)];
+                }
+                root[(i, j)] = -entry;
+            }
+        }
+        for (j, &weight) in self.weight.iter().enumerate() {
+            let scale = S::one() / Real::sqrt(weight);
+            (0..=j).for_each(|i| root[(i, j)] *= scale);
+        }
+        Some(root).filter(all_finite)
     }
 
     /// The diagonal of `D`: the weight of each component given those after it.

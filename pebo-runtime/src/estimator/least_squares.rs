@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Estimator, Information};
+use super::{Estimator, Information, Uncertain};
 use crate::decay::Decay;
 use crate::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
@@ -147,5 +147,17 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
 
     fn is_finite(&self) -> bool {
         self.theta.is_finite() && self.information.is_finite()
+    }
+}
+
+impl<S: Real, const NE: usize> Uncertain<S, NE> for LeastSquares<S, NE> {
+    fn covariance_root(&self, dt: S) -> Option<SMatrix<S, NE, NE>> {
+        let mut information = self.information;
+        for (component, &intensity) in self.noise.iter().enumerate() {
+            if intensity > S::zero() && dt > S::zero() {
+                information.diffuse(component, intensity * dt);
+            }
+        }
+        information.covariance_root()
     }
 }

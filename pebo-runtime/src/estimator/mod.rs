@@ -74,3 +74,11 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
         as_blemish(self.is_finite())
     }
 }
+
+/// An estimator that knows how uncertain its estimate is.
+pub trait Uncertain<S: Real, const NE: usize> {
+    /// A root of the covariance of the estimate `dt` seconds from now, before that instant's sample: `L` with the covariance
+    /// `L L^T`, in units of the unknown where the regression has white noise of intensity 1, as a
+    /// [`SampledRegression`](crate::SampledRegression) has. None where it has no finite value.
+    fn covariance_root(&self, dt: S) -> Option<SMatrix<S, NE, NE>>;
+}

@@ -1,5 +1,6 @@
 //! Samples of output and input in, the estimate of the unmeasured state out.
 
+mod confidence;
 mod rebasing;
 
 use nalgebra::{SMatrix, SVector};
@@ -8,6 +9,7 @@ use crate::extension::Extension;
 use crate::regression::{Outcome as _, Sides};
 use crate::sum::{all_finite, blemish};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator};
+pub use confidence::Innovation;
 use rebasing::End;
 
 /// A parameter-estimation-based observer.
@@ -239,7 +241,18 @@ where
         let Some(before) = &self.terms else {
             return self.begin(terms, y);
         };
-        let (extension, regression) = self.propagate([before, &terms], u, dt)?;
+        let propagated = self.propagate([before, &terms], u, dt)?;
+        self.finish(propagated, (terms, y), dt)
+    }
+
+    /// The end of a step, from extension and regression at the end of the interval.
+    #[inline]
+    fn finish(
+        &mut self,
+        (extension, regression): (M::Extension, R::Step),
+        (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
         // Handed over as a copy, so that both may stay in registers where there is no re-basing.
         if let Some((every, end)) = self.rebasing {
             return end(self, every, (extension, regression), (terms, y), dt);
@@ -251,10 +264,15 @@ where
 
     /// Takes the first sample, which has no interval behind it.
     fn begin(&mut self, terms: M::Terms, y: &SVector<M::Scalar, NY>) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let estimate = self.estimate_with(&terms);
+        let extension = self.model.begin(&self.state.extension, &terms);
+        let estimate = self.model.recover(&extension.coordinates(&self.theta()), &terms);
         if !all_finite(&estimate) {
             return Err(Fault::Estimate);
         }
+        if !extension.is_finite() {
+            return Err(Fault::State);
+        }
+        self.state.extension = extension;
         self.state.y = Some(*y);
         self.terms = Some(terms);
         Ok(estimate)

@@ -10,14 +10,15 @@ pub(super) const LAYERS: &[(&str, &[&str])] = &[
     ("analysis", &["plant", "cas", "source"]),
     ("search", &["analysis", "plant", "cas", "source"]),
     ("program", &["cas"]),
+    ("tuning", &["program", "analysis", "plant", "model", "cas", "source"]),
     ("emit", &["program", "analysis", "plant", "cas"]),
     ("report", &["program", "search", "analysis", "plant", "cas", "source"]),
     ("certificate", &["analysis", "plant", "model", "cas"]),
-    ("simulate", &["program", "analysis", "plant", "model", "cas", "source"]),
+    ("simulate", &["tuning", "program", "analysis", "plant", "model", "cas", "source"]),
     // What is typeset for a reader: sentences are those of the report.
     ("page", &["report", "emit", "analysis", "plant", "cas", "source"]),
     // From a source to an answer, and front ends.
-    ("derived", &["emit", "simulate", "search", "analysis", "plant", "model", "cas", "source"]),
+    ("derived", &["emit", "simulate", "tuning", "search", "analysis", "plant", "model", "cas", "source"]),
     (
         "answer",
         &[

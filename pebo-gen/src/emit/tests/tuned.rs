@@ -16,6 +16,8 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
     let operator = Operator::Filter(number("0.5"));
     Settings {
         operator,
+        output: false,
+        expected: None,
         straight: true,
         estimator,
         lower: None,
@@ -23,6 +25,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
         within: [None, None],
         rebase: None,
         chi_0: numbers(["0", "-2"]),
+        gate: None,
     }
 }
 

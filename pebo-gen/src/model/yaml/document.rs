@@ -60,6 +60,7 @@ pub(super) struct Simulation {
     pub(super) delay: Delay,
     pub(super) jitter: Option<Spanned<Decimal>>,
     pub(super) dropped: Option<Spanned<Decimal>>,
+    pub(super) every: Vec<Entry<Spanned<Decimal>>>,
     pub(super) plant: Vec<Entry<Vec<Piece>>>,
     pub(super) define: Vec<Entry<Text>>,
     pub(super) control: Vec<Entry<Text>>,

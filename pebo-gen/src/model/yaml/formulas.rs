@@ -114,6 +114,7 @@ impl Pass<'_> {
             delay: simulation.delay,
             jitter: simulation.jitter,
             dropped: simulation.dropped,
+            every: simulation.every,
             plant,
             define: self.entries(simulation.define),
             control: self.entries(simulation.control),

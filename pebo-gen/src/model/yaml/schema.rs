@@ -2,7 +2,7 @@
 //!
 //! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
 
-use crate::model::observer::Estimator;
+use crate::model::observer::{Estimator, Form};
 use crate::model::{Baseline, CascadeClass, Class, Recording, RelationForm};
 
 /// The shape that a value must have.
@@ -286,6 +286,30 @@ const ELECTROMECHANICAL: &[Key] = &[
 /// Settings of the estimators belong to some of them: [`Estimator`] has which.
 const OBSERVER: &[Key] = &[
     optional(
+        "sensors",
+        DEVIATIONS,
+        "sensors: {v2: 0.1}",
+        "The standard deviation of each output's samples, from which with `start` and `disturbance` all gains are derived; that of `noise` and `quantisation` together, or a thousandth of the output at the start, if left out",
+    ),
+    optional(
+        "start",
+        DEVIATIONS,
+        "start: {i1: 5}",
+        "How wrong the estimate of each state can be at the start, a standard deviation; ten times the state, or 10 of its unit, if left out",
+    ),
+    optional(
+        "disturbance",
+        DEVIATIONS,
+        "disturbance: {i1: 0.1}",
+        "By how much a state or output drifts besides its rate, in its unit per root second; 0 if left out beside `sensors` or `start`",
+    ),
+    optional(
+        "form",
+        Shape::Choice(Form::NAMES),
+        "form: output",
+        "What the regressand of a regression of rates is: rate, through a filter or window, or output, the outputs themselves; if left out, output unless gains are written",
+    ),
+    optional(
         "estimator",
         Shape::Choice(Estimator::NAMES),
         "estimator: gradient",
@@ -356,6 +380,12 @@ const OBSERVER: &[Key] = &[
         "Samples after which the extension starts again from the estimate, with all memory carried over; never if left out",
     ),
     optional(
+        "gate",
+        Shape::Number,
+        "gate: 25",
+        "The normalised square of the innovation beyond which a sample is refused as an outlier; without gains only",
+    ),
+    optional(
         "extension",
         NUMBERS,
         "extension: [0, 0]",
@@ -418,6 +448,12 @@ const SIMULATION: &[Key] = &[
         Shape::Number,
         "dropped: 0.2",
         "The probability that the sample of an instant never arrives, from 0 to below 1; the first one does",
+    ),
+    optional(
+        "every",
+        OFFSETS,
+        "every: {v4: 10}",
+        "Of an output only each so many-th sample arrives, the first included; 1 if left out",
     ),
     optional(
         "plant",

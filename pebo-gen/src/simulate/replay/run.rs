@@ -13,6 +13,7 @@ use std::ops::ControlFlow;
 use crate::program::Interpreter;
 use crate::simulate::derived::observer;
 use crate::simulate::excitation::Watch;
+use crate::simulate::expected::Expected;
 use crate::simulate::figure::Sheet;
 use crate::simulate::label::Label;
 use crate::simulate::scenario::Judged;
@@ -24,7 +25,7 @@ use crate::simulate::trace::write_number;
 use super::clock::{Clock, Instant};
 use super::failure::Failure;
 use super::fault::{Faults, Kind};
-use super::log::{Log, Next};
+use super::log::{Blank, Log, Next};
 use super::panels::Curves;
 use super::replayed::{OutputResidual, Replayed};
 use super::residual;
@@ -90,11 +91,14 @@ struct Machine<'a, 'w> {
     scores: Vec<Scoring>,
     misfits: Vec<Scoring>,
     watch: Watch,
+    expected: Expected,
     rows: u64,
     samples: u64,
     /// The first instant, and that of the last accepted sample.
     first: Option<f64>,
     last: f64,
+    /// That of the last one that had all outputs.
+    whole: f64,
     estimates: Option<&'w mut dyn Write>,
     text: String,
 }
@@ -118,21 +122,31 @@ impl<'a, 'w> Machine<'a, 'w> {
             // Of these none is small in itself: what is told is the last tenth.
             misfits: residuals.outputs.iter().map(|_| Scoring::new(Some(0.0))).collect(),
             watch: Watch::default(),
+            expected: Expected::default(),
             rows: 0,
             samples: 0,
             first: None,
             last: 0.0,
+            whole: 0.0,
             estimates,
             text: String::new(),
         })
     }
 
     fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
-        let Self { faults, replay, cells, .. } = self;
+        let Self { faults, replay, cells, stepping, .. } = self;
         let wanted = &replay.signals.wanted;
+        // An output that is not there is no fault of an observer that leaves its row out.
+        let is_part = |column: usize, blank| {
+            matches!(blank, Blank::Empty) && stepping.observer.has_parts() && replay.signals.of_outputs[column]
+        };
         let place = |column: usize| wanted.iter().position(|known| *known == column).unwrap_or_default();
-        log.next(wanted, cells, |column, blank, line| faults.count(Kind::of_cell(place(column), blank), line))
-            .map_err(Failure::Unreadable)
+        let mut count = |column, blank, line| {
+            if !is_part(place(column), blank) {
+                faults.count(Kind::of_cell(place(column), blank), line);
+            }
+        };
+        log.next(wanted, cells, &mut count).map_err(Failure::Unreadable)
     }
 
     /// Takes the row that was read.
@@ -174,7 +188,11 @@ impl<'a, 'w> Machine<'a, 'w> {
             }
         }
         if accepted {
-            self.residuals.begin(&self.table, &self.table[layout.y.clone()]);
+            // What a part of a sample says of residuals waits for a whole one.
+            if self.is_whole() {
+                self.residuals.begin(&self.table, &self.table[layout.y.clone()]);
+                self.whole = t;
+            }
         } else {
             self.table[layout.hat.clone()].fill(f64::NAN);
             self.errors.1.fill(f64::NAN);
@@ -196,10 +214,14 @@ impl<'a, 'w> Machine<'a, 'w> {
         if taken.is_err() {
             return false;
         }
-        let since = t - self.last;
+        let since = t - self.whole;
         (self.last, self.samples) = (t, self.samples + 1);
-        self.residuals.sample(&self.table, &self.table[layout.y.clone()], since);
-        if self.samples > 1 {
+        let is_whole = self.is_whole();
+        let layout = &self.replay.layout;
+        if is_whole {
+            self.residuals.sample(&self.table, &self.table[layout.y.clone()], since);
+        }
+        if is_whole && self.samples > 1 {
             for (place, misfit) in self.misfits.iter_mut().enumerate() {
                 let output = self.replay.residuals.outputs[place].0;
                 misfit.add(t, self.residuals.values()[place], self.table[layout.y.start + output]);
@@ -216,9 +238,15 @@ impl<'a, 'w> Machine<'a, 'w> {
         true
     }
 
+    /// Whether all outputs of the row are there.
+    fn is_whole(&self) -> bool {
+        self.table[self.replay.layout.y.clone()].iter().all(|output| output.is_finite())
+    }
+
     /// Looks at what the data determine.
     fn look(&mut self) {
         self.watch.look(self.last, &self.stepping.observer.said());
+        self.expected.add(self.last, self.stepping.observer.standard_errors());
     }
 
     fn header(&mut self) -> Result<(), Failure> {
@@ -260,8 +288,11 @@ impl<'a, 'w> Machine<'a, 'w> {
             let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
             return Err(Failure::Silent { rows: self.rows, faults, refused });
         };
-        let rated =
-            |(judged, score): (&Judged, &Scoring)| Rated { estimate: judged.estimate.clone(), score: score.finish() };
+        let rated = |((judged, score), place): ((&Judged, &Scoring), &usize)| {
+            let score = score.finish();
+            let expected = self.expected.since(score.since, *place);
+            Rated { estimate: judged.estimate.clone(), score, expected }
+        };
         let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
             output: names.y[*output].clone(),
             unit: names.units[*output].clone(),
@@ -285,10 +316,13 @@ impl<'a, 'w> Machine<'a, 'w> {
             summary: Summary {
                 end: self.last,
                 samples: self.rows - 1,
-                estimates: self.replay.judged.iter().zip(&self.scores).map(rated).collect(),
+                estimates: self.replay.judged.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
                 excitation: self.watch.excitation(&design.unknown_names),
                 faults: self.stepping.faults().clone(),
                 dropped: 0,
+                parted: self.stepping.parted(),
+                surprise: self.stepping.surprise(),
+                known: design.settings.known.clone(),
             },
             residuals: misfits.map(misfit).collect(),
             faults,

@@ -75,7 +75,8 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
     let (plant, arena, span) = (asked.plant, &asked.plant.arena, asked.section);
     let numbers = asked.numbers();
     let signals = Signals::resolve(asked, log, problems);
-    let design = Design::resolve(asked, derivation, &numbers, problems);
+    let period = signals.as_ref().and_then(|signals| signals.period).map(|(above, below)| above / below);
+    let design = Design::resolve(asked, derivation, &numbers, period, problems);
     let (signals, design) = (signals?, design?);
     let layout = Layout::new(plant, &signals.measured, &design.recovered);
     let name = |symbol: Symbol| arena.name(symbol);

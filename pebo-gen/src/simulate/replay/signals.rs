@@ -27,6 +27,8 @@ pub(super) struct Signals {
     pub(super) period: Option<(f64, f64)>,
     /// Positions in x of the states that were measured.
     pub(super) measured: Vec<usize>,
+    /// Whether the columns that are read say nothing but outputs.
+    pub(super) of_outputs: Vec<bool>,
 }
 
 impl Signals {
@@ -53,8 +55,11 @@ impl Signals {
         let used = arena.symbols_of(&formulas);
         let used = pass.columns.symbols.iter().enumerate().filter(|(_, symbol)| used.contains(symbol));
         let (wanted, symbols): (Vec<usize>, Vec<Symbol>) = used.map(|(place, symbol)| (place, *symbol)).unzip();
+        let (before, inputs) = (formulas.len() - plant.y.len() - plant.u.len(), formulas.len() - plant.u.len());
+        let others = arena.symbols_of(&[&formulas[..before], &formulas[inputs..]].concat());
+        let of_outputs = symbols.iter().map(|symbol| !others.contains(symbol)).collect();
         let program = problems.keep(program(arena, &symbols, &formulas, asked.section))?;
-        Some(Self { wanted, program, period, measured })
+        Some(Self { wanted, program, period, measured, of_outputs })
     }
 }
 

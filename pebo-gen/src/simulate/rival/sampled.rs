@@ -198,7 +198,14 @@ impl<const N: usize> Follower for Following<N> {
         self.state = step.state;
         let Some(y) = y else { return };
         let (predicted, slopes) = self.plant.measure(&step.state, u);
-        let sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
+        let mut sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
+        for output in (0..y.len()).filter(|output| y[*output].is_nan()) {
+            sample.innovation[output] = 0.0;
+            // Of an output that is not there a covariance learns nothing; poles are those of all outputs.
+            if matches!(self.gain, Gain::Kalman(_)) {
+                sample.slopes.row_mut(output).fill(0.0);
+            }
+        }
         match self.gain.correct(&step, &sample) {
             Some(correction) => self.state += correction,
             None => self.state.fill(f64::NAN),

@@ -1,0 +1,67 @@
+//! The numbers of an observer, from what is known of its sensors, its start and its disturbances.
+//!
+//! ```text
+//! sensors, start, disturbance -> operating point -> slopes of phi, h and the regression -> covariance, process noise
+//! ```
+//!
+//! In: a model with its proved derivation. Out: settings with which the runtime's observer is built, the same for emitted
+//! code and for a run, and the numbers that they were derived from, to be shown. Where the author wrote gains these are the
+//! settings, and nothing is derived.
+//!
+//! The observer of known numbers is least squares on samples that are weighed by their sensors: in the output form where the
+//! regression is of rates, re-based at every sample, which makes it a Kalman filter of the transformed plant. Where the
+//! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
+
+mod derive;
+mod kind;
+mod magnitude;
+mod point;
+mod spread;
+#[cfg(feature = "simulate")]
+mod told;
+mod tuned;
+
+#[cfg(test)]
+mod tests;
+
+use crate::analysis::Derivation;
+use crate::cas::rational::Rational;
+use crate::model::{Decimal, Model};
+use crate::plant::settings::cannot_rebase;
+use crate::plant::{Plant, Settings};
+use crate::source::Diagnostics;
+
+pub(crate) use tuned::Tuned;
+
+#[cfg(feature = "simulate")]
+pub use told::{Known, Numbers, Value};
+
+impl Tuned {
+    /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what
+    /// it says is reported. `period` is that of the samples in seconds, where the model does not say it.
+    pub(crate) fn of(
+        model: &Model,
+        plant: &Plant,
+        derivation: &Derivation,
+        period: Option<f64>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let inverse = derivation.left_inverse.result.as_ref()?;
+        let regression = derivation.regression.result.as_ref()?;
+        if let Some(rebase) = model.observer.rebase.as_ref().filter(|_| !derivation.can_rebase(plant)) {
+            problems.push(cannot_rebase(&plant.name, rebase.span));
+            return None;
+        }
+        let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+        if model.observer.has_gains() {
+            let sizes = (regression.eta.len(), plant.phi.len(), inverse.x.len());
+            let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
+            return Some(Self {
+                settings,
+                #[cfg(feature = "simulate")]
+                known: None,
+            });
+        }
+        derive::derive(model, plant, derivation, period, problems)
+    }
+}

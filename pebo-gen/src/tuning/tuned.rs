@@ -1,0 +1,17 @@
+//! Settings beside what they were derived from.
+
+use crate::cas::rational::Rational;
+use crate::plant::Settings;
+
+#[cfg(feature = "simulate")]
+use super::told::Known;
+
+/// Settings, and what they were derived from where they were.
+#[derive(Clone, Debug)]
+pub(crate) struct Tuned {
+    /// With which an observer can be built.
+    pub settings: Settings<Rational>,
+    /// What they were derived from; none where the author chose them.
+    #[cfg(feature = "simulate")]
+    pub known: Option<Known>,
+}

@@ -1,0 +1,147 @@
+//! How far an estimate and a sample can be trusted: standard errors, innovations, and samples of which a part is missing.
+//!
+//! All of it rests on the covariance of the estimator ([`Uncertain`]), which means what it says where the noise of the
+//! regression is that of sensors: with a [`SampledRegression`](crate::SampledRegression), in the [output form](crate::OutputForm) or of a static
+//! regression.
+
+use nalgebra::SVector;
+
+use super::{Observer, check};
+use crate::estimator::Information;
+use crate::extension::Extension;
+use crate::regression::{Outcome, Rows};
+use crate::{Estimator, Fault, Model, Real, RegressionOperator, Uncertain};
+
+/// How far a sample is from what the observer expects of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Innovation<S: Real, const NR: usize> {
+    /// Sample less expectation of each row of the regression, in standard deviations of its sensor.
+    pub value: SVector<S, NR>,
+    /// The square of the innovation in the norm of its covariance, `e^T (Phi P Phi^T + 1)^-1 e`: on average the number of
+    /// rows, if covariances and model are right.
+    pub normalised_square: S,
+}
+
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE> + Uncertain<M::Scalar, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
+{
+    /// The standard error of each state of the estimate: the covariance of the unknown through the derivative of
+    /// `phi_left`, which is taken over one standard error of the unknown to either side, the smaller change counting: an
+    /// angle may come round on the other.
+    ///
+    /// None before the first sample, and where `phi_left` has no value one standard error away.
+    ///
+    /// Cost: `2 NE` left inverses.
+    pub fn standard_error(&self) -> Option<SVector<M::Scalar, NX>> {
+        let terms = self.terms.as_ref()?;
+        let eta = self.state.estimator.estimate();
+        let root = self.state.estimator.covariance_root(nalgebra::zero())?;
+        let at = |eta: SVector<M::Scalar, NE>| {
+            self.model.recover(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
+        };
+        let estimate = at(eta);
+        let mut squares = SVector::<M::Scalar, NX>::zeros();
+        for column in root.column_iter() {
+            let [above, below] = [at(eta + column) - estimate, estimate - at(eta - column)];
+            for ((square, above), below) in squares.iter_mut().zip(above.iter()).zip(below.iter()) {
+                let (above_it, below_it) = (Real::abs(*above), Real::abs(*below));
+                let change = if above_it < below_it { above_it } else { below_it };
+                // The smaller of NaN and a number would be the number.
+                *square += change * change + (*above + *below) * nalgebra::zero();
+            }
+        }
+        let errors = squares.map(Real::sqrt);
+        errors.iter().all(|&error| Real::is_finite(error)).then_some(errors)
+    }
+
+    /// How far a sample is from what is expected of it, without taking it; to be asked before a [`step`](Self::step) with the
+    /// same arguments. A [`Gate`](crate::Gate) refuses outliers by it.
+    ///
+    /// Before the second sample nothing is expected: the innovation is 0.
+    ///
+    /// # Errors
+    /// A [`Fault`] as of the step, and [`Fault::State`] where the covariance has no finite value.
+    pub fn innovation(
+        &self,
+        y: impl Into<M::Y>,
+        u: impl Into<M::U>,
+        dt: M::Scalar,
+    ) -> Result<Innovation<M::Scalar, NR>, Fault> {
+        let (y, u) = (y.into().into(), u.into().into());
+        check(&y, &u, dt)?;
+        let Some(before) = &self.terms else {
+            return Ok(Innovation { value: SVector::zeros(), normalised_square: nalgebra::zero() });
+        };
+        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        let regressor = outcome.regressor();
+        let error = outcome.regressand() - regressor * self.state.estimator.estimate();
+        let root = regressor * self.state.estimator.covariance_root(dt).ok_or(Fault::State)?;
+        // White noise of intensity 1 has the variance 1/dt in a sample.
+        let scale = Real::sqrt(dt);
+        let (value, root) = (error * scale, root * scale);
+        // `e^T (L L^T + 1)^-1 e` is the least of `|d|^2 + |e - L d|^2`: no inverse, however little is known yet.
+        let mut least = Information::from_variances(&SVector::<M::Scalar, NE>::repeat(nalgebra::one()))?;
+        let mut normalised_square = nalgebra::zero();
+        for (row, &value) in root.row_iter().zip(value.iter()) {
+            normalised_square += least.absorb_and_judge(&row.transpose(), value);
+        }
+        if Real::is_finite(normalised_square) { Ok(Innovation { value, normalised_square }) } else { Err(Fault::State) }
+    }
+}
+
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
+    R::Step: Rows<M::Scalar, NR>,
+{
+    /// [`step`](Self::step) with a sample of which a part is missing, as of sensors with different periods: an output that is
+    /// not there is NaN. `rows` has for each row of the regression the place in `y` of the output that it is the sensor of.
+    ///
+    /// The rows of missing outputs are left out, and the model's functions get what the observer expects of these outputs, so
+    /// that nothing waits for them. The first sample must be whole.
+    ///
+    /// # Errors
+    /// A [`Fault`] as of a step; [`Fault::Output`] of an output that is missing and has no row.
+    pub fn step_partly(
+        &mut self,
+        y: impl Into<M::Y>,
+        rows: &[usize; NR],
+        u: impl Into<M::U>,
+        dt: M::Scalar,
+    ) -> Result<M::X, Fault> {
+        let (mut y, u): (SVector<M::Scalar, NY>, SVector<M::Scalar, NU>) = (y.into().into(), u.into().into());
+        let missing = y.map(|output| !Real::is_finite(output));
+        let (Some(before), Some(last)) = (&self.terms, &self.state.y) else {
+            check(&y, &u, dt)?;
+            return self.advance(&y, [&u, &u], dt).map(M::X::from);
+        };
+        if let Some(index) = (0..NY).find(|output| missing[*output] && !rows.contains(output)) {
+            return Err(Fault::Output { index });
+        }
+        // What was there last, then what the model makes of it.
+        (0..NY).filter(|output| missing[*output]).for_each(|output| y[output] = last[output]);
+        check(&y, &u, dt)?;
+        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        let (regressand, regressor) = (Outcome::regressand(&outcome), Outcome::regressor(&outcome));
+        let error = regressand - regressor * self.state.estimator.estimate();
+        let weights = outcome.weights(dt);
+        let mut left_out = [false; NR];
+        for (row, &output) in rows.iter().enumerate() {
+            if output < NY && missing[output] {
+                y[output] -= error[row] / weights[row];
+                left_out[row] = true;
+            }
+        }
+        check(&y, &u, dt)?;
+        let terms = self.model.terms(&y);
+        let (extension, regression) = self.propagate([before, &terms], [&u, &u], dt)?;
+        self.finish((extension, regression.without(&left_out)), (terms, &y), dt).map(M::X::from)
+    }
+}

@@ -1,0 +1,118 @@
+//! Without a number from their author observers converge; `cargo run --release -p tests --example defaults` shows all.
+
+#[path = "../bench/defaults/plants.rs"]
+mod plants;
+
+use pebo_gen::derive;
+use pebo_gen::simulate::{Overrides, Summary};
+use pebo_gen::source::Source;
+
+fn run(text: &str, seed: u64) -> Summary {
+    let derived = derive(&Source::new("model", text).unwrap()).unwrap();
+    let scenario = derived.scenario(&Overrides { seed: Some(seed), ..Overrides::default() }).unwrap();
+    scenario.run().unwrap().summary().clone()
+}
+
+/// Of each kind of observer, cascade and regression at least one; those that take few samples.
+const QUICK: &[&str] = &[
+    "models/battery",
+    "models/bearing_only",
+    "models/bicycle",
+    "models/boost_resistive",
+    "models/reactor",
+    "plants/battery",
+    "plants/boost_resistive",
+    "plants/dc_motor_load",
+    "plants/wind_turbine",
+];
+
+#[test]
+fn observers_converge_without_a_number() {
+    let cases = plants::cases(QUICK).unwrap();
+    assert_eq!(cases.len(), QUICK.len());
+    for case in cases {
+        let summary = run(&case.text, 1);
+        assert!(summary.known.is_some(), "{}", case.name);
+        let unsettled: Vec<String> = summary.unsettled().iter().map(|rated| rated.estimate.name()).collect();
+        assert!(unsettled.is_empty(), "{}: {unsettled:?}\n{}", case.name, summary.text());
+    }
+}
+
+/// Case I of the Cuk converter at a duty cycle that changes, with sensors of known noise.
+const CUK: &str = "
+model: cuk
+parameters: {L1: 10e-3, C2: 22e-6, L3: 10e-3, C4: 22.9e-6, G: 0.0447, E: 12}
+x: [i1, i3]
+y: [v2, v4]
+u: [d]
+assume: [0 < d < 1]
+f_x: {i1: (E - (1 - d)*v2)/L1, i3: -(d*v2 + v4)/L3}
+f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}
+observer: {sensors: {v2: 0.1, v4: 0.05}, start: {i1: 2, i3: 2}, disturbance: {i1: 0, i3: 0}}
+simulation:
+  duration: 2e-3
+  step: 1e-5
+  initial: {i1: 0.5, i3: -1, v2: 10, v4: -12}
+  noise: {v2: 0.1, v4: 0.05}
+  control: {d: 0.5}
+";
+
+/// A plant whose cascade is free of its output.
+const LAG: &str = "
+model: lag
+x: [a, b]
+y: [q]
+u: [v]
+f_x: {a: v - a, b: 0}
+f_y: {q: a + b}
+phi: [a, b]
+observer: {sensors: {q: 1}, start: {a: 3, b: 3}, disturbance: {a: 0, b: 0}}
+simulation: {duration: 10, step: 0.05, initial: {a: 1, b: 1, q: 0}, noise: {q: 1}, control: {v: sin(t)}}
+";
+
+/// Of a model's first states, and of its innovation: the root mean square that is seen in so many runs, over what is
+/// expected.
+fn seen_over_expected(text: &str, runs: u32) -> [f64; 3] {
+    let (mut seen, mut expected, mut surprise) = ([0.0; 2], [0.0; 2], 0.0);
+    let derived = derive(&Source::new("model", text).unwrap()).unwrap();
+    for seed in 0..runs {
+        let overrides = Overrides { seed: Some(seed.into()), ..Overrides::default() };
+        let trace = derived.scenario(&overrides).unwrap().run().unwrap();
+        let summary = trace.summary();
+        for (state, rated) in summary.estimates.iter().enumerate() {
+            seen[state] += rated.score.rms.powi(2);
+            expected[state] += rated.expected.unwrap().powi(2);
+        }
+        surprise += summary.surprise.unwrap() / f64::from(runs);
+    }
+    [(seen[0] / expected[0]).sqrt(), (seen[1] / expected[1]).sqrt(), surprise]
+}
+
+#[test]
+fn expected_errors_are_those_that_are_seen() {
+    let found = seen_over_expected(LAG, 400);
+    println!("{found:?}");
+    // An error of the last tenth of a run is one number: 400 of them tell a deviation to 1/sqrt(800) = 3.5 %: four of that.
+    // 400 runs with 12 innovations of one row: known to sqrt(2/4800) = 2 %.
+    // `a` dies out, and what was wrong of it at the start is the same in each run.
+    assert!(found[1..].iter().all(|ratio| (ratio - 1.0).abs() < 0.14), "{found:?}");
+    // Where measured outputs drive the cascade, their noise is taken to be another than that of the same sample, which makes
+    // the observer expect more than it errs by: seen is 0.66 of it here.
+    let found = seen_over_expected(&CUK.replace("duration: 2e-3", "duration: 2e-2"), 20);
+    println!("{found:?}");
+    assert!(found.iter().all(|ratio| (0.5..1.1).contains(ratio)), "{found:?}");
+}
+
+#[test]
+fn outliers_are_refused_and_outputs_may_come_at_other_rates() {
+    let text = CUK.replace("noise:", "every: {v4: 5}\n  noise:");
+    let summary = run(&text, 3);
+    assert_eq!((summary.parted, summary.faults.count()), (160, 0), "{}", summary.text());
+    assert!(summary.estimates.iter().all(|rated| rated.score.last.abs() < 0.1), "{}", summary.text());
+    // A gate of the expected square itself refuses about as many samples as chi-squared of two rows exceeds 2: e^-1.
+    let gated = CUK.replace("observer: {", "observer: {gate: 2, ");
+    let summary = run(&gated, 3);
+    let outliers: u64 = summary.faults.iter().filter(|(reason, _)| reason.contains("outlier")).map(|(_, n)| n).sum();
+    assert!((40..120).contains(&outliers), "{}", summary.text());
+    assert!(summary.estimates.iter().all(|rated| rated.score.last.abs() < 0.2), "{}", summary.text());
+}
