@@ -48,13 +48,18 @@ fn from_rust(text: &str, scalar: Scalar) -> Emitted {
     Derived::of(model).and_then(|derived| derived.admitted(scalar)).expect("accepted")
 }
 
-/// The text of a model file without its section `observer`: a module of plain Rust has none.
+/// The text of a model file without its sections `observer` and `simulation`: a module of plain Rust has none, and what
+/// would be derived of them are settings.
 fn unsettled(path: &str) -> String {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a model file");
-    match text.split_once("\nobserver:") {
-        Some((before, section)) => format!("{before}\n{}", section.split_once("\n\n").map_or("", |(_, rest)| rest)),
-        None => text,
-    }
+    let mut within = false;
+    let lines = text.lines().filter(|line| {
+        if line.starts_with(char::is_alphabetic) {
+            within = line.starts_with("observer:") || line.starts_with("simulation:");
+        }
+        !within
+    });
+    lines.fold(String::new(), |text, line| text + line + "\n")
 }
 
 /// From the text of a model file, in one call.

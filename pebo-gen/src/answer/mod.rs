@@ -133,16 +133,17 @@ impl Answer {
         if derived.derivation.outcome == Outcome::Accepted {
             answer.add(derived, ask);
         }
+        let known = (answer.diagnostics.as_slice(), answer.emitted.as_ref());
         match ask.explained {
             Explained::Not => {}
             Explained::Page => {
-                let (page, refusal) = page::page(derived, source, ask, (&answer.diagnostics, answer.emitted.as_ref()));
+                let (page, refusal) = page::page(derived, source, ask, known);
                 answer.page = Some(page);
                 if let Some((standing, found)) = refusal {
                     answer.refuse(standing, found);
                 }
             }
-            Explained::Sections => answer.sections = Some(page::sections(derived, source, &answer)),
+            Explained::Sections => answer.sections = Some(page::sections(derived, source, known)),
         }
         answer
     }

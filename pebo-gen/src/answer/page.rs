@@ -6,7 +6,6 @@ use crate::emit::{Emitted, Scalar};
 use crate::page::{self, Section, Subject};
 use crate::source::{Diagnostic, Source};
 
-use super::Answer;
 use super::ask::Ask;
 #[cfg(feature = "simulate")]
 use super::ask::AskRun;
@@ -52,14 +51,18 @@ pub(super) fn page(
     (page, refusal)
 }
 
-/// The parts of the page that are about what was derived.
-pub(super) fn sections(derived: &Derived, source: &Source, answer: &Answer) -> Vec<Section> {
+/// The parts of the page that are about what was derived, with what is known already.
+pub(super) fn sections(
+    derived: &Derived,
+    source: &Source,
+    (diagnostics, emitted): (&[Diagnostic], Option<&Emitted>),
+) -> Vec<Section> {
     page::sections(&Subject {
         source,
         plant: &derived.plant,
         derivation: &derived.derivation,
-        diagnostics: &answer.diagnostics,
-        emitted: answer.emitted.as_ref(),
+        diagnostics,
+        emitted,
         #[cfg(feature = "simulate")]
         run: None,
     })

@@ -396,7 +396,7 @@ mod tests {
         let turned = "x: [q]\ny: [s]\nu: [v]\nf_x: {q: v}\ng_y: {s: sin(q)}\nphi: [sin(q), cos(q)]\nangles: {q: 2*pi}";
         let lines = of(turned);
         assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
-        assert_eq!(lines[1], "while the plant rests, nothing is identified");
+        assert_eq!(lines[1], "while the plant rests, only `z1` is identified");
         let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
         assert_eq!(
             of(frame),
