@@ -142,6 +142,6 @@ where
         check(&y, &u, dt)?;
         let terms = self.model.terms(&y);
         let (extension, regression) = self.propagate([before, &terms], [&u, &u], dt)?;
-        self.finish((extension, regression.without(&left_out)), (terms, &y), dt).map(M::X::from)
+        self.finish(extension, regression.without(&left_out), terms, &y, dt).map(M::X::from)
     }
 }

@@ -241,16 +241,18 @@ where
         let Some(before) = &self.terms else {
             return self.begin(terms, y);
         };
-        let propagated = self.propagate([before, &terms], u, dt)?;
-        self.finish(propagated, (terms, y), dt)
+        let (extension, regression) = self.propagate([before, &terms], u, dt)?;
+        self.finish(extension, regression, terms, y, dt)
     }
 
     /// The end of a step, from extension and regression at the end of the interval.
     #[inline]
     fn finish(
         &mut self,
-        (extension, regression): (M::Extension, R::Step),
-        (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
+        extension: M::Extension,
+        regression: R::Step,
+        terms: M::Terms,
+        y: &SVector<M::Scalar, NY>,
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         // Handed over as a copy, so that both may stay in registers where there is no re-basing.
@@ -398,7 +400,6 @@ fn check<S: Real, const NY: usize, const NU: usize>(
 }
 
 /// The fault of a sample that has one.
-#[cold]
 fn what_is_wrong<S: Real, const NY: usize, const NU: usize>(y: &SVector<S, NY>, u: &SVector<S, NU>) -> Fault {
     let bad = |&element: &S| !Real::is_finite(element);
     if let Some(index) = y.iter().position(bad) {
