@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::model::{Decimal, Entry, Estimator, Formula, Model, Observer, Operator, Piece, Simulation, Spanned, Term};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
+use crate::tuning::BANDWIDTH;
 
 use super::overrides::Overrides;
 
@@ -31,7 +32,9 @@ pub(super) fn changed<'a>(model: &'a Model, overrides: &Overrides, problems: &mu
         }
     }
     if let Some(estimator) = overrides.estimator {
-        changed.observer = with_estimator(&model.observer, estimator);
+        let of_file = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
+        let step = overrides.step.or(of_file.map(|step| step.value.to_f64()));
+        changed.observer = with_estimator(&model.observer, estimator, step);
     }
     Cow::Owned(changed)
 }
@@ -87,11 +90,12 @@ fn multiply(simulation: &mut Simulation, name: &str, factor: &Decimal) {
     simulation.plant.push(Entry { name: placed(name.to_owned()), value: vec![piece] });
 }
 
-/// The section with another estimator.
-fn with_estimator(written: &Observer, estimator: Estimator) -> Observer {
+/// The section with another estimator, for samples `step` seconds apart.
+fn with_estimator(written: &Observer, estimator: Estimator, step: Option<f64>) -> Observer {
     if written.estimator() == estimator {
         return written.clone();
     }
+    let written = &if written.has_gains() { written.clone() } else { of_gains(written, step) };
     let has = |key: &str| estimator.needs().contains(&key) || estimator.admits().contains(&key);
     let one = |text: &str| Decimal::parse(text, Span::NOWHERE).ok().map(placed);
     let list = |text: &str| one(text).into_iter().collect::<Vec<_>>();
@@ -126,6 +130,18 @@ fn with_estimator(written: &Observer, estimator: Estimator) -> Observer {
         clip: if has("clip") { written.clip.clone().or_else(|| one("0.1")) } else { None },
         period: written.period.clone().filter(|_| has("period")),
         ..written.clone()
+    }
+}
+
+/// A section of known numbers without these, for gains: only least squares has a use for them.
+fn of_gains(written: &Observer, step: Option<f64>) -> Observer {
+    let filter = step.and_then(|step| Decimal::parse(&format!("{:e}", BANDWIDTH / step), Span::NOWHERE).ok());
+    Observer {
+        within: written.within.clone(),
+        extension: written.extension.clone(),
+        filter: written.filter.clone().or(filter.map(placed)),
+        window: written.window.clone(),
+        ..Observer::default()
     }
 }
 

@@ -23,8 +23,8 @@ use super::spread::Slopes;
 use super::told::Known;
 use super::tuned::Tuned;
 
-/// The bandwidth of a filter, times the period of the samples: ten of them to a time constant.
-const BANDWIDTH: f64 = 0.1;
+/// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
+pub(crate) const BANDWIDTH: f64 = 0.1;
 
 /// Of what is known exactly at the start, this part of the largest variance is left: none would be no covariance.
 const CERTAIN: f64 = 1e-12;

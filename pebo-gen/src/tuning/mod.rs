@@ -34,6 +34,8 @@ use crate::source::Diagnostics;
 pub(crate) use tuned::Tuned;
 
 #[cfg(feature = "simulate")]
+pub(crate) use derive::BANDWIDTH;
+#[cfg(feature = "simulate")]
 pub use told::{Known, Numbers, Value};
 
 impl Tuned {

@@ -70,6 +70,16 @@ fn every_estimator_can_be_tried_on_every_section() {
             assert!(scenario.run().is_ok(), "{section} with {}", estimator.name());
         }
     }
+    // Known numbers are those of least squares: another estimator has gains, and is another observer.
+    for section in ["", "observer: {sensors: {v2: 0.1}, start: {i1: 5}, gate: 25}\n"] {
+        let text = format!("{}{section}{}", &CUK_CASE_2[..start], &CUK_CASE_2[end..]);
+        let usual = run(&text, &Overrides { duration: Some(1e-3), ..Overrides::default() }).csv();
+        for estimator in Estimator::ALL {
+            let called = Overrides { estimator: Some(estimator), duration: Some(1e-3), ..Overrides::default() };
+            let same = run(&text, &called).csv() == usual;
+            assert_eq!(same, estimator == Estimator::LeastSquares, "{section} with {}", estimator.name());
+        }
+    }
     // The gain of the gradient is the covariance of least squares, and the other way round.
     let gradient = "estimator: gradient, gain: [5e-6, 0.1], filter: 1e3";
     let least = "estimator: least-squares, covariance: [5e-6, 0.1], filter: 1e3";
