@@ -1,6 +1,8 @@
 // How long a visitor waits, beside the native program: medians of ten.
 //
 //   node measure.mjs SITE NATIVE [MODEL ..]
+//
+// NATIVE is the example `playground` of the package `tests`, built for release.
 import { spawnSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -26,8 +28,10 @@ const at = (page, name) => page.evaluate((name) => performance.getEntriesByName(
 function natively(questions) {
   const input = questions.map((question) => JSON.stringify(question)).join("\n");
   const started = performance.now();
-  spawnSync(native, { input, maxBuffer: 2 ** 30 });
-  return performance.now() - started;
+  const { status, error, stderr } = spawnSync(native, { input, maxBuffer: 2 ** 30 });
+  const took = performance.now() - started;
+  if (status !== 0) throw error ?? new Error(`${native} is not the native side of the page: ${stderr}`);
+  return took;
 }
 
 console.log("milliseconds     first verdict   on reload   figure   edit   native: check   emit and run   memory");
