@@ -105,7 +105,7 @@ pub(super) fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
         let (path, name) = (entry.path(), entry.file_name());
         let name = name.to_string_lossy();
         if path.is_dir() {
-            if name != "target" && !name.starts_with('.') {
+            if name != "target" && name != "node_modules" && !name.starts_with('.') {
                 found.extend(files(&path, extension));
             }
         } else if path.extension().is_some_and(|e| e == extension) {
