@@ -116,3 +116,16 @@ fn outliers_are_refused_and_outputs_may_come_at_other_rates() {
     assert!((40..120).contains(&outliers), "{}", summary.text());
     assert!(summary.estimates.iter().all(|rated| rated.score.last.abs() < 0.2), "{}", summary.text());
 }
+
+#[test]
+fn advice_names_the_numbers_that_there_are() {
+    // Too short to settle, and too noisy: there is no gain, filter or covariance to choose.
+    for text in [LAG.replace("duration: 10", "duration: 1"), LAG.replace("noise: {q: 1}", "noise: {q: 9}")] {
+        let derived = derive(&Source::new("model", text.as_str()).unwrap()).unwrap();
+        let scenario = derived.scenario(&Overrides::default()).unwrap();
+        let advice = scenario.advise(scenario.run().unwrap().summary()).expect("it has not settled");
+        let help = advice.help.expect("a mend");
+        assert!(help.contains("`disturbance`"), "{help}");
+        assert!(!["gain", "filter", "covariance"].iter().any(|key| help.contains(key)), "{help}");
+    }
+}

@@ -33,6 +33,7 @@ pub(super) fn advise(
     };
     let diagnostic = Diagnostic::warning(Code::NotConverged, where_said, message);
     let faster = match estimator {
+        _ if summary.known.is_some() => "raise `start` or `disturbance` under `observer`, or simulate longer",
         Estimator::LeastSquares(_) => "raise `covariance`, or simulate longer",
         Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => {
             "raise `gain`, or simulate longer"
@@ -77,24 +78,28 @@ pub(super) fn advise(
             }
             Some(first) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
-                diagnostic.note(note).help(mend(first))
+                diagnostic.note(note).help(mend(first, summary.known.is_some()))
             }
         }
     })
 }
 
-/// What helps against the first of the things in which a plant and its sensors differ from the model.
-fn mend(departure: &str) -> &'static str {
+/// What helps against the first of the things in which a plant and its sensors differ from the model; observers of known
+/// numbers have no filter and no gain to choose.
+fn mend(departure: &str, known: bool) -> &'static str {
     match departure {
         "plant" => "measure the parameter that differs, or make it a state with rate 0, which is then estimated too",
         "bias" => "calibrate the sensor, or make its offset a state with rate 0, which is then estimated too",
+        "delay" if known => "give the observer the inputs as late as the outputs, or raise `sensors` under `observer`",
         "delay" => "give the observer the inputs as late as the outputs, or choose a lower `filter` or `gain`",
         "jitter" => {
             "give the observer the time that has passed in place of the period, as `step` takes it in the emitted code"
         }
+        "quantisation" if known => "choose a finer converter, or a lower `disturbance`, which averages more samples",
         "quantisation" => "choose a finer converter, or a lower `filter` or `gain`, which averages more samples",
         "every" => "let that output be sampled more often, or simulate longer",
         "dropped" => "choose a shorter `step`, so that less happens in a gap",
+        _ if known => "choose a lower `disturbance`, which averages more samples, or a better sensor",
         _ => "choose a lower `filter` or `gain`, which averages more samples, or a better sensor",
     }
 }
