@@ -12,6 +12,9 @@ use super::arguments::{Limit, ReplayOptions};
 use super::{files, progress, standard, terminal};
 
 pub(super) fn run(options: &ReplayOptions, limit: Option<Limit>) -> Standing {
+    if let Some(diagnostic) = options.plot.as_deref().and_then(files::not_a_figure) {
+        return standard::refuse(diagnostic);
+    }
     if files::is_standard(&options.model) && files::is_standard(&options.data) {
         let message = "model and recording cannot both be read from standard input";
         return standard::refuse(Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("name one of them"));
@@ -33,7 +36,8 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     let mut file = options.csv.as_deref().map(files::Growing::create).transpose()?;
     let (source, answer) = {
         let estimates = file.as_mut().map(|file| file as &mut dyn Write);
-        files::replay(&options.model, ask, Tape { name: &name, recording: &mut *recording, estimates })
+        let tape = Tape { name: &name, recording: &mut *recording, estimates };
+        files::replay(&options.model, &options.set, ask, tape)
     };
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);

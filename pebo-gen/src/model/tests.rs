@@ -2,6 +2,7 @@
 
 mod hostile;
 mod mistakes;
+mod settings;
 
 use super::{Baseline, CascadeClass, Estimator, Hold, Model, Scale};
 use crate::source::{Diagnostic, Source};
