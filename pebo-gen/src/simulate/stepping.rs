@@ -124,6 +124,11 @@ impl Stepping {
         (self.surprise.1 > 0).then(|| self.surprise.0 / super::timing::real(self.surprise.1))
     }
 
+    /// How often the observer began anew after a gap.
+    pub(super) fn restarts(&self) -> u64 {
+        self.observer.restarts()
+    }
+
     /// The samples that never arrived.
     pub(super) fn dropped(&self) -> u64 {
         self.dropped
