@@ -54,6 +54,19 @@ fn the_usual_panels_and_odd_titles_are_drawn() {
 }
 
 #[test]
+fn long_texts_widen_the_page() {
+    let wide = "W".repeat(60);
+    let title = with(SPRING, "model: spring", &format!("model: spring\ntitle: {wide}"));
+    let heading = with(SPRING, "q: 1}", &format!("q: 1}}, panels: [{{title: {wide}, unit: m, curves: [q]}}]"));
+    for text in [title, heading] {
+        let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+        let page = svg.split("viewBox=\"0 0 ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        // An em a letter of 12 points.
+        assert!(page.parse::<f64>().unwrap() > 60.0 * 12.0, "{page}");
+    }
+}
+
+#[test]
 fn units_stand_with_the_axis_or_beside_the_curves() {
     let drawn = |units: &str| {
         let text = with(SPRING, "model: spring", &format!("model: spring\nunits: {units}"));

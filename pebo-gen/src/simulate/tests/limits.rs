@@ -19,7 +19,8 @@ fn a_sample_off_its_range_is_refused_and_bridged() {
     // either side of each of the 13 crossings.
     assert!(matches!(refused[..], [(reason, 266..=279)] if reason.contains("output sample 0")), "{refused:?}");
     assert_eq!((summary.restarts, summary.dropped), (0, 0));
-    assert!(summary.unsettled().is_empty(), "{}", summary.text());
+    // A gap of 0.45 s, a seventh of the period, is bridged by a straight line: the estimate errs by some percent of 2 m/s.
+    assert!(summary.estimates[0].score.rms < 0.1, "{}", summary.text());
     // Limits that nothing reaches change nothing.
     let wide = run(&spring(", limits: {q: [-2, 2]}, gap: 1", ""), &Overrides::default());
     assert_eq!(wide.csv(), run(&spring("", ""), &Overrides::default()).csv());
