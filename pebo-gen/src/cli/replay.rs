@@ -42,6 +42,9 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);
     }
+    if let Some(replayed) = &answer.replay {
+        terminal::say(&replayed.text());
+    }
     terminal::report(&answer.diagnostics, &source);
     let Answer { standing, replay: Some(replayed), .. } = answer else { return Ok(answer.standing) };
     if let Some(file) = file {
@@ -50,7 +53,6 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     if let Some(path) = &options.plot {
         files::write(path, &replayed.figure)?;
     }
-    terminal::say(&replayed.text());
     Ok(standing)
 }
 

@@ -82,7 +82,8 @@ impl Stepping {
             return Ok(());
         };
         self.faults.add(fault);
-        self.refused += 1;
+        // A sample off the range of its sensor says nothing of the observer, however many there are.
+        self.refused += u64::from(!matches!(fault, Fault::OutputRange { .. } | Fault::InputRange { .. }));
         if self.started {
             self.wait(u, dt);
         }

@@ -86,6 +86,12 @@ impl Drawing {
     }
 
     pub(super) fn label(&mut self, (x, y): Point, anchor: Anchor, size: f64, label: &Label) {
+        // CairoSVG anchors each run by itself, one over the other: a label of several begins where its width says.
+        let (x, anchor) = match anchor {
+            Anchor::Middle if label.runs.len() > 1 => (x - width(label, size) / 2.0, Anchor::Start),
+            Anchor::End if label.runs.len() > 1 => (x - width(label, size), Anchor::Start),
+            anchor => (x, anchor),
+        };
         let anchor = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
@@ -162,6 +168,7 @@ pub(super) fn width(label: &Label, size: f64) -> f64 {
         'i' | 'j' | 'l' | 'I' | 'î' | 'ĵ' | '\'' => 0.29,
         '.' | ',' | '·' | ' ' | ':' | ';' | '/' | '|' | '\\' | 'f' => 0.36,
         'r' | 't' | '(' | ')' | '[' | ']' | '!' | '-' | '²' | '³' => 0.42,
+        'J' | '_' | '*' | '°' => 0.5,
         '+' | '−' | '=' | '<' | '>' | '~' | '^' | '#' | '×' | 'w' | 'ω' | 'M' => 0.87,
         'm' | 'W' | '%' | '@' => 1.03,
         'A'..='Z' | '&' => 0.8,

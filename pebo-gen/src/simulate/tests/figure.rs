@@ -54,6 +54,15 @@ fn the_usual_panels_and_odd_titles_are_drawn() {
 }
 
 #[test]
+fn no_text_of_several_runs_is_anchored() {
+    let text = with(SPRING, "q: 1}", "q: 1}, panels: [{title: e, curves: [hat(v) - v], scale: log}]");
+    let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+    let texts: Vec<&str> = svg.lines().filter(|line| line.starts_with("<text")).collect();
+    assert!(texts.iter().any(|text| text.contains("<tspan")) && texts.iter().any(|text| text.contains("anchor")));
+    assert!(!texts.iter().any(|text| text.contains("<tspan") && text.contains("anchor")), "{texts:#?}");
+}
+
+#[test]
 fn long_texts_widen_the_page() {
     let wide = "W".repeat(60);
     let title = with(SPRING, "model: spring", &format!("model: spring\ntitle: {wide}"));

@@ -21,6 +21,9 @@ fn a_sample_off_its_range_is_refused_and_bridged() {
     assert_eq!((summary.restarts, summary.dropped), (0, 0));
     // A gap of 0.45 s, a seventh of the period, is bridged by a straight line: the estimate errs by some percent of 2 m/s.
     assert!(summary.estimates[0].score.rms < 0.1, "{}", summary.text());
+    // No number of them ends the run, also at its start.
+    let low = run(&spring(", limits: {q: [-2, -0.1]}", "").replace("step: 0.01", "step: 1e-3"), &Overrides::default());
+    assert!(low.summary().faults.count() > 5000, "{}", low.summary().text());
     // Limits that nothing reaches change nothing.
     let wide = run(&spring(", limits: {q: [-2, 2]}, gap: 1", ""), &Overrides::default());
     assert_eq!(wide.csv(), run(&spring("", ""), &Overrides::default()).csv());
