@@ -229,9 +229,8 @@ impl Module<'_> {
         let mut one = |value: &Rational| number(value, &mut |ratio| scope.ratio(ratio)).tokens;
         let mut side = |each: &[Option<[Rational; 2]>], side: usize, absent: &str| {
             let absent = ident(absent);
-            let value = |limit: &Option<[Rational; 2]>| match limit {
-                Some(limit) => one(&limit[side]),
-                None => quote!(#scalar::#absent),
+            let value = |limit: &Option<[Rational; 2]>| {
+                limit.as_ref().map_or_else(|| quote!(#scalar::#absent), |limit| one(&limit[side]))
             };
             let values = each.iter().map(value).collect::<Vec<_>>();
             quote!(SVector::from([#(#values),*]))
@@ -248,12 +247,11 @@ impl Module<'_> {
             })
         };
         let (outputs, inputs) = (range(&limits.outputs, "outputs"), range(&limits.inputs, "inputs"));
-        let last = match &limits.gap {
-            Some(gap) => {
-                let gap = one(gap);
-                quote!(limits.gap(#gap))
-            }
-            None => quote!(Ok(limits)),
+        let last = if let Some(gap) = &limits.gap {
+            let gap = one(gap);
+            quote!(limits.gap(#gap))
+        } else {
+            quote!(Ok(limits))
         };
         quote! {
             /// What samples may be: to be asked before each step. After `Fault::Gap` the observer begins anew.

@@ -50,7 +50,7 @@ enum Made {
     /// Whether samples are joined by straight lines.
     Hold(bool),
     Operator(Operator<Rational>, bool),
-    Observer(Settings<Rational>),
+    Observer(Box<Settings<Rational>>),
     Gate(Rational),
     Limits(Limits<Rational>),
     /// A vector in which some entries are infinite.
@@ -91,7 +91,7 @@ pub(super) fn read(
                     reader.made.insert(name.ident.to_string(), made);
                 }
                 Stmt::Expr(last, None) => match reader.expression(last)? {
-                    Made::Observer(made) => settings = Some(made),
+                    Made::Observer(made) => settings = Some(*made),
                     Made::Gate(limit) if function.sig.ident == "gate" => gate = Some(limit),
                     Made::Limits(made) if function.sig.ident == "limits" => limits = Some(made),
                     _ => return Err(unreadable(last)),
@@ -274,7 +274,7 @@ impl Reader<'_> {
                     Form::Own => (false, None),
                     Form::Outputs(expected) => (true, expected),
                 };
-                Made::Observer(Settings {
+                Made::Observer(Box::new(Settings {
                     operator,
                     output,
                     expected,
@@ -287,7 +287,7 @@ impl Reader<'_> {
                     chi_0,
                     gate: None,
                     limits: None,
-                })
+                }))
             }
             _ => return None,
         })
@@ -303,7 +303,7 @@ fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
             Made::Estimator(Estimator::LeastSquares(Covariance { process_noise, ..covariance }))
         }
         ("rebasing", Made::Observer(settings), Some(Made::Number(samples)), None) => {
-            Made::Observer(Settings { rebase: Some(samples), ..settings })
+            Made::Observer(Box::new(Settings { rebase: Some(samples), ..*settings }))
         }
         ("outputs", Made::Limits(limits), Some(least), Some(most)) if limits.outputs.is_empty() => {
             Made::Limits(Limits { outputs: ranges(least, most)?, ..limits })

@@ -127,6 +127,23 @@ fn states_are_kept_within_bounds() {
 }
 
 #[test]
+fn the_output_form_may_expect_its_outputs() {
+    let start = ["0.01", "0.01", "25", "400"].map(number).to_vec();
+    let covariance = Covariance { start, forgetting: number("0"), process_noise: None };
+    let given = Settings {
+        operator: Operator::Sampled(numbers(["0.1", "0.1"])),
+        output: true,
+        expected: Some(vec![0, 1]),
+        chi_0: vec![number("0"); 4],
+        rebase: Some(number("1")),
+        ..settings(Estimator::LeastSquares(covariance))
+    };
+    let text = tuned(&given);
+    assert!(text.contains("pub const ROWS: [usize; NR] = [0, 1];"), "{text}");
+    assert!(text.contains("let model = OutputForm::expecting(model, ROWS)?;"), "{text}");
+}
+
+#[test]
 fn what_samples_may_be_is_emitted_beside_the_observer() {
     let range = |least, most| Some([number(least), number(most)]);
     let limits = Limits { outputs: vec![range("-50", "50"), None], inputs: Vec::new(), gap: Some(number("1e-3")) };

@@ -159,7 +159,7 @@ fn spaces(text: &str, rest: &str) -> f64 {
     (rest.len()..text.len()).fold(0.0, |width, _| width + SPACE)
 }
 
-/// The width of a label where it is drawn in the widest of the fonts that are asked for, DejaVu Sans: nothing is cut or
+/// The width of a label where it is drawn in the widest of the fonts that are asked for, `DejaVu Sans`: nothing is cut or
 /// overlaps in any of them.
 pub(super) fn width(label: &Label, size: f64) -> f64 {
     let em = |character: char| match character {
@@ -209,7 +209,7 @@ fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// The advances of DejaVu Sans from the space to the tilde, in hundredths of the size.
+    /// The advances of `DejaVu Sans` from the space to the tilde, in hundredths of the size.
     const DEJAVU: [u8; 95] = [
         32, 40, 46, 84, 64, 95, 78, 27, 39, 39, 50, 84, 32, 36, 32, 34, 64, 64, 64, 64, 64, 64, 64, 64, 64, 64, 34, 34,
         84, 84, 84, 53, 100, 68, 69, 70, 77, 63, 58, 77, 75, 29, 29, 66, 56, 86, 75, 79, 60, 79, 69, 63, 61, 73, 68,
