@@ -24,12 +24,7 @@ pub struct ByHand {
 impl ByHand {
     /// Before the first sample.
     pub fn new() -> Self {
-        Self {
-            sampled: false,
-            y: [0.0; 2],
-            chi: [Accumulator::ZERO; 2],
-            regression: Regression::START,
-        }
+        Self { sampled: false, y: [0.0; 2], chi: [Accumulator::ZERO; 2], regression: Regression::START }
     }
 
     /// One sample: outputs at the end of an interval, the duty cycle during it, its length. None for a bad sample.

@@ -102,22 +102,9 @@ impl<const ROWS: usize> Regression<ROWS> {
     /// The filter's weights for this sample time.
     fn use_sample_time(&mut self, alpha: f32, dt: f32) {
         if self.weight_dt != dt {
-            self.set_weights(alpha, dt);
+            (self.level, self.slope) = weights(alpha * dt);
+            self.weight_dt = dt;
         }
-    }
-
-    /// The weights of the filter for another sample time.
-    #[cold]
-    #[inline(never)]
-    fn set_weights(&mut self, alpha: f32, dt: f32) {
-        let a = alpha * dt;
-        self.level = -pebo_runtime::Real::exp_m1(-a);
-        let mut series = 1.0;
-        for k in (3..20_u8).rev() {
-            series = 1.0 - a / f32::from(k) * series;
-        }
-        self.slope = 0.5 * a * series;
-        self.weight_dt = dt;
     }
 
     /// Zero, or NaN if a number is not finite.
@@ -125,4 +112,16 @@ impl<const ROWS: usize> Regression<ROWS> {
         let factors = self.regressor.iter().flatten();
         self.regressand.iter().chain(factors).chain(&self.theta).fold(0.0, |sum, entry| sum + entry.blemish())
     }
+}
+
+/// Level and slope of the filter for another sample time: values in and out, so that a usual step stays in registers.
+#[cold]
+#[inline(never)]
+fn weights(a: f32) -> (f32, f32) {
+    let level = -pebo_runtime::Real::exp_m1(-a);
+    let mut series = 1.0;
+    for k in (3..20_u8).rev() {
+        series = 1.0 - a / f32::from(k) * series;
+    }
+    (level, 0.5 * a * series)
 }
