@@ -70,7 +70,9 @@ impl Case {
         let scalar = if seed.is_multiple_of(2) { Scalar::F32 } else { Scalar::F64 };
         let emitted = match derived.emit(scalar) {
             Ok(emitted) => emitted,
-            Err(refusal) => return Some(Err(format!("seed {seed} in {}: {refusal}\n{}", scalar.name(), make::model(seed).text))),
+            Err(refusal) => {
+                return Some(Err(format!("seed {seed} in {}: {refusal}\n{}", scalar.name(), make::model(seed).text)));
+            }
         };
         let plant = Plant::read(&source, &derived.model).expect("a plant by its equations");
         let points = points(&plant, &derived, seed);
