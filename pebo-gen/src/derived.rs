@@ -52,6 +52,9 @@ pub fn derive_within(source: &Source, budget: Budget) -> Result<Derived, Vec<Dia
     Derived::within(Model::parse(source)?, budget)
 }
 
+/// Of what is left of the budget, the part for the search that follows a refusal: `solve` has all of it.
+const SHARE_OF_ADVICE: u64 = 5;
+
 impl Derived {
     /// Derives the observer of a model, whoever read it, within the usual budget of steps.
     pub fn of(model: Model) -> Result<Self, Vec<Diagnostic>> {
@@ -87,7 +90,7 @@ impl Derived {
         let open = diagnostics.iter_mut().find(|d| search::settles(d.code, &self.derivation)).filter(|_| refused);
         if let Some(diagnostic) = open {
             let budget = self.plant.arena.budget();
-            let search = budget.share(2, || search::solve(&self.plant, self.plant.asked));
+            let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.asked));
             *diagnostic = search.advise(&self.plant, diagnostic.clone());
         }
         diagnostics

@@ -16,6 +16,8 @@ from driver.systems import whole  # noqa: E402
 IDENTITIES = ("SymEngine", "SymPy", "symplex")
 CHECKS = {"cuk": (1, 2, 4, 8), "lti": (12, 24, 60), "symbolic": (2, 4), "arm": (3, 4, 5, 6, 7),
           "compartments": (6, 12), "grid": (8, 16, 32), "terms": (50, 201, 400)}
+# Who answers the central question of a family besides us (rivals/family_rival.py).
+FAMILY_RIVALS = {"cuk": "SymPy", "lti": "FLINT", "compartments": "SymPy", "grid": "SymPy", "terms": "SymPy"}
 POLYNOMIALS = ("FLINT", "SymEngine", "SymPy", "symplex")
 
 
@@ -108,11 +110,16 @@ def growth(shelf, ours, program, timeout):
     checks = []
     for family, sizes in CHECKS.items():
         for size in sizes:
-            command = [program, "check", "--limit", "20", shelf.family(family, size)]
+            path = shelf.family(family, size)
+            command = [program, "check", "--limit", "20", path]
             # Arms are rejected: the exit status is 1.
             asks = {"ours": lambda limit, command=command: whole(command, limit, decided=(0, 1))}
+            if rival := FAMILY_RIVALS.get(family):
+                other = [sys.executable, str(ROOT / "tests" / "bench" / "rivals" / "family_rival.py"), rival, path]
+                asks[rival] = lambda limit, other=other: whole(other, limit)
             checks.append((f"{family} {size}", rows.measure(asks, timeout)))
-    rows.show("(c) Families of models (models.py): a whole process, all claims", ["ours"], checks)
+    rows.show("(c) Families of models (models.py): a whole process; ours all claims, rivals the cascade alone",
+              ["ours", "FLINT", "SymPy"], checks)
 
 
 def main():

@@ -25,6 +25,7 @@ mod implied;
 pub mod integer;
 pub mod interval;
 pub(crate) mod letter;
+mod lifting;
 pub mod linear;
 pub mod manifold;
 pub(crate) mod mathml;

@@ -52,9 +52,10 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let remedy = if derivation.can_rebase(plant) { REBASE } else { RESTART };
     let lines: &[&str] = match fundamental {
         Fundamental::Bounded { fades: false } => &["stays bounded: errors of theta are not amplified"],
-        Fundamental::Bounded { fades: true } => {
-            &["stays bounded but decays in some directions, in which later disturbances of z are not corrected", remedy]
-        }
+        Fundamental::Bounded { fades: true } => &[
+            "stays bounded but decays, at least in some directions: later disturbances of z are not corrected there",
+            remedy,
+        ],
         Fundamental::Grows => {
             &["grows without bound: it amplifies every error of theta until numbers overflow", remedy]
         }
@@ -82,7 +83,7 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
 }
 
 /// The same where all memory can be carried over.
-const REBASE: &str = "remedy: `rebase: 1` under `observer` starts it again from the identity at every sample";
+const REBASE: &str = "remedy: `rebase: 1` under `observer`, which is set unless gains are written, makes it the identity at every sample";
 
 /// What makes the fundamental matrix the identity again.
 const RESTART: &str = "remedy: `restart` from the estimate of z with theta = 0 sets Psi back to the identity";
@@ -124,7 +125,7 @@ fn rest(class: Class, point: &OperatingPoint) -> Vec<String> {
             Class::Gpebo => "Lambda z + h = 0 there: z is constant".to_owned(),
         });
         lines.extend(point.rank.filter(|rank| *rank > 0).map(|rank| {
-            format!("rank [f; h_i] drops from {rank} to 0 there: Frobenius' theorem gives no phi, but this phi is proved directly")
+            format!("rank [f; h_i] drops from {rank} to 0 there, so Frobenius' theorem says nothing of phi: it is proved directly")
         }));
     }
     lines

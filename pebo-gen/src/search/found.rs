@@ -69,5 +69,17 @@ pub enum Form {
     /// `T(y) x + s(y)` with rates affine in x, T to this degree.
     Frame(usize),
     /// Functions of x whose rates are affine in themselves.
-    Closure,
+    Closure(Start),
+}
+
+/// What a closure begins with.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Start {
+    /// The outputs' rates.
+    Outputs,
+    /// The outputs' rates and the states.
+    Both,
+    /// The states.
+    States,
 }

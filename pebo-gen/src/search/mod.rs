@@ -46,7 +46,7 @@ use bound::LARGEST_ORDER;
 pub use bound::{Bound, BoundClass, Evidence};
 pub use candidate::Candidate;
 use connection::Connection;
-pub use found::{Form, Found, Search, Tried};
+pub use found::{Form, Found, Search, Start, Tried};
 pub use frame::Block;
 #[cfg(feature = "yaml")]
 pub(crate) use frame::blocks;
@@ -63,6 +63,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         tried: Vec::new(),
         affine: None,
         bound: None,
+        generalised: None,
         later: Vec::new(),
         seen: BTreeSet::new(),
     };
@@ -96,7 +97,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let generalised = if found || !smooth || class.is_some() {
         None
     } else {
-        bound::bound(&question, BoundClass::AffineRate, (LARGEST_ORDER, 0)).filter(|bound| bound.rank < bound.states)
+        hunt.generalised.take().or_else(|| affine_rates(&question, 0)).filter(|bound| bound.rank < bound.states)
     };
     let excluded = smooth && (class == Some(Class::Pebo) || generalised.as_ref().is_some_and(Bound::excludes));
     // A transform may fail at single points, which are then listed: two points that were drawn are not both of them.
@@ -104,7 +105,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         let smooth = largest::smooth(&question, largest::affine(&question, 1).as_ref(), 1)
             .filter(Bound::excludes)
             .or_else(|| largest::smooth_to(&question, LARGEST_ORDER, 1));
-        let generalised = || bound::bound(&question, BoundClass::AffineRate, (LARGEST_ORDER, 1));
+        let generalised = || affine_rates(&question, 1);
         smooth.is_some_and(|bound| bound.excludes())
             && (class.is_some() || generalised().is_some_and(|bound| bound.excludes()))
     };
@@ -116,6 +117,11 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     };
     let assumed = if found { None } else { with_signs(&question, &candidates) };
     Search { verdict, candidates, assumed, bound, affine, generalised, tried }
+}
+
+/// The bound of the transforms affine in x with a plain or generalised cascade, at a point that is found after so many.
+fn affine_rates(question: &Question<'_>, others: usize) -> Option<Bound> {
+    bound::bound(question, BoundClass::AffineRate, (LARGEST_ORDER, others))
 }
 
 /// The first transform that recovers the states if those without a known sign are positive.
@@ -149,6 +155,8 @@ struct Hunt<'a> {
     affine: Option<Bound>,
     /// What excludes further transforms with a plain cascade.
     bound: Option<Bound>,
+    /// What excludes further transforms that are affine in x.
+    generalised: Option<Bound>,
     /// Transforms in which the outputs are not affine: they are proved if nothing better is found.
     later: Vec<Vec<Expr>>,
     /// The transforms that were met.
@@ -256,12 +264,21 @@ impl Hunt<'_> {
         if matches!(sample::is_affine_in(question, &rates, &states), Ok(true)) {
             self.judge(Form::States, 0, Ok(states.clone()));
         }
-        for start in [question.output_rates(), [question.output_rates(), states.clone()].concat(), states.clone()] {
+        let rates = question.output_rates();
+        let both = [rates.as_slice(), &states].concat();
+        for (start, formulas) in [(Start::Outputs, &rates), (Start::Both, &both), (Start::States, &states)] {
             if self.is_over() {
                 return;
             }
-            let closed = closure::closure(question, &start).map(Option::unwrap_or_default);
-            self.judge(Form::Closure, 0, closed);
+            let closed = closure::closure(question, formulas).map(Option::unwrap_or_default);
+            self.judge(Form::Closure(start), 0, closed);
+        }
+        // The bound of transforms affine in x is looked at where that of all plain cascades is small.
+        if self.bound.is_some() {
+            self.generalised = affine_rates(question, 0);
+            if self.generalised.as_ref().is_some_and(Bound::excludes) {
+                return;
+            }
         }
         let mut outputs = functions::of_outputs(question);
         if let Ok(connection) = Connection::of(question, Rate::Affine) {
@@ -295,7 +312,7 @@ impl Hunt<'_> {
     fn judge(&mut self, form: Form, columns: usize, solutions: Result<Vec<Expr>, Obstacle>) {
         let count = solutions.as_ref().map_or(0, Vec::len);
         // A closure is one transform, which would not close without a part of it.
-        let choose = if form == Form::Closure { choice::whole } else { choice::choose };
+        let choose = if matches!(form, Form::Closure(_)) { choice::whole } else { choice::choose };
         let choice = solutions.and_then(|solutions| choose(self.question, &solutions));
         let (choice, obstacle) = match choice {
             Ok(choice) => (choice, None),

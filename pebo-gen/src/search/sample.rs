@@ -5,8 +5,9 @@
 use std::collections::BTreeSet;
 
 use crate::cas::Expr;
+use crate::cas::field::Obstacle;
 use crate::cas::field::residue::{Words, prime_of_kernels};
-use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::field::straight::Straight;
 use crate::cas::poly::{PrimeField, Residue};
 use crate::cas::residues::Rows;
 
@@ -22,8 +23,7 @@ const IDLE: usize = 3;
 #[derive(Debug)]
 pub(super) struct Sample<'a> {
     pub(super) prime: PrimeField,
-    field: Field<'a>,
-    formulas: Vec<Fraction>,
+    formulas: Straight<'a>,
     hidden: BTreeSet<u32>,
     /// The kernels of constants, with their values.
     constants: Vec<Option<Residue>>,
@@ -35,16 +35,16 @@ pub(super) type Values = Vec<Residue>;
 
 impl<'a> Sample<'a> {
     pub(super) fn of(question: &Question<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
-        let field = Field::over(question.arena, &question.domain.facts, formulas)?;
-        let formulas = formulas.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
         let prime = prime_of_kernels().ok_or(Obstacle::TooLarge)?;
+        let formulas = Straight::of(question.arena, &question.domain.facts, &prime, formulas)?;
+        let field = formulas.field();
         let hidden = field.kernels_of(&question.hidden);
         let moving = field.kernels_of(&question.signals);
         let mut words = Words::new(0x5eed);
         let first = field.draw(&prime, &mut words, |_| None).ok_or(Obstacle::TooLarge)?;
         let constant = |(number, value): (u32, Residue)| (!moving.contains(&number)).then_some(value);
         let constants = (0..).zip(first).map(constant).collect();
-        Ok(Self { prime, field, formulas, hidden, constants, words })
+        Ok(Self { prime, formulas, hidden, constants, words })
     }
 
     /// The values at so many points that differ in the unmeasured states and signals alone; the parameters are those of
@@ -52,15 +52,14 @@ impl<'a> Sample<'a> {
     pub(super) fn fibre(&mut self, points: usize) -> Option<Vec<Values>> {
         (0..MOST_POLES).find_map(|_| {
             let constants = &self.constants;
-            let base = self.field.draw(&self.prime, &mut self.words, |kernel| constants[kernel as usize])?;
+            let base = self.formulas.field().draw(&self.prime, &mut self.words, |kernel| constants[kernel as usize])?;
             let mut found = Vec::with_capacity(points);
             let mut kernels = base.clone();
             while found.len() < points {
-                let values = self.formulas.iter().map(|f| f.residue(&self.prime, &kernels));
-                found.push(values.collect::<Option<Values>>()?);
+                found.push(self.formulas.residues(&self.prime, &kernels)?);
                 let hidden = &self.hidden;
                 let kept = |kernel: u32| (!hidden.contains(&kernel)).then(|| base[kernel as usize]);
-                kernels = self.field.draw(&self.prime, &mut self.words, kept)?;
+                kernels = self.formulas.field().draw(&self.prime, &mut self.words, kept)?;
             }
             Some(found)
         })
@@ -78,7 +77,7 @@ impl<'a> Sample<'a> {
         let mut rows = Rows::new(&prime, columns);
         let mut idle = 0;
         while idle < IDLE && rows.rank() < columns {
-            let steps = columns * (rows.rank() + 1) + 20 * points * self.formulas.len();
+            let steps = columns * (rows.rank() + 1) + points * self.formulas.length();
             if !question.arena.budget().take(steps as u64) {
                 return None;
             }

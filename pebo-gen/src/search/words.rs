@@ -7,7 +7,7 @@ use crate::source::{Code, Diagnostic, Span, counted, listed};
 
 use super::bound::{Bound, BoundClass, Evidence};
 use super::candidate::Candidate;
-use super::found::{Form, Found, Search, Tried};
+use super::found::{Form, Found, Search, Start, Tried};
 use super::frame::{Block, blocks};
 
 impl Found {
@@ -32,7 +32,19 @@ impl Form {
             Self::Frame(degree) => {
                 format!("T(y) x + s(y) with rates affine in x and functions of y to degree {degree}")
             }
-            Self::Closure => "functions of x whose rates are affine in themselves".to_owned(),
+            Self::Closure(start) => {
+                format!("functions of x whose rates are affine in themselves, beginning with {}", start.words())
+            }
+        }
+    }
+}
+
+impl Start {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Outputs => "the outputs' rates",
+            Self::Both => "the outputs' rates and the states",
+            Self::States => "the states",
         }
     }
 }
@@ -161,13 +173,14 @@ impl Search {
     /// Of a mechanical plant, that M has too few Killing fields for a frame of them.
     fn killing_fields(&self, plant: &Plant) -> Option<String> {
         let Some(plant::Class::Mechanical(_)) = &plant.class else { return None };
-        let count = self.affine.as_ref().filter(|affine| affine.excludes())?.transforms()?;
-        let fields = match count {
-            0 => "no Killing field".to_owned(),
-            _ => format!("just {}", counted(count, "Killing field")),
+        let affine = self.affine.as_ref().filter(|affine| affine.excludes())?;
+        let fields = match (affine.transforms(), affine.rank) {
+            (Some(0), _) | (None, 0) => "M has no Killing field".to_owned(),
+            (Some(count), _) => format!("M has just {}", counted(count, "Killing field")),
+            (None, rank) => format!("the Killing fields of M span at most {}", counted(rank, "direction")),
         };
         let needed = plant.x.len();
-        Some(format!("M has {fields}, and T needs {needed}: measure more than the positions, such as a velocity"))
+        Some(format!("{fields}, and T needs {needed}: measure more than the positions, such as a velocity"))
     }
 
     /// That no transform was found, for the author of a model without one.
