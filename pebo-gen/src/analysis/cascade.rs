@@ -179,11 +179,10 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                let forms = if decide(arena, arena.sub(plain, tidied), domain).is_zero() {
-                    vec![tidied, plain]
-                } else {
-                    vec![tidied]
-                };
+                let own = shortest(arena, domain, rate);
+                let others = [own, plain].into_iter().filter(|form| !arena.depends_on(*form, &hidden));
+                let equal = |form: &Expr| decide(arena, arena.sub(*form, tidied), domain).is_zero();
+                let forms: Vec<Expr> = [tidied].into_iter().chain(others.filter(equal)).collect();
                 let own = authors(arena, rate, &forms).unwrap_or(tidied);
                 Component::Free(asking_less(arena, domain, own, &forms))
             }
