@@ -298,8 +298,9 @@ codes! {
          f_y are time derivatives: an equation for the value of an output, as V = E - R*i, stands under g_y."
         => "Section 2.2, Proposition 1, and Section 2.3"
     UnknownUpToTurns "unknown-up-to-turns" "theta is determined only up to whole turns"
-        "The rates of the outputs depend on theta through its sine and cosine, from which atan2 gives it up to whole \
-         turns. A state that is an angle needs no more; any other state is ambiguous."
+        "The rates of the outputs depend on theta through sine and cosine, from which atan2 gives it up to whole turns. A \
+         state that moves by its period needs no more: declare it under angles. Any other state is ambiguous: an estimate \
+         that starts near another multiple stays there."
         => "Section 5.2"
     RegressionUndecided "regression-undecided" "the regression is neither proved nor refuted"
         "Claim C3 could not be decided; the obstacle names what the algebra does not cover."

@@ -77,8 +77,9 @@ pub(super) fn under_derivative(
     over_parameterised(plant, domain, left_inverse, (outputs.to_vec(), outputs.len()), separated, found)
 }
 
-/// The refusal, where theta is determined only up to multiples of a step and a state is lost by that: one that is no angle
-/// and moves with it, or an angle that moves by a part of its period.
+/// The refusal, where theta is determined only up to multiples of a step and a state is lost by that: one that does not move
+/// by a constant, or an angle that moves by a part of its period. A state that moves by a constant, which the outputs do not
+/// tell from an angle, is a warning.
 pub(super) fn turned_away(
     plant: &Plant,
     domain: &Domain,
@@ -104,8 +105,14 @@ pub(super) fn turned_away(
             }
             // Whether the outputs themselves are blind to the step, or only the formula for theta; and whether the domain
             // holds the states on both sides of it.
+            let constant = arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s));
             let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index], step), domain).is_zero());
             let bounded = domain.facts.iter().any(|(fact, _)| arena.symbols_of(&[fact]).contains(&state));
+            if blind && !bounded && constant && plant.period(state).is_none() {
+                // The state may well be an angle: nothing that the outputs tell distinguishes it from one.
+                found.push(up_to_steps(plant, index, (state, shift)));
+                continue;
+            }
             found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
             let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
             return Some(Claim { verdict, result: None });
@@ -135,16 +142,30 @@ fn lost_by_turns(
     } else {
         "no formula was found that recovers theta from the unknowns of the regression but by the angle of a sine and cosine"
     });
-    let is_constant = arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s));
     match plant.period(state) {
         Some(period) => diagnostic.help(format!(
             "declare a period under `angles` that divides this change, instead of `{}`, or measure another output",
             arena.print(period)
         )),
-        None if is_constant => diagnostic.help(format!(
-            "if {name} is an angle, declare its period: `angles: {{{name}: {moved}}}`; if not, measure another output"
-        )),
-        None => diagnostic
-            .help("choose a phi in which the other states do not need this component, or measure another output"),
+        None => diagnostic.help(
+            "choose a phi in which the states do not need this component, or one whose regression is affine, or measure \
+             another output",
+        ),
     }
+}
+
+/// What to know of a state that the outputs show only up to a period.
+fn up_to_steps(plant: &Plant, index: usize, (state, shift): (Symbol, Expr)) -> Diagnostic {
+    let arena = &plant.arena;
+    let (name, moved) = (arena.name(state), arena.print(shift));
+    Diagnostic::warning(
+        Code::UnknownUpToTurns,
+        plant.phi[index].span,
+        format!("{name} is determined only up to multiples of {moved}"),
+    )
+    .label("the outputs depend on this component only through its sine and cosine")
+    .note("an estimate that starts near another multiple stays there")
+    .help(format!(
+        "if {name} is an angle, declare its period: `angles: {{{name}: {moved}}}`; if not, measure another output"
+    ))
 }

@@ -256,6 +256,9 @@ pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr])
         .collect();
     let mut solved = if rest.is_empty() { BTreeMap::new() } else { solve(arena, domain, &equations, &rest).ok()? };
     solved.extend(direct.into_iter().map(|(symbol, value)| (symbol, vec![value])));
+    for theta in &rest {
+        solved.entry(*theta).or_default().extend(as_ratio(arena, *theta, eta, &symbols));
+    }
     let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
     let unknown: BTreeSet<Symbol> = plant.theta.iter().copied().collect();
     let mut recovered = Recovered { theta: Vec::new(), turning: Vec::new() };
@@ -277,6 +280,21 @@ pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr])
         recovered.turning.push((index, step));
     }
     Some(recovered)
+}
+
+/// theta from functions that are others times theta, as from `cos(theta)`, `sin(theta)`, `theta*cos(theta)` and
+/// `theta*sin(theta)`: the quotient with the least squares, which has a value where one of the others is not zero.
+fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> Option<Expr> {
+    let theta = arena.of_symbol(theta);
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for (factor, symbol) in eta.iter().zip(symbols) {
+        if let Some(place) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
+            let symbol = arena.of_symbol(*symbol);
+            above.push(arena.mul(symbol, arena.of_symbol(symbols[place])));
+            below.push(arena.mul(symbol, symbol));
+        }
+    }
+    (!below.is_empty()).then(|| arena.div(arena.sum(above), arena.sum(below)))
 }
 
 /// By how much a formula grows with the angle that it is a multiple of; one where it is none.
