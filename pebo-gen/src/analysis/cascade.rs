@@ -15,6 +15,7 @@ use crate::cas::combination::combine;
 use crate::cas::contrast::contrast;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::frozen::as_written;
 use crate::cas::interval::Precision;
 use crate::cas::zero::{Answer, decide, point_of};
 use crate::cas::{Expr, Symbol};
@@ -179,11 +180,11 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                let forms = if decide(arena, arena.sub(plain, tidied), domain).is_zero() {
-                    vec![tidied, plain]
-                } else {
-                    vec![tidied]
-                };
+                // What is free of x as it is written, then the normal form.
+                let written = as_written(arena, domain, rate, &hidden).filter(|form| !arena.depends_on(*form, &hidden));
+                let equal = |form: &Expr| decide(arena, arena.sub(*form, tidied), domain).is_zero();
+                let mut forms: Vec<Expr> = written.into_iter().chain([plain]).filter(equal).collect();
+                forms.push(tidied);
                 let own = authors(arena, rate, &forms).unwrap_or(tidied);
                 Component::Free(asking_less(arena, domain, own, &forms))
             }

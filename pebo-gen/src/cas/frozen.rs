@@ -1,15 +1,18 @@
-//! Formulas whose functions of known signals stay as they are written.
+//! Formulas whose functions and sums of known signals stay as they are written.
 //!
-//! In: formulas, and the symbols that a question is about. Out: the same over fresh symbols, one for each function and
-//! each root whose argument is free of those symbols; and the way back. What is solved over them is an identity whatever
-//! they stand for, so it is one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)` and `1/(1 + sqrt(q))`, which a
-//! normal form would write with exponentials, with powers of a cosine, and with `q - 1` below the bar. What needs a
-//! relation among these functions is not seen this way.
+//! In: formulas, and the symbols that a question is about. Out: the same over fresh symbols, one for each function, each
+//! root and each factor that is a sum, if it is free of those symbols; and the way back. What is solved over them is an
+//! identity whatever they stand for, so it is one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))`
+//! and `(T - 300)^3`, which a normal form would write with exponentials, with powers of a cosine, with `q - 1` below the
+//! bar, and as a polynomial whose terms cancel to nothing near T = 300. What needs a relation among them is not seen this
+//! way.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 
+use super::domain::Domain;
+use super::field::Field;
 use super::rational::Rational;
 use super::{Arena, Expr, Node, Symbol};
 
@@ -17,6 +20,7 @@ use super::{Arena, Expr, Node, Symbol};
 pub(crate) struct Frozen<'a> {
     arena: &'a Arena,
     about: &'a BTreeSet<Symbol>,
+    /// Over the symbols: what was replaced; of sums also their multiples, by their own with leading coefficient 1.
     symbols: FxHashMap<Expr, Expr>,
     values: BTreeMap<Symbol, Expr>,
 }
@@ -34,7 +38,7 @@ impl<'a> Frozen<'a> {
         for expr in arena.postorder(exprs) {
             let frozen = match arena.node(expr) {
                 Node::Call(..) if self.is_signal(expr) => self.symbol_of(expr),
-                Node::Product(product) if product.factors.iter().any(|(_, exponent)| !exponent.is_integer()) => {
+                Node::Product(product) => {
                     let factors: Vec<(Expr, Rational)> = product
                         .factors
                         .iter()
@@ -43,6 +47,9 @@ impl<'a> Frozen<'a> {
                             Some(share) if !exponent.is_integer() && self.is_signal(*base) => {
                                 let root = self.symbol_of(arena.power(*base, &share));
                                 (root, Rational::from(exponent.numerator()))
+                            }
+                            _ if matches!(arena.node(*base), Node::Sum(_)) && self.is_signal(*base) => {
+                                (self.sum(*base), exponent.clone())
                             }
                             _ => (known[base], exponent.clone()),
                         })
@@ -72,6 +79,22 @@ impl<'a> Frozen<'a> {
         !symbols.is_empty() && symbols.is_disjoint(self.about)
     }
 
+    /// The symbol of a sum, or the multiple of that of a sum in proportion: `q0 - q` after `q - q0`.
+    fn sum(&mut self, expr: Expr) -> Expr {
+        let arena = self.arena;
+        let Node::Sum(sum) = arena.node(expr) else { return self.symbol_of(expr) };
+        let lead = sum.terms[0].1.clone();
+        let multiple = |factor: &Rational| arena.combine(&Rational::ZERO, [(expr, factor.clone())]);
+        let Some(share) = lead.recip() else { return self.symbol_of(expr) };
+        let unit = multiple(&share);
+        if let Some(known) = self.symbols.get(&unit) {
+            return arena.scale(*known, &lead);
+        }
+        let symbol = self.symbol_of(expr);
+        self.symbols.insert(unit, arena.scale(symbol, &share));
+        symbol
+    }
+
     fn symbol_of(&mut self, expr: Expr) -> Expr {
         if let Some(symbol) = self.symbols.get(&expr) {
             return *symbol;
@@ -83,10 +106,47 @@ impl<'a> Frozen<'a> {
     }
 }
 
+/// The normal form of an expression over what is free of the symbols as it is written, where there is one.
+pub(crate) fn as_written(arena: &Arena, domain: &Domain, expr: Expr, about: &BTreeSet<Symbol>) -> Option<Expr> {
+    let mut frozen = Frozen::new(arena, about);
+    let signals = frozen.freeze(&[expr]);
+    if frozen.is_empty() {
+        return None;
+    }
+    let field = Field::over(arena, &domain.facts, &signals).ok()?;
+    let fraction = field.fraction(signals[0]).ok()?;
+    Some(frozen.thaw(field.show(&fraction)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cas::function::Function;
+
+    #[test]
+    fn sums_of_signals_that_are_factors_are_replaced_and_come_back() {
+        let arena = Arena::new();
+        let [x, y, r] = ["x", "y", "r"].map(|name| arena.variable(name));
+        let about = arena.symbols_of(&[x]);
+        let offset = arena.sub(y, r);
+        let power = |base, exponent: i64| arena.power(base, &Rational::from(exponent));
+        let twice = arena.combine(&Rational::ZERO, [(offset, Rational::from(-2))]);
+        let cases = [
+            (arena.add(x, power(offset, 3)), "x + signal1^3"),
+            (arena.mul(x, twice), "-2*x*signal1"),
+            (arena.div(x, power(offset, 8)), "x/signal1^8"),
+            // What is not a factor may cancel.
+            (arena.add(x, offset), "x + y - r"),
+            (arena.mul(y, arena.add(x, offset)), "y*(x + y - r)"),
+            (arena.mul(x, arena.add(arena.one(), power(offset, 2))), "x*signal2"),
+        ];
+        let mut frozen = Frozen::new(&arena, &about);
+        for (written, expected) in cases {
+            let formula = frozen.freeze(&[written])[0];
+            assert_eq!(arena.print(formula), expected);
+            assert_eq!(frozen.thaw(formula), written, "{expected}");
+        }
+    }
 
     #[test]
     fn functions_of_signals_are_replaced_and_come_back() {

@@ -5,16 +5,19 @@
 //!
 //! An equation in which the unknown stands in one place is turned inside out. Where none is left, the
 //! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and
-//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`.
+//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`. What is known is
+//! left as it is written ([`super::frozen`]), and only then taken apart, for what needs a relation within it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::domain::Domain;
 use super::field::{Field, Fraction, Obstacle};
+use super::frozen::Frozen;
 use super::function::Function;
 use super::linear::Echelon;
 use super::poly::Monomial;
 use super::rational::Rational;
+use super::tidy::shorter;
 use super::{Arena, Expr, Node, Symbol};
 
 /// `formula = value`.
@@ -38,20 +41,39 @@ pub(crate) fn solve(
         if let Some(Equation { formula, value }) = turned_out(arena, domain, *equation, unknowns)
             && let Some(symbol) = arena.as_symbol(formula)
         {
-            alone.entry(symbol).or_insert(value);
+            alone.entry(symbol).and_modify(|known| *known = shorter(arena, *known, value)).or_insert(value);
         }
     }
     let mut candidates: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
     // All equations together know branches that one alone does not: cosine and sine, but not cosine.
-    for start in [BTreeMap::new(), alone] {
-        for (symbol, value) in eliminated(arena, domain, equations, unknowns, start)? {
+    let starts = [BTreeMap::new(), alone];
+    let mut add = |found: BTreeMap<Symbol, Expr>| {
+        for (symbol, value) in found {
             let known = candidates.entry(symbol).or_default();
             if !known.contains(&value) {
                 known.push(value);
             }
         }
+    };
+    for start in &starts {
+        // What needs a relation among what is known may be out of reach as it is written.
+        if let Ok(found) = eliminated(arena, domain, equations, unknowns, start.clone(), Known::Written) {
+            add(found);
+        }
+    }
+    for start in starts {
+        add(eliminated(arena, domain, equations, unknowns, start, Known::Normal)?);
     }
     Ok(candidates)
+}
+
+/// How elimination reads what is free of the unknowns.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// As it is written.
+    Written,
+    /// In the normal form.
+    Normal,
 }
 
 /// Eliminates and inverts until no unknown comes out any more.
@@ -61,6 +83,7 @@ fn eliminated(
     equations: &[Equation],
     unknowns: &[Symbol],
     mut found: BTreeMap<Symbol, Expr>,
+    reading: Known,
 ) -> Result<BTreeMap<Symbol, Expr>, Obstacle> {
     let mut differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
     differences = arena.substitute_all(&differences, &found);
@@ -71,7 +94,7 @@ fn eliminated(
         if open.is_empty() || differences.is_empty() {
             break;
         }
-        let known = eliminate(arena, domain, &differences, &open)?;
+        let known = eliminate(arena, domain, &differences, &open, reading)?;
         let mut progress = false;
         let mut inner = Vec::new();
         for inverted in invert(arena, domain, &known) {
@@ -133,12 +156,18 @@ fn eliminate(
     domain: &Domain,
     differences: &[Expr],
     open: &BTreeSet<Symbol>,
+    reading: Known,
 ) -> Result<Vec<Equation>, Obstacle> {
-    let field = Field::over(arena, &domain.facts, differences)?;
+    let mut frozen = Frozen::new(arena, open);
+    let differences = match reading {
+        Known::Written => frozen.freeze(differences),
+        Known::Normal => differences.to_vec(),
+    };
+    let field = Field::over(arena, &domain.facts, &differences)?;
     let hidden: Vec<u32> = field.kernels_of(open).into_iter().collect();
     let mut rows: Vec<BTreeMap<Monomial, Fraction>> = Vec::new();
     let mut columns: BTreeSet<Monomial> = BTreeSet::new();
-    for difference in differences {
+    for difference in &differences {
         let mut row = BTreeMap::new();
         for (monomial, coefficient) in field.fraction(*difference)?.numerator().collect(&hidden) {
             if !monomial.is_one() {
@@ -167,19 +196,19 @@ fn eliminate(
         if alone {
             let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
             let formula = arena.multiply(&Rational::ONE, factors);
-            known.push(Equation { formula, value: field.show(&row[columns.len()]) });
+            let value = frozen.thaw(field.show(&row[columns.len()]));
+            known.push(Equation { formula: frozen.thaw(formula), value });
         }
     }
     Ok(known)
 }
 
-/// Inverts the outermost function of what is known.
+/// Inverts the outermost function of what is known, first what is known without: `a` rather than the root of `a^2`.
 fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
-    let mut inverted = Vec::new();
-    for equation in known {
-        let Equation { formula, value } = *equation;
+    let (mut inverted, others): (Vec<Equation>, Vec<Equation>) =
+        known.iter().copied().partition(|equation| arena.as_symbol(equation.formula).is_some());
+    for Equation { formula, value } in others {
         let next = match arena.node(formula) {
-            Node::Symbol(_) => Some(*equation),
             Node::Product(product) => match product.factors.as_slice() {
                 [(base, exponent)] => unpower(arena, domain, *base, exponent, value),
                 _ => None,
@@ -230,6 +259,9 @@ fn angle_of(arena: &Arena, domain: &Domain, sin: Expr, cos: Expr) -> Expr {
         let common = y.denominator().lcm(x.denominator(), field.limit())?;
         let common = field.of_polynomial(&common)?;
         if !field.signs().is_positive(&common)? {
+            return Ok(None);
+        }
+        if common.is_one() {
             return Ok(None);
         }
         Ok(Some([field.show(&field.mul(&y, &common)?), field.show(&field.mul(&x, &common)?)]))
