@@ -19,7 +19,7 @@ use super::field::{Field, Fraction, Obstacle};
 use super::frozen::Frozen;
 use super::linear::{Echelon, solve};
 use super::poly::{Monomial, Poly};
-use super::tidy::shortest;
+use super::tidy::{shorter, shortest};
 
 /// Solves for the coefficients of `target` over `basis`; none if the comparison has no solution.
 pub fn combine(
@@ -115,7 +115,10 @@ pub fn combine_on(
         && let Ok(field) = Field::over(arena, &domain.facts, &signals)
         && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
     {
-        let thawed = |c: &Fraction| shortest(arena, domain, frozen.thaw(field.show(c)));
+        let thawed = |c: &Fraction| {
+            let [whole, apart] = [field.show(c), field.show_apart(c)].map(|form| frozen.thaw(form));
+            shortest(arena, domain, shorter(arena, whole, apart))
+        };
         return Ok(Some(coefficients.iter().map(thawed).collect()));
     }
     let combined = |field: Result<Field<'_>, Obstacle>| {

@@ -48,9 +48,7 @@ impl<'a> Frozen<'a> {
                                 let root = self.symbol_of(arena.power(*base, &share));
                                 (root, Rational::from(exponent.numerator()))
                             }
-                            _ if matches!(arena.node(*base), Node::Sum(_)) && self.is_signal(*base) => {
-                                (self.sum(*base), exponent.clone())
-                            }
+                            _ if is_whole(arena, *base) && self.is_signal(*base) => (self.sum(*base), exponent.clone()),
                             _ => (known[base], exponent.clone()),
                         })
                         .collect();
@@ -70,7 +68,7 @@ impl<'a> Frozen<'a> {
 
     /// A formula with what the fresh symbols stand for.
     pub(crate) fn thaw(&self, expr: Expr) -> Expr {
-        self.arena.substitute(expr, &self.values)
+        if self.is_empty() { expr } else { upright(self.arena, self.arena.substitute(expr, &self.values)) }
     }
 
     /// Whether an expression varies, but not with what the question is about.
@@ -106,6 +104,54 @@ impl<'a> Frozen<'a> {
     }
 }
 
+/// Whether an expression is a sum without divisions but by powers, as `1 + (q/K)^10`: what others are divided by goes over
+/// their common denominator, as in `L - M^2/J`.
+fn is_whole(arena: &Arena, expr: Expr) -> bool {
+    let Node::Sum(sum) = arena.node(expr) else { return false };
+    sum.terms.iter().all(|(term, _)| match arena.node(*term) {
+        Node::Product(product) => {
+            let magnitude = product.factors[0].1.abs();
+            let is_quotient = product.factors.len() > 1 && !magnitude.is_one();
+            is_quotient && product.factors.iter().all(|(_, exponent)| exponent.abs() == magnitude)
+                || product.factors.iter().all(|(base, exponent)| {
+                    !exponent.is_negative() && (!matches!(arena.node(*base), Node::Sum(_)) || is_whole(arena, *base))
+                })
+        }
+        _ => true,
+    })
+}
+
+/// A product whose sums have no more minus than plus signs: `z/(1 + q - z)` rather than `-z/(z - q - 1)`.
+fn upright(arena: &Arena, expr: Expr) -> Expr {
+    let Node::Product(product) = arena.node(expr) else { return expr };
+    let mut coefficient = product.coefficient.clone();
+    let mut factors = product.factors.clone();
+    let balance = |base: Expr| match arena.node(base) {
+        Node::Sum(sum) => {
+            let signs = sum.terms.iter().map(|(_, factor)| factor).chain([&sum.constant]);
+            Some(signs.map(Rational::signum).map(i64::from).sum::<i64>())
+        }
+        _ => None,
+    };
+    let is_odd = |exponent: &Rational| exponent.is_integer() && exponent.numerator().trailing_zeros() == 0;
+    let mut turned = false;
+    for (base, exponent) in &mut factors {
+        if is_odd(exponent) && balance(*base).is_some_and(|balance| balance < 0) {
+            *base = arena.neg(*base);
+            coefficient = -&coefficient;
+            turned = true;
+        }
+    }
+    if turned
+        && coefficient.is_negative()
+        && let Some((base, _)) = factors.iter_mut().find(|(base, power)| power.is_one() && balance(*base) == Some(0))
+    {
+        *base = arena.neg(*base);
+        coefficient = -&coefficient;
+    }
+    if turned { arena.multiply(&coefficient, factors) } else { expr }
+}
+
 /// The normal form of an expression over what is free of the symbols as it is written, where there is one.
 pub(crate) fn as_written(arena: &Arena, domain: &Domain, expr: Expr, about: &BTreeSet<Symbol>) -> Option<Expr> {
     let mut frozen = Frozen::new(arena, about);
@@ -122,6 +168,7 @@ pub(crate) fn as_written(arena: &Arena, domain: &Domain, expr: Expr, about: &BTr
 mod tests {
     use super::*;
     use crate::cas::function::Function;
+    use crate::cas::zero::decide;
 
     #[test]
     fn sums_of_signals_that_are_factors_are_replaced_and_come_back() {
@@ -134,17 +181,39 @@ mod tests {
         let cases = [
             (arena.add(x, power(offset, 3)), "x + signal1^3"),
             (arena.mul(x, twice), "-2*x*signal1"),
+            (arena.div(x, arena.add(arena.one(), power(arena.div(y, r), 4))), "x/signal2"),
+            // The common denominator of a fraction in a fraction goes below.
+            (arena.div(x, arena.sub(r, arena.div(power(y, 2), r))), "x/(r - y^2/r)"),
             (arena.div(x, power(offset, 8)), "x/signal1^8"),
             // What is not a factor may cancel.
             (arena.add(x, offset), "x + y - r"),
             (arena.mul(y, arena.add(x, offset)), "y*(x + y - r)"),
-            (arena.mul(x, arena.add(arena.one(), power(offset, 2))), "x*signal2"),
+            (arena.mul(x, arena.add(arena.one(), power(offset, 2))), "x*signal3"),
         ];
         let mut frozen = Frozen::new(&arena, &about);
         for (written, expected) in cases {
             let formula = frozen.freeze(&[written])[0];
             assert_eq!(arena.print(formula), expected);
-            assert_eq!(frozen.thaw(formula), written, "{expected}");
+            let difference = arena.sub(frozen.thaw(formula), written);
+            assert!(decide(&arena, difference, &Domain::default()).is_zero(), "{expected}");
+        }
+    }
+
+    #[test]
+    fn products_stand_upright() {
+        let arena = Arena::new();
+        let [z, q, r] = ["z", "q", "r"].map(|name| arena.variable(name));
+        let low = arena.sum([z, arena.neg(q), arena.number(-1)]);
+        let difference = arena.sub(q, z);
+        let cases = [
+            (arena.neg(arena.div(z, low)), "z/(1 - z + q)"),
+            (arena.div(difference, low), "(z - q)/(1 - z + q)"),
+            (arena.mul(r, difference), "r*(q - z)"),
+            (arena.neg(arena.mul(r, difference)), "-r*(q - z)"),
+            (arena.mul(r, arena.power(low, &Rational::from(2))), "r*(z - q - 1)^2"),
+        ];
+        for (written, expected) in cases {
+            assert_eq!(arena.print(upright(&arena, written)), expected);
         }
     }
 
@@ -166,7 +235,7 @@ mod tests {
         let mut frozen = Frozen::new(&arena, &about);
         let formulas = frozen.freeze(&written);
         let shown: Vec<String> = formulas.iter().map(|formula| arena.print(*formula)).collect();
-        let expected = ["x*signal2", "x/(signal3 + 1)", "signal3^3", "sin(x + signal1)", "sqrt(x + y)", "sin(1)"]
+        let expected = ["x*signal2", "x/signal4", "signal3^3", "sin(x + signal1)", "sqrt(x + y)", "sin(1)"]
             .map(str::to_owned);
         assert_eq!(shown, expected);
         assert!(!frozen.is_empty());

@@ -275,3 +275,75 @@ fn beside(arena: &Arena, known: &[Equation], function: Function, inside: Expr) -
     let wanted = arena.call(function, &[inside]);
     known.iter().find(|e| e.formula == wanted).map(|e| e.value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::facts::Relation;
+
+    /// What the equations give for the first unknown, the likeliest.
+    fn solved(arena: &Arena, domain: &Domain, formulas: &[Expr], unknown: Expr) -> String {
+        let name = |index: usize| arena.variable(&format!("z{}", index + 1));
+        let equation = |(index, formula): (usize, &Expr)| Equation { formula: *formula, value: name(index) };
+        let equations: Vec<Equation> = formulas.iter().enumerate().map(equation).collect();
+        let unknowns: Vec<Symbol> = arena.symbols_of(&[unknown]).into_iter().collect();
+        let candidates = solve(arena, domain, &equations, &unknowns).unwrap();
+        arena.print(candidates[&unknowns[0]][0])
+    }
+
+    #[test]
+    fn what_is_known_stays_as_it_is_written() {
+        let arena = Arena::new();
+        let [p, q, r, k] = ["p", "q", "r", "k"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        let power = |base, exponent: i64| arena.power(base, &Rational::from(exponent));
+        let call = |function, argument| arena.call(function, &[argument]);
+        let one = arena.one();
+        let offset = arena.sub(q, r);
+        let cases = [
+            // Powers of a difference.
+            (arena.add(p, power(arena.sub(q, arena.number(300)), 3)), "z1 - (q - 300)^3"),
+            (arena.add(p, arena.mul(k, power(offset, 2))), "z1 - k*(q - r)^2"),
+            (arena.mul(p, arena.mul(power(offset, 2), arena.add(q, r))), "z1/((q - r)^2*(q + r))"),
+            // Functions of a sum.
+            (arena.sub(call(Function::Log, arena.add(one, p)), power(q, 2)), "exp(z1 + q^2) - 1"),
+            (arena.add(call(Function::Asin, p), q), "sin(z1 - q)"),
+            (arena.sub(arena.sqrt(arena.add(one, power(p, 2))), power(q, 2)), "sqrt((z1 + q^2)^2 - 1)"),
+            // The unknown in two places.
+            (arena.add(arena.div(p, arena.add(p, one)), call(Function::Sin, q)), "(z1 - sin(q))/(1 - z1 + sin(q))"),
+        ];
+        for (formula, expected) in cases {
+            assert_eq!(solved(&arena, &domain, &[formula], p), expected);
+        }
+    }
+
+    #[test]
+    fn an_unknown_that_stands_alone_is_not_taken_from_a_power() {
+        let arena = Arena::new();
+        let p = arena.variable("p");
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        let power = |exponent: i64| arena.power(p, &Rational::from(exponent));
+        assert_eq!(solved(&arena, &domain, &[power(2), p], p), "z2");
+        assert_eq!(solved(&arena, &domain, &[power(3), power(2)], p), "z1^(1/3)");
+        assert_eq!(solved(&arena, &domain, &[arena.add(power(3), p), p, power(3)], p), "z2");
+    }
+
+    #[test]
+    fn a_relation_within_what_is_known_is_found() {
+        let arena = Arena::new();
+        let [p, s, q] = ["p", "s", "q"].map(|name| arena.variable(name));
+        // (q - 1)*(q + 1) is q^2 - 1: of the two equations only the difference is independent of s.
+        let product = arena.mul(arena.sub(q, arena.one()), arena.add(q, arena.one()));
+        let square = arena.sub(arena.mul(q, q), arena.one());
+        let formulas = [arena.add(arena.mul(product, s), p), arena.mul(square, s)];
+        let unknowns: Vec<Symbol> = [p, s].into_iter().filter_map(|e| arena.as_symbol(e)).collect();
+        let equations: Vec<Equation> =
+            formulas.iter().zip(["z1", "z2"]).map(|(f, z)| Equation { formula: *f, value: arena.variable(z) }).collect();
+        let domain = Domain::default();
+        let candidates = solve(&arena, &domain, &equations, &unknowns).unwrap();
+        let shown: Vec<String> = candidates[&unknowns[0]].iter().map(|e| arena.print(*e)).collect();
+        assert!(shown.contains(&"z1 - z2".to_owned()), "{shown:?}");
+    }
+}
