@@ -46,7 +46,10 @@ pub(crate) fn solve(
     }
     let mut candidates: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
     // All equations together know branches that one alone does not: cosine and sine, but not cosine.
-    let starts = [BTreeMap::new(), alone];
+    // What an equation gives as it stands loses no digits.
+    let given = |equation: &Equation| Some((arena.as_symbol(equation.formula)?, equation.value));
+    let given = equations.iter().rev().filter_map(given).filter(|(symbol, _)| unknowns.contains(symbol)).collect();
+    let starts = [given, alone];
     let mut add = |found: BTreeMap<Symbol, Expr>| {
         for (symbol, value) in found {
             let known = candidates.entry(symbol).or_default();
@@ -294,7 +297,7 @@ mod tests {
     #[test]
     fn what_is_known_stays_as_it_is_written() {
         let arena = Arena::new();
-        let [p, q, r, k] = ["p", "q", "r", "k"].map(|name| arena.variable(name));
+        let [_, p, q, r, k] = ["z1", "p", "q", "r", "k"].map(|name| arena.variable(name));
         let mut domain = Domain::default();
         domain.facts.assume(p, Relation::Positive);
         let power = |base, exponent: i64| arena.power(base, &Rational::from(exponent));
