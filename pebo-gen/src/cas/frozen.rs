@@ -241,8 +241,8 @@ mod tests {
         let mut frozen = Frozen::new(&arena, &about);
         let formulas = frozen.freeze(&written);
         let shown: Vec<String> = formulas.iter().map(|formula| arena.print(*formula)).collect();
-        let expected = ["x*signal2", "x/signal4", "signal3^3", "sin(x + signal1)", "sqrt(x + y)", "sin(1)"]
-            .map(str::to_owned);
+        let expected =
+            ["x*signal2", "x/signal4", "signal3^3", "sin(x + signal1)", "sqrt(x + y)", "sin(1)"].map(str::to_owned);
         assert_eq!(shown, expected);
         assert!(!frozen.is_empty());
         let back: Vec<Expr> = formulas.iter().map(|formula| frozen.thaw(*formula)).collect();

@@ -342,8 +342,11 @@ mod tests {
         let square = arena.sub(arena.mul(q, q), arena.one());
         let formulas = [arena.add(arena.mul(product, s), p), arena.mul(square, s)];
         let unknowns: Vec<Symbol> = [p, s].into_iter().filter_map(|e| arena.as_symbol(e)).collect();
-        let equations: Vec<Equation> =
-            formulas.iter().zip(["z1", "z2"]).map(|(f, z)| Equation { formula: *f, value: arena.variable(z) }).collect();
+        let equations: Vec<Equation> = formulas
+            .iter()
+            .zip(["z1", "z2"])
+            .map(|(f, z)| Equation { formula: *f, value: arena.variable(z) })
+            .collect();
         let domain = Domain::default();
         let candidates = solve(&arena, &domain, &equations, &unknowns).unwrap();
         let shown: Vec<String> = candidates[&unknowns[0]].iter().map(|e| arena.print(*e)).collect();

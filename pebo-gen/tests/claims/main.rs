@@ -4,6 +4,7 @@ mod conditions;
 mod fundamental;
 mod refusals;
 mod relations;
+mod shapes;
 mod table;
 
 use pebo_gen::report::summary;
