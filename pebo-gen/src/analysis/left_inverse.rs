@@ -247,7 +247,7 @@ fn check(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) -> (Expr,
     if let Some(answer) = unlike {
         return answer;
     }
-    let turn = arena.div(arena.mul(arena.number(2), arena.pi()), period);
+    let turn = arena.div(arena.turn(), period);
     turns(arena, domain, arena.mul(difference, turn))
 }
 

@@ -20,7 +20,7 @@ mod valued;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::domain::Domain;
-use crate::cas::field::Obstacle;
+use crate::cas::field::{Field, Obstacle};
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Span};
@@ -31,7 +31,7 @@ use cancelling::combinations;
 pub(super) use differentiated::{differentiated, not_differentiable};
 use functions::{over_parameterised, under_derivative};
 use linear::{decompose, linear};
-use refusal::{hidden_by_signals, nonlinear, not_sought, refuted, undecided};
+use refusal::{hidden_by_signals, nonlinear, not_recovered, not_sought, refuted, undecided};
 pub(super) use standing::from_identities;
 use standing::from_relations;
 pub(super) use together::together;
@@ -39,6 +39,16 @@ pub(super) use valued::by_values;
 
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
     exponentials, sines and cosines of z were tried";
+
+/// A rate as what it is on the domain, if it bends: the assumptions on the states tell which way, and are not known of z.
+fn unbent(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
+    let arena = &plant.arena;
+    if arena.dividers(&[rate]).into_iter().all(|part| !arena.depends_on(part, &plant.hidden())) {
+        return rate;
+    }
+    let field = Field::over(arena, &domain.facts, &[rate]);
+    field.and_then(|field| Ok(field.show(&field.fraction(rate)?))).unwrap_or(rate)
+}
 
 /// Proves or refutes the regression.
 pub(super) fn prove(
@@ -86,11 +96,12 @@ pub(super) fn prove(
         return Claim { verdict: Verdict::Proved, result: Some(regression) };
     }
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
-    let mut stands_against = NO_SEPARATION.to_owned();
     let mut unsought = false;
+    let mut unrecovered = None;
     if let Some(left_inverse) = left_inverse {
         let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-        let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| plant.arena.substitute(*rate, &inverse)).collect();
+        let of_z = |rate: Expr| plant.arena.substitute(unbent(plant, domain, rate), &inverse);
+        let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| of_z(*rate)).collect();
         match separation::separate(plant, domain, &rates) {
             Ok(Some(_)) if cascade.lambda.is_some() => unsought = true,
             Ok(Some(separated)) => {
@@ -99,10 +110,7 @@ pub(super) fn prove(
                 if let Some(claim) = over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found) {
                     return claim;
                 }
-                stands_against = format!(
-                    "the rate is linear in {}, but theta could not be recovered from these functions",
-                    eta.join(", ")
-                );
+                unrecovered = Some(eta.join(", "));
             }
             Ok(None) if cascade.lambda.is_none() => {
                 let outputs: Vec<usize> = rows.iter().map(|r| r.0).collect();
@@ -128,12 +136,17 @@ pub(super) fn prove(
             found.push(not_sought(plant, index, span));
             continue;
         }
+        if let Some(functions) = &unrecovered {
+            verdict = Verdict::Undecided;
+            found.push(not_recovered(plant, index, span, functions));
+            continue;
+        }
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         if let Some(shown) = bend {
             let bends = |term| nonlinear(plant, domain, term, left_inverse).is_some();
             let places = blame::summands(plant, index, bends);
-            found.push(refuted(plant, index, &places, &shown, &stands_against));
+            found.push(refuted(plant, index, &places, &shown, NO_SEPARATION));
         } else {
             verdict = Verdict::Undecided;
             found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));

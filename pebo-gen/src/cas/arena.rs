@@ -154,6 +154,11 @@ impl Arena {
         self.intern(Node::Pi)
     }
 
+    /// A whole turn, `2*pi`.
+    pub fn turn(&self) -> Expr {
+        self.scale(self.pi(), &Rational::from(2))
+    }
+
     /// The value, if the expression is a number.
     pub fn as_number(&self, expr: Expr) -> Option<Rational> {
         match &self.nodes.borrow()[expr.0 as usize] {

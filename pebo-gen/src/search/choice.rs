@@ -11,8 +11,11 @@ use crate::plant::Matrix;
 use super::question::Question;
 use super::sample::{is_affine_in, rank_of_gradients};
 
-/// More solutions than this are not chosen among.
-const MOST: usize = 12;
+/// So many solutions beyond the number of states are chosen among.
+const MOST_BEYOND: usize = 11;
+
+/// Subsets of more solutions than this are not looked at.
+const MOST_IN_SUBSETS: usize = 12;
 
 /// More sets of components than this are not looked at for one that is a transform everywhere.
 const MOST_SUBSETS: usize = 40;
@@ -35,7 +38,7 @@ pub(super) fn whole(question: &Question<'_>, solutions: &[Expr]) -> Result<Choic
 
 /// Chooses among solutions.
 pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
-    let all = &solutions[..solutions.len().min(MOST)];
+    let all = &solutions[..solutions.len().min(question.x.len() + MOST_BEYOND)];
     let mut few: Vec<Expr> = Vec::new();
     for solution in all {
         let more = [few.as_slice(), &[*solution]].concat();
@@ -51,7 +54,7 @@ pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choi
     let affine = |phi: &[Expr]| is_affine_in(question, &outputs, phi);
     if rank == question.x.len() && rank < all.len() && !is_everywhere(question, &few) {
         // Perhaps there are others whose gradients are independent everywhere.
-        for subset in subsets(all, rank).take(MOST_SUBSETS) {
+        for subset in subsets(&all[..all.len().min(MOST_IN_SUBSETS)], rank).take(MOST_SUBSETS) {
             let linear = affine(&subset)? || !affine(&few)?;
             if linear && rank_of_gradients(question, &subset)? == rank && is_everywhere(question, &subset) {
                 few = subset;

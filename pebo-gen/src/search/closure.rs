@@ -4,11 +4,14 @@
 //! rates of these consist of, and so on until nothing is added; none if that does not end soon. Coefficients are functions
 //! of y and u, so that the cascade is a generalised one, and what the functions were taken from is affine in them.
 
-use crate::cas::Expr;
+use std::collections::BTreeSet;
+
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::Rational;
+use crate::cas::{Expr, Symbol};
 
 use super::question::Question;
+use super::sample::is_affine_in;
 
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
@@ -35,6 +38,32 @@ pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<
     }
     found.sort_by_key(|e| (question.arena.print(*e).len(), *e));
     Ok(Some(found))
+}
+
+/// The outputs' rates that hold states and no input, and their rates, and so on until those are affine in what is there; none
+/// if they hold an input before, or it is more than that.
+pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = question.arena;
+    let others: BTreeSet<Symbol> = question.plant.u.iter().chain(&question.plant.w).copied().collect();
+    let is_of_states = |row: &Expr| {
+        arena.depends_on(*row, &question.states())
+            && !arena.depends_on(*row, &others)
+            && !question.bends_in_states(*row)
+    };
+    let mut found: Vec<Expr> = question.output_rates().into_iter().filter(is_of_states).collect();
+    let mut next = 0;
+    while next < found.len() {
+        let rate = question.rate(found[next]);
+        next += 1;
+        if is_affine_in(question, &[rate], &found)? {
+            continue;
+        }
+        if found.len() == MOST || !is_of_states(&rate) {
+            return Ok(None);
+        }
+        found.push(rate);
+    }
+    Ok((!found.is_empty()).then_some(found))
 }
 
 /// The functions of x of which a formula is a combination with coefficients that are free of x; none where they are not

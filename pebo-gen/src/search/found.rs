@@ -34,7 +34,8 @@ pub enum Found {
     /// There is one whose claims are all proved, and which recovers all states.
     Found,
     /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if a
-    /// generalised one would do, none that is affine in x. Other generalised ones were looked for and not found.
+    /// generalised one would do, none that is affine in x. Other generalised ones were looked for and not found; where
+    /// rates are no polynomials in the states, which suggests other functions, the search is undecided instead.
     None,
     /// Neither.
     Undecided,
@@ -78,6 +79,8 @@ pub enum Form {
 pub enum Start {
     /// The outputs' rates.
     Outputs,
+    /// The outputs' rates as they are written, each one function.
+    Rows,
     /// The outputs' rates and the states.
     Both,
     /// The states.

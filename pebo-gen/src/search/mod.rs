@@ -99,7 +99,9 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     } else {
         hunt.generalised.take().or_else(|| affine_rates(&question, 0)).filter(|bound| bound.rank < bound.states)
     };
-    let excluded = smooth && (class == Some(Class::Pebo) || generalised.as_ref().is_some_and(Bound::excludes));
+    let excluded = smooth
+        && (class == Some(Class::Pebo)
+            || (generalised.as_ref().is_some_and(Bound::excludes) && question.is_polynomial_in_states()));
     // A transform may fail at single points, which are then listed: two points that were drawn are not both of them.
     let again = || {
         let smooth = largest::smooth(&question, largest::affine(&question, 1).as_ref(), 1)
@@ -273,6 +275,11 @@ impl Hunt<'_> {
             let closed = closure::closure(question, formulas).map(Option::unwrap_or_default);
             self.judge(Form::Closure(start), 0, closed);
         }
+        if self.is_over() {
+            return;
+        }
+        let closed = closure::of_rows(question).map(Option::unwrap_or_default);
+        self.judge(Form::Closure(Start::Rows), 0, closed);
         // The bound of transforms affine in x is looked at where that of all plain cascades is small.
         if self.bound.is_some() {
             self.generalised = affine_rates(question, 0);

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::plant::Plant;
 
 /// A plant whose transform is looked for.
@@ -79,6 +79,18 @@ impl<'a> Question<'a> {
     pub(super) fn bends_in_states(&self, expr: Expr) -> bool {
         let hidden = |part: Expr| self.arena.depends_on(part, &self.hidden);
         self.arena.dividers(&[expr]).into_iter().any(hidden)
+    }
+
+    /// Whether the rates are written as polynomials in what is hidden.
+    pub(super) fn is_polynomial_in_states(&self) -> bool {
+        let rates: Vec<Expr> = self.rates.values().copied().collect();
+        self.arena.postorder(&rates).into_iter().all(|part| match self.arena.node(part) {
+            Node::Call(..) => !self.arena.depends_on(part, &self.hidden),
+            Node::Product(product) => product.factors.iter().all(|(base, exponent)| {
+                (exponent.is_integer() && !exponent.is_negative()) || !self.arena.depends_on(*base, &self.hidden)
+            }),
+            _ => true,
+        })
     }
 
     /// Whether there is something left to take.

@@ -42,8 +42,9 @@ impl Form {
 impl Start {
     fn words(self) -> &'static str {
         match self {
-            Self::Outputs => "the outputs' rates",
-            Self::Both => "the outputs' rates and the states",
+            Self::Outputs => "the functions in the outputs' rates",
+            Self::Rows => "the outputs' rates",
+            Self::Both => "the functions in the outputs' rates and the states",
             Self::States => "the states",
         }
     }

@@ -329,7 +329,7 @@ fn errors(plant: &Plant, periods: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> 
         let symbol = arena.symbol(state);
         let difference = arena.sub(*hat, arena.of_symbol(symbol));
         let Some(&period) = periods.get(&symbol) else { return difference };
-        let turn = arena.div(arena.mul(arena.number(2), arena.pi()), period);
+        let turn = arena.div(arena.turn(), period);
         let angle = arena.mul(turn, difference);
         arena.div(arena.call(Atan2, &[arena.call(Sin, &[angle]), arena.call(Cos, &[angle])]), turn)
     };

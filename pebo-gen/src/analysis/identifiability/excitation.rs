@@ -112,7 +112,7 @@ fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
 
 /// Whether the expression is the same after a turn of the symbol.
 fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
-    let turn = arena.mul(arena.number(2), arena.pi());
+    let turn = arena.turn();
     let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
     decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
 }

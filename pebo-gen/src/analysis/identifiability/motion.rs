@@ -100,6 +100,9 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
         for (place, restriction) in question.candidates(by_itself == Some(true), stack) {
             note(place, &question.shown(&restriction));
         }
+        if by_itself == Some(true) {
+            blind.extend(question.doubtful(&blind, symbols, stack));
+        }
     }
     (Motion { by_itself, at_rest, blind }, constants)
 }
@@ -183,6 +186,53 @@ impl Question<'_> {
         found
     }
 
+    /// Where rows that have full rank with constant inputs lose it, but for what is listed: where an input is a function of
+    /// others, it is asked what is seen there; the rest was not decided, but for what cannot stay zero.
+    fn doubtful(&self, listed: &[Blind], symbols: &[Symbol], stack: &[Vec<Expr>]) -> Vec<Blind> {
+        let &Self { plant, domain, .. } = self;
+        let arena = &plant.arena;
+        let volume = Volume::of(arena, domain, stack);
+        let places = volume.and_then(|volume| volume.places(plant, domain)).unwrap_or_default();
+        let known: BTreeSet<Symbol> =
+            plant.parameters.iter().map(|p| p.symbol).chain(plant.u.iter().copied()).collect();
+        let mut found = Vec::new();
+        for zero in places.zeros {
+            let unshown = || Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() };
+            if !arena.symbols_of(&[zero]).is_subset(&known) {
+                let held = plant.u.iter().copied().collect();
+                let moves = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new())
+                    .is_ok_and(|flow| domain.implies(arena, flow.rate(arena, zero), Relation::NonZero));
+                found.extend((!moves).then(unshown));
+                continue;
+            }
+            let Some((input, value)) = plant.u.iter().find_map(|input| Some((*input, solved(arena, zero, *input)?)))
+            else {
+                found.push(unshown());
+                continue;
+            };
+            let is_listed = |other: &Blind| match &other.place {
+                Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
+                _ => false,
+            };
+            if listed.iter().any(is_listed) {
+                continue;
+            }
+            let equal = BTreeMap::from([(input, value)]);
+            match self.shown(&Restriction { equal, ..Restriction::default() }) {
+                Ok(shown) if shown.hidden.is_empty() => {}
+                Ok(shown) => found.push(Blind {
+                    place: Place::Value(input, value),
+                    seen: seen(arena, symbols, &shown.hidden),
+                    hidden: shown.hidden,
+                }),
+                // Where the domain holds no such motion, there is nothing to say.
+                Err(Obstacle::NoPoint) => {}
+                Err(_) => found.push(unshown()),
+            }
+        }
+        found
+    }
+
     /// Values of inputs at which an entry vanishes.
     fn values(&self, stack: &[Vec<Expr>]) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
         let arena = &self.plant.arena;
@@ -218,17 +268,23 @@ impl Question<'_> {
         let places = volume.and_then(|volume| volume.places(self.plant, self.domain)).unwrap_or_default();
         // Not where other motions show them all the same.
         let lost = |formula: &Expr| {
-            let solved = arena.symbols_of(&[*formula]).into_iter().find_map(|parameter| {
-                let slope = arena.derivative(*formula, parameter);
-                let rest = arena.substitute(*formula, &BTreeMap::from([(parameter, arena.zero())]));
-                let linear = !arena.depends_on(slope, &BTreeSet::from([parameter]));
-                (linear && !arena.is_zero(slope)).then(|| (parameter, arena.neg(arena.div(rest, slope))))
-            });
+            let solved = arena
+                .symbols_of(&[*formula])
+                .into_iter()
+                .find_map(|parameter| Some((parameter, solved(arena, *formula, parameter)?)));
             let there = solved.map(|solved| Restriction { equal: BTreeMap::from([solved]), ..Restriction::default() });
             there.is_none_or(|there| self.shown(&there).map_or(true, |shown| !shown.hidden.is_empty()))
         };
         places.constants.into_iter().filter(lost).collect()
     }
+}
+
+/// What the symbol is where a formula that is linear in it vanishes.
+fn solved(arena: &Arena, formula: Expr, symbol: Symbol) -> Option<Expr> {
+    let slope = arena.derivative(formula, symbol);
+    let linear = !arena.is_zero(slope) && !arena.depends_on(slope, &BTreeSet::from([symbol]));
+    let rest = arena.substitute(formula, &BTreeMap::from([(symbol, arena.zero())]));
+    linear.then(|| arena.neg(arena.div(rest, slope)))
 }
 
 /// Inputs that are the only ones with which the plant rests, and the transform with it: read off the rates that hold no
@@ -294,7 +350,12 @@ impl Motion {
             _ if self.is_divided() => {
                 "the unknowns are identified on almost every motion that does not stay where one of these holds"
             }
-            (Some(true), true) => "the unknowns are identified without excitation by the inputs, even at rest",
+            (Some(true), true) if self.blind.is_empty() => {
+                "the unknowns are identified without excitation by the inputs, even at rest"
+            }
+            (Some(true), true) => {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
+            }
             (Some(true), false) => "the unknowns are identified while the plant moves, also with constant inputs",
             (Some(false), _) => "the unknowns are identified under excitation: keep the inputs varying",
             (None, _) => {
@@ -325,6 +386,7 @@ impl Blind {
                 format!("{} is constant", names.join(", "))
             }
             Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+            Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
             Place::Part(sides) => {
                 let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", arena.print(*expr), side.sign());
                 sides.iter().map(side).collect::<Vec<_>>().join(" and ")
@@ -334,6 +396,9 @@ impl Blind {
 
     fn line(&self, plant: &Plant) -> String {
         let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        if matches!(self.place, Place::Unshown(_)) {
+            return format!("while {}, it was not decided what is identified", self.worded(plant));
+        }
         let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
         format!("while {}, {seen} is identified", self.worded(plant))
     }
@@ -401,9 +466,24 @@ mod tests {
         assert_eq!(
             of(frame),
             [
-                "the unknowns are identified without excitation by the inputs, even at rest",
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these motions",
                 "while `w = 0`, only `z1` is identified"
             ]
         );
+    }
+
+    #[test]
+    fn inputs_at_which_rows_with_their_derivatives_lose_rank_are_listed() {
+        let but = "the unknowns are identified without excitation by the inputs, even at rest, but for these motions";
+        let cells = |rates: &str| format!("parameters: {{k: 2}}\nx: [a, b]\ny: [r]\nu: [v, w]\n{rates}\nphi: [a, b]");
+        let told = |rates: &str| of(&cells(&format!("{rates}\nf_y: {{r: a + b}}")));
+        assert_eq!(told("f_x: {a: v*a, b: w*b}"), [but, "while `v = w`, only `z1 + z2` is identified"]);
+        assert_eq!(told("f_x: {a: -k*v*a, b: -k*b}"), [but, "while `v = 1`, only `z1 + z2` is identified"]);
+        assert_eq!(
+            told("f_x: {a: -(1 + v^2)*a, b: -(2 + v)*b}"),
+            [but, "while `v*(v - 1) - 1 = 0`, it was not decided what is identified"]
+        );
+        let turned = "x: [a, b]\ny: [q, r]\nu: [v]\nf_x: {a: q*a, b: -q*b}\nf_y: {q: v, r: a + b}\nphi: [a, b]";
+        assert_eq!(of(turned), [but, "while `q = 0`, it was not decided what is identified"]);
     }
 }

@@ -24,6 +24,8 @@ use crate::plant::Plant;
 pub(super) struct Places {
     /// Conditions on signals, each of which makes it vanish.
     pub signals: Vec<String>,
+    /// What is zero there, in the same order.
+    pub zeros: Vec<Expr>,
     /// Combinations of the parameters that make it vanish, of which no sign is known: nothing that a signal could mend.
     pub constants: Vec<Expr>,
     /// Whether there is no other place.
@@ -159,6 +161,7 @@ impl<'a> Volume<'a> {
         };
         if !places.signals.contains(&place) {
             places.signals.push(place);
+            places.zeros.push(formula);
         }
         Ok(())
     }

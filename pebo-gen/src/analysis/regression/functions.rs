@@ -11,7 +11,7 @@ use crate::cas::tidy::shortest;
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
-use crate::source::{Code, Diagnostic, Span};
+use crate::source::{Code, Diagnostic};
 
 /// A regression in functions of theta, if theta can be recovered from them: a dynamic one with a row for each
 /// output, an implicit one with so many rows of primitives before these.
@@ -77,8 +77,8 @@ pub(super) fn under_derivative(
     over_parameterised(plant, domain, left_inverse, (outputs.to_vec(), outputs.len()), separated, found)
 }
 
-/// The refusal, where theta is determined only up to whole turns and a state is lost by that: one that does
-/// not move by a constant, or an angle that moves by a part of its period. Else at most a warning.
+/// The refusal, where theta is determined only up to multiples of a step and a state is lost by that: one that is no angle
+/// and moves with it, or an angle that moves by a part of its period.
 pub(super) fn turned_away(
     plant: &Plant,
     domain: &Domain,
@@ -88,60 +88,63 @@ pub(super) fn turned_away(
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
     let arena = &plant.arena;
-    let turn = arena.mul(arena.number(2), arena.pi());
-    let mut ambiguous = false;
-    for &index in &recovered.turning {
-        let turned = |expr: Expr, symbol: Symbol| {
-            let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
+    for &(index, step) in &recovered.turning {
+        let turned = |expr: Expr, symbol: Symbol, step: Expr| {
+            let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), step))]);
             shortest(arena, domain, arena.sub(arena.substitute(expr, &moved), expr))
         };
         for &(state, formula) in &left_inverse.x {
-            let shift = turned(formula, plant.z[index]);
+            let shift = turned(formula, plant.z[index], step);
             let kept = match plant.period(state) {
-                Some(period) => is_whole_turns(arena, domain, arena.div(arena.mul(shift, turn), period)),
-                None => arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s)),
+                Some(period) => is_whole_turns(arena, domain, arena.div(arena.mul(shift, arena.turn()), period)),
+                None => decide(arena, shift, domain).is_zero(),
             };
             if kept {
-                // What a turn moves is an angle; one that was declared as such needs no warning.
-                ambiguous |= plant.period(state).is_none() && !arena.is_zero(shift);
                 continue;
             }
-            // Whether the outputs themselves are blind to the turn, or only the formula for theta.
-            let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index]), domain).is_zero());
-            found.push(lost_by_turns(plant, index, state, shift));
-            let verdict = if blind { Verdict::Refuted } else { Verdict::Undecided };
+            // Whether the outputs themselves are blind to the step, or only the formula for theta; and whether the domain
+            // holds the states on both sides of it.
+            let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index], step), domain).is_zero());
+            let bounded = domain.facts.iter().any(|(fact, _)| arena.symbols_of(&[fact]).contains(&state));
+            found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
+            let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
             return Some(Claim { verdict, result: None });
         }
     }
-    found.extend(ambiguous.then(|| up_to_turns(plant)));
     None
 }
 
-/// What a turn of an unknown does to a state.
-fn lost_by_turns(plant: &Plant, index: usize, state: Symbol, shift: Expr) -> Diagnostic {
+/// What a step of an unknown does to a state.
+fn lost_by_turns(
+    plant: &Plant,
+    (index, step): (usize, Expr),
+    (state, shift): (Symbol, Expr),
+    blind: bool,
+) -> Diagnostic {
     let arena = &plant.arena;
-    let name = arena.name(state);
+    let (name, number) = (arena.name(state), index + 1);
+    let (step, moved) = (arena.print(step), arena.print(shift));
     let diagnostic = Diagnostic::error(
         Code::UnknownUpToTurns,
         plant.phi[index].span,
-        format!("{name} is not determined: theta{} is known only up to whole turns", index + 1),
+        format!("{name} is not determined: theta{number} is known only up to multiples of {step}"),
     )
-    .label(format!("a whole turn of this component changes {name} by `{}`", arena.print(shift)))
-    .note("the outputs depend on this component only through its sine and cosine");
+    .label(format!("where this component changes by {step}, {name} changes by `{moved}`"))
+    .note(if blind {
+        "the outputs depend on this component only through its sine and cosine"
+    } else {
+        "no formula was found that recovers theta from the unknowns of the regression but by the angle of a sine and cosine"
+    });
+    let is_constant = arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s));
     match plant.period(state) {
         Some(period) => diagnostic.help(format!(
             "declare a period under `angles` that divides this change, instead of `{}`, or measure another output",
             arena.print(period)
         )),
+        None if is_constant => diagnostic.help(format!(
+            "if {name} is an angle, declare its period: `angles: {{{name}: {moved}}}`; if not, measure another output"
+        )),
         None => diagnostic
             .help("choose a phi in which the other states do not need this component, or measure another output"),
     }
-}
-
-/// What to know where theta enters through sine and cosine alone.
-fn up_to_turns(plant: &Plant) -> Diagnostic {
-    let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
-    Diagnostic::warning(Code::UnknownUpToTurns, span, "theta is determined only up to whole turns")
-        .label("the outputs depend on this transform only through its sine and cosine")
-        .help("if the recovered state is an angle, declare it under `angles`")
 }

@@ -88,6 +88,19 @@ pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic 
     .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
 }
 
+/// A rate that is linear in functions of theta from which theta was not found.
+pub(super) fn not_recovered(plant: &Plant, index: usize, span: Span, functions: &str) -> Diagnostic {
+    let output = plant.arena.name(plant.y[index].symbol);
+    Diagnostic::error(
+        Code::RegressionUndecided,
+        span,
+        format!("the rate of {output} is linear in functions of theta, but theta was not recovered from them"),
+    )
+    .label("not an affine function of phi with coefficients in y and u")
+    .note(format!("the functions of theta: {functions}"))
+    .help("choose a phi in which this rate is affine, or give an identity under `identities`")
+}
+
 /// Why a rate is no affine function of the transform, as points of the domain show it.
 ///
 /// A second derivative, where the transform has as many components as there are states: it is then one-to-one on a

@@ -13,7 +13,7 @@ use crate::cas::frozen::Frozen;
 use crate::cas::poly::Monomial;
 use crate::cas::rational::Rational;
 use crate::cas::zero::{Answer, decide};
-use crate::cas::{Expr, Symbol};
+use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::plant::Plant;
 
 use crate::analysis::left_inverse::is_whole_turns;
@@ -231,8 +231,9 @@ pub(in crate::analysis) fn join_dependent(
 pub(in crate::analysis) struct Recovered {
     /// An entry for each theta, in the eta symbols.
     pub theta: Vec<Expr>,
-    /// Positions of those that are determined only up to whole turns, as from sine and cosine of theta.
-    pub turning: Vec<usize>,
+    /// Positions of those that are determined only up to multiples of a step, as from sine and cosine of theta, which have
+    /// the step 2 pi; with the step.
+    pub turning: Vec<(usize, Expr)>,
 }
 
 /// theta from its functions, if they determine it at least up to whole turns.
@@ -262,9 +263,28 @@ pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr])
         let candidates = solved.get(theta)?.iter().filter(|f| !arena.depends_on(**f, &unknown));
         let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
         let exact = candidates.clone().find(|f| decide(arena, difference(**f), domain).is_zero());
-        recovered.turning.extend(exact.is_none().then_some(index));
-        let formula = exact.or_else(|| candidates.clone().find(|f| is_whole_turns(arena, domain, difference(**f))));
-        recovered.theta.push(*formula?);
+        if let Some(formula) = exact {
+            recovered.theta.push(*formula);
+            continue;
+        }
+        let (formula, step) = candidates.clone().find_map(|formula| {
+            let per_turn = per_turn(arena, *formula);
+            let turns = arena.div(difference(*formula), per_turn);
+            let step = arena.mul(arena.turn(), per_turn);
+            is_whole_turns(arena, domain, turns).then_some((*formula, step))
+        })?;
+        recovered.theta.push(formula);
+        recovered.turning.push((index, step));
     }
     Some(recovered)
+}
+
+/// By how much a formula grows with the angle that it is a multiple of; one where it is none.
+fn per_turn(arena: &Arena, formula: Expr) -> Expr {
+    let Node::Product(product) = arena.node(formula) else { return arena.one() };
+    let is_angle = |base: &Expr| matches!(arena.node(*base), Node::Call(Function::Atan2, _));
+    match product.factors.iter().find(|(base, exponent)| is_angle(base) && exponent.is_one()) {
+        Some((angle, _)) => arena.div(formula, *angle),
+        None => arena.one(),
+    }
 }

@@ -58,13 +58,49 @@ fn what_could_not_be_decided_of_theta_is_said() {
     assert!(said.contains("it could not be decided whether theta itself can be identified"), "{said}");
 }
 
+/// What an unknown is known up to is a step of the state, which has to be its period.
 #[test]
-fn a_turn_that_moves_a_state_by_a_constant_is_a_warning() {
-    let (_, derivation) = derive(
-        "parameters: [k]\nassume: [k > 0]\nx: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\n\
-         f_y: {a: sin(q/k), b: cos(q/k)}\nphi: [q/k]",
-    );
-    assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Accepted, vec![Code::UnknownUpToTurns]));
+fn a_state_that_is_known_up_to_steps_has_to_be_an_angle() {
+    let rotor = "parameters: [k]\nassume: [k > 0]\nx: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\n\
+                 f_y: {a: sin(q/k), b: cos(q/k)}\n";
+    let cosine = |rate: &str| {
+        format!("parameters: {{n: 3}}\nx: [q]\ny: [a]\nu: [w]\nf_x: {{q: w}}\nf_y: {{a: {rate}}}\nphi: [q]\n")
+    };
+    let (rejected, open) = (Outcome::Rejected, Outcome::Undecided);
+    let cases = [
+        (format!("{rotor}phi: [q/k]"), rejected),
+        (format!("{rotor}phi: [q/k]\nangles: {{q: 2*pi*k}}"), Outcome::Accepted),
+        (format!("{rotor}phi: [q]\nangles: {{q: 2*pi*k}}"), Outcome::Accepted),
+        (format!("{rotor}phi: [q]\nangles: {{q: 4*pi*k}}"), rejected),
+        (format!("{}angles: {{q: 2*pi/n}}", cosine("cos(n*q)")), Outcome::Accepted),
+        (format!("{}angles: {{q: 2*pi}}", cosine("cos(n*q)")), rejected),
+        (format!("{}angles: {{q: pi}}", cosine("cos(2*q)")), Outcome::Accepted),
+        (format!("{}angles: {{q: 4*pi}}", cosine("cos(q/2)")), Outcome::Accepted),
+        // What is known up to 4 pi is known up to 2 pi.
+        (format!("{}angles: {{q: 2*pi}}", cosine("cos(q/2)")), Outcome::Accepted),
+        (cosine("cos(q)"), rejected),
+        // The domain holds no other state, which no formula for theta uses.
+        (format!("{}assume: [10 < q, q < 12]", cosine("cos(q)")), open),
+        // theta1 is a quotient of the unknowns, which is not found.
+        (cosine("q*cos(q)"), open),
+    ];
+    for (model, expected) in cases {
+        let (_, derivation) = derive(&model);
+        assert_eq!(derivation.outcome, expected, "{model}");
+        if expected != Outcome::Accepted {
+            assert_eq!(codes(&derivation), [Code::UnknownUpToTurns], "{model}");
+        }
+    }
+}
+
+/// Which way a rate bends is known of x, not of z.
+#[test]
+fn a_rate_that_bends_is_what_it_is_on_the_domain() {
+    for (assume, rate) in [("p > 5", "abs(p - 5)*p"), ("p < 0", "abs(p)*p"), ("p > 1", "max(p, 1)^2")] {
+        let model =
+            format!("x: [p]\ny: [q]\nu: [v]\nassume: [{assume}]\nf_x: {{p: v}}\nf_y: {{q: '{rate}'}}\nphi: [p]");
+        assert_eq!(derive(&model).1.outcome, Outcome::Accepted, "{model}");
+    }
 }
 
 /// The rate of b is zero, which no rule of algebra shows.
