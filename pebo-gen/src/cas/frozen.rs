@@ -142,17 +142,13 @@ fn upright(arena: &Arena, expr: Expr) -> Expr {
             turned = true;
         }
     }
-    // A minus that is left goes into a difference, below rather than above; one of the author's stays above.
-    let takes = |(base, power): &(Expr, Rational), below: bool| {
-        is_odd(power) && power.is_negative() == below && (below || power.is_one()) && balance(*base) == Some(0)
-    };
-    let position = |below| factors.iter().position(|factor| takes(factor, below));
-    if coefficient.is_negative()
-        && let Some(position) = position(true).or_else(|| if turned { position(false) } else { None })
+    // A minus that this leaves goes into a difference above; below, entries of one matrix share what they divide by.
+    if turned
+        && coefficient.is_negative()
+        && let Some((base, _)) = factors.iter_mut().find(|(base, power)| power.is_one() && balance(*base) == Some(0))
     {
-        factors[position].0 = arena.neg(factors[position].0);
+        *base = arena.neg(*base);
         coefficient = -&coefficient;
-        turned = true;
     }
     if turned { arena.multiply(&coefficient, factors) } else { expr }
 }
@@ -215,7 +211,7 @@ mod tests {
             (arena.div(difference, low), "(z - q)/(1 - z + q)"),
             (arena.mul(r, difference), "r*(q - z)"),
             (arena.neg(arena.mul(r, difference)), "-r*(q - z)"),
-            (arena.neg(arena.div(r, difference)), "r/(z - q)"),
+            (arena.neg(arena.div(r, difference)), "-r/(q - z)"),
             (arena.mul(r, arena.power(low, &Rational::from(2))), "r*(z - q - 1)^2"),
         ];
         for (written, expected) in cases {
