@@ -62,7 +62,7 @@ mod of_{name} {{
 
     #[inline(never)]
     fn step_{name}(observer: &mut Observer, y: &SVector<f64, NY>, u: &SVector<f64, NU>) -> f64 {{
-        observer.step(y, u, black_box(1e-3)).map_or(0.0, |x| x[0])
+        observer.step(*y, *u, black_box(1e-3)).map_or(0.0, |x| SVector::from(x)[0])
     }}
 
     pub fn run(steps: u32) {{

@@ -88,6 +88,83 @@ def arm(n):
     )
 
 
+def chain(n):
+    """A planar chain of n links that moves point masses, one at the end of each second link; a last one without a partner is
+    a rotor about its joint. Angles are relative to the link before.
+
+    With J the Jacobian of the positions of the masses and of the rotor's angle, M = J'M_0 J and T is the inverse of J.
+    """
+    joints, pairs = range(1, n + 1), range(1, n // 2 + 1)
+    define = {}
+    for k in joints:
+        angle = "+".join(f"y{i}" for i in range(1, k + 1))
+        define |= {f"c{k}": f"l{k}*cos({angle})", f"s{k}": f"l{k}*sin({angle})"} if k <= 2 * len(pairs) else {}
+    # X_i_k, Y_i_k: from joint i to mass k, along the vertical and across.
+    for k in pairs:
+        for i in range(2 * k, 0, -1):
+            beyond = i < 2 * k
+            define[f"X_{i}_{k}"] = f"s{i}" + f" + X_{i + 1}_{k}" * beyond
+            define[f"Y_{i}_{k}"] = f"c{i}" + f" + Y_{i + 1}_{k}" * beyond
+    # T = J^-1 by pairs of links: the rows of a pair undo what the pairs before it move its mass by.
+    inverse = {(i, j): "0" for i in joints for j in joints}
+    for k in pairs:
+        a, b = 2 * k - 1, 2 * k
+        define[f"d{k}"] = f"l{a}*l{b}*sin(y{b})"
+        define |= {f"T_{a}_{a}": f"Y_{b}_{k}/d{k}", f"T_{a}_{b}": f"X_{b}_{k}/d{k}"}
+        define |= {f"T_{b}_{a}": f"-Y_{a}_{k}/d{k}", f"T_{b}_{b}": f"-X_{a}_{k}/d{k}"}
+        inverse |= {(i, j): f"T_{i}_{j}" for i in (a, b) for j in (a, b)}
+        for j in range(1, a):
+            moved = [i for i in range(1, a) if inverse[i, j] != "0"]
+            define[f"R_{a}_{j}"] = " + ".join(f"(-X_{i}_{k})*{inverse[i, j]}" for i in moved)
+            define[f"R_{b}_{j}"] = " + ".join(f"Y_{i}_{k}*{inverse[i, j]}" for i in moved)
+            for i in (a, b):
+                define[f"T_{i}_{j}"] = f"-T_{i}_{a}*R_{a}_{j} - T_{i}_{b}*R_{b}_{j}"
+                inverse[i, j] = f"T_{i}_{j}"
+    if n % 2:
+        for j in range(1, n):
+            define[f"T_{n}_{j}"] = "-(" + " + ".join(inverse[i, j] for i in range(1, n) if inverse[i, j] != "0") + ")"
+            inverse[n, j] = f"T_{n}_{j}"
+        inverse[n, n] = "1"
+
+    def inertia(i, j):
+        moving = [k for k in pairs if max(i, j) <= 2 * k]
+        return " + ".join([f"m{k}*(X_{i}_{k}*X_{j}_{k} + Y_{i}_{k}*Y_{j}_{k})" for k in moving] + ["I"] * (n % 2))
+
+    parts = [f"m{k}" for k in pairs] + [f"l{k}" for k in range(1, 2 * len(pairs) + 1)] + ["I"] * (n % 2)
+    matrix = {"M": _list(_list(inertia(i, j) for j in joints) for i in joints)}
+    matrix |= {"V": " + ".join(f"m{k}*g*X_1_{k}" for k in pairs)}
+    matrix |= {"G": _list(_list(str(int(i == j)) for j in joints) for i in joints)}
+    matrix |= {"T": _list(_list(inverse[i, j] for j in joints) for i in joints)}
+    return _model(
+        f"chain{n}",
+        parameters=_list(parts + ["g"]),
+        x=_list(f"x{k}" for k in joints),
+        y=_list(f"y{k}" for k in joints),
+        u=_list(f"u{k}" for k in joints),
+        assume=_list([f"{part} > 0" for part in parts] + [f"sin(y{2 * k}) > 0" for k in pairs]),
+        define=_map(define),
+        mechanical=_map(matrix),
+    )
+
+
+def phases(n):
+    """A boost converter of n interleaved phases with losses in the coils, the output voltage measured."""
+    coils = range(1, n + 1)
+    parts = [f"{letter}{k}" for k in coils for letter in "LR"] + ["C", "G"]
+    flowing = " + ".join(f"(1 - d{k})*i{k}" for k in coils)
+    return _model(
+        f"phases{n}",
+        parameters=_list(parts + ["E"]),
+        x=_list(f"i{k}" for k in coils),
+        y="[v]",
+        u=_list(f"d{k}" for k in coils),
+        assume=_list([f"{part} > 0" for part in parts] + [f"0 < d{k} < 1" for k in coils]),
+        f_x=_map({f"i{k}": f"(E - R{k}*i{k} - (1 - d{k})*v)/L{k}" for k in coils}),
+        f_y=_map({"v": f"({flowing} - G*v)/C"}),
+        phi=_list(f"i{k}" for k in coils),
+    )
+
+
 def compartments(n):
     """A chain of n compartments with linear flows both ways and losses, the last one measured."""
     rates = {}
@@ -142,7 +219,7 @@ def terms(n):
     return _model(f"terms{n}", parameters=names, x="[x]", y="[y]", f_x=_map({"x": total}), f_y="{y: x}", phi="[x]")
 
 
-FAMILIES = {family.__name__: family for family in (cuk, lti, symbolic, arm, compartments, grid, terms)}
+FAMILIES = {family.__name__: family for family in (cuk, lti, symbolic, arm, chain, phases, compartments, grid, terms)}
 
 
 def _model(name, **keys):

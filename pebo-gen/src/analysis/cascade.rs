@@ -180,11 +180,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                // What is free of x as it is written, then the normal form.
-                let written = as_written(arena, domain, rate, &hidden).filter(|form| !arena.depends_on(*form, &hidden));
-                let equal = |form: &Expr| decide(arena, arena.sub(*form, tidied), domain).is_zero();
-                let mut forms: Vec<Expr> = written.into_iter().chain([plain]).filter(equal).collect();
-                forms.push(tidied);
+                // What is free of x as it is written, then what cancels, then the normal form.
+                let forms = as_written(arena, domain, rate, &hidden);
+                let forms = forms.into_iter().chain([shortest(arena, domain, rate), plain]);
+                let equal = |form: &Expr| {
+                    !arena.depends_on(*form, &hidden) && decide(arena, arena.sub(*form, tidied), domain).is_zero()
+                };
+                let forms: Vec<Expr> = forms.filter(equal).chain([tidied]).collect();
                 let own = authors(arena, rate, &forms).unwrap_or(tidied);
                 Component::Free(asking_less(arena, domain, own, &forms))
             }

@@ -16,6 +16,7 @@ mod singular;
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::rank::{full_rank, null_vectors, rank_seen};
+use crate::cas::reducible::reducible;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{Class, Plant};
@@ -37,6 +38,10 @@ pub(super) fn prove(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Identifiability> {
+    if let Some(equation) = reducible(&plant.arena, domain) {
+        found.push(falls_apart(plant, equation));
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
     let rates = plant.rates().into_values().chain(cascade.h.iter().copied());
     let formulas = Formulas {
         regressor: regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect(),
@@ -47,6 +52,18 @@ pub(super) fn prove(
     };
     divided::decide(plant, domain, regression, formulas, found, on)
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
+}
+
+/// A domain of several parts, on one of which a plant may stay.
+fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
+    let zero = plant.arena.print(equation);
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        plant.identities.first().map_or_else(|| at_phi(plant), |identity| identity.span),
+        "the identities hold on several parts of the domain, and a rank at a point of one says nothing of the others",
+    )
+    .label(format!("`{zero} = 0` holds in several ways"))
+    .help("write the factor that is zero under `identities`, or exclude the others under `assume`")
 }
 
 /// Decides it where the formulas are analytic, so that what is seen at a point holds almost everywhere.

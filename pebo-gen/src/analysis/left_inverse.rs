@@ -10,6 +10,7 @@ use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
+use crate::cas::frozen::Frozen;
 use crate::cas::zero::{self, Answer, decide, refute};
 use crate::cas::{Arena, Expr, Function, Symbol};
 use crate::plant::{Formula, Plant};
@@ -18,7 +19,7 @@ use crate::source::{Code, Diagnostic, Span};
 use crate::analysis::design::{Claim, LeftInverse, Origin, Verdict, Witness};
 use crate::cas::rank::null_vectors;
 use crate::cas::solve::{Equation, solve};
-use crate::cas::tidy::{operations, shortest};
+use crate::cas::tidy::{functions, operations, shortest};
 
 /// Proves or refutes the left inverse.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Claim<LeftInverse> {
@@ -169,12 +170,7 @@ fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
 /// Solves the transform for the states.
 fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, Obstacle> {
     let arena = &plant.arena;
-    let equations: Vec<Equation> = plant
-        .phi
-        .iter()
-        .zip(&plant.z)
-        .map(|(phi, z)| Equation { formula: phi.expr, value: arena.of_symbol(*z) })
-        .collect();
+    let equations = equations_of(plant, plant.transform());
     let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).collect();
     // Where a class proposes a formula for every state, nothing is solved for.
     let proposed = |state: &Symbol| plant.proposal.phi_left.iter().any(|(own, _)| own == state);
@@ -185,6 +181,17 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
             solved.entry(state).or_insert(candidates);
         }
     }
+    // What is known of the functions of y alone is known of the equations above; as they are written they compute better.
+    let known = plant.hidden();
+    let mut frozen = Frozen::new(arena, &known);
+    let kept = frozen.freeze(&plant.transform());
+    let as_written = if solved.is_empty() || frozen.is_empty() {
+        BTreeMap::new()
+    } else {
+        let equations = equations_of(plant, kept);
+        solve(arena, domain, &equations, &states).unwrap_or_default()
+    };
+    let own = functions(arena, &plant.transform());
     Ok(plant
         .x
         .iter()
@@ -199,12 +206,28 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
             if candidates.len() > 1 {
                 candidates.sort_by_cached_key(|formula| unshown(plant, domain, *formula).len());
             }
-            let right = |formula: &&Expr| check(plant, domain, state.symbol, **formula).1.is_zero();
+            let right = |formula: &Expr| check(plant, domain, state.symbol, *formula).1.is_zero();
+            let found = candidates.iter().copied().find(right);
+            let written = as_written.get(&state.symbol).into_iter().flatten().map(|formula| frozen.thaw(*formula));
+            let forms = found.into_iter().chain(written.filter(right)).map(|formula| shortest(arena, domain, formula));
+            // Then the one in the author's functions: `z/tanh(y)`, and nothing in exponentials.
+            let merit = |formula: &Expr| {
+                let foreign = functions(arena, &[*formula]).into_iter().filter(|call| {
+                    !own.contains(call) && arena.symbols_of(&[*call]).is_disjoint(&plant.z.iter().copied().collect())
+                });
+                (unshown(plant, domain, *formula).len(), foreign.count(), operations(arena, *formula))
+            };
             // A candidate that is wrong may still show that the transform is not one-to-one.
-            let formula = candidates.iter().find(right).or(candidates.first())?;
-            Some((state.symbol, shortest(arena, domain, *formula), state.rate.span))
+            let formula = forms.min_by_key(merit).or(candidates.first().copied())?;
+            Some((state.symbol, shortest(arena, domain, formula), state.rate.span))
         })
         .collect())
+}
+
+/// The transform, in these formulas, equal to z.
+fn equations_of(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
+    let values = plant.z.iter().map(|z| plant.arena.of_symbol(*z));
+    transform.into_iter().zip(values).map(|(formula, value)| Equation { formula, value }).collect()
 }
 
 /// Solves the transform together with the identities; of what comes out, what is a function of z and y.

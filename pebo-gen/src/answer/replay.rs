@@ -56,7 +56,10 @@ impl Answer {
         let mut answer = Self::of(derived, source);
         if derived.derivation.outcome == Outcome::Accepted {
             match run(derived, ask, tape) {
-                Ok(replayed) => answer.replay = Some(replayed),
+                Ok((replayed, advice)) => {
+                    answer.replay = Some(replayed);
+                    answer.diagnostics.extend(advice);
+                }
                 Err((standing, found)) => answer.refuse(standing, found),
             }
         }
@@ -64,8 +67,13 @@ impl Answer {
     }
 }
 
-/// Runs the observer; what the call, the model or the recording does not say well is the caller's mistake.
-fn run(derived: &Derived, ask: &Ask, tape: Tape<'_>) -> Result<Replayed, (Standing, Vec<Diagnostic>)> {
+/// Runs the observer; what the call, the model or the recording does not say well is the caller's mistake. Beside what came
+/// of it what there is to say if it did not converge.
+fn run(
+    derived: &Derived,
+    ask: &Ask,
+    tape: Tape<'_>,
+) -> Result<(Replayed, Option<Diagnostic>), (Standing, Vec<Diagnostic>)> {
     let unreadable = |found: Unreadable| (Standing::Malformed, vec![found.explain(tape.name)]);
     let mut log = Log::open(tape.name, tape.recording).map_err(unreadable)?;
     let replay = derived.replay(&log).map_err(|found| (Standing::Malformed, found))?;
@@ -73,11 +81,13 @@ fn run(derived: &Derived, ask: &Ask, tape: Tape<'_>) -> Result<Replayed, (Standi
         Some(watch) => watch(Stage::Replay { rows, bytes }),
         None => ControlFlow::Continue(()),
     };
-    replay.run(&mut log, tape.estimates, &mut watch).map_err(|failure| {
+    let replayed = replay.run(&mut log, tape.estimates, &mut watch).map_err(|failure| {
         let standing = match failure {
             Failure::Unreadable(_) | Failure::Unwritten(_) | Failure::Silent { rows: 0, .. } => Standing::Malformed,
             _ => Standing::Refused,
         };
         (standing, vec![replay.explain(&failure, tape.name)])
-    })
+    })?;
+    let advice = replay.advise(&replayed);
+    Ok((replayed, advice))
 }

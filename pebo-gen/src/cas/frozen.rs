@@ -1,11 +1,11 @@
-//! Formulas whose functions and sums of known signals stay as they are written.
+//! Formulas some of whose functions and sums stay as they are written.
 //!
 //! In: formulas, and the symbols that a question is about. Out: the same over fresh symbols, one for each function, each
-//! root and each factor that is a sum, if it is free of those symbols; and the way back. What is solved over them is an
-//! identity whatever they stand for, so it is one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))`
-//! and `(T - 300)^3`, which a normal form would write with exponentials, with powers of a cosine, with `q - 1` below the
-//! bar, and as a polynomial whose terms cancel to nothing near T = 300. What needs a relation among them is not seen this
-//! way.
+//! root and each factor that is a sum, if it is free of those symbols; and the way back. Or in: formulas and some of their
+//! functions, for which the symbols stand then. What is solved over them is an identity whatever they stand for, so it is
+//! one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))` and `(T - 300)^3`, which a normal form would
+//! write with exponentials, with powers of a cosine, with `q - 1` below the bar, and as a polynomial whose terms cancel to
+//! nothing near T = 300. What needs a relation among them is not seen this way.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,16 +19,29 @@ use super::{Arena, Expr, Node, Symbol};
 /// The fresh symbols, with what they stand for.
 pub(crate) struct Frozen<'a> {
     arena: &'a Arena,
-    about: &'a BTreeSet<Symbol>,
+    which: Which<'a>,
     /// Over the symbols: what was replaced; of sums also their multiples, by their own with leading coefficient 1.
     symbols: FxHashMap<Expr, Expr>,
     values: BTreeMap<Symbol, Expr>,
 }
 
+/// What is replaced.
+enum Which<'a> {
+    /// Functions, roots and factors of what is free of these symbols.
+    FreeOf(&'a BTreeSet<Symbol>),
+    /// These functions.
+    Calls(&'a BTreeSet<Expr>),
+}
+
 impl<'a> Frozen<'a> {
     /// For a question about these symbols.
     pub(crate) fn new(arena: &'a Arena, about: &'a BTreeSet<Symbol>) -> Self {
-        Self { arena, about, symbols: FxHashMap::default(), values: BTreeMap::new() }
+        Self { arena, which: Which::FreeOf(about), symbols: FxHashMap::default(), values: BTreeMap::new() }
+    }
+
+    /// For a question in which these functions are to stay.
+    pub(crate) fn calls(arena: &'a Arena, calls: &'a BTreeSet<Expr>) -> Self {
+        Self { arena, which: Which::Calls(calls), symbols: FxHashMap::default(), values: BTreeMap::new() }
     }
 
     /// Formulas over the fresh symbols.
@@ -37,18 +50,20 @@ impl<'a> Frozen<'a> {
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
         for expr in arena.postorder(exprs) {
             let frozen = match arena.node(expr) {
-                Node::Call(..) if self.is_signal(expr) => self.symbol_of(expr),
+                Node::Call(..) if self.stays(expr) => self.symbol_of(expr),
                 Node::Product(product) => {
                     let factors: Vec<(Expr, Rational)> = product
                         .factors
                         .iter()
                         .map(|(base, exponent)| match Rational::new(1, exponent.denominator()) {
                             // A power of the root.
-                            Some(share) if !exponent.is_integer() && self.is_signal(*base) => {
+                            Some(share) if !exponent.is_integer() && self.factors_stay(*base) => {
                                 let root = self.symbol_of(arena.power(*base, &share));
                                 (root, Rational::from(exponent.numerator()))
                             }
-                            _ if is_whole(arena, *base) && self.is_signal(*base) => (self.sum(*base), exponent.clone()),
+                            _ if is_whole(arena, *base) && self.factors_stay(*base) => {
+                                (self.sum(*base), exponent.clone())
+                            }
                             _ => (known[base], exponent.clone()),
                         })
                         .collect();
@@ -71,10 +86,20 @@ impl<'a> Frozen<'a> {
         if self.is_empty() { expr } else { upright(self.arena, self.arena.substitute(expr, &self.values)) }
     }
 
-    /// Whether an expression varies, but not with what the question is about.
-    fn is_signal(&self, expr: Expr) -> bool {
-        let symbols = self.arena.symbols_of(&[expr]);
-        !symbols.is_empty() && symbols.is_disjoint(self.about)
+    /// Whether a function is replaced.
+    fn stays(&self, expr: Expr) -> bool {
+        match &self.which {
+            Which::FreeOf(about) => {
+                let symbols = self.arena.symbols_of(&[expr]);
+                !symbols.is_empty() && symbols.is_disjoint(about)
+            }
+            Which::Calls(calls) => calls.contains(&expr),
+        }
+    }
+
+    /// Whether a root of this is replaced, and this where it is a factor.
+    fn factors_stay(&self, base: Expr) -> bool {
+        matches!(self.which, Which::FreeOf(_)) && self.stays(base)
     }
 
     /// The symbol of a sum, or the multiple of that of a sum in proportion: `q0 - q` after `q - q0`.
@@ -243,5 +268,18 @@ mod tests {
         assert!(!frozen.is_empty());
         let back: Vec<Expr> = formulas.iter().map(|formula| frozen.thaw(*formula)).collect();
         assert_eq!(back, written);
+    }
+    #[test]
+    fn functions_that_stay_leave_the_others_to_the_normal_form() {
+        let arena = Arena::new();
+        let x = arena.variable("x");
+        let [sine, tanh] = [Function::Sin, Function::Tanh].map(|function| arena.call(function, &[x]));
+        let root = arena.sqrt(arena.mul(x, x));
+        let calls = BTreeSet::from([tanh]);
+        let mut frozen = Frozen::calls(&arena, &calls);
+        let whole = arena.sum([arena.mul(sine, tanh), root, arena.call(Function::Exp, &[tanh])]);
+        let shown: Vec<Expr> = frozen.freeze(&[whole]);
+        assert_eq!(arena.print(shown[0]), "sqrt(x^2) + sin(x)*signal1 + exp(signal1)");
+        assert_eq!(frozen.thaw(shown[0]), whole);
     }
 }

@@ -215,7 +215,7 @@ mod tests {
             let mut entry = || {
                 word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let value = i64::try_from(word >> 50).expect("14 bits") - (1 << 13);
-                if word % 5 == 0 {
+                if word.is_multiple_of(5) {
                     Integer::ZERO
                 } else {
                     Integer::from(value).shl(u32::try_from(word >> 20 & 1).unwrap() * scale)

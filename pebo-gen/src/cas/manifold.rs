@@ -96,6 +96,11 @@ impl Manifold {
         self.exact.open.first().copied()
     }
 
+    /// All of them.
+    pub(super) fn left_open(&self) -> &[Expr] {
+        &self.exact.open
+    }
+
     /// The exact step for a symbol.
     pub(super) fn steps(&self) -> &[Step] {
         &self.exact.steps

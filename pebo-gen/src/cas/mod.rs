@@ -38,6 +38,7 @@ mod print;
 pub(crate) mod rank;
 pub mod rational;
 mod rational_matrix;
+pub(crate) mod reducible;
 pub(crate) mod residues;
 pub(crate) mod solve;
 pub(crate) mod tidy;

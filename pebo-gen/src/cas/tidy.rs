@@ -9,7 +9,10 @@ use rustc_hash::FxHashMap;
 
 use super::asks::Want;
 use super::domain::Domain;
+use super::facts::Facts;
 use super::field::Field;
+use super::frozen::Frozen;
+use super::function::Function;
 use super::oriented::Orientation;
 use super::rational::Rational;
 use super::zero::decide;
@@ -26,19 +29,62 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
         return expr;
     }
     let domain = orientation.domain();
-    let normal = Field::over(arena, &domain.facts, &[expr]).and_then(|field| {
-        let fraction = field.fraction(expr)?;
-        Ok([Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction)])
-    });
-    let forms = normal.into_iter().flatten().flatten();
-    let turned = |form: Expr| [form, orientation.of(form)];
-    let forms = [expr].into_iter().chain(forms).flat_map(turned);
     let own = functions(arena, &[expr]);
+    let kept = |form: Expr| {
+        functions(arena, &[form]).iter().all(|call| {
+            own.contains(call) || domain.written.contains(call) || own.iter().any(|own| is_root_of(arena, *call, *own))
+        })
+    };
+    let mut forms = vec![expr];
+    if let Ok(field) = Field::over(arena, &domain.facts, &[expr]) {
+        forms.extend(written(&field, expr));
+        if forms.iter().skip(1).all(|form| !kept(*form)) {
+            forms.extend(in_own_functions(&field, &domain.facts, expr, &own, kept));
+        }
+    }
+    let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
     forms.fold(expr, |best, form| {
-        let kept = || functions(arena, &[form]).iter().all(|call| own.contains(call) || domain.written.contains(call));
-        let shorter = operations(arena, form) < operations(arena, best) && kept() && divides_as(arena, expr, form);
+        let shorter = operations(arena, form) < operations(arena, best) && kept(form) && divides_as(arena, expr, form);
         if shorter && asks_no_more(arena, domain, expr, form) { form } else { best }
     })
+}
+
+/// The ways to write the normal form.
+fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
+    let Ok(fraction) = field.fraction(expr) else { return Vec::new() };
+    let forms = [Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction)];
+    forms.into_iter().flatten().collect()
+}
+
+/// The same of a normal form that leaves those functions alone which it would write with others: that `tanh(u)` would
+/// be a quotient of exponentials does not keep `sqrt(q^2) - q^2/sqrt(q^2)` beside it from cancelling.
+fn in_own_functions(
+    field: &Field<'_>,
+    facts: &Facts,
+    expr: Expr,
+    own: &BTreeSet<Expr>,
+    kept: impl Fn(Expr) -> bool,
+) -> Vec<Expr> {
+    let arena = field.arena();
+    let foreign = |call: &Expr| field.fraction(*call).is_ok_and(|fraction| !kept(field.show(&fraction)));
+    let is_call = |call: &Expr| matches!(arena.node(*call), Node::Call(..));
+    let calls: BTreeSet<Expr> = own.iter().copied().filter(|call| is_call(call) && foreign(call)).collect();
+    let mut frozen = Frozen::calls(arena, &calls);
+    let over = frozen.freeze(&[expr])[0];
+    if frozen.is_empty() {
+        return Vec::new();
+    }
+    let Ok(field) = Field::over(arena, facts, &[over]) else { return Vec::new() };
+    written(&field, over).into_iter().map(|form| frozen.thaw(form)).collect()
+}
+
+/// Whether a call is the root of an even power: `abs(q)` is `sqrt(q^2)`.
+fn is_root_of(arena: &Arena, call: Expr, radicand: Expr) -> bool {
+    let (Node::Call(Function::Abs, inside), Node::Product(product)) = (arena.node(call), arena.node(radicand)) else {
+        return false;
+    };
+    let is_even = |power: &Rational| power.is_integer() && power.numerator().trailing_zeros() > 0;
+    product.factors.iter().any(|(base, power)| *base == inside[0] && is_even(power))
 }
 
 /// Whether no way to write the normal form is shorter: of a number, of a symbol, and of a sum of symbols with numbers for
@@ -213,4 +259,60 @@ pub(crate) fn operations(arena: &Arena, expr: Expr) -> usize {
             Node::Call(..) => FUNCTION,
         })
         .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::facts::Relation;
+
+    #[test]
+    fn what_cancels_leaves_beside_functions_that_stay() {
+        let arena = Arena::new();
+        let [p, q, u] = ["p", "q", "u"].map(|name| arena.variable(name));
+        let call = |function, argument| arena.call(function, &[argument]);
+        let root = arena.sqrt(arena.mul(q, q));
+        let over = arena.div(arena.mul(q, q), root);
+        let cancelled = arena.sub(root, over);
+        let speed = arena.scale(u, &Rational::from(5));
+        let wave = call(Function::Sin, arena.scale(p, &Rational::from(24)));
+        let pythagoras = arena.sum([
+            arena.power(call(Function::Sin, q), &Rational::from(2)),
+            arena.power(call(Function::Cos, q), &Rational::from(2)),
+            arena.number(-1),
+        ]);
+        let larger = arena.call(Function::Max, &[q, u]);
+        for (own, expected) in [
+            (call(Function::Tanh, speed), "tanh(5*u)"),
+            (call(Function::Sat, speed), "sat(5*u)"),
+            (arena.sub(call(Function::Sat, speed), larger), "sat(5*u) - max(q, u)"),
+            (wave, "sin(24*p)"),
+        ] {
+            for vanishing in [cancelled, arena.mul(p, cancelled), arena.mul(p, pythagoras)] {
+                let form = shortest(&arena, &Domain::default(), arena.add(own, vanishing));
+                assert_eq!(arena.print(form), expected, "{}", arena.print(vanishing));
+            }
+            let doubled = arena.sum([own, root, over]);
+            let form = shortest(&arena, &Domain::default(), doubled);
+            let shown = arena.print(form);
+            assert!(
+                shown.contains("2*abs(q)") && functions(&arena, &[form]).is_superset(&functions(&arena, &[own])),
+                "{shown}"
+            );
+        }
+    }
+
+    /// The magnitude is what the root is, and no way to write another function.
+    #[test]
+    fn a_magnitude_stands_for_the_root_of_a_square_alone() {
+        let arena = Arena::new();
+        let [p, q] = ["p", "q"].map(|name| arena.variable(name));
+        let larger = arena.call(Function::Max, &[p, q]);
+        let form = shortest(&arena, &Domain::default(), arena.mul(larger, arena.sub(p, q)));
+        assert!(!arena.print(form).contains("abs"), "{}", arena.print(form));
+        let root = arena.sqrt(arena.mul(q, q));
+        let mut domain = Domain::default();
+        domain.facts.assume(q, Relation::Positive);
+        assert_eq!(arena.print(shortest(&arena, &domain, root)), "q");
+    }
 }

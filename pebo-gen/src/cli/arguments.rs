@@ -237,6 +237,10 @@ pub(super) struct SimulateOptions {
     /// Run it so many times, with the seed and those after it, and show how the errors are spread
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub(super) runs: Option<u64>,
+    /// Set a parameter, or what stands under a key of the model file, such as `simulation.noise.v2`, as if the file said so;
+    /// can be given several times
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(super) set: Vec<String>,
     /// Whose estimates the control law uses: observer, truth, or a baseline's name
     #[arg(long, value_name = "NAME")]
     pub(super) feedback: Option<String>,
@@ -249,6 +253,10 @@ pub(super) struct ReplayOptions {
     /// The recording: CSV with the names of the columns in its first line; `-` reads standard input
     #[arg(long, value_name = "LOG.csv")]
     pub(super) data: PathBuf,
+    /// Set a parameter, or what stands under a key of the model file, such as `simulation.noise.v2`, as if the file said so;
+    /// can be given several times
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(super) set: Vec<String>,
     /// Write the estimates, and their errors where the state was measured, into this CSV file; `-` is standard output
     #[arg(short = 'o', long, value_name = "OUT.csv", visible_alias = "output")]
     pub(super) csv: Option<PathBuf>,

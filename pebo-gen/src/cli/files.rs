@@ -13,8 +13,13 @@ use super::standard::{self, reason};
 
 /// The answer on a model file, with the text that its diagnostics are about.
 pub(super) fn answer(path: &Path, ask: Ask) -> (Source, Answer) {
+    answer_with(path, &[], ask)
+}
+
+/// The same with settings of the call.
+pub(super) fn answer_with(path: &Path, settings: &[String], ask: Ask) -> (Source, Answer) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    match read(path) {
+    match read_with(path, settings) {
         Ok(source) => {
             let answer = pebo_gen::answer(&source, &ask.named(stem));
             (source, answer)
@@ -43,10 +48,10 @@ pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Sol
     }
 }
 
-/// The answer on a model file and a recording, with the text that its diagnostics are about.
-pub(super) fn replay(path: &Path, ask: Ask, tape: Tape<'_>) -> (Source, Answer) {
+/// The answer on a model file with settings of the call, and on a recording, with the text that its diagnostics are about.
+pub(super) fn replay(path: &Path, settings: &[String], ask: Ask, tape: Tape<'_>) -> (Source, Answer) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    match read(path) {
+    match read_with(path, settings) {
         Ok(source) => {
             let answer = pebo_gen::replay(&source, &ask.named(stem), tape);
             (source, answer)
@@ -69,6 +74,12 @@ fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
         Box::new((Source::unread(&name), diagnostic))
     })?;
     Source::from_bytes(&name, bytes).map_err(|diagnostic| Box::new((Source::unread(&name), diagnostic)))
+}
+
+/// The same with settings of the call.
+fn read_with(path: &Path, settings: &[String]) -> Result<Source, Box<(Source, Diagnostic)>> {
+    let unset = |diagnostic| Box::new((Source::unread(path.display().to_string()), diagnostic));
+    read(path)?.set(settings).map_err(unset)
 }
 
 /// At most what a model can have, and one byte more so that the reader sees that it is too much.

@@ -12,6 +12,9 @@ use super::arguments::{Limit, ReplayOptions};
 use super::{files, progress, standard, terminal};
 
 pub(super) fn run(options: &ReplayOptions, limit: Option<Limit>) -> Standing {
+    if let Some(diagnostic) = options.plot.as_deref().and_then(files::not_a_figure) {
+        return standard::refuse(diagnostic);
+    }
     if files::is_standard(&options.model) && files::is_standard(&options.data) {
         let message = "model and recording cannot both be read from standard input";
         return standard::refuse(Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("name one of them"));
@@ -33,10 +36,14 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     let mut file = options.csv.as_deref().map(files::Growing::create).transpose()?;
     let (source, answer) = {
         let estimates = file.as_mut().map(|file| file as &mut dyn Write);
-        files::replay(&options.model, ask, Tape { name: &name, recording: &mut *recording, estimates })
+        let tape = Tape { name: &name, recording: &mut *recording, estimates };
+        files::replay(&options.model, &options.set, ask, tape)
     };
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);
+    }
+    if let Some(replayed) = &answer.replay {
+        terminal::say(&replayed.text());
     }
     terminal::report(&answer.diagnostics, &source);
     let Answer { standing, replay: Some(replayed), .. } = answer else { return Ok(answer.standing) };
@@ -46,7 +53,6 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     if let Some(path) = &options.plot {
         files::write(path, &replayed.figure)?;
     }
-    terminal::say(&replayed.text());
     Ok(standing)
 }
 

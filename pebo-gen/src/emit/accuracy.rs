@@ -9,7 +9,7 @@
 mod places;
 mod rounded;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::definition::{Argument, Definitions, Group, VELOCITY};
 use super::literal::Scalar;
@@ -18,7 +18,7 @@ use super::tasks::varying;
 use crate::analysis::Derivation;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::plant::Plant;
 use crate::program::{Program, Staged, lower};
 use places::{Place, places};
@@ -133,7 +133,7 @@ pub(super) fn measure(plant: &Plant, derivation: &Derivation, definitions: &Defi
                 let units = exact(arena, &values(group), &place).units(&found, scalar);
                 let Some(loss) = losses.iter_mut().find(|loss| loss.function == group.name) else { continue };
                 let worst = loss.worst_mut(scalar);
-                let as_written = units > MOST && LIKE * own_units(plant, &place, scalar) >= units;
+                let as_written = units > MOST && LIKE * own_units(plant, &values(group), &place, scalar) >= units;
                 let found = Worst { units, place: told(arena, &values(group), &place), as_written };
                 // A loss that the author does not have is not to hide behind a larger one that he has.
                 if (found.is_refused(), units) > (worst.is_refused(), worst.units) {
@@ -193,10 +193,15 @@ fn computed(plant: &Plant, definitions: &Definitions, staged: &Staged, scalar: S
     definitions.groups().iter().zip(&staged.programs).map(program).collect()
 }
 
-/// The most units that the author's own formulas lose at a place.
-fn own_units(plant: &Plant, place: &Place, scalar: Scalar) -> f64 {
+/// The most units that the author's own formulas lose at a place, and those of their sums that the values hold: a factor
+/// `exp(u) - 1` loses digits that nobody misses in the rate which the author has it in.
+fn own_units(plant: &Plant, values: &[Expr], place: &Place, scalar: Scalar) -> f64 {
     let arena = &plant.arena;
-    let own: Vec<Expr> = plant.rates().into_values().chain(plant.transform()).collect();
+    let mut own: Vec<Expr> = plant.rates().into_values().chain(plant.transform()).collect();
+    let written: BTreeSet<Expr> = arena.postorder(&own).into_iter().collect();
+    let is_written = |part: &Expr| written.contains(part) || written.contains(&arena.neg(*part));
+    let sums = arena.postorder(values).into_iter().filter(|part| matches!(arena.node(*part), Node::Sum(_)));
+    own.extend(sums.filter(is_written));
     let symbols: Vec<Symbol> = arena.symbols_of(&own).into_iter().collect();
     let inputs: Option<Vec<f64>> = symbols.iter().map(|symbol| place.get(symbol).copied()).collect();
     let (Some(inputs), Ok(program)) = (inputs, lower(arena, &symbols, &own)) else { return 0.0 };

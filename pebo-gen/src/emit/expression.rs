@@ -182,6 +182,11 @@ impl Renderer<'_> {
                 let [a, b] = self.fitting([a, b], 14);
                 call("powf", &[a, b], None)
             }
+            Operation::ExpM1(a) => {
+                let label = self.label(a).map(|a| format!("exp_m1_{a}"));
+                let [a] = self.fitting([a], 14);
+                call("exp_m1", &[a], label)
+            }
             Operation::Unary(function, a) => {
                 let name = function.row().rust;
                 let label = self.label(a).map(|a| format!("{name}_{a}"));
@@ -277,8 +282,8 @@ fn is_call(piece: &Piece) -> bool {
 
 /// Whether a program calls a function of the runtime's scalar.
 pub(super) fn calls(program: &Program) -> bool {
-    program
-        .operations
-        .iter()
-        .any(|operation| matches!(operation, Operation::Power(..) | Operation::Unary(..) | Operation::Binary(..)))
+    program.operations.iter().any(|operation| {
+        use Operation::{Binary, ExpM1, Power, Unary};
+        matches!(operation, Power(..) | ExpM1(..) | Unary(..) | Binary(..))
+    })
 }

@@ -92,8 +92,9 @@ impl Module<'_> {
         let similar = permission::for_names(&[named, variables].concat());
         let long = permission::for_length(statements.len() + program.outputs.len());
         let (name, doc) = (ident(group.name), doc(document::group(group, self.definitions)));
-        // What the trait does not know is the model's own.
-        let visibility = (group.name == VELOCITY).then(|| quote!(#[must_use] pub));
+        // What the trait does not know is the model's own. A step is compiled where it is called, often in another crate,
+        // and there keeps in registers what passes between functions that it may take in.
+        let visibility = if group.name == VELOCITY { quote!(#[must_use] pub) } else { quote!(#[inline]) };
         quote! {
             #doc
             #similar

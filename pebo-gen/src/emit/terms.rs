@@ -64,6 +64,7 @@ impl Module<'_> {
         if self.staged.terms.is_empty() {
             return quote! {
                 /// The functions need nothing but the outputs.
+                #[inline]
                 fn terms(&self, y: &SVector<#scalar, NY>) -> SVector<#scalar, NY> { *y }
             };
         }
@@ -93,6 +94,7 @@ impl Module<'_> {
             /// What the other functions need of the outputs.
             #similar
             #long
+            #[inline]
             fn terms(&self, y: &SVector<#scalar, NY>) -> Terms {
                 #(let #patterns = y.data.0;)*
                 #(#statements)*

@@ -12,7 +12,7 @@ use super::names::camel;
 use super::parameters::decimal;
 use super::permission;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, PATIENCE, Settings};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Settings};
 
 impl Module<'_> {
     /// The constructors, with the types that they name.
@@ -55,6 +55,7 @@ impl Module<'_> {
         });
         names.extend(settings.output.then_some("OutputForm"));
         names.extend(settings.gate.is_some().then_some("Gate"));
+        names.extend(settings.limits.is_some().then_some("Limits"));
         names.extend((settings.lower.is_some() || settings.upper.is_some()).then_some("Bounded"));
         names.extend(is_within(settings).then_some("Within"));
         names.extend_from_slice(match &settings.estimator {
@@ -206,8 +207,10 @@ impl Module<'_> {
                 }
             }
         });
+        let limits = settings.limits.as_ref().map(|limits| self.limits(limits, scope));
         quote! {
             #gate
+            #limits
             /// The observer with the settings of the model, before its first sample.
             ///
             /// # Errors
@@ -215,6 +218,50 @@ impl Module<'_> {
             pub fn observer(parameters: &Parameters) -> Result<Tuned, Fault> {
                 let model = #model;
                 #statements
+                #last
+            }
+        }
+    }
+
+    /// The function that says what samples may be.
+    fn limits(&self, limits: &Limits<Rational>, scope: &mut Scope) -> TokenStream {
+        let scalar = ident(self.scalar.name());
+        let mut one = |value: &Rational| number(value, &mut |ratio| scope.ratio(ratio)).tokens;
+        let mut side = |each: &[Option<[Rational; 2]>], side: usize, absent: &str| {
+            let absent = ident(absent);
+            let value = |limit: &Option<[Rational; 2]>| {
+                limit.as_ref().map_or_else(|| quote!(#scalar::#absent), |limit| one(&limit[side]))
+            };
+            let values = each.iter().map(value).collect::<Vec<_>>();
+            quote!(SVector::from([#(#values),*]))
+        };
+        let mut range = |each: &[Option<[Rational; 2]>], method: &str| {
+            (!each.is_empty()).then(|| {
+                let (least, greatest) = (side(each, 0, "NEG_INFINITY"), side(each, 1, "INFINITY"));
+                let method = ident(method);
+                quote! {
+                    let least = #least;
+                    let greatest = #greatest;
+                    let limits = limits.#method(&least, &greatest)?;
+                }
+            })
+        };
+        let (outputs, inputs) = (range(&limits.outputs, "outputs"), range(&limits.inputs, "inputs"));
+        let last = if let Some(gap) = &limits.gap {
+            let gap = one(gap);
+            quote!(limits.gap(#gap))
+        } else {
+            quote!(Ok(limits))
+        };
+        quote! {
+            /// What samples may be: to be asked before each step. After `Fault::Gap` the observer begins anew.
+            ///
+            /// # Errors
+            /// A fault only where rounding moves a limit out of its range.
+            pub fn limits() -> Result<Limits<#scalar, NY, NU>, Fault> {
+                let limits = Limits::none();
+                #outputs
+                #inputs
                 #last
             }
         }
@@ -400,9 +447,12 @@ fn is_within(settings: &Settings<Rational>) -> bool {
 
 /// All numbers of the settings but the length of a window.
 fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
-    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, .. } = settings;
+    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, limits, .. } = settings;
     let mut numbers: Vec<&Rational> =
         [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().chain(gate).collect();
+    if let Some(Limits { outputs, inputs, gap }) = limits {
+        numbers.extend(outputs.iter().chain(inputs).flatten().flatten().chain(gap));
+    }
     match operator {
         Operator::Filter(alpha) => numbers.push(alpha),
         Operator::Window(_) => {}

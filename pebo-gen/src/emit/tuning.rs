@@ -11,7 +11,7 @@ use super::error::EmitError;
 use super::value::{self, Value, unreadable};
 use crate::cas::Arena;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator, PATIENCE, Settings};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Settings};
 
 /// The constant with the length of a window.
 pub(super) const WINDOW: &str = "NW";
@@ -50,13 +50,16 @@ enum Made {
     /// Whether samples are joined by straight lines.
     Hold(bool),
     Operator(Operator<Rational>, bool),
-    Observer(Settings<Rational>),
+    Observer(Box<Settings<Rational>>),
     Gate(Rational),
+    Limits(Limits<Rational>),
+    /// A vector in which some entries are infinite.
+    Open(Vec<Option<Rational>>, bool),
 }
 
 /// Whether these are the constructors beside `new`.
 pub(super) fn is_constructors(item: &ItemImpl) -> bool {
-    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if ["try_new", "gate", "observer"].iter().any(|name| function.sig.ident == name));
+    let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if ["try_new", "gate", "limits", "observer"].iter().any(|name| function.sig.ident == name));
     item.trait_.is_none() && !item.items.is_empty() && item.items.iter().all(named)
 }
 
@@ -67,7 +70,7 @@ pub(super) fn read(
     constants: (Option<&Syntax>, Option<&Syntax>),
     globals: &value::Scope,
 ) -> Result<Option<Settings<Rational>>, EmitError> {
-    let (mut settings, mut gate) = (None, None);
+    let (mut settings, mut gate, mut limits) = (None, None, None);
     for entry in &item.items {
         let ImplItem::Fn(function) = entry else { return Err(unreadable(entry)) };
         if function.sig.ident == "try_new" {
@@ -88,15 +91,16 @@ pub(super) fn read(
                     reader.made.insert(name.ident.to_string(), made);
                 }
                 Stmt::Expr(last, None) => match reader.expression(last)? {
-                    Made::Observer(made) => settings = Some(made),
+                    Made::Observer(made) => settings = Some(*made),
                     Made::Gate(limit) if function.sig.ident == "gate" => gate = Some(limit),
+                    Made::Limits(made) if function.sig.ident == "limits" => limits = Some(made),
                     _ => return Err(unreadable(last)),
                 },
                 other => return Err(unreadable(other)),
             }
         }
     }
-    Ok(settings.map(|settings| Settings { gate, ..settings }))
+    Ok(settings.map(|settings| Settings { gate, limits, ..settings }))
 }
 
 struct Reader<'a> {
@@ -117,7 +121,11 @@ impl Reader<'_> {
                 "Self::new" | "Self::try_new" if compact(&call.args) == "parameters" => {
                     Ok(Made::Model(Form::Own, [None, None]))
                 }
-                "SVector::from" => self.list(syntax),
+                "SVector::from" => self.open(call).map_or_else(|| self.list(syntax), Ok),
+                "Limits::none" if call.args.is_empty() => {
+                    Ok(Made::Limits(Limits { outputs: Vec::new(), inputs: Vec::new(), gap: None }))
+                }
+                "Ok" if call.args.len() == 1 => self.expression(&call.args[0]),
                 "SVector::repeat" => match compact(&call.args).as_str() {
                     "f64::INFINITY" | "f32::INFINITY" => Ok(Made::Infinite { above: true }),
                     "f64::NEG_INFINITY" | "f32::NEG_INFINITY" => Ok(Made::Infinite { above: false }),
@@ -155,6 +163,27 @@ impl Reader<'_> {
             _ => None,
         }
         .ok_or_else(|| unreadable(syntax))
+    }
+
+    /// A vector with entries that are infinite, all on one side.
+    fn open(&self, call: &syn::ExprCall) -> Option<Made> {
+        let Some(Syntax::Array(array)) = call.args.first() else { return None };
+        let mut above = None;
+        let mut entry = |entry: &Syntax| {
+            let side = match compact(entry).as_str() {
+                "f64::INFINITY" | "f32::INFINITY" => true,
+                "f64::NEG_INFINITY" | "f32::NEG_INFINITY" => false,
+                _ => {
+                    return match self.number(entry).ok()? {
+                        Made::Number(number) => Some(Some(number)),
+                        _ => None,
+                    };
+                }
+            };
+            (*above.get_or_insert(side) == side).then_some(None)
+        };
+        let entries = array.elems.iter().map(&mut entry).collect::<Option<Vec<_>>>()?;
+        above.map(|above| Made::Open(entries, above))
     }
 
     fn list(&self, syntax: &Syntax) -> Result<Made, EmitError> {
@@ -245,7 +274,7 @@ impl Reader<'_> {
                     Form::Own => (false, None),
                     Form::Outputs(expected) => (true, expected),
                 };
-                Made::Observer(Settings {
+                Made::Observer(Box::new(Settings {
                     operator,
                     output,
                     expected,
@@ -257,7 +286,8 @@ impl Reader<'_> {
                     rebase: None,
                     chi_0,
                     gate: None,
-                })
+                    limits: None,
+                }))
             }
             _ => return None,
         })
@@ -273,10 +303,35 @@ fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
             Made::Estimator(Estimator::LeastSquares(Covariance { process_noise, ..covariance }))
         }
         ("rebasing", Made::Observer(settings), Some(Made::Number(samples)), None) => {
-            Made::Observer(Settings { rebase: Some(samples), ..settings })
+            Made::Observer(Box::new(Settings { rebase: Some(samples), ..*settings }))
+        }
+        ("outputs", Made::Limits(limits), Some(least), Some(most)) if limits.outputs.is_empty() => {
+            Made::Limits(Limits { outputs: ranges(least, most)?, ..limits })
+        }
+        ("inputs", Made::Limits(limits), Some(least), Some(most)) if limits.inputs.is_empty() => {
+            Made::Limits(Limits { inputs: ranges(least, most)?, ..limits })
+        }
+        ("gap", Made::Limits(limits), Some(Made::Number(longest)), None) => {
+            Made::Limits(Limits { gap: Some(longest), ..limits })
         }
         _ => return None,
     })
+}
+
+/// The least and the greatest sample of each signal, where both are there or none is.
+fn ranges(least: Made, greatest: Made) -> Option<Vec<Option<[Rational; 2]>>> {
+    let side = |made: Made, above: bool| match made {
+        Made::List(values) => Some(values.into_iter().map(Some).collect::<Vec<_>>()),
+        Made::Open(values, side) if side == above => Some(values),
+        _ => None,
+    };
+    let (least, greatest) = (side(least, false)?, side(greatest, true)?);
+    let pairs = least.into_iter().zip(greatest).map(|pair| match pair {
+        (Some(least), Some(greatest)) => Some(Some([least, greatest])),
+        (None, None) => Some(None),
+        _ => None,
+    });
+    pairs.collect()
 }
 
 /// A bound: a vector, or none where it is infinite on its own side.

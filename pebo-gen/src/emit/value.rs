@@ -225,6 +225,10 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
             let both = [Function::Sin, Function::Cos].map(|function| Value::Scalar(arena.call(function, &[angle])));
             Ok(Value::List(both.to_vec()))
         }
+        ("Real", "exp_m1", &[argument]) => {
+            let power = arena.call(Function::Exp, &[argument]);
+            Ok(Value::Scalar(arena.sub(power, arena.one())))
+        }
         ("Real", name, arguments) => {
             let row = Function::table()
                 .iter()

@@ -37,6 +37,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.observer.sensors, &y, "sensors");
         pass.belong(&model.observer.start, &x, "start");
         pass.belong(&model.observer.disturbance, &both, "disturbance");
+        pass.patience(model);
+        let sampled = Group::new(model.y.iter().chain(&model.u), "an output of y or an input of u");
+        pass.belong(&model.observer.limits, &sampled, "limits");
         if let Some(recording) = &model.recording {
             pass.recording(recording, model);
         }
@@ -258,6 +261,22 @@ impl Pass<'_> {
         }
         for deviation in others.into_iter().flatten() {
             self.not_negative(&deviation.value, "a standard deviation");
+        }
+    }
+
+    /// The longest gap has room for a step.
+    fn patience(&mut self, model: &Model) {
+        let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
+        if let (Some(gap), Some(step)) = (&model.observer.gap, step)
+            && gap.value.to_f64() > 0.0
+            && gap.value.to_f64() < step.value.to_f64()
+        {
+            let message = format!("a gap of {} s is shorter than a step of {} s", gap.value.text(), step.value.text());
+            self.diagnostics.push(
+                Diagnostic::error(Code::NumberOutOfRange, gap.span, message)
+                    .also(step.span, "the step is here")
+                    .help("write the time of several steps: after a longer one the observer begins anew"),
+            );
         }
     }
 

@@ -52,6 +52,10 @@ pub struct Observer {
     pub rebase: Option<Spanned<Decimal>>,
     /// The normalised square of an innovation beyond which a sample is an outlier; none if absent.
     pub gate: Option<Spanned<Decimal>>,
+    /// Between what the samples of outputs and inputs are: two numbers each.
+    pub limits: Vec<Entry<Vec<Spanned<Decimal>>>>,
+    /// The longest time in seconds between two accepted samples; any if absent.
+    pub gap: Option<Spanned<Decimal>>,
     /// The extension chi at the start: one value each; empty for zeros.
     pub extension: Vec<Spanned<Decimal>>,
 }
@@ -239,6 +243,7 @@ impl Observer {
             (self.period.as_slice(), "the period must be positive"),
             (self.filter.as_slice(), "the filter frequency must be positive"),
             (self.gate.as_slice(), "the limit of the gate must be positive"),
+            (self.gap.as_slice(), "the longest gap must be positive"),
         ];
         for (numbers, message) in positive {
             for number in numbers {
@@ -282,6 +287,7 @@ impl Observer {
                     .help("write `sensors`, `start` and `disturbance` in place of gains, or remove `gate`"),
             );
         }
+        self.limits.iter().for_each(|entry| limits(entry, diagnostics));
         if let (Some(filter), Some(window)) = (&self.filter, &self.window) {
             let message = "the observer has both a filter and a window";
             diagnostics.push(
@@ -348,6 +354,28 @@ impl Observer {
             )),
             None => diagnostic
                 .help("add `estimator:` with one that has this setting; without that key the estimator is `gradient`"),
+        }
+    }
+}
+
+/// Reports limits of a signal that are no two numbers in order.
+fn limits(entry: &Entry<Vec<Spanned<Decimal>>>, diagnostics: &mut Diagnostics) {
+    let name = &entry.name.value;
+    match entry.value.as_slice() {
+        [least, most] if least.value.to_f64() <= most.value.to_f64() => {}
+        [least, most] => diagnostics.push(
+            Diagnostic::error(
+                Code::NumberOutOfRange,
+                least.span,
+                format!("no sample of `{name}` is within its limits"),
+            )
+            .also(most.span, "this upper limit is below the lower one")
+            .help("exchange them"),
+        ),
+        values => {
+            let message = format!("{} numbers are given as the limits of `{name}`", values.len());
+            let help = format!("write the least and the greatest, as `{name}: [0, 1]`");
+            diagnostics.push(Diagnostic::error(Code::WrongShape, entry.name.span, message).help(help));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod hostile;
 mod mistakes;
+mod settings;
 
 use super::{Baseline, CascadeClass, Estimator, Hold, Model, Scale};
 use crate::source::{Diagnostic, Source};
@@ -31,7 +32,7 @@ g_y: {v4: i1 + d}
 identities: [i1 - i1]
 angles: {i1: 2*pi}
 units: {i1: A, v2: V, L1: H}
-observer: {estimator: gradient, gain: 1e7, bounds: {lower: -1, upper: [2, 3]}, within: {lower: 0, upper: [4, 5]}, filter: 500, hold: first-order, extension: [0, 1]}
+observer: {estimator: gradient, gain: 1e7, bounds: {lower: -1, upper: [2, 3]}, within: {lower: 0, upper: [4, 5]}, filter: 500, hold: first-order, limits: {v2: [-50, 50], d: [0, 1]}, gap: 1e-3, extension: [0, 1]}
 simulation:
   duration: 0.5
   step: 1e-6

@@ -68,6 +68,23 @@ fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>
         .label("not declared in this model");
     match nearest(name, candidates) {
         Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        // What varies with time on its own the observer has to be told at each sample: that is an input.
+        None if name == "t" => diagnostic.help(
+            "declare what varies with time as an input under `u`; `control` of the simulation gives it in t, the application \
+             at each sample",
+        ),
         None => diagnostic.help("declare it under `parameters`, `x`, `y`, `u`, `w` or `define`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_in_a_plant_is_an_input() {
+        let help = |name| unknown(name, Span::default(), ["v", "q"].into_iter()).help.unwrap_or_default();
+        assert!(help("t").contains("an input under `u`"), "{}", help("t"));
+        assert!(help("speed").contains("declare it under"), "{}", help("speed"));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! In: what was written, the sizes of the regression, and how a number is read: exactly for code, rounded for a run.
 
-use crate::model::{Bounds, Decimal, Estimator as Name, Hold, Observer, Spanned};
+use crate::model::{Bounds, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Settings with which an observer can be built.
@@ -31,6 +31,40 @@ pub struct Settings<N> {
     pub chi_0: Vec<N>,
     /// The normalised square of an innovation beyond which a sample is an outlier, if any is.
     pub gate: Option<N>,
+    /// What samples may be beside numbers, if that is known.
+    pub limits: Option<Limits<N>>,
+}
+
+/// What samples may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits<N> {
+    /// The least and the greatest sample of each output that has limits; empty where none has.
+    pub outputs: Vec<Option<[N; 2]>>,
+    /// The same of inputs.
+    pub inputs: Vec<Option<[N; 2]>>,
+    /// The longest time in seconds between two accepted samples.
+    pub gap: Option<N>,
+}
+
+impl<N> Limits<N> {
+    /// The limits of a model's section; none where it has none, and where a number cannot be read.
+    pub(crate) fn of(model: &Model, read: impl Fn(&Decimal) -> Option<N>) -> Option<Self> {
+        let written = &model.observer;
+        let limit = |signal: &Spanned<String>| {
+            let entry = written.limits.iter().find(|entry| entry.name.value == signal.value)?;
+            match entry.value.as_slice() {
+                [least, most] => Some([read(&least.value)?, read(&most.value)?]),
+                _ => None,
+            }
+        };
+        let each = |signals: &[Spanned<String>]| -> Vec<Option<[N; 2]>> {
+            let limits: Vec<_> = signals.iter().map(limit).collect();
+            if limits.iter().any(Option::is_some) { limits } else { Vec::new() }
+        };
+        let (outputs, inputs) = (each(&model.y), each(&model.u));
+        let gap = written.gap.as_ref().and_then(|gap| read(&gap.value));
+        (gap.is_some() || !outputs.is_empty() || !inputs.is_empty()).then_some(Self { outputs, inputs, gap })
+    }
 }
 
 /// Outliers in a row that a gate refuses.
@@ -154,6 +188,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             rebase,
             chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
             gate: None,
+            limits: None,
         })
     }
 }

@@ -55,6 +55,7 @@ impl Interpreter {
                 Operation::Mul(a, b) => Instruction::Mul(place(a), place(b)),
                 Operation::Div(a, b) => Instruction::Div(place(a), place(b)),
                 Operation::Power(a, b) => Instruction::Power(place(a), place(b)),
+                Operation::ExpM1(a) => Instruction::Unary(f64::exp_m1, place(a)),
                 Operation::Unary(function, a) => Instruction::Unary(unary(function), place(a)),
                 Operation::Binary(function, a, b) => Instruction::Binary(binary(function), place(a), place(b)),
             })

@@ -158,6 +158,10 @@ impl Lowering<'_> {
         if let Some(known) = self.known.get(&opposite) {
             return Signed { negative: !known.negative, ..*known };
         }
+        if let Some((argument, negative)) = exp_m1(self.arena, sum) {
+            let argument = self.plain(self.known[&argument]);
+            return Signed { negative, operand: self.operation(Operation::ExpM1(argument)) };
+        }
         let mut summands: Vec<Signed> = Vec::with_capacity(sum.terms.len() + 1);
         for (term, coefficient) in &sum.terms {
             let factors = vec![(*term, Rational::ONE)];
@@ -214,6 +218,14 @@ impl Lowering<'_> {
     pub(super) fn operation(&mut self, operation: Operation) -> Operand {
         Operand::Result(self.operations.position(operation))
     }
+}
+
+/// The `a` of `exp(a) - 1`, or of its opposite: the difference has few digits where `a` is small.
+fn exp_m1(arena: &Arena, sum: &Sum) -> Option<(Expr, bool)> {
+    let [(term, coefficient)] = sum.terms.as_slice() else { return None };
+    let Node::Call(Function::Exp, arguments) = arena.node(*term) else { return None };
+    let is_it = coefficient.abs().is_one() && -coefficient == sum.constant;
+    is_it.then(|| (arguments[0], coefficient.is_negative()))
 }
 
 fn positive(operand: Operand) -> Signed {

@@ -51,6 +51,8 @@ pub enum Operation {
     Div(Operand, Operand),
     /// `a ^ b` for a constant `b` that is neither an integer nor a half; `a` is not negative.
     Power(Operand, Operand),
+    /// `e^a - 1`, with all digits also where `a` is small.
+    ExpM1(Operand),
     /// A function of one argument, the square root among them.
     Unary(Function, Operand),
     /// A function of two arguments.
@@ -61,7 +63,7 @@ impl Operation {
     /// What the operation uses, in order.
     pub fn operands(self) -> impl Iterator<Item = Operand> {
         let (first, second) = match self {
-            Self::Neg(a) | Self::Unary(_, a) => (a, None),
+            Self::Neg(a) | Self::ExpM1(a) | Self::Unary(_, a) => (a, None),
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Mul(a, b)
@@ -90,6 +92,7 @@ impl Operation {
             Self::Mul(a, b) => Self::Mul(change(a), change(b)),
             Self::Div(a, b) => Self::Div(change(a), change(b)),
             Self::Power(a, b) => Self::Power(change(a), change(b)),
+            Self::ExpM1(a) => Self::ExpM1(change(a)),
             Self::Unary(function, a) => Self::Unary(function, change(a)),
             Self::Binary(function, a, b) => Self::Binary(function, change(a), change(b)),
         }

@@ -475,3 +475,21 @@ fn an_undeclared_symbol_is_an_error() {
     let sum = arena.add(arena.of_symbol(x), arena.of_symbol(w));
     assert_eq!(lower(&arena, &[x], &[sum]), Err(Undeclared(w)));
 }
+
+#[test]
+fn an_exponential_less_one_keeps_its_digits() {
+    let arena = Arena::new();
+    let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+    let symbols = [x, y].map(|expr| arena.as_symbol(expr).unwrap());
+    let less_one = arena.sub(arena.call(Function::Exp, &[x]), arena.one());
+    let scaled = arena.sub(arena.mul(y, arena.call(Function::Exp, &[x])), y);
+    let program = lower(&arena, &symbols, &[less_one, arena.neg(less_one), scaled]).unwrap();
+    let exponentials = program.operations.iter().filter(|operation| matches!(operation, Operation::ExpM1(..)));
+    assert_eq!((exponentials.count(), program.operations.len()), (1, 3), "{program:?}");
+    let mut values = [0.0; 3];
+    Interpreter::new(&program).run(&[1e-9, 2.0], &mut values);
+    // Of exp(1e-9) - 1 = 1e-9 + 5e-19 the difference has 7 digits; a few roundings are allowed.
+    for (value, exact) in values.into_iter().zip([1.000_000_000_5e-9, -1.000_000_000_5e-9, 2.000_000_001e-9]) {
+        assert!((value / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{value:e}");
+    }
+}

@@ -1,7 +1,8 @@
 //! Why a run did not converge, and what mends it.
 //!
-//! In: what a run came to, and in what its plant and sensors differ from what the model says. Out: a diagnostic, if an
-//! estimate of the model's observer has not settled. What is said is what was seen: refused samples come first, then data
+//! In: what a run came to, and in what its plant and sensors differ from what the model says, or that they were recorded.
+//! Out: a diagnostic, if an estimate of the model's observer has not settled, or if a recording without measured states
+//! does not determine the unknown. What is said is what was seen: refused samples come first, then data
 //! that do not determine the unknown, then an error that still falls, then one that rests.
 
 use crate::source::{Code, Diagnostic, Span, listed};
@@ -18,26 +19,40 @@ const REFUSED: f64 = 0.1;
 /// sensor, a quarter of a run has rather many samples: what is left is well within a tenth of its root mean square.
 const FALLING: f64 = 0.9;
 
+/// Where the samples of a run are from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin<'a> {
+    /// A simulation, with that in which its plant and sensors differ from what the model says.
+    Simulated(&'a [&'static str]),
+    Recorded,
+}
+
 /// What there is to say of a run that did not converge; `where_said` is the section that describes it.
 pub(super) fn advise(
     summary: &Summary,
-    (estimator, departures): (&Estimator, &[&'static str]),
+    (estimator, origin): (&Estimator, Origin<'_>),
     where_said: Span,
 ) -> Option<Diagnostic> {
     let unsettled = summary.unsettled();
-    let slowest = unsettled.iter().max_by(|a, b| a.score.trend.total_cmp(&b.score.trend))?;
+    let Some(slowest) = unsettled.iter().max_by(|a, b| a.score.trend.total_cmp(&b.score.trend)) else {
+        let is_blind = matches!(origin, Origin::Recorded) && summary.estimates.is_empty();
+        let message = "the recording does not determine all estimates";
+        return unexcited(Diagnostic::warning(Code::NotConverged, where_said, message), summary).filter(|_| is_blind);
+    };
     let names = listed(unsettled.iter().map(|rated| rated.estimate.state.as_str()));
     let message = match unsettled.len() {
         1 => format!("the estimate of {names} has not settled to 1 % within {} s", short(summary.end)),
         _ => format!("the estimates of {names} have not settled to 1 % within {} s", short(summary.end)),
     };
     let diagnostic = Diagnostic::warning(Code::NotConverged, where_said, message);
-    let faster = match estimator {
-        _ if summary.known.is_some() => "raise `start` or `disturbance` under `observer`, or simulate longer",
-        Estimator::LeastSquares(_) => "raise `covariance`, or simulate longer",
-        Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => {
-            "raise `gain`, or simulate longer"
-        }
+    let raised = match estimator {
+        _ if summary.known.is_some() => "`start` or `disturbance` under `observer`",
+        Estimator::LeastSquares(_) => "`covariance`",
+        Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => "`gain`",
+    };
+    let faster = match origin {
+        Origin::Simulated(_) => format!("raise {raised}, or simulate longer"),
+        Origin::Recorded => format!("raise {raised}, or record longer"),
     };
     let (refused, trend) = (summary.faults.count(), slowest.score.trend);
     Some(if real(refused) > REFUSED * real(summary.samples) {
@@ -46,17 +61,8 @@ pub(super) fn advise(
         diagnostic
             .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples))
             .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
-    } else if let Excitation::NotYet { weakest } = &summary.excitation {
-        diagnostic.note(format!("excitation: the data never told `{weakest}` apart from the rest of the unknown")).help(
-            "let inputs or set points move more, or longer: the verdict on identifiability says which motions it needs",
-        )
-    } else if let Excitation::Lost { since, weakest } = &summary.excitation {
+    } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
         diagnostic
-            .note(format!(
-                "excitation: from t = {} s on nothing new was said of `{weakest}`, which was forgotten",
-                short(*since)
-            ))
-            .help("lower `forgetting`, or let inputs or set points go on moving")
     } else if trend < FALLING {
         diagnostic
             .note(format!(
@@ -71,17 +77,46 @@ pub(super) fn advise(
             slowest.estimate.state,
             short(slowest.score.rms)
         );
-        match departures.first() {
-            None => {
+        match origin {
+            Origin::Recorded => diagnostic.note(note).help(
+                "compare parameters and offsets of sensors with those of the bench: what they err by stays in the \
+                 estimate; the sensor that it is compared with counts too",
+            ),
+            Origin::Simulated([]) => {
                 let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
                 diagnostic.note(note).help(help)
             }
-            Some(first) => {
+            Origin::Simulated(departures @ [first, ..]) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
                 diagnostic.note(note).help(mend(first, summary.known.is_some()))
             }
         }
     })
+}
+
+/// With what there is to say of data that do not determine the unknown.
+fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
+    match &summary.excitation {
+        Excitation::Converged { .. } => None,
+        Excitation::NotYet { weakest } => Some(
+            diagnostic
+                .note(format!("excitation: the data never told `{weakest}` apart from the rest of the unknown"))
+                .help(
+                    "let inputs or set points move more, or longer: the verdict on identifiability says which motions \
+                     it needs",
+                ),
+        ),
+        Excitation::Lost { since, weakest } => {
+            let since = short(*since);
+            Some(
+                diagnostic
+                    .note(format!(
+                        "excitation: from t = {since} s on nothing new was said of `{weakest}`, which was forgotten"
+                    ))
+                    .help("lower `forgetting`, or let inputs or set points go on moving"),
+            )
+        }
+    }
 }
 
 /// What helps against the first of the things in which a plant and its sensors differ from the model; observers of known

@@ -141,6 +141,8 @@ fn of_gains(written: &Observer, step: Option<f64>) -> Observer {
         extension: written.extension.clone(),
         filter: written.filter.clone().or(filter.map(placed)),
         window: written.window.clone(),
+        limits: written.limits.clone(),
+        gap: written.gap.clone(),
         ..Observer::default()
     }
 }

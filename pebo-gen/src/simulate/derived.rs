@@ -10,7 +10,8 @@ use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Model, Observer, Rebase, Regression, Sides, Within,
+    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Limits, Model, Observer, Rebase, Regression, Sides,
+    Within,
 };
 
 use crate::plant::settings::PATIENCE;
@@ -18,8 +19,8 @@ use crate::program::{Interpreter, Program};
 
 use super::excitation::Said;
 use super::observer::Design;
-use super::settings::Operator;
-use super::sizes::{LARGEST, MOST_MIXED, pad};
+use super::settings::{self, Operator};
+use super::sizes::{LARGEST, MOST_MIXED, pad, padded};
 use super::watched::Watched;
 use super::window::Passage;
 
@@ -34,6 +35,9 @@ pub(super) trait Estimation: fmt::Debug {
 
     /// The standard errors of the estimates; nothing where they are not known.
     fn standard_errors(&self) -> Option<Vec<f64>>;
+
+    /// How often it began anew after a gap that was too long.
+    fn restarts(&self) -> u64;
 
     /// How far a sample is from what is expected of it: the normalised square of its innovation, of each row on average.
     fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
@@ -336,6 +340,12 @@ struct Padded<X: Known<N>, K: Kind, const N: usize> {
     observer: Inner<X, K, N>,
     /// What refuses outliers.
     gate: Option<Gate<f64>>,
+    /// What refuses samples off their range, and says when a gap was too long.
+    limits: Option<Limits<f64, N, N>>,
+    /// The extension at the start.
+    chi_0: SVector<f64, N>,
+    /// How often it began anew.
+    restarts: u64,
     /// The place of the output of each row, where rows may be left out.
     rows: Option<[usize; N]>,
     /// The recovered states, and the rows of the regression.
@@ -362,10 +372,30 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
                 None => observer,
             },
             gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,
+            limits: settings.limits.as_ref().map(limits).transpose()?,
+            chi_0: pad(&settings.chi_0),
+            restarts: 0,
             rows: whole.then_some(rows),
             sizes: (design.recovered.len(), design.phi_0.outputs.len()),
             is_certain: matches!(settings.operator, Operator::Sampled(_)),
         })
+    }
+}
+
+/// The limits of a run, as the runtime has them.
+fn limits<const N: usize>(known: &settings::Limits) -> Result<Limits<f64, N, N>, Fault> {
+    let side = |each: &[Option<[f64; 2]>], side: usize, other: f64| {
+        let values: Vec<f64> = each.iter().map(|limit| limit.map_or(other, |limit| limit[side])).collect();
+        padded::<N>(&values, other)
+    };
+    let least = |each: &[Option<[f64; 2]>]| side(each, 0, f64::NEG_INFINITY);
+    let most = |each: &[Option<[f64; 2]>]| side(each, 1, f64::INFINITY);
+    let limits = Limits::none()
+        .outputs(&least(&known.outputs), &most(&known.outputs))?
+        .inputs(&least(&known.inputs), &most(&known.inputs))?;
+    match known.gap {
+        Some(longest) => limits.gap(longest),
+        None => Ok(limits),
     }
 }
 
@@ -377,6 +407,18 @@ impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
 
 impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+        if let Some(limits) = &self.limits {
+            // What is missing is in no range: it is left out, or refused for that.
+            let seen = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
+            match limits.check(&pad(&seen), &pad(u), dt) {
+                Err(Fault::Gap) => {
+                    self.observer.restart(self.chi_0, &SVector::zeros())?;
+                    self.restarts += 1;
+                }
+                Err(Fault::OutputRange { index }) if y[index].is_nan() => {}
+                checked => checked?,
+            }
+        }
         let parted = self.rows.filter(|_| y.iter().any(|output| output.is_nan()));
         if let (Some(gate), None) = (&mut self.gate, parted) {
             gate.admit(&self.observer.innovation(pad(y), pad(u), dt)?)?;
@@ -401,6 +443,10 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
     fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64> {
         let innovation = self.is_certain.then(|| self.observer.innovation(pad(y), pad(u), dt).ok())??;
         Some(innovation.normalised_square / super::timing::real(u64::try_from(self.sizes.1).ok()?))
+    }
+
+    fn restarts(&self) -> u64 {
+        self.restarts
     }
 
     fn said(&self) -> Said {

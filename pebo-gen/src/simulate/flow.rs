@@ -6,9 +6,10 @@
 //! interval: a loop that is sampled well needs one step a sample.
 
 use std::cell::RefCell;
+use std::fmt;
 use std::ops::Range;
 
-use differential_equations::methods::ExplicitRungeKutta;
+use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 
 use crate::program::{Interpreter, Program};
@@ -46,6 +47,7 @@ pub(super) struct Stuck(pub(super) u64);
 #[derive(Debug)]
 pub(super) struct Flow {
     rates: Equation,
+    solver: Box<dyn Solve>,
     state: Range<usize>,
     /// When the rates jump.
     jumps: Vec<f64>,
@@ -86,7 +88,15 @@ impl Flow {
             formulas: Interpreter::new(rates),
             values: vec![0.0; rates.outputs.len()],
         };
-        Self { rates: Equation(RefCell::new(inner)), state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
+        // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
+        let solver: Box<dyn Solve> = match state.len() {
+            0..=4 => Box::new(Solver::<4>::new()),
+            5..=8 => Box::new(Solver::<8>::new()),
+            9..=16 => Box::new(Solver::<16>::new()),
+            _ => Box::new(Solver::<LARGEST>::new()),
+        };
+        let rates = Equation(RefCell::new(inner));
+        Self { rates, solver, state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
     }
 
     /// Moves the state in `table` from the instant `from` to `to`, all other values held.
@@ -110,42 +120,56 @@ impl Flow {
             signal.select(from + self.slack);
         }
         let state = &mut table[self.state.clone()];
-        // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
-        let most = self.left.min(MOST_STEPS);
-        let steps = match state.len() {
-            0..=4 => solve::<4>(&self.rates, state, to - from, most),
-            5..=8 => solve::<8>(&self.rates, state, to - from, most),
-            9..=16 => solve::<16>(&self.rates, state, to - from, most),
-            _ => solve::<LARGEST>(&self.rates, state, to - from, most),
-        }?;
-        self.left -= steps;
+        self.left -= self.solver.solve(&self.rates, state, to - from, self.left.min(MOST_STEPS))?;
         Ok(())
     }
 }
 
-/// Moves the state on by `length` seconds in at most so many steps; gives their number.
-fn solve<const N: usize>(rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck> {
-    let mut start = [0.0; N];
-    start[..state.len()].copy_from_slice(state);
-    let mut method = ExplicitRungeKutta::dopri5().rtol(RELATIVE).atol(ABSOLUTE).h0(length).max_steps(usize::MAX);
-    let mut steps = 0;
-    method.init(rates, 0.0, length, &start).map_err(|_| Stuck(steps))?;
-    loop {
-        let rest = length - method.t();
-        if rest <= SHORTEST * length {
-            break;
-        }
-        if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
-            return Err(Stuck(steps));
-        }
-        if method.h() > rest {
-            method.set_h(rest);
-        }
-        method.step(rates).map_err(|_| Stuck(steps))?;
-        steps += 1;
+/// What moves a state on.
+trait Solve: fmt::Debug {
+    /// Moves the state on by `length` seconds in at most so many steps; gives their number.
+    fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck>;
+}
+
+/// The method before its first step: its table of coefficients is made once for the run, not at each sample.
+struct Solver<const N: usize>(ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>);
+
+impl<const N: usize> Solver<N> {
+    fn new() -> Self {
+        Self(ExplicitRungeKutta::dopri5().rtol(RELATIVE).atol(ABSOLUTE).max_steps(usize::MAX))
     }
-    state.copy_from_slice(&method.y()[..state.len()]);
-    Ok(steps)
+}
+
+impl<const N: usize> fmt::Debug for Solver<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Solver<{N}>")
+    }
+}
+
+impl<const N: usize> Solve for Solver<N> {
+    fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck> {
+        let mut start = [0.0; N];
+        start[..state.len()].copy_from_slice(state);
+        let mut method = self.0.clone().h0(length);
+        let mut steps = 0;
+        method.init(rates, 0.0, length, &start).map_err(|_| Stuck(steps))?;
+        loop {
+            let rest = length - method.t();
+            if rest <= SHORTEST * length {
+                break;
+            }
+            if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
+                return Err(Stuck(steps));
+            }
+            if method.h() > rest {
+                method.set_h(rest);
+            }
+            method.step(rates).map_err(|_| Stuck(steps))?;
+            steps += 1;
+        }
+        state.copy_from_slice(&method.y()[..state.len()]);
+        Ok(steps)
+    }
 }
 
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {

@@ -90,6 +90,7 @@ impl Scenario {
             faults: machine.stepping.faults().clone(),
             dropped: machine.stepping.dropped(),
             parted: machine.stepping.parted(),
+            restarts: machine.stepping.restarts(),
             surprise: machine.stepping.surprise(),
             known: self.design.settings.known.clone(),
         })

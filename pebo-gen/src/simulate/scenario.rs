@@ -13,7 +13,7 @@ use crate::plant::Plant;
 use crate::program::{Interpreter, Program};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::advice::advise;
+use super::advice::{Origin, advise};
 use super::changed::{changed, told};
 use super::control;
 use super::failure::Failure;
@@ -124,7 +124,7 @@ impl Scenario {
 
     /// What there is to say of a run that did not converge: why, and what mends it.
     pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
-        advise(summary, (&self.design.settings.estimator, &self.departures), self.span)
+        advise(summary, (&self.design.settings.estimator, Origin::Simulated(&self.departures)), self.span)
     }
 
     /// A failure of a run as a diagnostic at the section that was run.

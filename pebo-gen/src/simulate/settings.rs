@@ -34,6 +34,8 @@ pub(super) struct Settings {
     pub(super) chi_0: Vec<f64>,
     /// The limit of the gate that refuses outliers.
     pub(super) gate: Option<f64>,
+    /// What samples may be.
+    pub(super) limits: Option<Limits>,
     /// What the settings were derived from, if the author did not choose them.
     pub(super) known: Option<Known>,
 }
@@ -51,6 +53,9 @@ pub(super) enum Operator {
 
 /// An estimator of the runtime library.
 pub(super) type Estimator = settings::Estimator<f64>;
+
+/// What samples may be.
+pub(super) type Limits = settings::Limits<f64>;
 
 /// What least squares need.
 pub(super) type Covariance = settings::Covariance<f64>;
@@ -103,6 +108,7 @@ impl Settings {
             within: bounds(resolved.within, states),
             chi_0: resolved.chi_0,
             gate: None,
+            limits: Limits::of(asked.model, read),
             known: None,
         })
     }
@@ -156,6 +162,7 @@ impl Settings {
             estimator,
             chi_0,
             gate: settings.gate.as_ref().map(Rational::to_f64),
+            limits: Limits::of(asked.model, |number| Some(number.to_f64())),
             known: tuned.known,
         })
     }

@@ -82,7 +82,8 @@ impl Stepping {
             return Ok(());
         };
         self.faults.add(fault);
-        self.refused += 1;
+        // A sample off the range of its sensor says nothing of the observer, however many there are.
+        self.refused += u64::from(!matches!(fault, Fault::OutputRange { .. } | Fault::InputRange { .. }));
         if self.started {
             self.wait(u, dt);
         }
@@ -122,6 +123,11 @@ impl Stepping {
     /// The normalised square of innovations, on average over samples and rows: 1 where model and numbers are right.
     pub(super) fn surprise(&self) -> Option<f64> {
         (self.surprise.1 > 0).then(|| self.surprise.0 / super::timing::real(self.surprise.1))
+    }
+
+    /// How often the observer began anew after a gap.
+    pub(super) fn restarts(&self) -> u64 {
+        self.observer.restarts()
     }
 
     /// The samples that never arrived.

@@ -30,6 +30,8 @@ pub struct Summary {
     pub dropped: u64,
     /// The samples that were taken without some of their outputs.
     pub parted: u64,
+    /// How often the model's observer began anew after a gap that was too long.
+    pub restarts: u64,
     /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right; none
     /// where the observer does not know its sensors.
     pub surprise: Option<f64>,
@@ -127,6 +129,10 @@ impl Summary {
         }
         if self.dropped > 0 {
             line("dropped", &format!("{} of {} samples", self.dropped, self.samples));
+        }
+        if self.restarts > 0 {
+            let often = if self.restarts == 1 { "once".to_owned() } else { format!("{} times", self.restarts) };
+            line("begun anew", &format!("{often}, after more than `gap` without a sample"));
         }
         for (reason, count) in self.faults.iter() {
             line("refused", &format!("{count} of {} samples: {reason}", self.samples));

@@ -335,7 +335,7 @@ codes! {
     SimulationUnsupported "simulation-unsupported" "a simulation that this version cannot run"
         "The simulator runs the observer in one of a few fixed sizes, and the estimators of the runtime library. The \
          message says what the simulator does not have. The emitted code has no such limit."
-    NotConverged "not-converged" "an estimate did not settle in a simulation"
+    NotConverged "not-converged" "an estimate did not settle in a simulation or on a recording"
         "An estimate has settled when its error stays below a hundredth of the largest magnitude that the state has in the \
          run. The notes say what was seen: samples that the observer refused, data that did not determine the unknown \
          (excitation), an error that still falls, or one that rests because the plant and its sensors are not what the \

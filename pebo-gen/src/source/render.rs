@@ -1,5 +1,7 @@
 //! Diagnostics for people and for programs.
 
+use std::iter::once;
+
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::{Diagnostic, Label, Severity, Source, Span};
@@ -41,21 +43,37 @@ fn picture<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
         Severity::Note => Level::NOTE,
     };
     let title = level.primary_title(diagnostic.message.as_ref()).id(diagnostic.code.name());
-    let snippet = (diagnostic.primary.span != Span::NOWHERE).then(|| {
-        Snippet::source(source.text())
-            .path(source.name())
-            .annotation(annotation(AnnotationKind::Primary, &diagnostic.primary, source))
-            .annotations(diagnostic.secondary.iter().map(|label| annotation(AnnotationKind::Context, label, source)))
-    });
+    let primary = Some((AnnotationKind::Primary, &diagnostic.primary)).filter(|(_, label)| label.span != Span::NOWHERE);
+    let others = diagnostic.secondary.iter().map(|label| (AnnotationKind::Context, label));
+    let labels: Vec<(AnnotationKind, &Label)> =
+        primary.into_iter().flat_map(|first| once(first).chain(others.clone())).collect();
+    let (mut of_call, mut of_file) = (Vec::new(), Vec::new());
+    for (kind, label) in labels {
+        match source.call(label.span) {
+            Some((_, start)) => of_call.push(annotation((kind, label), source, start)),
+            None => of_file.push(annotation((kind, label), source, 0)),
+        }
+    }
+    let call = source.call(Span::point(usize::MAX)).map_or("", |(text, _)| text);
+    let snippet = |text, path, annotations: Vec<_>| {
+        (!annotations.is_empty()).then(|| Snippet::source(text).path(path).annotations(annotations))
+    };
+    // What is to blame comes first.
+    let mut snippets = [snippet(source.text(), source.name(), of_file), snippet(call, "the call", of_call)];
+    if source.call(diagnostic.primary.span).is_some() {
+        snippets.reverse();
+    }
     title
-        .elements(snippet)
+        .elements(snippets.into_iter().flatten())
         .elements(diagnostic.notes.iter().map(|note| Level::NOTE.message(note.as_str())))
         .elements(diagnostic.help.iter().map(|help| Level::HELP.message(help.as_ref())))
 }
 
-fn annotation<'a>(kind: AnnotationKind, label: &'a Label, source: &Source) -> Annotation<'a> {
+/// The annotation of a text that begins at `start`.
+fn annotation<'a>((kind, label): (AnnotationKind, &'a Label), source: &Source, start: usize) -> Annotation<'a> {
     let text = Some(label.text.as_ref()).filter(|text| !text.is_empty());
-    kind.span(first_line(label.span, source).range()).label(text)
+    let span = first_line(label.span, source);
+    kind.span(span.start - start..span.end - start).label(text)
 }
 
 /// A span over many lines hides what it means to show: its first line says where to look.

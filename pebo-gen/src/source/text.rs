@@ -16,8 +16,16 @@ const MARK: char = '\u{feff}';
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     name: String,
+    /// The text of the file, and behind it the settings of the call, so that spans reach both.
     text: String,
+    /// Where the text of the file ends.
+    end: usize,
+    /// The settings, without their marks.
+    settings: Vec<Span>,
 }
+
+/// What stands before a setting, as in a call.
+const SETTING: &str = "--set ";
 
 /// A place as people count it: the first line is 1, and so is the first column, in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +44,31 @@ impl Source {
         if text.starts_with(MARK) {
             text.drain(..MARK.len_utf8());
         }
-        Ok(Self { name, text })
+        Ok(Self { name, end: text.len(), text, settings: Vec::new() })
+    }
+
+    /// The same with settings of a call, each `NAME=VALUE`: the text is read as if it said so. A name is that of a
+    /// parameter, or a key of the file with those that it stands under, as `simulation.noise.v2`. Of two settings of one
+    /// key the last counts.
+    ///
+    /// ```
+    /// use pebo_gen::source::Source;
+    ///
+    /// let text = "model: m\nparameters: {a: 1}\nx: [p]\ny: [q]\nf_x: {p: -a*p}\nf_y: {q: p}\nphi: [p]\n";
+    /// let source = Source::new("m.yaml", text).and_then(|source| source.set(["a=2", "title=faster"])).expect("it is small");
+    /// let model = pebo_gen::model::Model::parse(&source).expect("both are right");
+    /// assert_eq!(model.parameters[0].value.as_ref().map(|number| number.value.text()), Some("2"));
+    /// assert_eq!(source.text(), text);
+    /// ```
+    pub fn set<S: AsRef<str>>(mut self, settings: impl IntoIterator<Item = S>) -> Result<Self, Diagnostic> {
+        for setting in settings {
+            self.text.extend(["\n", SETTING]);
+            let start = self.text.len();
+            self.text.push_str(setting.as_ref());
+            self.settings.push(Span::new(start, self.text.len()));
+        }
+        admit(self.text.len())?;
+        Ok(self)
     }
 
     /// The text that `bytes` encode, unless it is too large or not UTF-8.
@@ -61,7 +93,7 @@ impl Source {
 
     /// A name without a text: what to print a diagnostic over when the file could not be read.
     pub fn unread(name: impl Into<String>) -> Self {
-        Self { name: name.into(), text: String::new() }
+        Self { name: name.into(), text: String::new(), end: 0, settings: Vec::new() }
     }
 
     /// The name.
@@ -69,9 +101,20 @@ impl Source {
         &self.name
     }
 
-    /// The text.
+    /// The text, without settings of the call.
     pub fn text(&self) -> &str {
-        &self.text
+        &self.text[..self.end]
+    }
+
+    /// Where the settings of the call are.
+    pub(crate) fn settings(&self) -> &[Span] {
+        &self.settings
+    }
+
+    /// The settings of the call, a line each, and where they begin; nothing if `span` is a place in the file.
+    pub(super) fn call(&self, span: Span) -> Option<(&str, usize)> {
+        let start = self.end + 1;
+        (span.start >= start && start < self.text.len()).then(|| (&self.text[start..], start))
     }
 
     /// The part of the text under `span`, shrunk to whole characters of the text where it does not
@@ -91,7 +134,7 @@ impl Source {
         (0..=offset.min(self.text.len())).rev().find(|&at| self.text.is_char_boundary(at)).unwrap_or(0)
     }
 
-    /// The line and column of a byte. A place past the end is the end.
+    /// The line and column of a byte; settings of a call are the lines behind the file's. A place past the end is the end.
     pub fn position(&self, offset: usize) -> Position {
         let before = &self.text[..self.floor(offset)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

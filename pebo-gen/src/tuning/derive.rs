@@ -129,6 +129,7 @@ pub(super) fn derive(
         rebase: if can_rebase { Some(frame.rebase.unwrap_or(Rational::ONE)) } else { None },
         chi_0,
         gate: frame.gate,
+        limits: None,
     };
     Some(Tuned {
         settings,

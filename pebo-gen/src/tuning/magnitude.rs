@@ -21,7 +21,9 @@ const SAMPLES: f64 = 1000.0;
 /// A state that has a rate drifts by this part of that: its rate says the rest.
 const MOVED: f64 = 0.02;
 
-/// Or as much as it would if all the summands of its rate erred by this part for so long.
+/// Or as much as it would if all the summands of its rate erred by this part for so long; but by no more than its start may
+/// be wrong by. Summands that cancel, as those of a converter with a small inductance, would say that nothing is known of
+/// it after a few samples, and with such an observer no other unknown is told apart from it.
 const RATE: f64 = 0.01;
 
 /// A magnitude that is nowhere said: 1 of its unit.
@@ -75,7 +77,8 @@ impl Deviations {
                 if arena.is_zero(state.rate.expr) {
                     return Some(size / root);
                 }
-                Some((MOVED * size / root).max(if rate.is_finite() { RATE * rate * root } else { 0.0 }))
+                let erring = if rate.is_finite() { (RATE * rate * root).min(START * size / root) } else { 0.0 };
+                Some((MOVED * size / root).max(erring))
             }
             None => Some(0.0),
         };

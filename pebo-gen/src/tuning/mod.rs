@@ -27,7 +27,7 @@ mod tests;
 use crate::analysis::Derivation;
 use crate::cas::rational::Rational;
 use crate::model::{Decimal, Model};
-use crate::plant::settings::cannot_rebase;
+use crate::plant::settings::{Limits, cannot_rebase};
 use crate::plant::{Plant, Settings};
 use crate::source::Diagnostics;
 
@@ -55,15 +55,18 @@ impl Tuned {
             return None;
         }
         let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+        let limits = Limits::of(model, read);
         if model.observer.has_gains() {
             let sizes = (regression.eta.len(), plant.phi.len(), inverse.x.len());
             let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
             return Some(Self {
-                settings,
+                settings: Settings { limits, ..settings },
                 #[cfg(feature = "simulate")]
                 known: None,
             });
         }
-        derive::derive(model, plant, derivation, period, problems)
+        let mut tuned = derive::derive(model, plant, derivation, period, problems)?;
+        tuned.settings.limits = limits;
+        Some(tuned)
     }
 }

@@ -32,3 +32,22 @@ fn the_headline_speaks_of_the_claims_alone() {
     assert!(conditional.starts_with(headline), "{conditional}");
     assert!(conditional.contains("\n  conditions                u != 0\n"), "{conditional}");
 }
+
+/// A normal form writes `tanh` with exponentials and has `m^4 - 1` below the bar where the author has `1 - abs(m)*m`: it
+/// overflows, or loses its digits at m = -1.
+#[test]
+fn a_derived_left_inverse_keeps_the_functions_of_the_outputs() {
+    for (phi, assumed, expected) in [
+        ("exp(x)*(1 - abs(m)*m)", "m != 1", "log(z1/(1 - m*abs(m)))"),
+        ("2*tanh(m)*x", "m != 0", "z1/(2*tanh(m))"),
+        ("cosh(m)*x^2", "x > 0", "sqrt(z1/cosh(m))"),
+        ("2*(sin(m) + 2)*x + tanh(2*m)", "x > 0", "(z1 - tanh(2*m))/(2*(sin(m) + 2))"),
+        ("(1 + m^2)*x + min(m, 1)^3", "x > 0", "(z1 - min(m, 1)^3)/(m^2 + 1)"),
+    ] {
+        let derived = derived(&format!(
+            "x: [x]\ny: [m, n]\nu: [u]\nassume: [{assumed}]\nf_x: {{x: 0}}\nf_y: {{m: 0, n: \"{phi}\"}}\nphi: [\"{phi}\"]"
+        ));
+        let inverse = derived.derivation.left_inverse.result.expect("a left inverse");
+        assert_eq!(derived.plant.arena.print(inverse.x[0].1), expected, "{phi}");
+    }
+}

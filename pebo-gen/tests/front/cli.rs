@@ -246,6 +246,31 @@ fn settings_of_the_call_are_refused_without_the_file() {
 }
 
 #[test]
+fn what_a_call_sets_is_as_if_the_file_said_so() {
+    let folder = Folder::new();
+    let model = folder.file("spring.yaml", spring("").replace("-4*q", "-k*q") + "parameters: {k: 1}\n");
+    let set = run(&["simulate", &model, "--csv", "-", "--set", "k=4", "--set", "simulation.initial={v: 0.5, q: 1}"]);
+    let written = folder.file("stiff.yaml", spring("").replace("-4*q", "-k*q") + "parameters: {k: 4}\n");
+    let written = run(&["simulate", &written, "--csv", "-"]);
+    assert_eq!(set.status.code(), Some(0), "{}", text(&set.stderr));
+    assert!(set.stdout == written.stdout && !set.stdout.is_empty());
+    // A parameter that becomes 0 is another plant: it is proved anew.
+    let said = text(&run(&["simulate", &model, "--set", "k=0", "--set", "observer.gain=0.1"]).stderr);
+    assert!(said.contains("still falls"), "{said}");
+    for (setting, status, code, place) in [
+        ("k", 2, "wrong-shape", "--> the call:1:7"),
+        ("simulation.nois.q=1", 2, "unknown-key", "--> the call:1:18"),
+        ("f_y.q=1", 1, "never-identifiable", "spring.yaml"),
+    ] {
+        let output = run(&["simulate", &model, "--csv", "-", "--set", setting]);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{setting}: {said}");
+        assert!(said.contains(&format!("error[{code}]")) && said.contains(place), "{setting}: {said}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
 fn a_figure_in_another_format_is_refused_before_anything_runs() {
     let folder = Folder::new();
     let path = folder.path("figure.png").display().to_string();

@@ -22,7 +22,9 @@ simulation:
         "
 simulation:
   duration: 2400
-  step: 1
+  # The inputs are held for a step, and the bearing is what its rate adds up to with them: at 1 s it errs by more than the
+  # observer is told of its sensor.
+  step: 0.1
   initial: {px: 4000, py: 2000, vx: -1, vy: 4, beta: 'atan2(2000, 4000)'}
   define: {course: sin(2*pi*t/300)}
   signals: {turn: 2*pi/300}

@@ -2,11 +2,18 @@
 //! bit.
 #![no_std]
 
+#[cfg(not(feature = "board"))]
+extern crate std;
+
+#[cfg(feature = "board")]
+pub mod board;
 pub mod by_hand;
 pub mod converter;
+pub mod counted;
+#[cfg(not(feature = "board"))]
+pub mod host;
 pub mod motor;
 pub mod report;
-pub mod steps;
 
 /// The emitted modules.
 pub mod emitted {

@@ -151,3 +151,20 @@ fn an_identity_is_a_regression_where_the_rates_are_none() {
     assert_eq!(derive(lines).1.outcome, Outcome::Rejected);
     assert_eq!(derive(&format!("{lines}\nidentities: [s - a^2]")).1.outcome, Outcome::Accepted);
 }
+
+/// On one of the lines nothing is seen, for ever.
+#[test]
+fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
+    let model = |identity: &str, rates: &str, assume: &str| {
+        format!(
+            "x: [p]\ny: [a, b, r]\nu: [v]\nidentities: [{identity}]\nassume: [{assume}]\nf_x: {{p: v}}\nf_y: {{{rates}}}\nphi: [p]"
+        )
+    };
+    let lines = "a: b*v, b: a*v, r: p*(a - b)";
+    let (_, open) = derive(&model("a^2 - b^2", lines, ""));
+    assert_eq!((open.outcome, codes(&open)), (Outcome::Undecided, vec![Code::IdentifiabilityUndecided]));
+    let (_, one) = derive(&model("a + b", lines, "a != 0"));
+    assert_eq!(one.outcome, Outcome::Accepted, "{:?}", codes(&one));
+    let (_, circle) = derive(&model("a^2 + b^2 - 1", "a: -b*v, b: a*v, r: p*(2 + a)", ""));
+    assert_eq!(circle.outcome, Outcome::Accepted, "{:?}", codes(&circle));
+}

@@ -219,6 +219,7 @@ pub(super) fn type_text(syntax: &Type) -> Result<String, EmitError> {
     match syntax {
         Type::Reference(reference) => Ok(format!("&{}", type_text(&reference.elem)?)),
         Type::Path(path) => path_text(&path.path),
+        Type::Array(array) => Ok(format!("[{}; {}]", type_text(&array.elem)?, expression(&array.len, 0, 0, 1)?)),
         Type::Tuple(tuple) if tuple.elems.is_empty() => Ok("()".to_owned()),
         _ => Err(unknown(syntax)),
     }

@@ -71,3 +71,14 @@ fn a_loss_of_the_author_hides_no_other() {
     let EmitError::Inaccurate { place, .. } = &refused else { panic!("{refused}") };
     assert!(place.contains("v4 = 0.0000610"), "{place}");
 }
+
+#[test]
+fn a_sum_that_the_author_wrote_may_lose_its_digits_alone() {
+    // The author adds it to something large; h is the sum alone.
+    let sum = "Real::sqrt(1.0 + v2*v2) - 1.0";
+    let within = "1000000.0 + v4*(Real::sqrt(1.0 + v2*v2) - 1.0)";
+    let found = accuracy(with_h(sum, within), Scalar::F64).unwrap();
+    let (_, worst) = found.of(Scalar::F64).find(|(function, _)| *function == "flow").unwrap();
+    assert!(worst.as_written && worst.units > 100.0, "{worst:?}");
+    assert!(accuracy(with_h(sum, "1000000.0 + v4"), Scalar::F64).is_err());
+}

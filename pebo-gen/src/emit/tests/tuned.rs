@@ -2,7 +2,7 @@
 
 use super::fixtures::{CUK, vanishes};
 use super::*;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Operator};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator};
 
 fn number(text: &str) -> Rational {
     Rational::from_decimal(text).unwrap()
@@ -26,6 +26,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
         rebase: None,
         chi_0: numbers(["0", "-2"]),
         gate: None,
+        limits: None,
     }
 }
 
@@ -123,6 +124,67 @@ fn states_are_kept_within_bounds() {
     assert_eq!(statements(&text)[..5], expected);
     let text = tuned(&Settings { within, operator: Operator::Window(number("20")), ..gradient() });
     assert!(text.contains("Within<Cuk, f64, NX>,"), "{text}");
+}
+
+#[test]
+fn the_output_form_may_expect_its_outputs() {
+    let start = ["0.01", "0.01", "25", "400"].map(number).to_vec();
+    let covariance = Covariance { start, forgetting: number("0"), process_noise: None };
+    let given = Settings {
+        operator: Operator::Sampled(numbers(["0.1", "0.1"])),
+        output: true,
+        expected: Some(vec![0, 1]),
+        chi_0: vec![number("0"); 4],
+        rebase: Some(number("1")),
+        ..settings(Estimator::LeastSquares(covariance))
+    };
+    let text = tuned(&given);
+    assert!(text.contains("pub const ROWS: [usize; NR] = [0, 1];"), "{text}");
+    assert!(text.contains("let model = OutputForm::expecting(model, ROWS)?;"), "{text}");
+}
+
+#[test]
+fn what_samples_may_be_is_emitted_beside_the_observer() {
+    let range = |least, most| Some([number(least), number(most)]);
+    let limits = Limits { outputs: vec![range("-50", "50"), None], inputs: Vec::new(), gap: Some(number("1e-3")) };
+    let given = Settings { limits: Some(limits), ..gradient() };
+    let text = tuned(&given);
+    assert!(text.contains("pub fn limits() -> Result<Limits<f64, NY, NU>, Fault> {"), "{text}");
+    let expected = [
+        "let limits = Limits::none();",
+        "let least = SVector::from([-50.0, f64::NEG_INFINITY]);",
+        "let greatest = SVector::from([50.0, f64::INFINITY]);",
+        "let limits = limits.outputs(&least, &greatest)?;",
+        "limits.gap(0.001)",
+    ];
+    let lines: Vec<String> = function(&text, "limits").lines().skip(1).map(|line| line.trim().to_owned()).collect();
+    assert_eq!(lines, expected);
+    let inputs = Limits { outputs: Vec::new(), inputs: vec![range("0", "1")], gap: None };
+    let text = tuned(&Settings { limits: Some(inputs), ..gradient() });
+    assert!(function(&text, "limits").ends_with("Ok(limits)"), "{text}");
+
+    let (plant, derivation) = CUK.build();
+    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let asked = derivation.asked_of_parameters(&plant);
+    let text = tuned(&given);
+    let confirm = |text: &str| {
+        let tokens = text.parse().unwrap();
+        read_back::confirm(&plant, &definitions, (&asked, Some(&given)), Scalar::F64, &tokens, vanishes)
+    };
+    assert_eq!(confirm(&text), Ok(()));
+    for (from, to) in [
+        ("[-50.0, f64::NEG_INFINITY]", "[f64::NEG_INFINITY, -50.0]"),
+        ("[-50.0, f64::NEG_INFINITY]", "[-50.0, f64::INFINITY]"),
+        ("[50.0, f64::INFINITY]", "[50.0, 60.0]"),
+        ("[50.0, f64::INFINITY]", "[51.0, f64::INFINITY]"),
+        ("limits.outputs(&least, &greatest)?", "limits.outputs(&greatest, &least)?"),
+        ("limits.outputs(&least, &greatest)?", "limits.inputs(&least, &greatest)?"),
+        ("limits.gap(0.001)", "limits.gap(0.01)"),
+        ("limits.gap(0.001)", "Ok(limits)"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
+    }
 }
 
 #[test]

@@ -16,12 +16,15 @@
 //! place; that value is what `serde_yaml` decodes. It is decoded from the tree, not from the text
 //! again, so there are no two opinions of what the text says. Faulty parts are left out of the
 //! value: one mistake gives one diagnostic, and the rest is still read.
+//!
+//! What a call sets is put into the tree (`set`), so that it is held against the same table.
 
 mod document;
 mod formulas;
 mod json_schema;
 mod refusal;
 mod schema;
+mod set;
 mod shape;
 mod tree;
 
@@ -37,7 +40,8 @@ pub(super) fn json_schema() -> String {
 
 /// Reads the model in `source`; nothing where its outline is not recognisable.
 pub(super) fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Model> {
-    let tree = tree::grow(source, diagnostics)?;
+    let mut tree = tree::grow(source, diagnostics)?;
+    set::set(&mut tree, source, diagnostics);
     let value = shape::fit(&tree, diagnostics)?;
     // Every value that fits the schema decodes: this error is a slip between the two tables.
     let document = serde_yaml::from_value::<Document>(value)

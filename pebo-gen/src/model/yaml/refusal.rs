@@ -4,9 +4,9 @@ use granit_parser::{ErrorKind, ScanError};
 
 use crate::source::{Code, Diagnostic, Span, quoted};
 
-/// The text is not YAML.
-pub(super) fn syntax(error: &ScanError) -> Diagnostic {
-    let span = Span::point(error.marker().byte_offset().unwrap_or(0));
+/// The text, which begins at `start`, is not YAML.
+pub(super) fn syntax(error: &ScanError, start: usize) -> Diagnostic {
+    let span = Span::point(start + error.marker().byte_offset().unwrap_or(0));
     let (code, help) = match error.kind() {
         ErrorKind::RecursionLimitExceeded => {
             return Diagnostic::error(Code::NestedTooDeep, span, "lists or maps are nested too deep")

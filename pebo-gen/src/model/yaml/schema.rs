@@ -386,6 +386,18 @@ const OBSERVER: &[Key] = &[
         "The normalised square of the innovation beyond which a sample is refused as an outlier; without gains only",
     ),
     optional(
+        "limits",
+        Shape::Map(&NUMBERS),
+        "limits: {v2: [-50, 50], d: [0, 1]}",
+        "Between what a sample of an output or input is, as the rails of its sensor; one beyond is refused",
+    ),
+    optional(
+        "gap",
+        Shape::Number,
+        "gap: 1e-3",
+        "The longest time in seconds from one accepted sample to the next; after a longer one the observer begins anew",
+    ),
+    optional(
         "extension",
         NUMBERS,
         "extension: [0, 0]",

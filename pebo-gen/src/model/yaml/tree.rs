@@ -52,8 +52,13 @@ pub(super) struct Key {
     pub(super) text: String,
 }
 
-/// Grows the tree of the text in `source`; nothing if it is no single YAML document.
+/// Grows the tree of the file in `source`; nothing if it is no single YAML document.
 pub(super) fn grow(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
+    grow_part(source, Span::new(0, source.text().len()), refusal::empty(), diagnostics)
+}
+
+/// The same of a part of the text, with what there is to say if it holds nothing.
+pub(super) fn grow_part(source: &Source, part: Span, empty: Diagnostic, diagnostics: &mut Diagnostics) -> Option<Node> {
     let options = granit_parser::options! {
         disallow_directives: true,
         emit_unresolved_aliases: true,
@@ -62,13 +67,14 @@ pub(super) fn grow(source: &Source, diagnostics: &mut Diagnostics) -> Option<Nod
         block_nesting_limit: NESTING_LIMIT,
     };
     let mut grower = Grower { source, diagnostics, frames: Vec::new(), root: None, nodes: 0 };
-    for event in Parser::new_from_str_with_options(source.text(), options) {
+    for event in Parser::new_from_str_with_options(source.slice(part), options) {
         let accepted = match event {
             Ok((event, span)) => {
-                let span = span.byte_range().map_or(Span::default(), |r| Span::new(r.start, r.end));
+                let range = span.byte_range().unwrap_or_default();
+                let span = Span::new(part.start + range.start, part.start + range.end);
                 grower.accept(event, span)
             }
-            Err(error) => Err(refusal::syntax(&error)),
+            Err(error) => Err(refusal::syntax(&error, part.start)),
         };
         if let Err(diagnostic) = accepted {
             grower.diagnostics.push(diagnostic);
@@ -77,7 +83,7 @@ pub(super) fn grow(source: &Source, diagnostics: &mut Diagnostics) -> Option<Nod
     }
     let root = grower.root;
     if root.is_none() {
-        diagnostics.push(refusal::empty());
+        diagnostics.push(empty);
     }
     root
 }
@@ -222,7 +228,7 @@ const CUT_LIMIT: usize = 1024;
 fn cut_formula(source: &Source, span: Span) -> Option<Span> {
     let mut depth = 0_usize;
     let mut commas = 0;
-    let text = &source.text()[span.start..];
+    let text = source.slice(Span::new(span.start, usize::MAX));
     for (at, character) in text.char_indices().take(CUT_LIMIT) {
         match character {
             '(' => depth += 1,

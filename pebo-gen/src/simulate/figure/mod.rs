@@ -53,7 +53,9 @@ impl Sheet<'_> {
         let labels = self.panels.iter().flat_map(|panel| &panel.curves);
         let legend = labels.map(|label| width(label, TEXT)).fold(0.0, f64::max) + plot::SAMPLE + 2.0 * MARGIN;
         let (title, heading) = &self.title;
+        let headings = self.panels.iter().map(|panel| LEFT + width(&plot::longest_heading(panel), TEXT) + MARGIN);
         let page = (LEFT + PLOT_WIDTH + legend).max(2.0 * MARGIN + width(heading, TITLE));
+        let page = headings.fold(page, f64::max);
 
         let mut drawing = Drawing::new();
         let middle = LEFT + PLOT_WIDTH / 2.0;

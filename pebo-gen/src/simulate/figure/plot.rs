@@ -52,7 +52,7 @@ impl Plot<'_> {
             Scale::Log => Axis::logarithmic(values()),
         };
         let bottom = self.top + height;
-        drawing.label((self.left, self.top - 7.0), Anchor::Start, TEXT, &self.heading(&axis));
+        drawing.label((self.left, self.top - 7.0), Anchor::Start, TEXT, &heading(self.panel, axis.exponent));
         for mark in &axis.marks {
             let y = bottom - mark.place * height;
             drawing.grid_line((self.left, y), (self.left + PLOT_WIDTH, y));
@@ -89,20 +89,6 @@ impl Plot<'_> {
         bottom
     }
 
-    /// The title with unit and power of ten.
-    fn heading(&self, axis: &Axis) -> Label {
-        let title = Label::text(&self.panel.title);
-        let unit = self.panel.unit.as_deref();
-        match (axis.exponent, unit) {
-            (0, None) => title,
-            (0, Some(unit)) => title.then(Label::text(&format!(" in {unit}"))),
-            (exponent, unit) => {
-                let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-                title.then(Label::text(" in ")).then(Label::power_of_ten(exponent)).then(Label::text(&unit))
-            }
-        }
-    }
-
     fn legend(&self, drawing: &mut Drawing) {
         let x = self.left + PLOT_WIDTH + MARGIN;
         let mut y = self.top + 9.0;
@@ -112,6 +98,24 @@ impl Plot<'_> {
             y += SPACING;
         }
     }
+}
+
+/// The title of a panel with unit and power of ten.
+fn heading(panel: &Panel, exponent: i32) -> Label {
+    let title = Label::text(&panel.title);
+    match (exponent, panel.unit.as_deref()) {
+        (0, None) => title,
+        (0, Some(unit)) => title.then(Label::text(&format!(" in {unit}"))),
+        (exponent, unit) => {
+            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+            title.then(Label::text(" in ")).then(Label::power_of_ten(exponent)).then(Label::text(&unit))
+        }
+    }
+}
+
+/// The same with the longest power of ten.
+pub(super) fn longest_heading(panel: &Panel) -> Label {
+    heading(panel, -300)
 }
 
 /// The marks and the name of the time axis under the last panel, whose lower edge is `y`.

@@ -321,6 +321,7 @@ impl<'a, 'w> Machine<'a, 'w> {
                 faults: self.stepping.faults().clone(),
                 dropped: 0,
                 parted: self.stepping.parted(),
+                restarts: self.stepping.restarts(),
                 surprise: self.stepping.surprise(),
                 known: design.settings.known.clone(),
             },

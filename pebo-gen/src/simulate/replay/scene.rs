@@ -8,6 +8,7 @@ use crate::cas::{Expr, Symbol};
 use crate::model::{Model, Recording};
 use crate::plant::Plant;
 use crate::program::Program;
+use crate::simulate::advice::{Origin, advise};
 use crate::simulate::asked::Asked;
 use crate::simulate::observer::Design;
 use crate::simulate::scenario::{Judged, judged, periods};
@@ -17,6 +18,7 @@ use crate::source::{Diagnostic, Diagnostics, Span};
 use super::layout::Layout;
 use super::log::Log;
 use super::panels::Panels;
+use super::replayed::Replayed;
 use super::residual::Residuals;
 use super::signals::Signals;
 
@@ -68,6 +70,11 @@ impl Replay {
         problems.propagate()?;
         // Without a replay there is an error, which was propagated.
         replay.ok_or_else(Vec::new)
+    }
+
+    /// What there is to say of a recording on which the estimates did not converge: why, and what mends it.
+    pub fn advise(&self, replayed: &Replayed) -> Option<Diagnostic> {
+        advise(&replayed.summary, (&self.design.settings.estimator, Origin::Recorded), self.span)
     }
 }
 

@@ -54,6 +54,28 @@ fn the_usual_panels_and_odd_titles_are_drawn() {
 }
 
 #[test]
+fn no_text_of_several_runs_is_anchored() {
+    let text = with(SPRING, "q: 1}", "q: 1}, panels: [{title: e, curves: [hat(v) - v], scale: log}]");
+    let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+    let texts: Vec<&str> = svg.lines().filter(|line| line.starts_with("<text")).collect();
+    assert!(texts.iter().any(|text| text.contains("<tspan")) && texts.iter().any(|text| text.contains("anchor")));
+    assert!(!texts.iter().any(|text| text.contains("<tspan") && text.contains("anchor")), "{texts:#?}");
+}
+
+#[test]
+fn long_texts_widen_the_page() {
+    let wide = "W".repeat(60);
+    let title = with(SPRING, "model: spring", &format!("model: spring\ntitle: {wide}"));
+    let heading = with(SPRING, "q: 1}", &format!("q: 1}}, panels: [{{title: {wide}, unit: m, curves: [q]}}]"));
+    for text in [title, heading] {
+        let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+        let page = svg.split("viewBox=\"0 0 ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        // An em a letter of 12 points.
+        assert!(page.parse::<f64>().unwrap() > 60.0 * 12.0, "{page}");
+    }
+}
+
+#[test]
 fn units_stand_with_the_axis_or_beside_the_curves() {
     let drawn = |units: &str| {
         let text = with(SPRING, "model: spring", &format!("model: spring\nunits: {units}"));

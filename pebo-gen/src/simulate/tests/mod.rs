@@ -4,6 +4,7 @@ mod estimator;
 mod figure;
 mod flow;
 mod identity;
+mod limits;
 mod overrides;
 mod refusal;
 mod rival;

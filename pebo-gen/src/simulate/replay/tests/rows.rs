@@ -44,6 +44,29 @@ t,q,f,note
 }
 
 #[test]
+fn after_a_long_gap_the_observer_begins_anew() {
+    let row = |k: u32| format!("{},{},1\n", f64::from(k) / 64.0, (f64::from(k) / 64.0).powi(2) / 2.0);
+    let recording = |start: u32| {
+        let rows: String = (0..100).chain(start..start + 200).map(row).collect();
+        format!("t,q,f\n{rows}")
+    };
+    let impatient = CART.replace("filter: 5", "filter: 5, gap: 1");
+    let (replayed, estimates) = replay(&impatient, &recording(1000)).expect("a replay");
+    assert_eq!(replayed.summary.restarts, 1);
+    assert!(replayed.text().contains("begun anew: once"), "{}", replayed.text());
+    // From the row behind the gap on it is as if nothing had been before.
+    let alone: String = (1000..1200).map(row).collect();
+    let (_, fresh) = replay(&impatient, &format!("t,q,f\n{alone}")).expect("a replay");
+    let last = |text: &str, count: usize| {
+        let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        lines[lines.len() - count..].to_vec()
+    };
+    assert_eq!(last(&estimates, 200), last(&fresh, 200));
+    let (replayed, _) = replay(&impatient, &recording(120)).expect("a replay");
+    assert_eq!(replayed.summary.restarts, 0);
+}
+
+#[test]
 fn a_refused_sample_leaves_its_time_and_input_to_the_next() {
     let last = |rows: Vec<(f64, Option<f64>, f64)>| {
         let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());

@@ -1,6 +1,8 @@
 //! A simulation's own table, replayed.
 
-use super::{Failure, replay};
+use std::ops::ControlFlow;
+
+use super::{CART, Failure, Log, replay, resolve};
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::simulate::{Overrides, Scenario, Trace};
@@ -56,6 +58,28 @@ const RUNS: [(&str, &str, (f64, f64)); 4] = [
 /// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two instants
 /// that are rounded to 2^-53 of themselves, and so off by some t/dt times that of the step, where the simulation has the
 /// step itself. Over 10^4 steps that is 10^-12 of each step; what the observer makes of it, ten times that.
+#[test]
+fn a_recording_on_which_nothing_settles_says_why() {
+    let advice = |model: &str, recording: &str| {
+        let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
+        let replay = resolve(model, &log).expect("the columns have a meaning");
+        let replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
+        replay.advise(&replayed).map(|found| (found.notes.concat(), found.help.unwrap_or_default()))
+    };
+    // Moved at 1 m/s; the sensor of the momentum shows 10 % more.
+    let rows = |momentum: f64| {
+        let row = |k: u32| format!("{0},{0},0,{momentum}\n", f64::from(k) / 64.0);
+        format!("t,q,f,p\n{}", (0..2000).map(row).collect::<String>())
+    };
+    assert_eq!(advice(CART, &rows(1.0)), None);
+    let (note, help) = advice(CART, &rows(1.1)).expect("it is off");
+    assert!(note.contains("the error of `p` hardly falls any more") && help.contains("the bench"), "{note} {help}");
+    let (note, help) = advice(&CART.replace("gain: 50", "gain: 0.05"), &rows(1.0)).expect("it is slow");
+    assert!(note.contains("still falls") && help.contains("raise `gain`, or record longer"), "{note} {help}");
+    // Without that sensor there is no error to be seen, and nothing to be said.
+    assert_eq!(advice(CART, &rows(1.0).replace(",p\n", "\n").replace(",0,1\n", ",0\n")), None);
+}
+
 #[test]
 fn the_estimates_are_those_of_the_simulation_to_the_rounding_of_its_times() -> Result<(), Failure> {
     for (name, model, run) in RUNS {

@@ -1,0 +1,149 @@
+//! The observer of the two-link arm. What it needs of a sample is kept for the interval that begins there.
+
+use pebo_runtime::Real;
+
+use super::{Accumulator, Regression};
+use crate::counted::arm::{ALPHA, GAINS};
+
+const M1: f32 = 0.8;
+const L1: f32 = 0.5;
+const L2: f32 = 0.35;
+const M1_G: f32 = M1 * 9.81;
+const M1_L2_G: f32 = M1_G * L2;
+const INV_L1: f32 = 1.0 / L1;
+const INV_L1_L2: f32 = 1.0 / (L1 * L2);
+const INV_M1_L1: f32 = 1.0 / (M1 * L1);
+const INV_M1_L1_L2: f32 = 1.0 / (M1 * L1 * L2);
+
+/// What depends on the angles alone.
+#[derive(Clone, Copy)]
+struct Posture {
+    /// Cosine and sine of the first angle.
+    first: [f32; 2],
+    /// Of the sum of both.
+    both: [f32; 2],
+    /// The torques of gravity.
+    gravity: [f32; 2],
+    /// The columns of T but for `1/sin(y2)`, by rows of z.
+    turned: [[f32; 2]; 2],
+    inv_sine: f32,
+    /// By rows.
+    regressor: [[f32; 2]; 2],
+}
+
+impl Posture {
+    const NONE: Self = Self {
+        first: [0.0; 2],
+        both: [0.0; 2],
+        gravity: [0.0; 2],
+        turned: [[0.0; 2]; 2],
+        inv_sine: 0.0,
+        regressor: [[0.0; 2]; 2],
+    };
+
+    fn new([y1, y2]: [f32; 2]) -> Self {
+        let (sin_1, cos_1) = Real::sin_cos(y1);
+        let (sin_2, cos_2) = Real::sin_cos(y2);
+        let both = [cos_1 * cos_2 - sin_1 * sin_2, sin_1 * cos_2 + cos_1 * sin_2];
+        // From the shoulder to the tip.
+        let tip = [both[0] * L2 + cos_1 * L1, both[1] * L2 + sin_1 * L1];
+        let inv_sine = 1.0 / sin_2;
+        Self {
+            first: [cos_1, sin_1],
+            both,
+            gravity: [tip[0] * M1_G, both[0] * M1_L2_G],
+            turned: [[both[0] * INV_L1, -(tip[0] * INV_L1_L2)], [both[1] * INV_L1, -(tip[1] * INV_L1_L2)]],
+            inv_sine,
+            regressor: [
+                [INV_M1_L1 * both[0] * inv_sine, INV_M1_L1 * both[1] * inv_sine],
+                [-(INV_M1_L1_L2 * tip[0] * inv_sine), -(INV_M1_L1_L2 * tip[1] * inv_sine)],
+            ],
+        }
+    }
+
+    fn h(&self, u: [f32; 2]) -> [f32; 2] {
+        let [a, b] = [u[0] - self.gravity[0], u[1] - self.gravity[1]];
+        let [first, second] = self.turned;
+        [(a * first[0] + b * first[1]) * self.inv_sine, (a * second[0] + b * second[1]) * self.inv_sine]
+    }
+
+    fn phi_0(&self, chi: [f32; 2]) -> [f32; 2] {
+        self.regressor.map(|row| chi[0] * row[0] + chi[1] * row[1])
+    }
+}
+
+/// The observer.
+#[derive(Clone, Copy)]
+pub struct ByHand {
+    sampled: bool,
+    y: [f32; 2],
+    posture: Posture,
+    chi: [Accumulator; 2],
+    regression: Regression<2>,
+}
+
+impl ByHand {
+    /// Before the first sample.
+    pub fn new() -> Self {
+        Self {
+            sampled: false,
+            y: [0.0; 2],
+            posture: Posture::NONE,
+            chi: [Accumulator::ZERO; 2],
+            regression: Regression::START,
+        }
+    }
+
+    /// One sample: angles at the end of an interval, the torques during it, its length. None for a bad sample.
+    pub fn step(&mut self, y: [f32; 2], u: [f32; 2], dt: f32) -> Option<[f32; 2]> {
+        if !(y[0] * 0.0 + y[1] * 0.0 + u[0] * 0.0 + u[1] * 0.0 + dt * 0.0 == 0.0 && dt > 0.0) {
+            return None;
+        }
+        let posture = Posture::new(y);
+        let mut next = *self;
+        if next.sampled {
+            next.advance((y, &posture), u, dt);
+        }
+        next.sampled = true;
+        next.y = y;
+        if next.chi[0].blemish() + next.chi[1].blemish() + next.regression.blemish() != 0.0 {
+            return None;
+        }
+        let theta = next.regression.theta;
+        let z = [next.chi[0].value + theta[0].value, next.chi[1].value + theta[1].value];
+        let along = |[cosine, sine]: [f32; 2]| z[1] * cosine - z[0] * sine;
+        let second = L2 * along(posture.both);
+        let estimate = [L1 * along(posture.first) + second, second];
+        if estimate[0] * 0.0 + estimate[1] * 0.0 != 0.0 {
+            return None;
+        }
+        next.posture = posture;
+        *self = next;
+        Some(estimate)
+    }
+
+    fn advance(&mut self, (y, posture): ([f32; 2], &Posture), u: [f32; 2], dt: f32) {
+        let (before, earlier) = (self.y, self.posture);
+        let start = [self.chi[0].value, self.chi[1].value];
+        let (h_start, h_end) = (earlier.h(u), posture.h(u));
+        self.chi[0].add((h_start[0] + h_end[0]) * (0.5 * dt));
+        self.chi[1].add((h_start[1] + h_end[1]) * (0.5 * dt));
+        let end = [self.chi[0].value, self.chi[1].value];
+
+        let (known_start, known_end) = (earlier.phi_0(start), posture.phi_0(end));
+        let regression = &mut self.regression;
+        regression.use_sample_time(ALPHA, dt);
+        for row in 0..2 {
+            let rate = (y[row] - before[row]) / dt;
+            let known = [rate - known_start[row], rate - known_end[row]];
+            regression.filter(row, known, [earlier.regressor[row], posture.regressor[row]]);
+        }
+        regression.correct(GAINS, dt);
+    }
+}
+
+impl Default for ByHand {
+    fn default() -> Self {
+        Self::new()
+    }
+}

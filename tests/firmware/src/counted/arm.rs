@@ -1,0 +1,55 @@
+//! The two-link arm. As for the motor, the signals are of the right size and no motion of the plant.
+
+use pebo_runtime::nalgebra::{SVector, Vector2};
+use pebo_runtime::{Fault, Filter, Gradient, Hold, Real};
+
+use super::Plant;
+use crate::by_hand::arm::ByHand;
+use crate::emitted::arm::{Arm as Model, Observer, Parameters, U, X, Y};
+
+/// Seconds between two samples.
+const DT: f32 = 1e-3;
+
+/// The gains of both observers.
+pub const GAINS: [f32; 2] = [1.0, 2.0];
+
+/// The filter of both observers, in rad/s.
+pub const ALPHA: f32 = 50.0;
+
+/// Angles, then the torques of the interval before.
+pub type Sample = ([f32; 2], [f32; 2]);
+
+/// The arm.
+pub struct Arm;
+
+impl Plant for Arm {
+    const NAME: &'static str = "arm";
+    type Sample = Sample;
+    type Estimate = [f32; 2];
+    type Emitted = Observer;
+    type ByHand = ByHand;
+
+    fn observers() -> Result<(Observer, ByHand), Fault> {
+        let model = Model::new(&Parameters::default());
+        let gradient = Gradient::diagonal(&Vector2::from(GAINS))?;
+        let filter = Filter::new(ALPHA, Hold::First)?;
+        Ok((Observer::new(model, gradient, filter, SVector::zeros())?, ByHand::new()))
+    }
+
+    fn samples() -> impl Iterator<Item = Sample> {
+        (0..=u16::MAX).cycle().map(|k| {
+            let (sine, cosine) = Real::sin_cos(0.01 * f32::from(k));
+            ([sine, 1.2 + 0.3 * cosine], [2.0 * cosine, sine])
+        })
+    }
+
+    #[inline]
+    fn emitted(observer: &mut Observer, &([y1, y2], [u1, u2]): &Sample) -> Option<[f32; 2]> {
+        observer.step(Y { y1, y2 }, U { u1, u2 }, DT).map(|X { x1, x2 }| [x1, x2]).ok()
+    }
+
+    #[inline]
+    fn by_hand(observer: &mut ByHand, (y, u): &Sample) -> Option<[f32; 2]> {
+        observer.step(*y, *u, DT)
+    }
+}

@@ -1,0 +1,96 @@
+//! The steps that are counted: of an emitted observer and of the one written by hand for the same plant, each a function
+//! of its own so that counters and size figures find it.
+
+pub mod arm;
+pub mod cuk;
+pub mod motor;
+
+use pebo_runtime::Fault;
+
+use crate::report::Report;
+
+/// A plant with both observers.
+pub trait Plant {
+    /// What heads its results.
+    const NAME: &'static str;
+    /// Outputs and inputs.
+    type Sample: Copy;
+    /// The estimate of the state, as both give it.
+    type Estimate: IntoIterator<Item = f32>;
+    /// The emitted observer.
+    type Emitted;
+    /// The one written by hand.
+    type ByHand;
+
+    /// Both before the first sample.
+    ///
+    /// # Errors
+    /// None for the gains here.
+    fn observers() -> Result<(Self::Emitted, Self::ByHand), Fault>;
+
+    /// Samples without end.
+    fn samples() -> impl Iterator<Item = Self::Sample>;
+
+    /// One step of the emitted observer.
+    fn emitted(observer: &mut Self::Emitted, sample: &Self::Sample) -> Option<Self::Estimate>;
+
+    /// One step by hand.
+    fn by_hand(observer: &mut Self::ByHand, sample: &Self::Sample) -> Option<Self::Estimate>;
+}
+
+/// Samples in a round of counting.
+pub const ROUND: usize = 64;
+
+/// Samples of a round.
+pub type Samples<P> = [Option<<P as Plant>::Sample>; ROUND];
+
+/// The first samples of a plant.
+pub fn samples<P: Plant>() -> Samples<P> {
+    let mut samples = P::samples();
+    core::array::from_fn(|_| samples.next())
+}
+
+/// One step of the emitted observer.
+#[inline(never)]
+pub fn emitted_step<P: Plant>(observer: &mut P::Emitted, sample: &P::Sample) -> Option<P::Estimate> {
+    P::emitted(observer, sample)
+}
+
+/// One step of the observer written by hand.
+#[inline(never)]
+pub fn hand_step<P: Plant>(observer: &mut P::ByHand, sample: &P::Sample) -> Option<P::Estimate> {
+    P::by_hand(observer, sample)
+}
+
+/// Rounds before the one that counts: the first step of all sets the clock, the second computes the filter's weights.
+pub const WARM_UP: usize = 1;
+
+/// A round of the emitted observer's steps.
+#[inline(never)]
+pub fn emitted_round<P: Plant>(observer: &mut P::Emitted, samples: &Samples<P>) -> bool {
+    samples.iter().flatten().all(|sample| emitted_step::<P>(observer, sample).is_some())
+}
+
+/// A round of steps by hand.
+#[inline(never)]
+pub fn hand_round<P: Plant>(observer: &mut P::ByHand, samples: &Samples<P>) -> bool {
+    samples.iter().flatten().all(|sample| hand_step::<P>(observer, sample).is_some())
+}
+
+/// Reports whether both give the same estimates to the last bit.
+///
+/// # Errors
+/// A fault where none should be.
+pub fn compare<P: Plant>(report: &mut impl Report) -> Result<(), Fault> {
+    let (mut emitted, mut hand) = P::observers()?;
+    let mut same = true;
+    for sample in P::samples().take(2000) {
+        let found = [emitted_step::<P>(&mut emitted, &sample), hand_step::<P>(&mut hand, &sample)];
+        let [Some(emitted), Some(hand)] = found else { return Err(Fault::Estimate) };
+        same &= emitted.into_iter().map(f32::to_bits).eq(hand.into_iter().map(f32::to_bits));
+    }
+    report.name("by hand");
+    report.name(P::NAME);
+    report.flag(same);
+    Ok(())
+}

@@ -1,0 +1,56 @@
+//! The motor with currents and speed measured. What a step costs does not depend on what the sensors say: the signals
+//! are of the right size and no motion of the plant.
+
+use pebo_runtime::nalgebra::{SVector, Vector2};
+use pebo_runtime::{Fault, Filter, Gradient, Hold, Real};
+
+use super::Plant;
+use crate::by_hand::motor::ByHand;
+use crate::emitted::motor::{Motor as Model, Observer, Parameters, U, X, Y};
+
+/// Seconds between two samples.
+const DT: f32 = 1e-4;
+
+/// The gains of both observers.
+pub const GAINS: [f32; 2] = [2e-5, 1e-5];
+
+/// The filter of both observers, in rad/s.
+pub const ALPHA: f32 = 500.0;
+
+/// Currents and speed, then the voltages of the interval before.
+pub type Sample = ([f32; 3], [f32; 2]);
+
+/// The motor.
+pub struct Motor;
+
+impl Plant for Motor {
+    const NAME: &'static str = "motor";
+    type Sample = Sample;
+    type Estimate = [f32; 1];
+    type Emitted = Observer;
+    type ByHand = ByHand;
+
+    fn observers() -> Result<(Observer, ByHand), Fault> {
+        let model = Model::new(&Parameters::default());
+        let gradient = Gradient::diagonal(&Vector2::from(GAINS))?;
+        let filter = Filter::new(ALPHA, Hold::First)?;
+        Ok((Observer::new(model, gradient, filter, SVector::zeros())?, ByHand::new()))
+    }
+
+    fn samples() -> impl Iterator<Item = Sample> {
+        (0..=u16::MAX).cycle().map(|k| {
+            let (sine, cosine) = Real::sin_cos(0.01 * f32::from(k));
+            ([2.0 * cosine, 2.0 * sine, 10.0 + sine], [10.0 * cosine, 10.0 * sine])
+        })
+    }
+
+    #[inline]
+    fn emitted(observer: &mut Observer, &([i1, i2, omega], [v1, v2]): &Sample) -> Option<[f32; 1]> {
+        observer.step(Y { i1, i2, omega }, U { v1, v2 }, DT).map(|X { q }| [q]).ok()
+    }
+
+    #[inline]
+    fn by_hand(observer: &mut ByHand, (y, u): &Sample) -> Option<[f32; 1]> {
+        observer.step(*y, *u, DT).map(|q| [q])
+    }
+}
