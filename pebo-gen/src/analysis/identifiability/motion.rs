@@ -187,18 +187,23 @@ impl Question<'_> {
     }
 
     /// Where rows that have full rank with constant inputs lose it, but for what is listed: where an input is a function of
-    /// others, it is asked what is seen there; the rest was not decided, but for what cannot stay zero.
+    /// others, it is asked what is seen there; the rest was not decided, but for what does not stay zero.
     fn doubtful(&self, listed: &[Blind], symbols: &[Symbol], stack: &[Vec<Expr>]) -> Vec<Blind> {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
         let volume = Volume::of(arena, domain, stack);
         let places = volume.and_then(|volume| volume.places(plant, domain)).unwrap_or_default();
-        let known: BTreeSet<Symbol> =
-            plant.parameters.iter().map(|p| p.symbol).chain(plant.u.iter().copied()).collect();
+        let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+        let known: BTreeSet<Symbol> = constants.iter().chain(&plant.u).copied().collect();
         let mut found = Vec::new();
         for zero in places.zeros {
             let unshown = || Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() };
-            if !arena.symbols_of(&[zero]).is_subset(&known) {
+            let symbols_there = arena.symbols_of(&[zero]);
+            if !symbols_there.is_subset(&known) {
+                // What several signals make zero is passed in a moment: that it stays so asks an input for each derivative.
+                if symbols_there.difference(&constants).count() > 1 {
+                    continue;
+                }
                 let held = plant.u.iter().copied().collect();
                 let moves = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new())
                     .is_ok_and(|flow| domain.implies(arena, flow.rate(arena, zero), Relation::NonZero));
