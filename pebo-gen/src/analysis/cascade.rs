@@ -15,6 +15,7 @@ use crate::cas::combination::combine;
 use crate::cas::contrast::contrast;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::frozen::as_written;
 use crate::cas::interval::Precision;
 use crate::cas::zero::{Answer, decide, point_of};
 use crate::cas::{Expr, Symbol};
@@ -179,10 +180,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                let own = shortest(arena, domain, rate);
-                let others = [own, plain].into_iter().filter(|form| !arena.depends_on(*form, &hidden));
-                let equal = |form: &Expr| decide(arena, arena.sub(*form, tidied), domain).is_zero();
-                let forms: Vec<Expr> = [tidied].into_iter().chain(others.filter(equal)).collect();
+                // What is free of x as it is written, then what cancels, then the normal form.
+                let forms = as_written(arena, domain, rate, &hidden);
+                let forms = forms.into_iter().chain([shortest(arena, domain, rate), plain]);
+                let equal = |form: &Expr| {
+                    !arena.depends_on(*form, &hidden) && decide(arena, arena.sub(*form, tidied), domain).is_zero()
+                };
+                let forms: Vec<Expr> = forms.filter(equal).chain([tidied]).collect();
                 let own = authors(arena, rate, &forms).unwrap_or(tidied);
                 Component::Free(asking_less(arena, domain, own, &forms))
             }

@@ -19,6 +19,7 @@ use super::field::{Field, Fraction, Obstacle};
 use super::frozen::Frozen;
 use super::linear::{Echelon, solve};
 use super::poly::{Monomial, Poly};
+use super::tidy::{shorter, shortest};
 
 /// Solves for the coefficients of `target` over `basis`; none if the comparison has no solution.
 pub fn combine(
@@ -106,7 +107,7 @@ pub fn combine_on(
     x: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Expr>>, Obstacle> {
     let roots = [basis, &[target]].concat();
-    // In the author's own functions of what is known, where that is enough.
+    // In the author's own functions and sums of what is known, where that is enough.
     let mut frozen = Frozen::new(arena, x);
     let signals = frozen.freeze(&roots);
     if !frozen.is_empty()
@@ -114,7 +115,11 @@ pub fn combine_on(
         && let Ok(field) = Field::over(arena, &domain.facts, &signals)
         && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
     {
-        return Ok(Some(coefficients.iter().map(|c| frozen.thaw(field.show(c))).collect()));
+        let thawed = |c: &Fraction| {
+            let [whole, apart] = [field.show(c), field.show_apart(c)].map(|form| frozen.thaw(form));
+            shortest(arena, domain, shorter(arena, whole, apart))
+        };
+        return Ok(Some(coefficients.iter().map(thawed).collect()));
     }
     let combined = |field: Result<Field<'_>, Obstacle>| {
         let field = field?;

@@ -5,16 +5,19 @@
 //!
 //! An equation in which the unknown stands in one place is turned inside out. Where none is left, the
 //! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and
-//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`.
+//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`. What is known is
+//! left as it is written ([`super::frozen`]), and only then taken apart, for what needs a relation within it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::domain::Domain;
 use super::field::{Field, Fraction, Obstacle};
+use super::frozen::Frozen;
 use super::function::Function;
 use super::linear::Echelon;
 use super::poly::Monomial;
 use super::rational::Rational;
+use super::tidy::shorter;
 use super::{Arena, Expr, Node, Symbol};
 
 /// `formula = value`.
@@ -38,20 +41,42 @@ pub(crate) fn solve(
         if let Some(Equation { formula, value }) = turned_out(arena, domain, *equation, unknowns)
             && let Some(symbol) = arena.as_symbol(formula)
         {
-            alone.entry(symbol).or_insert(value);
+            alone.entry(symbol).and_modify(|known| *known = shorter(arena, *known, value)).or_insert(value);
         }
     }
     let mut candidates: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
     // All equations together know branches that one alone does not: cosine and sine, but not cosine.
-    for start in [BTreeMap::new(), alone] {
-        for (symbol, value) in eliminated(arena, domain, equations, unknowns, start)? {
+    // What an equation gives as it stands loses no digits.
+    let given = |equation: &Equation| Some((arena.as_symbol(equation.formula)?, equation.value));
+    let given = equations.iter().rev().filter_map(given).filter(|(symbol, _)| unknowns.contains(symbol)).collect();
+    let starts = [given, alone];
+    let mut add = |found: BTreeMap<Symbol, Expr>| {
+        for (symbol, value) in found {
             let known = candidates.entry(symbol).or_default();
             if !known.contains(&value) {
                 known.push(value);
             }
         }
+    };
+    for start in &starts {
+        // What needs a relation among what is known may be out of reach as it is written.
+        if let Ok(found) = eliminated(arena, domain, equations, unknowns, start.clone(), Known::Written) {
+            add(found);
+        }
+    }
+    for start in starts {
+        add(eliminated(arena, domain, equations, unknowns, start, Known::Normal)?);
     }
     Ok(candidates)
+}
+
+/// How elimination reads what is free of the unknowns.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// As it is written.
+    Written,
+    /// In the normal form.
+    Normal,
 }
 
 /// Eliminates and inverts until no unknown comes out any more.
@@ -61,6 +86,7 @@ fn eliminated(
     equations: &[Equation],
     unknowns: &[Symbol],
     mut found: BTreeMap<Symbol, Expr>,
+    reading: Known,
 ) -> Result<BTreeMap<Symbol, Expr>, Obstacle> {
     let mut differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
     differences = arena.substitute_all(&differences, &found);
@@ -71,7 +97,7 @@ fn eliminated(
         if open.is_empty() || differences.is_empty() {
             break;
         }
-        let known = eliminate(arena, domain, &differences, &open)?;
+        let known = eliminate(arena, domain, &differences, &open, reading)?;
         let mut progress = false;
         let mut inner = Vec::new();
         for inverted in invert(arena, domain, &known) {
@@ -133,12 +159,18 @@ fn eliminate(
     domain: &Domain,
     differences: &[Expr],
     open: &BTreeSet<Symbol>,
+    reading: Known,
 ) -> Result<Vec<Equation>, Obstacle> {
-    let field = Field::over(arena, &domain.facts, differences)?;
+    let mut frozen = Frozen::new(arena, open);
+    let differences = match reading {
+        Known::Written => frozen.freeze(differences),
+        Known::Normal => differences.to_vec(),
+    };
+    let field = Field::over(arena, &domain.facts, &differences)?;
     let hidden: Vec<u32> = field.kernels_of(open).into_iter().collect();
     let mut rows: Vec<BTreeMap<Monomial, Fraction>> = Vec::new();
     let mut columns: BTreeSet<Monomial> = BTreeSet::new();
-    for difference in differences {
+    for difference in &differences {
         let mut row = BTreeMap::new();
         for (monomial, coefficient) in field.fraction(*difference)?.numerator().collect(&hidden) {
             if !monomial.is_one() {
@@ -167,19 +199,19 @@ fn eliminate(
         if alone {
             let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
             let formula = arena.multiply(&Rational::ONE, factors);
-            known.push(Equation { formula, value: field.show(&row[columns.len()]) });
+            let value = frozen.thaw(field.show(&row[columns.len()]));
+            known.push(Equation { formula: frozen.thaw(formula), value });
         }
     }
     Ok(known)
 }
 
-/// Inverts the outermost function of what is known.
+/// Inverts the outermost function of what is known, first what is known without: `a` rather than the root of `a^2`.
 fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
-    let mut inverted = Vec::new();
-    for equation in known {
-        let Equation { formula, value } = *equation;
+    let (mut inverted, others): (Vec<Equation>, Vec<Equation>) =
+        known.iter().copied().partition(|equation| arena.as_symbol(equation.formula).is_some());
+    for Equation { formula, value } in others {
         let next = match arena.node(formula) {
-            Node::Symbol(_) => Some(*equation),
             Node::Product(product) => match product.factors.as_slice() {
                 [(base, exponent)] => unpower(arena, domain, *base, exponent, value),
                 _ => None,
@@ -232,6 +264,9 @@ fn angle_of(arena: &Arena, domain: &Domain, sin: Expr, cos: Expr) -> Expr {
         if !field.signs().is_positive(&common)? {
             return Ok(None);
         }
+        if common.is_one() {
+            return Ok(None);
+        }
         Ok(Some([field.show(&field.mul(&y, &common)?), field.show(&field.mul(&x, &common)?)]))
     };
     let arguments = scaled().ok().flatten().unwrap_or([sin, cos]);
@@ -242,4 +277,79 @@ fn angle_of(arena: &Arena, domain: &Domain, sin: Expr, cos: Expr) -> Expr {
 fn beside(arena: &Arena, known: &[Equation], function: Function, inside: Expr) -> Option<Expr> {
     let wanted = arena.call(function, &[inside]);
     known.iter().find(|e| e.formula == wanted).map(|e| e.value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::facts::Relation;
+
+    /// What the equations give for the first unknown, the likeliest.
+    fn solved(arena: &Arena, domain: &Domain, formulas: &[Expr], unknown: Expr) -> String {
+        let name = |index: usize| arena.variable(&format!("z{}", index + 1));
+        let equation = |(index, formula): (usize, &Expr)| Equation { formula: *formula, value: name(index) };
+        let equations: Vec<Equation> = formulas.iter().enumerate().map(equation).collect();
+        let unknowns: Vec<Symbol> = arena.symbols_of(&[unknown]).into_iter().collect();
+        let candidates = solve(arena, domain, &equations, &unknowns).unwrap();
+        arena.print(candidates[&unknowns[0]][0])
+    }
+
+    #[test]
+    fn what_is_known_stays_as_it_is_written() {
+        let arena = Arena::new();
+        let [_, p, q, r, k] = ["z1", "p", "q", "r", "k"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        let power = |base, exponent: i64| arena.power(base, &Rational::from(exponent));
+        let call = |function, argument| arena.call(function, &[argument]);
+        let one = arena.one();
+        let offset = arena.sub(q, r);
+        let cases = [
+            // Powers of a difference.
+            (arena.add(p, power(arena.sub(q, arena.number(300)), 3)), "z1 - (q - 300)^3"),
+            (arena.add(p, arena.mul(k, power(offset, 2))), "z1 - k*(q - r)^2"),
+            (arena.mul(p, arena.mul(power(offset, 2), arena.add(q, r))), "z1/((q - r)^2*(q + r))"),
+            // Functions of a sum.
+            (arena.sub(call(Function::Log, arena.add(one, p)), power(q, 2)), "exp(z1 + q^2) - 1"),
+            (arena.add(call(Function::Asin, p), q), "sin(z1 - q)"),
+            (arena.sub(arena.sqrt(arena.add(one, power(p, 2))), power(q, 2)), "sqrt((z1 + q^2)^2 - 1)"),
+            // The unknown in two places.
+            (arena.add(arena.div(p, arena.add(p, one)), call(Function::Sin, q)), "(z1 - sin(q))/(1 - z1 + sin(q))"),
+        ];
+        for (formula, expected) in cases {
+            assert_eq!(solved(&arena, &domain, &[formula], p), expected);
+        }
+    }
+
+    #[test]
+    fn an_unknown_that_stands_alone_is_not_taken_from_a_power() {
+        let arena = Arena::new();
+        let p = arena.variable("p");
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        let power = |exponent: i64| arena.power(p, &Rational::from(exponent));
+        assert_eq!(solved(&arena, &domain, &[power(2), p], p), "z2");
+        assert_eq!(solved(&arena, &domain, &[power(3), power(2)], p), "z1^(1/3)");
+        assert_eq!(solved(&arena, &domain, &[arena.add(power(3), p), p, power(3)], p), "z2");
+    }
+
+    #[test]
+    fn a_relation_within_what_is_known_is_found() {
+        let arena = Arena::new();
+        let [p, s, q] = ["p", "s", "q"].map(|name| arena.variable(name));
+        // (q - 1)*(q + 1) is q^2 - 1: of the two equations only the difference is independent of s.
+        let product = arena.mul(arena.sub(q, arena.one()), arena.add(q, arena.one()));
+        let square = arena.sub(arena.mul(q, q), arena.one());
+        let formulas = [arena.add(arena.mul(product, s), p), arena.mul(square, s)];
+        let unknowns: Vec<Symbol> = [p, s].into_iter().filter_map(|e| arena.as_symbol(e)).collect();
+        let equations: Vec<Equation> = formulas
+            .iter()
+            .zip(["z1", "z2"])
+            .map(|(f, z)| Equation { formula: *f, value: arena.variable(z) })
+            .collect();
+        let domain = Domain::default();
+        let candidates = solve(&arena, &domain, &equations, &unknowns).unwrap();
+        let shown: Vec<String> = candidates[&unknowns[0]].iter().map(|e| arena.print(*e)).collect();
+        assert!(shown.contains(&"z1 - z2".to_owned()), "{shown:?}");
+    }
 }

@@ -13,6 +13,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::factor::factor;
 use super::lower::{Undeclared, lower, lower_with};
+use super::product::magnitude_together;
 use super::straight::{Operand, Operation, Program};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
@@ -235,7 +236,22 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         let arena = self.arena;
         let (fixed, rest): (Vec<_>, Vec<_>) =
             factors.iter().cloned().partition(|factor| self.fixed.contains(&factor.0));
+        // In a power of a quotient the parameters are a power of one constant: `K^10` alone may overflow.
+        let is_raised = |(_, exponent): &(Expr, Rational)| {
+            let magnitude = magnitude_together(exponent);
+            magnitude.is_some() && rest.iter().any(|(_, moving)| magnitude_together(moving) == magnitude)
+        };
+        let (raised, fixed): (Vec<_>, Vec<_>) = fixed.into_iter().partition(is_raised);
         let mut factors: Vec<_> = rest.into_iter().map(|(base, e)| (known[&base], e)).collect();
+        let mut bases: BTreeMap<Rational, Vec<(Expr, Rational)>> = BTreeMap::new();
+        for (base, exponent) in raised {
+            let one = Rational::from(exponent.signum());
+            bases.entry(exponent.abs()).or_default().push((base, one));
+        }
+        for (exponent, bases) in bases {
+            let base = arena.multiply(&Rational::ONE, bases);
+            factors.push((self.constant(base), exponent));
+        }
         if fixed.is_empty() {
             return arena.multiply(coefficient, factors);
         }

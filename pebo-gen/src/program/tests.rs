@@ -225,6 +225,35 @@ fn small_powers_are_multiplications() {
 }
 
 #[test]
+fn a_power_of_a_quotient_keeps_the_range_of_its_base() {
+    let arena = Arena::new();
+    let [q, r, k] = ["q", "r", "K"].map(|name| arena.symbol(name));
+    let [x, y, z] = [q, r, k].map(|symbol| arena.of_symbol(symbol));
+    let power = |base, exponent: i64| arena.power(base, &Rational::from(exponent));
+    let (one, tiny) = (arena.one(), Rational::from(10).pow(-1000).unwrap());
+    // Each alone leaves the range of double precision.
+    let huge = BTreeMap::from([(q, 2e10), (r, 1e10), (k, -1e10)]);
+    let cases = [
+        (power(arena.div(x, y), 100), 2_f64.powi(100)),
+        (power(arena.div(x, z), 101), -(2_f64.powi(101))),
+        (arena.div(one, power(arena.div(z, x), 99)), -(2_f64.powi(99))),
+        (arena.scale(power(x, 100), &tiny), 2_f64.powi(100)),
+        (arena.scale(power(x, 100), &-&tiny), -(2_f64.powi(100))),
+    ];
+    for (value, expected) in cases {
+        let outputs = vec![value];
+        let task = Task { arguments: vec![q, r], parts: Vec::new(), outputs, is_regular: true };
+        let staged = stage(&arena, &[k], &[], &[task]).unwrap();
+        let setup = run(&staged.setup, &huge);
+        let mut point = huge.clone();
+        point.extend(staged.constants.iter().map(|constant| constant.0).zip(setup));
+        let computed = run(&staged.programs[0], &point)[0];
+        let rounding = 300.0 * f64::EPSILON * expected.abs();
+        assert!((computed - expected).abs() <= rounding, "{}: {computed}", arena.print(value));
+    }
+}
+
+#[test]
 fn several_denominators_are_one_division() {
     let quotient = cost(|a| {
         let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));

@@ -9,11 +9,12 @@
 //! of an integral; where they give `ds_j`, s is an integral. For a generalised one the rate may be affine in x, which leaves
 //! fewer equations. Both lead to functions that the plant's formulas do not hold.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::combination::equations;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::frozen::Frozen;
 use crate::cas::linear::Echelon;
 use crate::cas::{Expr, Function, Node, Symbol};
 
@@ -34,7 +35,6 @@ impl Connection {
     /// Solves the equations of a plant for rates as asked.
     pub(super) fn of(question: &Question<'_>, asked: Rate) -> Result<Self, Obstacle> {
         let arena = question.arena;
-        let (states, outputs) = (question.x.len(), question.y.len());
         let mut conditions = conditions(question, &question.rates);
         if asked == Rate::Affine {
             // What is affine in x has slopes that are free of it.
@@ -45,11 +45,31 @@ impl Connection {
             });
             conditions = slopes.collect();
         }
-        let roots: Vec<Expr> = conditions.iter().flatten().copied().collect();
-        let field = Field::over(arena, &question.domain.facts, &roots)?;
         let mut moving = question.signals.clone();
         moving.retain(|symbol| !question.y.contains(symbol));
-        let matrix = equations(&field, &conditions, &moving)?;
+        let mut found = Self::solved(question, &conditions, &moving)?;
+        // What the outputs are known by stays as it is written, where that is enough: `(q - q0)^4` rather than its terms.
+        let mut frozen = Frozen::new(arena, &moving);
+        let written: Vec<Vec<Expr>> = conditions.iter().map(|row| frozen.freeze(row)).collect();
+        if !frozen.is_empty()
+            && let Ok(written) = Self::solved(question, &written, &moving)
+        {
+            let entries = found.gamma.iter_mut().flatten().chain(&mut found.shift);
+            for (known, written) in entries.zip(written.gamma.iter().flatten().chain(&written.shift)) {
+                if let (Some(known), Some(written)) = (known, written) {
+                    *known = written.iter().map(|entry| frozen.thaw(*entry)).collect();
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The conditions, solved for derivatives, as coefficients that are free of what moves.
+    fn solved(question: &Question<'_>, conditions: &[Vec<Expr>], moving: &BTreeSet<Symbol>) -> Result<Self, Obstacle> {
+        let (states, outputs) = (question.x.len(), question.y.len());
+        let roots: Vec<Expr> = conditions.iter().flatten().copied().collect();
+        let field = Field::over(question.arena, &question.domain.facts, &roots)?;
+        let matrix = equations(&field, conditions, moving)?;
         let (slopes, rest) = Echelon::of(&field, matrix, states * outputs)?;
         let behind = rest.into_iter().map(|row| row[states * outputs..].to_vec()).collect();
         let (shifts, _) = Echelon::of(&field, behind, outputs)?;

@@ -15,6 +15,9 @@ use crate::cas::{Arena, Expr, Function, Node, Symbol};
 /// Derivatives of a polynomial part that are taken before it is given up.
 const MOST_PARTS: usize = 8;
 
+/// Terms into which a product is multiplied out.
+const MOST_TERMS: usize = 64;
+
 /// An antiderivative by the symbol.
 pub(super) fn antiderivative(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> Option<Expr> {
     let rules = Rules { arena, domain, symbol };
@@ -73,8 +76,8 @@ impl Rules<'_> {
                     _ => None,
                 };
                 let rest = arena.multiply(&Rational::ONE, moving.iter().cloned());
-                let integral = integral.or_else(|| self.by_parts(&moving)).or_else(|| self.chain(&moving, rest))?;
-                Some(arena.mul(factor, integral))
+                let integral = integral.or_else(|| self.by_parts(&moving)).or_else(|| self.chain(&moving, rest));
+                Some(arena.mul(factor, integral.or_else(|| self.term_by_term(&moving))?))
             }
             _ => self.power(expr, &Rational::ONE),
         }
@@ -164,6 +167,22 @@ impl Rules<'_> {
         })
     }
 
+    /// A product with a sum multiplied out, powers left as they are: `1 + (q - r)^4` is two powers of affine functions.
+    fn term_by_term(&self, factors: &[(Expr, Rational)]) -> Option<Expr> {
+        let arena = self.arena;
+        let terms = |(base, exponent): &(Expr, Rational)| match arena.node(*base) {
+            Node::Sum(sum) if exponent.is_one() => Some(sum.terms.len() + 1),
+            _ => None,
+        };
+        let most: usize = factors.iter().filter_map(terms).try_fold(1, usize::checked_mul)?;
+        let place = factors.iter().position(|factor| terms(factor).is_some()).filter(|_| most <= MOST_TERMS)?;
+        let Node::Sum(sum) = arena.node(factors[place].0) else { return None };
+        let others = factors.iter().enumerate().filter(|(index, _)| *index != place);
+        let others = arena.multiply(&Rational::ONE, others.map(|(_, factor)| factor.clone()));
+        let products = sum.terms.iter().map(|(term, c)| arena.scale(arena.mul(*term, others), c));
+        self.of(arena.sum(products.chain([arena.mul(arena.number(sum.constant.clone()), others)])))
+    }
+
     fn tidied(&self, expr: Expr) -> Option<Expr> {
         let field = Field::over(self.arena, &self.domain.facts, &[expr]).ok()?;
         Some(field.show(&field.fraction(expr).ok()?))
@@ -209,5 +228,28 @@ impl Rules<'_> {
         }
         let back = arena.add(arena.of_symbol(self.symbol), shift);
         Some(arena.substitute(arena.sum(total), &BTreeMap::from([(self.symbol, back)])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_differences_stay_powers() {
+        let arena = Arena::new();
+        let [q, r, k] = ["q", "r", "k"].map(|name| arena.variable(name));
+        let symbol = arena.as_symbol(q).unwrap();
+        let offset = arena.sub(q, r);
+        let power = |exponent: i64| arena.power(offset, &Rational::from(exponent));
+        let bent = arena.add(arena.one(), power(4));
+        let cases = [
+            (arena.mul(k, bent), "k*(q + (q - r)^5/5)"),
+            (arena.mul(bent, arena.add(k, power(2))), "(q - r)^3/3 + q*k + (q - r)^7/7 + k*(q - r)^5/5"),
+        ];
+        for (slope, expected) in cases {
+            let found = antiderivative(&arena, &Domain::default(), slope, symbol).unwrap();
+            assert_eq!(arena.print(found), expected);
+        }
     }
 }
