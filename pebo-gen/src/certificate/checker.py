@@ -101,16 +101,28 @@ class Plant:
         for key, expand in (("lti", linear), ("mechanical", mechanical), ("electromechanical", electromechanical)):
             if key in stated:
                 self.rates |= expand(self, stated[key])
-        for output, value in self.given.items():
-            if output not in self.rates and not value.free_symbols & set(self.u):
-                self.rates[output] = self.along(value)
+        # Its rate follows where the rates of all in it are known: perhaps after those of other outputs.
+        for _ in self.given:
+            for output, value in self.given.items():
+                if output not in self.rates and not self.missing(value):
+                    self.rates[output] = self.along(value)
         self.parameters = {NAMES[name] for name in constants}
+
+    def moving(self, expr, more={}):
+        """The signals of an expression."""
+        return [s for s in sorted(expr.free_symbols, key=str) if s in {*self.x, *self.y, *self.u, *self.w, *more}]
+
+    def missing(self, expr, more={}):
+        """The signals of an expression whose rate is not known."""
+        return [symbol for symbol in self.moving(expr, more) if symbol not in {**self.rates, **more}]
 
     def along(self, expr, more={}):
         """The time derivative of an expression."""
-        rates = {**self.rates, **more}
-        moving = [s for s in sorted(expr.free_symbols, key=str) if s in {*self.x, *self.y, *self.u, *self.w, *more}]
-        missing = [symbol for symbol in moving if symbol not in rates]
+        if self.missing(expr, more):
+            # An output by its value, in which an input without a rate may cancel.
+            expr = sp.expand(expr.subs(self.given))
+        rates, moving = {**self.rates, **more}, self.moving(expr, more)
+        missing = self.missing(expr, more)
         if missing:
             raise ValueError(f"the rate of {missing[0]} is not given")
         return sum((sp.diff(expr, symbol) * rates[symbol] for symbol in moving), ZERO)
@@ -363,7 +375,15 @@ class Certificate:
         for k, difference in enumerate(left - right, 1):
             self.vanishes(f"regression: row {k}", difference.subs(start, simultaneous=True))
         for symbol, back in zip(self.theta, formulas(derived["theta of eta"])):
-            self.vanishes(f"regression: {symbol} from the unknowns", back.subs(unknowns, simultaneous=True) - symbol)
+            error = back.subs(unknowns, simultaneous=True) - symbol
+            angle, angles = sp.Dummy(), back.atoms(sp.atan2)
+            turn = sp.diff(back.subs({other: angle for other in angles}), angle)
+            if len(angles) == 1 and not turn.has(angle) and not is_zero(error, plant.identities):
+                # Known up to whole turns of that angle.
+                claim = f"regression: {symbol}, up to {2 * sp.pi * turn}"
+                self.vanishes(claim, sp.expand_trig(sp.cos(sp.expand(error / turn))) - 1)
+            else:
+                self.vanishes(f"regression: {symbol} from the unknowns", error)
 
     def sides(self, name):
         """The known part and the factor of the unknowns."""
@@ -413,10 +433,11 @@ class Certificate:
         return self.say(f"identifiability: {kind}", "FALSE", ": the regressor has no full rank at twelve points")
 
     def prove(self):
-        self.cascade()
-        self.left_inverse()
-        self.regression()
-        self.identifiability()
+        for claim in (self.cascade, self.left_inverse, self.regression, self.identifiability):
+            try:
+                claim()
+            except ValueError as error:
+                self.say(claim.__name__.replace("_", " "), "undecided", f": {error}")
         return self.worst
 
 
