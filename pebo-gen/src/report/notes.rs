@@ -2,7 +2,7 @@
 
 use crate::analysis::{Derivation, Excitation, Gram, Motion, Outcome, Positive, Regression, RegressionKind, Verdict};
 use crate::plant::{Plant, RelationForm};
-use crate::source::listed;
+use crate::source::{counted, listed};
 
 /// Of the model: what its verdict means.
 pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
@@ -45,12 +45,13 @@ pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> 
     });
     let other = regression.alternative.map(|other| match other.form {
         RelationForm::Static => format!(
-            "a relation among the components of phi, under the derivative; as it stands it is a regression in {} unknowns, \
+            "a relation among the components of phi, under the derivative; as it stands it is a regression in {}, \
              with `regression: static`",
-            other.unknowns
+            counted(other.unknowns, "unknown")
         ),
         RelationForm::Differentiated => {
-            format!("under the derivative it is a regression in {} unknowns, with `regression: differentiated`", other.unknowns)
+            let unknowns = counted(other.unknowns, "unknown");
+            format!("under the derivative it is a regression in {unknowns}, with `regression: differentiated`")
         }
     });
     more.into_iter().chain(other).collect()

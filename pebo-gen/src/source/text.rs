@@ -107,11 +107,13 @@ impl Source {
     }
 
     /// Where the settings of the call are.
+    #[cfg(feature = "yaml")]
     pub(crate) fn settings(&self) -> &[Span] {
         &self.settings
     }
 
     /// The settings of the call, a line each, and where they begin; nothing if `span` is a place in the file.
+    #[cfg(feature = "yaml")]
     pub(super) fn call(&self, span: Span) -> Option<(&str, usize)> {
         let start = self.end + 1;
         (span.start >= start && start < self.text.len()).then(|| (&self.text[start..], start))
