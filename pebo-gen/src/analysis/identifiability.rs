@@ -38,20 +38,38 @@ pub(super) fn prove(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Identifiability> {
-    if let Some(equation) = reducible(&plant.arena, domain) {
-        found.push(falls_apart(plant, equation));
-        return Claim { verdict: Verdict::Undecided, result: None };
-    }
     let rates = plant.rates().into_values().chain(cascade.h.iter().copied());
     let formulas = Formulas {
         regressor: regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect(),
         rates: rates.chain(cascade.lambda.iter().flatten().flatten().copied()).collect(),
     };
+    let hidden = plant.hidden();
+    let sees_states = depends_on_states(plant, &formulas, cascade);
+    let concerns = |equation| sees_states || !plant.arena.depends_on(equation, &hidden);
+    if let Some(equation) = reducible(&plant.arena, domain, concerns) {
+        found.push(falls_apart(plant, equation));
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
     let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
         where_analytic(plant, domain, cascade, regression, left_inverse, found)
     };
     divided::decide(plant, domain, regression, formulas, found, on)
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
+}
+
+/// Whether the regressor or a derivative of it along the plant depends on the unmeasured states: through the rates of outputs
+/// that it holds. If not, equations that hold states do not restrict its arguments.
+fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> bool {
+    let arena = &plant.arena;
+    let moves = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten());
+    let mut held: Vec<Expr> = formulas.regressor.iter().chain(moves).copied().collect();
+    for _ in 0..=plant.y.len() {
+        let symbols = arena.symbols_of(&held);
+        let rates =
+            plant.y.iter().filter(|output| symbols.contains(&output.symbol)).filter_map(|output| output.rate.as_ref());
+        held.extend(rates.map(|rate| rate.expr));
+    }
+    !arena.symbols_of(&held).is_disjoint(&plant.hidden())
 }
 
 /// A domain of several parts, on one of which a plant may stay.

@@ -12,12 +12,14 @@ use super::field::{Field, Obstacle};
 use super::manifold::Step;
 use super::poly::Poly;
 
-/// An equation of the domain with several factors that may be zero, as the expression that is zero.
-pub(crate) fn reducible(arena: &Arena, domain: &Domain) -> Option<Expr> {
+/// An equation of the domain with several factors that may be zero, as the expression that is zero; of those that concern
+/// what is asked.
+pub(crate) fn reducible(arena: &Arena, domain: &Domain, concerns: impl Fn(Expr) -> bool) -> Option<Expr> {
     // Of the assumptions alone: where the equations hold, each factor is zero or not by the part.
     let assumed = domain.everywhere();
     let roots = domain.manifold.steps().iter().filter_map(|step| squared(arena, step));
-    roots.chain(domain.manifold.left_open().iter().copied()).find(|equation| {
+    let equations = roots.chain(domain.manifold.left_open().iter().copied());
+    equations.filter(|equation| concerns(*equation)).find(|equation| {
         // What could not be worked out is not known to hold in one way.
         holds_in_several_ways(arena, &assumed, *equation).unwrap_or(true)
     })
@@ -113,7 +115,7 @@ mod tests {
             }
             let symbols = [a, b, c].iter().filter_map(|e| arena.as_symbol(*e)).collect();
             domain.manifold = Manifold::new(&arena, &domain.facts, equations.to_vec(), vec![symbols, BTreeSet::new()]);
-            reducible(&arena, &domain).is_some()
+            reducible(&arena, &domain, |_| true).is_some()
         };
         let one = arena.one();
         let lines = arena.sub(square(a), square(b));

@@ -165,6 +165,9 @@ fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
     assert_eq!((open.outcome, codes(&open)), (Outcome::Undecided, vec![Code::IdentifiabilityUndecided]));
     let (_, one) = derive(&model("a + b", lines, "a != 0"));
     assert_eq!(one.outcome, Outcome::Accepted, "{:?}", codes(&one));
+    // The regressor does not depend on the state, whose sign the identity leaves open.
+    let (_, square) = derive("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nidentities: [q^2 - p^2]\nphi: [p]");
+    assert_eq!(square.outcome, Outcome::Accepted, "{:?}", codes(&square));
     let (_, circle) = derive(&model("a^2 + b^2 - 1", "a: -b*v, b: a*v, r: p*(2 + a)", ""));
     assert_eq!(circle.outcome, Outcome::Accepted, "{:?}", codes(&circle));
 }
