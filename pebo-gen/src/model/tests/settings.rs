@@ -81,7 +81,7 @@ fn what_cannot_be_set_is_told_in_the_call() {
         ("simulation.step.v2=1", WrongShape, "v2", "the whole"),
         ("observer.gain.i1=1", WrongShape, "i1", "the whole"),
         ("observer.gain=[1", YamlSyntax, "", "bracket"),
-        ("observer.estimator=gradiant", WrongChoice, "gradiant", "`gradient`?"),
+        ("observer.estimator=gradientt", WrongChoice, "gradientt", "`gradient`?"),
         ("simulation.plant.E=12 +", UnexpectedToken, "", ""),
         ("simulation.plant={E: atan2(1, 2)}", UnclosedParenthesis, "atan2(1, 2)", "quotes"),
     ];
