@@ -12,7 +12,6 @@ use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Cost, Staged};
-use crate::source::counted;
 
 /// The documentation of the module.
 pub(super) fn module(module: &Module<'_>) -> Vec<String> {
@@ -211,7 +210,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     let parameterisation = if regression.is_linear(plant) {
         format!("{parameterisation} in `theta`")
     } else {
-        format!("{parameterisation}, {}", counted(regression.eta.len(), "unknown"))
+        format!("{parameterisation}, {} unknowns", regression.eta.len())
     };
     lines.push(format!("- Regression: {kind}, {parameterisation}."));
     if let Some(identifiability) = &derivation.identifiability.result {
