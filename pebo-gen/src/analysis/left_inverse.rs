@@ -247,6 +247,7 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
             let mut candidates: Vec<Expr> = proposed.map(|formula| shortest(arena, domain, formula)).collect();
             candidates.sort_by_cached_key(|formula| operations(arena, *formula));
             candidates.extend(solved.get(&state.symbol).into_iter().flatten());
+            let likeliest = candidates.first().copied();
             // Of several the one that has a value wherever the plant has.
             // Then the one in which no root is taken from what is near it, and the shortest.
             if candidates.len() > 1 {
@@ -268,7 +269,7 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
                 (unshown(plant, domain, *formula).len(), foreign.count(), cancelling, operations(arena, *formula))
             };
             // A candidate that is wrong may still show that the transform is not one-to-one.
-            let formula = forms.min_by_key(merit).or(candidates.first().copied())?;
+            let formula = forms.min_by_key(merit).or(likeliest)?;
             Some((state.symbol, shortest(arena, domain, formula), state.rate.span))
         })
         .collect())

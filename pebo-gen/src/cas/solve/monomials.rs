@@ -3,7 +3,7 @@
 //! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle and
 //! the magnitude, from `p*s` and `p*s^2` the quotient of the two.
 
-use super::{Equation, angle_of, unpower};
+use super::equation::{Equation, angle_of, unpower};
 use crate::cas::domain::Domain;
 use crate::cas::expr::Expr;
 use crate::cas::field::Field;

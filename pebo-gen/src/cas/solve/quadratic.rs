@@ -5,8 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Equation;
-use super::unpower;
+use super::equation::{Equation, unpower};
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::integer::Integer;
