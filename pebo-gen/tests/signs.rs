@@ -96,7 +96,7 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
     ("x*(1 - x)", &["1 - x", "x"], Positive),
     ("x*(x - 1)", &["1 - x", "x"], Negative),
     ("1 - x^2", &["1 - x", "x"], Positive),
-    ("1 - 3*x^2", &["1 - x", "x"], Open),
+    ("1 - 3*x^2", &["1 - x", "x"], Nothing),
     // Factors, also hidden ones, and squares written out.
     ("x^2 - 2*x*y + y^2", &[], NotNegative),
     ("x^2 - 2*x*y + y^2", &["x - y"], Positive),

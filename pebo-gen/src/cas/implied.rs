@@ -70,6 +70,9 @@ impl Domain {
         }
         let field = Field::over(arena, &self.facts, &[facts.as_slice(), &[expr]].concat())?;
         let mut rest = field.fraction(expr)?.numerator().clone();
+        if rest.is_zero() {
+            return Ok(false);
+        }
         for fact in facts {
             let fact = field.fraction(fact)?;
             // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
@@ -88,9 +91,6 @@ impl Domain {
                 let Some(quotient) = rest.div_exact(&common, field.limit())? else { break };
                 rest = quotient;
             }
-        }
-        if rest.is_zero() {
-            return Ok(false);
         }
         let rest = field.of_polynomial(&rest)?;
         Ok(rest.to_constant().is_some()

@@ -67,7 +67,9 @@ pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choi
         return Ok(Choice { transforms: vec![few], rank, affine });
     }
     if !affine(all)? {
-        return Ok(Choice { transforms: vec![few], rank, affine: false });
+        // Together they may be related, which is a regression as well.
+        let together = (all.len() <= MOST_IN_SUBSETS).then(|| all.to_vec());
+        return Ok(Choice { transforms: [few].into_iter().chain(together).collect(), rank, affine: false });
     }
     // The longest first: what is left are the shortest that will do.
     let mut kept = all.to_vec();

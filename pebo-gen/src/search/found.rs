@@ -35,7 +35,8 @@ pub enum Found {
     Found,
     /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if a
     /// generalised one would do, none that is affine in x. Other generalised ones were looked for and not found; where
-    /// rates are no polynomials in the states, which suggests other functions, the search is undecided instead.
+    /// rates are no polynomials in the states, or a state is an unknown constant, which suggests other functions, the
+    /// search is undecided instead.
     None,
     /// Neither.
     Undecided,
@@ -85,4 +86,6 @@ pub enum Start {
     Both,
     /// The states.
     States,
+    /// The outputs' rates, where unknown constants are taken for known.
+    Constants,
 }

@@ -19,6 +19,7 @@ mod choice;
 mod closure;
 mod completion;
 mod connection;
+mod constants;
 mod decision;
 mod driven;
 mod found;
@@ -101,7 +102,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     };
     let excluded = smooth
         && (class == Some(Class::Pebo)
-            || (generalised.as_ref().is_some_and(Bound::excludes) && question.is_polynomial_in_states()));
+            || (generalised.as_ref().is_some_and(Bound::excludes) && question.suggests_affine_transforms()));
     // A transform may fail at single points, which are then listed: two points that were drawn are not both of them.
     let again = || {
         let smooth = largest::smooth(&question, largest::affine(&question, 1).as_ref(), 1)
@@ -280,6 +281,12 @@ impl Hunt<'_> {
         }
         let closed = closure::of_rows(question).map(Option::unwrap_or_default);
         self.judge(Form::Closure(Start::Rows), 0, closed);
+        if self.is_over() {
+            return;
+        }
+        if let Some(closed) = constants::closure(question).transpose() {
+            self.judge(Form::Closure(Start::Constants), 0, closed);
+        }
         // The bound of transforms affine in x is looked at where that of all plain cascades is small.
         if self.bound.is_some() {
             self.generalised = affine_rates(question, 0);

@@ -81,8 +81,13 @@ impl<'a> Question<'a> {
         self.arena.dividers(&[expr]).into_iter().any(hidden)
     }
 
-    /// Whether the rates are written as polynomials in what is hidden.
-    pub(super) fn is_polynomial_in_states(&self) -> bool {
+    /// Whether nothing suggests components that are not affine in x: the rates are written as polynomials in what is hidden,
+    /// and no state is an unknown constant, which may multiply others.
+    pub(super) fn suggests_affine_transforms(&self) -> bool {
+        let is_constant = |state: &Symbol| self.rates.get(state).is_some_and(|rate| self.arena.is_zero(*rate));
+        if self.x.len() > 1 && self.x.iter().any(is_constant) {
+            return false;
+        }
         let rates: Vec<Expr> = self.rates.values().copied().collect();
         self.arena.postorder(&rates).into_iter().all(|part| match self.arena.node(part) {
             Node::Call(..) => !self.arena.depends_on(part, &self.hidden),

@@ -13,6 +13,8 @@ enum Truth {
     /// It has one with a generalised cascade, which is to be found. With a plain one there is none that is smooth, or of a
     /// plant without inputs none that is affine in x; or the outputs are not affine in it.
     Gpebo,
+    /// It has one with a generalised cascade, which is to be found; whether it has a plain one is not known.
+    Found,
     /// No smooth transform with a plain cascade recovers its states, and none affine in x with a generalised one.
     None,
     /// A transform is found, but the outputs are no linear regression in it, or it holds on a part of the domain only.
@@ -144,6 +146,26 @@ const CASES: &[Case] = &[
                 f_x: {h1: (q - k1*sqrt(h1))/A}\nf_y: {h2: (k1*sqrt(h1) - k2*sqrt(h2))/A}",
         truth: Truth::Open,
     },
+    Case {
+        from: "an epidemic (Kermack, McKendrick 1927) with both its rates unknown",
+        lines: "x: [S, beta, gamma]\ny: [I, R]\nassume: [S > 0, I > 0, beta > 0, gamma > 0]\n\
+                f_x: {S: -beta*S*I, beta: 0, gamma: 0}\nf_y: {I: beta*S*I - gamma*I, R: gamma*I}",
+        truth: Truth::Found,
+    },
+    Case {
+        from: "a bicycle with unknown tyres (Riekert, Schunck 1940)",
+        lines: "parameters: [m, Iz, lf, lr]\nx: [vy, Cf, Cr]\ny: [r]\nu: [delta, vx]\n\
+                assume: [m > 0, Iz > 0, lf > 0, lr > 0, vx > 0, Cf > 0, Cr > 0, lr*Cr - lf*Cf > 0]\n\
+                f_x: {vy: -(Cf + Cr)*vy/(m*vx) + (lr*Cr - lf*Cf)*r/(m*vx) - vx*r + Cf*delta/m, Cf: 0, Cr: 0}\n\
+                f_y: {r: (lr*Cr - lf*Cf)*vy/(Iz*vx) - (lf^2*Cf + lr^2*Cr)*r/(Iz*vx) + lf*Cf*delta/Iz}",
+        truth: Truth::Found,
+    },
+    Case {
+        from: "a motor from its speed alone, resistance, inductance and torque constant unknown",
+        lines: "parameters: [J]\nx: [i, R, k, e]\ny: [w]\nu: [v]\nassume: [J > 0, R > 0, k > 0, e > 0]\n\
+                f_x: {i: (v - R*i - e*w)*k, R: 0, k: 0, e: 0}\nf_y: {w: e*i/J}",
+        truth: Truth::Found,
+    },
 ];
 
 /// The class of the transform that was found, every claim being proved.
@@ -170,6 +192,7 @@ fn what_is_true_of_plants_from_the_literature_is_said() {
                     _ => assert!(plain.bound.expect("a bound").excludes(), "{from}"),
                 }
             }
+            Truth::Found => assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}"),
             Truth::None => {
                 let bound = found.bound.expect("a bound");
                 assert!(bound.class == BoundClass::Smooth && bound.excludes(), "{from}");

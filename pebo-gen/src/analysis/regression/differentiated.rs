@@ -114,12 +114,15 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
     (moves && arena.symbols_of(&[primitive]).is_subset(&known)).then_some(Equation { primitive, rate })
 }
 
-/// An expression less what it is where all signals are zero, if it has a value there: a constant has no rate.
+/// An expression less what it is where z and y are zero, if it has a value there and no input is in that: a constant has no
+/// rate.
 fn without_constant(plant: &Plant, domain: &Domain, expr: Expr) -> Expr {
     let arena = &plant.arena;
     let signals = plant.z.iter().copied().chain(plant.y.iter().map(|output| output.symbol));
     let constant = arena.substitute(expr, &signals.map(|signal| (signal, arena.zero())).collect());
-    if point_of(arena, constant, domain).is_some() { arena.sub(expr, constant) } else { expr }
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let is_constant = arena.symbols_of(&[constant]).is_subset(&constants);
+    if is_constant && point_of(arena, constant, domain).is_some() { arena.sub(expr, constant) } else { expr }
 }
 
 /// The rate of a component of the transform: `Lambda z + h`.

@@ -203,3 +203,14 @@ fn what_vanishes_on_a_part_of_the_domain_is_seen_on_the_other() {
         assert_eq!(of_parameter("k < 0"), Outcome::Accepted, "{factor}");
     }
 }
+
+/// The rate of `I/7` is not known, so the relation between V and z is not differentiated.
+#[test]
+fn an_input_in_a_relation_is_no_constant_that_has_no_rate() {
+    let battery =
+        |value: &str| format!("x: [s, v]\ny: [V]\nu: [I]\nf_x: {{s: -I, v: I - v}}\ng_y: {{V: {value}}}\nphi: [s, v]");
+    let outcome = |value: &str| derive(&battery(value)).1.outcome;
+    assert_eq!(outcome("3 + s - s^2 - v"), Outcome::Accepted);
+    // Filtered, it would ask for the rate of I.
+    assert_eq!(outcome("3 + s - s^2 - v - I/7"), Outcome::Undecided);
+}

@@ -1,0 +1,104 @@
+//! Transforms of plants with unknown constants, by way of those that there are if the constants are measured.
+//!
+//! In: a plant some of whose states have the rate zero. Out: the functions of x that the outputs' rates consist of, and
+//! those that their rates consist of, in the coordinates z = phi(x, y; c) of a plain cascade of the plant in which the
+//! constants c are outputs.
+//!
+//! In these coordinates the rates are free of z, so that each step takes a degree in z away and the steps end:
+//! `S' = -c*S*I, I' = c*S*I - g*I` has z = S + I with z' = -g*I, and `c*z` and c close.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::analysis::{Class, Verdict};
+use crate::cas::field::{Field, Obstacle};
+use crate::cas::rational::Rational;
+use crate::cas::{Arena, Expr, Symbol};
+use crate::plant::{Output, Plant};
+
+use super::question::Question;
+
+/// More functions than this make no observer that anybody would run.
+const MOST: usize = 12;
+
+/// The functions; none where the plant has no unknown constants beside other states, or with these measured no plain
+/// cascade.
+pub(super) fn closure(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = question.arena;
+    let is_constant = |state: &Symbol| question.rates.get(state).is_some_and(|rate| arena.is_zero(*rate));
+    let constants: BTreeSet<Symbol> = question.x.iter().copied().filter(is_constant).collect();
+    if constants.is_empty() || constants.len() == question.x.len() {
+        return Ok(None);
+    }
+    let measured = measured(question.plant, &constants);
+    let search = arena.budget().share(3, || super::solve(&measured, Some(Class::Pebo)));
+    let proved = |candidate: &&super::Candidate| {
+        let derivation = &candidate.derivation;
+        derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
+    };
+    let Some(candidate) = search.candidates.iter().find(proved) else { return Ok(None) };
+    let (Some(cascade), Some(inverse)) =
+        (&candidate.derivation.cascade.result, &candidate.derivation.left_inverse.result)
+    else {
+        return Ok(None);
+    };
+    let z = &candidate.plant.z;
+    let transform: BTreeMap<Symbol, Expr> = z.iter().copied().zip(candidate.plant.transform()).collect();
+    let states: BTreeMap<Symbol, Expr> = inverse.x.iter().copied().collect();
+    let rates: BTreeMap<Symbol, Expr> = z.iter().copied().zip(cascade.h.iter().copied()).collect();
+    let hidden: BTreeSet<Symbol> = constants.iter().chain(z).copied().collect();
+    let mut found: Vec<Expr> = Vec::new();
+    let mut open = arena.substitute_all(&question.output_rates(), &states);
+    while let Some(formula) = open.pop() {
+        let Some(functions) = monomials(question, formula, &hidden)? else { return Ok(None) };
+        for function in functions.into_iter().filter(|function| !found.contains(function)).collect::<Vec<_>>() {
+            if found.len() == MOST {
+                return Ok(None);
+            }
+            found.push(function);
+            let slopes = rates.iter().map(|(z, rate)| arena.mul(arena.derivative(function, *z), *rate));
+            open.push(arena.sum(slopes));
+        }
+    }
+    // The simplest first, as an author would list them.
+    found.sort_by_key(|function| (arena.print(*function).len(), *function));
+    Ok(Some(arena.substitute_all(&found, &transform)))
+}
+
+/// The plant in which the constants are outputs.
+fn measured(plant: &Plant, constants: &BTreeSet<Symbol>) -> Plant {
+    let mut measured = plant.clone();
+    let is_constant = |symbol: Symbol| constants.contains(&symbol);
+    let known = plant.x.iter().filter(|state| is_constant(state.symbol));
+    measured.y.extend(known.map(|state| Output {
+        symbol: state.symbol,
+        rate: Some(state.rate),
+        value: None,
+        span: state.rate.span,
+    }));
+    measured.x.retain(|state| !is_constant(state.symbol));
+    measured.phi.clear();
+    measured
+}
+
+/// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they stand
+/// in a sum below a fraction bar, or in a function.
+fn monomials(question: &Question<'_>, formula: Expr, hidden: &BTreeSet<Symbol>) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena: &Arena = question.arena;
+    let field = Field::over(arena, &question.domain.facts, &[formula])?;
+    let fraction = field.fraction(formula)?;
+    let kernels: Vec<u32> = field.kernels_of(hidden).into_iter().collect();
+    if kernels.iter().any(|kernel| arena.as_symbol(field.kernel(*kernel)).is_none()) {
+        return Ok(None);
+    }
+    let [(below, _)] = &fraction.denominator().collect(&kernels)[..] else { return Ok(None) };
+    let power = |powers: &[(u32, u32)], sign: i64| {
+        let factors = powers
+            .iter()
+            .map(|(kernel, exponent)| (field.kernel(*kernel), Rational::from(sign * i64::from(*exponent))));
+        arena.multiply(&Rational::ONE, factors)
+    };
+    let divisor = power(below.powers(), -1);
+    let above = fraction.numerator().collect(&kernels);
+    let functions = above.into_iter().map(|(monomial, _)| arena.mul(power(monomial.powers(), 1), divisor));
+    Ok(Some(functions.filter(|function| !arena.symbols_of(&[*function]).is_empty()).collect()))
+}
