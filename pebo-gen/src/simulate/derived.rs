@@ -1,7 +1,7 @@
 //! The runtime library's observer on a derived model that is interpreted.
 //!
 //! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of
-//! two sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
+//! a few sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
 //! target, but for the functions of the model.
 
 use std::cell::RefCell;
@@ -20,7 +20,7 @@ use crate::program::{Interpreter, Program};
 use super::excitation::Said;
 use super::observer::Design;
 use super::settings::{self, Operator};
-use super::sizes::{LARGEST, MOST_MIXED, pad, padded};
+use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
 use super::watched::Watched;
 use super::window::Passage;
 
@@ -50,10 +50,14 @@ pub(super) trait Estimation: fmt::Debug {
     fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
 }
 
-/// The observer of a design: of the size that DREM has, or of the largest.
+/// The observer of a design, of the smallest size that has room for it: a step takes time as the square of that, or its cube.
 pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    const FEW: usize = SMALL[0];
+    const SOME: usize = SMALL[1];
     match design.size() {
-        0..=MOST_MIXED => of_size::<MOST_MIXED>(design),
+        0..=FEW => of_size::<FEW>(design),
+        ..=SOME => of_size::<SOME>(design),
+        ..=MOST_MIXED => of_size::<MOST_MIXED>(design),
         _ => of_size::<LARGEST>(design),
     }
 }

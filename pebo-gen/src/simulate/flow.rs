@@ -131,7 +131,8 @@ trait Solve: fmt::Debug {
     fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck>;
 }
 
-/// The method before its first step: its table of coefficients is made once for the run, not at each sample.
+/// The method, made once for the run: its start sets all that a step changes but the count of its steps, which nothing
+/// depends on.
 struct Solver<const N: usize>(ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>);
 
 impl<const N: usize> Solver<N> {
@@ -150,7 +151,8 @@ impl<const N: usize> Solve for Solver<N> {
     fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck> {
         let mut start = [0.0; N];
         start[..state.len()].copy_from_slice(state);
-        let mut method = self.0.clone().h0(length);
+        let method = &mut self.0;
+        method.h0 = length;
         let mut steps = 0;
         method.init(rates, 0.0, length, &start).map_err(|_| Stuck(steps))?;
         loop {
