@@ -74,8 +74,8 @@ impl Interpreter {
         assert_eq!(inputs.len(), self.inputs, "number of inputs");
         assert_eq!(outputs.len(), self.outputs.len(), "number of outputs");
         let values = self.values.as_mut_slice();
-        for (value, &input) in values.iter_mut().zip(&self.read) {
-            *value = inputs[input];
+        for (place, &input) in self.read.iter().enumerate() {
+            values[place] = inputs[input];
         }
         for (index, instruction) in self.instructions.iter().enumerate() {
             values[self.first + index] = match *instruction {
@@ -89,8 +89,8 @@ impl Interpreter {
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
-        for (output, &place) in outputs.iter_mut().zip(&self.outputs) {
-            *output = values[place];
+        for (output, &place) in self.outputs.iter().enumerate() {
+            outputs[output] = values[place];
         }
     }
 }

@@ -66,11 +66,11 @@ fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault
     if design.settings.output {
         return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
     }
-    Ok(match (&design.lambda, design.is_static) {
-        (None, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
-        (None, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
-        (Some(_), false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
-        (Some(_), true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
+    Ok(match (design.is_generalised, design.is_static) {
+        (false, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (false, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
+        (true, false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (true, true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
     })
 }
 
@@ -114,7 +114,9 @@ impl<const N: usize> Known<N> for Integrator<f64, N> {
 impl<const N: usize> Known<N> for Fundamental<f64, N> {
     fn write(&self, n: usize, known: &mut Vec<f64>) {
         known.extend(&self.xi().as_slice()[..n]);
-        known.extend((0..n * n).map(|k| self.psi()[(k / n, k % n)]));
+        for row in 0..n {
+            known.extend((0..n).map(|column| self.psi()[(row, column)]));
+        }
     }
 
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
@@ -154,13 +156,12 @@ struct Derived<X, K, const N: usize> {
     ny: usize,
     nu: usize,
     nz: usize,
+    nr: usize,
     ne: usize,
     rows: Vec<usize>,
-    h: RefCell<Function>,
-    lambda: Option<RefCell<Function>>,
-    phi_0: RefCell<Function>,
-    phi_1: RefCell<Function>,
-    primitives: Option<[RefCell<Function>; 2]>,
+    cascade: RefCell<Function>,
+    regression: RefCell<Function>,
+    primitive: Option<RefCell<Function>>,
     theta: RefCell<Function>,
     phi_left: RefCell<Function>,
     /// In the output form: the rows of the regression, and the model's extension at its start as its functions read it.
@@ -174,21 +175,20 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
         let nz = design.coordinates;
         let identity = (0..nz * nz).map(|k| if k / nz == k % nz { 1.0 } else { 0.0 });
-        let identity = identity.take(if design.lambda.is_some() { nz * nz } else { 0 });
+        let identity = identity.take(if design.is_generalised { nz * nz } else { 0 });
         let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
             expected: design.settings.expected.clone(),
-            output: design.settings.output.then_some((design.phi_0.outputs.len(), start)),
+            output: design.settings.output.then_some((design.equations, start)),
             ny: design.outputs,
             nu: design.inputs,
             nz: design.coordinates,
+            nr: design.equations,
             ne: design.unknowns,
             rows: design.rows.clone(),
-            h: Function::new(&design.h),
-            lambda: design.lambda.as_ref().map(Function::new),
-            phi_0: Function::new(&design.phi_0),
-            phi_1: Function::new(&design.phi_1),
-            primitives: design.primitives.as_ref().map(|both| both.each_ref().map(Function::new)),
+            cascade: Function::new(&design.cascade),
+            regression: Function::new(&design.regression),
+            primitive: design.primitive.as_ref().map(Function::new),
             theta: Function::new(&design.theta),
             phi_left: Function::new(&design.phi_left),
             kind: PhantomData,
@@ -203,34 +203,25 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
         }
     }
 
-    /// The values of a function that stands under the derivative.
-    fn held<'a>(&self, function: &'a mut Function, extension: &X, y: &SVector<f64, N>) -> &'a [f64] {
-        function.call(|arguments| {
-            self.write(extension, arguments);
-            arguments.extend(&y.as_slice()[..self.ny]);
-        })
-    }
-
     /// The cascade of the model itself.
     fn cascade(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
-        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
-        match &self.lambda {
-            Some(lambda) => {
-                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
-                Flow { lambda, h }
-            }
-            None => Flow::plain(h),
-        }
+        let mut cascade = self.cascade.borrow_mut();
+        let (h, lambda) = cascade.call(|arguments| self.sampled(arguments, y, u)).split_at(self.nz);
+        Flow { lambda: pad_rows(lambda, self.nz), h: pad(h) }
     }
 
     /// The sides of the model's own regression; in the output form, as a function of z.
     fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
-        let at = |arguments: &mut Vec<f64>| {
+        self.split(self.regression.borrow_mut().call(|arguments| {
             self.write(extension, arguments);
             self.sampled(arguments, y, u);
-        };
-        let known = pad(self.phi_0.borrow_mut().call(at));
-        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
+        }))
+    }
+
+    /// Both sides of equations, from the values of what is known and behind them those of the factor by rows.
+    fn split(&self, values: &[f64]) -> Sides<f64, N, N> {
+        let (known, factor) = values.split_at(self.nr);
+        Sides { known: pad(known), factor: pad_rows(factor, self.ne) }
     }
 
     fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
@@ -241,8 +232,10 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
 
 fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N> {
     let mut padded = SMatrix::zeros();
-    for (k, &value) in values.iter().enumerate() {
-        padded[(k / columns, k % columns)] = value;
+    for (i, row) in values.chunks_exact(columns.max(1)).enumerate() {
+        for (j, &value) in row.iter().enumerate() {
+            padded[(i, j)] = value;
+        }
     }
     padded
 }
@@ -290,11 +283,11 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 
     fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
-        if let Some([known, factor]) = &self.primitives {
-            return Sides {
-                known: pad(self.held(&mut known.borrow_mut(), extension, y)),
-                factor: pad_rows(self.held(&mut factor.borrow_mut(), extension, y), self.ne),
-            };
+        if let Some(primitive) = &self.primitive {
+            return self.split(primitive.borrow_mut().call(|arguments| {
+                self.write(extension, arguments);
+                arguments.extend(&y.as_slice()[..self.ny]);
+            }));
         }
         let mut used = SVector::zeros();
         for (row, &output) in self.rows.iter().enumerate() {
@@ -369,7 +362,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
         let mut rows = [usize::MAX; N];
         rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
-        let whole = settings.output && design.primitives.is_none();
+        let whole = settings.output && design.primitive.is_none();
         Ok(Self {
             observer: match settings.rebase {
                 Some(every) => observer.rebasing(every)?,
@@ -380,7 +373,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
             chi_0: pad(&settings.chi_0),
             restarts: 0,
             rows: whole.then_some(rows),
-            sizes: (design.recovered.len(), design.phi_0.outputs.len()),
+            sizes: (design.recovered.len(), design.equations),
             is_certain: matches!(settings.operator, Operator::Sampled(_)),
         })
     }

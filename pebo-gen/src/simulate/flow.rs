@@ -186,8 +186,8 @@ impl<const N: usize> ODE<f64, [f64; N]> for Equation {
         let count = place.len();
         table[place.clone()].copy_from_slice(&state[..count]);
         formulas.run(table, values);
-        for (rate, &value) in rates.iter_mut().zip(values.iter()) {
-            *rate = if value.abs() < STILL { 0.0 } else { value };
+        for (index, &value) in values.iter().enumerate() {
+            rates[index] = if value.abs() < STILL { 0.0 } else { value };
         }
         rates[count..].fill(0.0);
     }
