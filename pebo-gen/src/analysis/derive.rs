@@ -75,7 +75,7 @@ impl Derivation {
             }
             None => (regression, identifiability),
         };
-        let (mut regression, mut identifiability) = match (&cascade.result, &regression.result) {
+        let (regression, identifiability) = match (&cascade.result, &regression.result) {
             (Some(cascade), Some(result))
                 if matches!(identifiability.verdict, Verdict::Refuted | Verdict::Undecided)
                     && !plant.arena.budget().is_exhausted() =>
@@ -85,6 +85,13 @@ impl Derivation {
                 more.unwrap_or((regression, identifiability))
             }
             _ => (regression, identifiability),
+        };
+        let (mut regression, mut identifiability) = match &cascade.result {
+            Some(result) => {
+                let given = (regression, identifiability);
+                forms::standing(plant, &domain, (class, result, inverse), given, &mut found, before)
+            }
+            None => (regression, identifiability),
         };
         let settled = found.len();
         let mut conditions = Conditions::of(plant);

@@ -73,9 +73,16 @@ impl Interpreter {
     pub fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
         assert_eq!(inputs.len(), self.inputs, "number of inputs");
         assert_eq!(outputs.len(), self.outputs.len(), "number of outputs");
+        for (index, value) in self.evaluate(|input| inputs[input]).enumerate() {
+            outputs[index] = value;
+        }
+    }
+
+    /// The outputs in their order, for inputs that are asked for by their positions where they are read.
+    pub fn evaluate(&mut self, input: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let values = self.values.as_mut_slice();
-        for (place, &input) in self.read.iter().enumerate() {
-            values[place] = inputs[input];
+        for (place, &read) in self.read.iter().enumerate() {
+            values[place] = input(read);
         }
         for (index, instruction) in self.instructions.iter().enumerate() {
             values[self.first + index] = match *instruction {
@@ -89,9 +96,7 @@ impl Interpreter {
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
-        for (output, &place) in self.outputs.iter().enumerate() {
-            outputs[output] = values[place];
-        }
+        self.outputs.iter().map(|&place| values[place])
     }
 }
 

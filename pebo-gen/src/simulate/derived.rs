@@ -94,16 +94,16 @@ impl Kind for Static {
 
 /// An extension that shows what the regression depends on.
 trait Known<const N: usize>: Extension<f64, N> + 'static {
-    /// Writes the first `n` coordinates of the extension, and of its fundamental matrix by rows.
-    fn write(&self, n: usize, known: &mut Vec<f64>);
+    /// The coordinates of an extension of `n`, and behind them its fundamental matrix by rows.
+    fn value(&self, n: usize, place: usize) -> f64;
 
     /// What stands for z beside theta, and the factor of theta.
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
 }
 
 impl<const N: usize> Known<N> for Integrator<f64, N> {
-    fn write(&self, n: usize, known: &mut Vec<f64>) {
-        known.extend(&self.chi().as_slice()[..n]);
+    fn value(&self, _: usize, place: usize) -> f64 {
+        self.chi()[place]
     }
 
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
@@ -112,11 +112,8 @@ impl<const N: usize> Known<N> for Integrator<f64, N> {
 }
 
 impl<const N: usize> Known<N> for Fundamental<f64, N> {
-    fn write(&self, n: usize, known: &mut Vec<f64>) {
-        known.extend(&self.xi().as_slice()[..n]);
-        for row in 0..n {
-            known.extend((0..n).map(|column| self.psi()[(row, column)]));
-        }
+    fn value(&self, n: usize, place: usize) -> f64 {
+        if place < n { self.xi()[place] } else { self.psi()[((place - n) / n, (place - n) % n)] }
     }
 
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
@@ -124,48 +121,24 @@ impl<const N: usize> Known<N> for Fundamental<f64, N> {
     }
 }
 
-/// A function of the model, with room for its arguments and values.
-#[derive(Debug)]
-struct Function {
-    interpreter: Interpreter,
-    arguments: Vec<f64>,
-    values: Vec<f64>,
-}
-
-impl Function {
-    fn new(program: &Program) -> RefCell<Self> {
-        RefCell::new(Self {
-            interpreter: Interpreter::new(program),
-            arguments: Vec::with_capacity(program.inputs.len()),
-            values: vec![0.0; program.outputs.len()],
-        })
-    }
-
-    /// The values for the arguments that `fill` writes.
-    fn call(&mut self, fill: impl FnOnce(&mut Vec<f64>)) -> &[f64] {
-        self.arguments.clear();
-        fill(&mut self.arguments);
-        self.interpreter.run(&self.arguments, &mut self.values);
-        &self.values
-    }
-}
-
 /// The model of a design. The trait's methods take `&self`, an interpreter's table does not: hence the cells.
 #[derive(Debug)]
 struct Derived<X, K, const N: usize> {
     ny: usize,
-    nu: usize,
     nz: usize,
     nr: usize,
     ne: usize,
     rows: Vec<usize>,
-    cascade: RefCell<Function>,
-    regression: RefCell<Function>,
-    primitive: Option<RefCell<Function>>,
-    theta: RefCell<Function>,
-    phi_left: RefCell<Function>,
-    /// In the output form: the rows of the regression, and the model's extension at its start as its functions read it.
-    output: Option<(usize, Vec<f64>)>,
+    cascade: RefCell<Interpreter>,
+    regression: RefCell<Interpreter>,
+    primitive: Option<RefCell<Interpreter>>,
+    theta: RefCell<Interpreter>,
+    phi_left: RefCell<Interpreter>,
+    /// In the output form: the rows of the regression, and the model's own extension, which its functions read at its
+    /// start. That of the output form is another.
+    output: Option<(usize, X)>,
+    /// The numbers of the extension that the functions read.
+    known: usize,
     /// There, the places of the outputs that estimates are made of as they are expected.
     expected: Option<Vec<usize>>,
     kind: PhantomData<(X, K)>,
@@ -174,67 +147,78 @@ struct Derived<X, K, const N: usize> {
 impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
         let nz = design.coordinates;
-        let identity = (0..nz * nz).map(|k| if k / nz == k % nz { 1.0 } else { 0.0 });
-        let identity = identity.take(if design.is_generalised { nz * nz } else { 0 });
-        let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
             expected: design.settings.expected.clone(),
-            output: design.settings.output.then_some((design.equations, start)),
+            output: design.settings.output.then(|| (design.equations, X::new(SVector::zeros()))),
+            known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
-            nu: design.inputs,
             nz: design.coordinates,
             nr: design.equations,
             ne: design.unknowns,
             rows: design.rows.clone(),
-            cascade: Function::new(&design.cascade),
-            regression: Function::new(&design.regression),
-            primitive: design.primitive.as_ref().map(Function::new),
-            theta: Function::new(&design.theta),
-            phi_left: Function::new(&design.phi_left),
+            cascade: interpreter(&design.cascade),
+            regression: interpreter(&design.regression),
+            primitive: design.primitive.as_ref().map(interpreter),
+            theta: interpreter(&design.theta),
+            phi_left: interpreter(&design.phi_left),
             kind: PhantomData,
-        }
-    }
-
-    /// Writes the extension that the model's functions read: that of the output form is not the model's own.
-    fn write(&self, extension: &X, arguments: &mut Vec<f64>) {
-        match &self.output {
-            Some((_, start)) => arguments.extend(start),
-            None => extension.write(self.nz, arguments),
         }
     }
 
     /// The cascade of the model itself.
     fn cascade(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
         let mut cascade = self.cascade.borrow_mut();
-        let (h, lambda) = cascade.call(|arguments| self.sampled(arguments, y, u)).split_at(self.nz);
-        Flow { lambda: pad_rows(lambda, self.nz), h: pad(h) }
+        let mut values = cascade.evaluate(|place| if place < self.ny { y[place] } else { u[place - self.ny] });
+        let h = column(&mut values, self.nz);
+        Flow { lambda: rows(&mut values, self.nz), h }
     }
 
     /// The sides of the model's own regression; in the output form, as a function of z.
     fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
-        self.split(self.regression.borrow_mut().call(|arguments| {
-            self.write(extension, arguments);
-            self.sampled(arguments, y, u);
-        }))
+        self.both(&mut self.regression.borrow_mut(), extension, y, u)
     }
 
-    /// Both sides of equations, from the values of what is known and behind them those of the factor by rows.
-    fn split(&self, values: &[f64]) -> Sides<f64, N, N> {
-        let (known, factor) = values.split_at(self.nr);
-        Sides { known: pad(known), factor: pad_rows(factor, self.ne) }
-    }
-
-    fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
-        arguments.extend(&y.as_slice()[..self.ny]);
-        arguments.extend(&u.as_slice()[..self.nu]);
+    /// Both sides of equations by the function that has their values: what is known, then the factor by rows.
+    fn both(
+        &self,
+        function: &mut Interpreter,
+        extension: &X,
+        y: &SVector<f64, N>,
+        u: &SVector<f64, N>,
+    ) -> Sides<f64, N, N> {
+        let extension = self.output.as_ref().map_or(extension, |(_, start)| start);
+        let mut values = function.evaluate(|place| match place.checked_sub(self.known) {
+            None => extension.value(self.nz, place),
+            Some(place) if place < self.ny => y[place],
+            Some(place) => u[place - self.ny],
+        });
+        let known = column(&mut values, self.nr);
+        Sides { known, factor: rows(&mut values, self.ne) }
     }
 }
 
-fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N> {
+fn interpreter(program: &Program) -> RefCell<Interpreter> {
+    RefCell::new(Interpreter::new(program))
+}
+
+/// The next `n` values, and zeros behind them.
+fn column<const N: usize>(values: &mut impl Iterator<Item = f64>, n: usize) -> SVector<f64, N> {
+    let mut padded = SVector::zeros();
+    for (place, value) in values.take(n).enumerate() {
+        padded[place] = value;
+    }
+    padded
+}
+
+/// All values that are left as rows of so many columns, and zeros besides.
+fn rows<const N: usize>(values: &mut impl Iterator<Item = f64>, columns: usize) -> SMatrix<f64, N, N> {
     let mut padded = SMatrix::zeros();
-    for (i, row) in values.chunks_exact(columns.max(1)).enumerate() {
-        for (j, &value) in row.iter().enumerate() {
-            padded[(i, j)] = value;
+    let (mut row, mut column) = (0, 0);
+    for value in values {
+        padded[(row, column)] = value;
+        column += 1;
+        if column == columns {
+            (row, column) = (row + 1, 0);
         }
     }
     padded
@@ -284,10 +268,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
 
     fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
         if let Some(primitive) = &self.primitive {
-            return self.split(primitive.borrow_mut().call(|arguments| {
-                self.write(extension, arguments);
-                arguments.extend(&y.as_slice()[..self.ny]);
-            }));
+            return self.both(&mut primitive.borrow_mut(), extension, y, &SVector::zeros());
         }
         let mut used = SVector::zeros();
         for (row, &output) in self.rows.iter().enumerate() {
@@ -300,7 +281,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         if self.output.is_some() {
             return *eta;
         }
-        pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
+        column(&mut self.theta.borrow_mut().evaluate(|place| eta[place]), self.nz)
     }
 
     fn begin(&self, extension: &X, y: &SVector<f64, N>) -> X {
@@ -318,11 +299,9 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         for (row, place) in self.expected.iter().flatten().enumerate() {
             y[*place] = z[row];
         }
-        pad(self.phi_left.borrow_mut().call(|arguments| {
-            let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
-            arguments.extend(&z.as_slice()[first..first + self.nz]);
-            arguments.extend(&y.as_slice()[..self.ny]);
-        }))
+        let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
+        let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };
+        column(&mut self.phi_left.borrow_mut().evaluate(of), N)
     }
 }
 

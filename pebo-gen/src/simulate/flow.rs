@@ -71,7 +71,6 @@ struct Rates {
     /// Signals that the rates depend on, with their positions in the table.
     signals: Vec<(usize, Course)>,
     formulas: Interpreter,
-    values: Vec<f64>,
 }
 
 impl Flow {
@@ -86,7 +85,6 @@ impl Flow {
             origin: 0.0,
             signals: read.iter().map(|(position, signal)| (*position, signal.course())).collect(),
             formulas: Interpreter::new(rates),
-            values: vec![0.0; rates.outputs.len()],
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
         let solver: Box<dyn Solve> = match state.len() {
@@ -177,18 +175,17 @@ impl<const N: usize> Solve for Solver<N> {
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {
     fn diff(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
         let mut inner = self.0.borrow_mut();
-        let Rates { table, state: place, origin, signals, formulas, values } = &mut *inner;
+        let Rates { table, state: place, origin, signals, formulas } = &mut *inner;
         let now = *origin + t;
         table[TIME] = now;
         for (position, signal) in signals {
             table[*position] = signal.value(now);
         }
-        let count = place.len();
-        table[place.clone()].copy_from_slice(&state[..count]);
-        formulas.run(table, values);
-        for (index, &value) in values.iter().enumerate() {
+        let of =
+            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
+        for (index, value) in formulas.evaluate(of).enumerate() {
             rates[index] = if value.abs() < STILL { 0.0 } else { value };
         }
-        rates[count..].fill(0.0);
+        rates[place.len()..].fill(0.0);
     }
 }
