@@ -80,7 +80,7 @@ impl Scenario {
             let score = score.finish();
             let own = judged.estimate.baseline.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
-            Rated { estimate: judged.estimate.clone(), score, expected }
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step }
         };
         Ok(Summary {
             end: machine.table[TIME],

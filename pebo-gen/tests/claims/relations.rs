@@ -87,7 +87,7 @@ pub(super) const RELATIONS: &[Row] = &[
         "a circle beside rates",
         "x: [q]\ny: [c, d]\nu: [u, v, r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
          phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}",
-        Accepted("dynamic linear excitation"),
+        Accepted("dynamic linear instant"),
     ),
     (
         "a circle in place of rates",

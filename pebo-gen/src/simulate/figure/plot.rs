@@ -105,10 +105,10 @@ fn heading(panel: &Panel, exponent: i32) -> Label {
     let title = Label::text(&panel.title);
     match (exponent, panel.unit.as_deref()) {
         (0, None) => title,
-        (0, Some(unit)) => title.then(Label::text(&format!(" in {unit}"))),
+        (0, Some(unit)) => title.in_unit(unit),
         (exponent, unit) => {
-            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-            title.then(Label::text(" in ")).then(Label::power_of_ten(exponent)).then(Label::text(&unit))
+            let title = title.then(Label::text(" in ")).then(Label::power_of_ten(exponent));
+            unit.map_or(title.clone(), |unit| title.then(Label::text(" ")).then(Label::unit(unit)))
         }
     }
 }
