@@ -54,11 +54,15 @@ pub(super) trait Estimation: fmt::Debug {
 pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
     const FEW: usize = SMALL[0];
     const SOME: usize = SMALL[1];
-    match design.size() {
-        0..=FEW => of_size::<FEW>(design),
-        ..=SOME => of_size::<SOME>(design),
-        ..=MOST_MIXED => of_size::<MOST_MIXED>(design),
-        _ => of_size::<LARGEST>(design),
+    let size = design.size();
+    if size <= FEW {
+        of_size::<FEW>(design)
+    } else if size <= SOME {
+        of_size::<SOME>(design)
+    } else if size <= MOST_MIXED {
+        of_size::<MOST_MIXED>(design)
+    } else {
+        of_size::<LARGEST>(design)
     }
 }
 

@@ -226,9 +226,9 @@ mod tests {
     #[test]
     fn exponents_of_units_are_raised() {
         let runs = |unit: &str| {
-            let height = |height| if height == Height::Above { '^' } else { '_' };
+            let height = |height| if height == Height::Above { "^" } else { "_" };
             let label = Label::unit(unit);
-            label.runs.iter().map(|run| format!("{}{}", height(run.height), run.text)).collect::<String>()
+            label.runs.iter().flat_map(|run| [height(run.height), run.text.as_str()]).collect::<String>()
         };
         assert_eq!(runs("m^3/s"), "_m^3_/s");
         assert_eq!(runs("N m s^-1"), "_N m s^−1");

@@ -36,7 +36,7 @@ pub(super) fn over_parameterised(
     };
     let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
         Ok(steps) => steps,
-        Err(refusal) => return Some(refusal),
+        Err(verdict) => return Some(Claim { verdict, result: None }),
     };
     // With sides of a primitive first, these are the first half of the rows.
     let short = |row: &Vec<Expr>| row.iter().map(|e| shortest(&plant.arena, domain, *e)).collect::<Vec<Expr>>();
@@ -83,7 +83,7 @@ pub(super) fn under_derivative(
 /// not tell them from angles, which is a warning.
 ///
 /// # Errors
-/// The refusal, where a state is lost by that: one that does not move by a constant, or an angle that moves by a part of its
+/// The verdict on a regression by which a state is lost: one that does not move by a constant, or an angle that moves by a part of its
 /// period.
 pub(super) fn steps(
     plant: &Plant,
@@ -92,7 +92,7 @@ pub(super) fn steps(
     eta: &[Expr],
     recovered: &Recovered,
     found: &mut Vec<Diagnostic>,
-) -> Result<Vec<(Symbol, Expr)>, Claim<Regression>> {
+) -> Result<Vec<(Symbol, Expr)>, Verdict> {
     let arena = &plant.arena;
     let mut steps = Vec::new();
     for &(index, step) in &recovered.turning {
@@ -122,7 +122,7 @@ pub(super) fn steps(
             }
             found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
             let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
-            return Err(Claim { verdict, result: None });
+            return Err(verdict);
         }
     }
     Ok(steps)

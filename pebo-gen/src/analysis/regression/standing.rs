@@ -165,7 +165,7 @@ fn standing_still(
             if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
                 let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
                     Ok(steps) => steps,
-                    Err(refusal) => return refusal,
+                    Err(verdict) => return Claim { verdict, result: None },
                 };
                 // identity = known + factors eta = 0, so known = -factors eta
                 let negated = |row: &Vec<Expr>| row.iter().map(|e| shortest(arena, domain, arena.neg(*e))).collect();
