@@ -13,7 +13,9 @@ import sympy as sp
 TOKEN = re.compile(r"(?P<number>(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<power>\^)|(?P<other>\S)|\s+")
 FUNCTIONS = {
     name: getattr(sp, name)
-    for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "sign")
+    for name in (
+        "sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log sqrt sign".split()
+    )
 }
 FUNCTIONS |= {"abs": sp.Abs, "min": sp.Min, "max": sp.Max, "sat": lambda a: sp.Min(sp.Max(a, -1), 1)}
 
@@ -203,6 +205,7 @@ def polynomial(expr):
         return kernel(e)
 
     expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
+    expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
     expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
     return convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))), relations
 
