@@ -77,7 +77,8 @@ mod tests {
 
     #[test]
     fn a_component_that_an_output_gives_hides_no_bend() {
-        let text = "model: m\nx: [a, b]\ny: [y]\nu: [u]\nw: [v]\nf_x: {a: u - b, b: a - v}\ng_y: {y: u - a}\nphi: [a, b]\n";
+        let text =
+            "model: m\nx: [a, b]\ny: [y]\nu: [u]\nw: [v]\nf_x: {a: u - b, b: a - v}\ng_y: {y: u - a}\nphi: [a, b]\n";
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
         let (arena, domain) = (&plant.arena, plant.domain());
         let [a, b, v] = ["a", "b", "v"].map(|name| arena.of_symbol(arena.symbol(name)));

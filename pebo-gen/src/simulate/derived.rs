@@ -98,7 +98,7 @@ impl Kind for Static {
 
 /// An extension that shows what the regression depends on.
 trait Known<const N: usize>: Extension<f64, N> + 'static {
-    /// The coordinates of an extension of `n`, and behind them its fundamental matrix by rows.
+    /// A number of an extension of `n` coordinates: one of these, or behind them of its fundamental matrix by rows.
     fn value(&self, n: usize, place: usize) -> f64;
 
     /// What stands for z beside theta, and the factor of theta.
@@ -132,6 +132,8 @@ struct Derived<X, K, const N: usize> {
     nz: usize,
     nr: usize,
     ne: usize,
+    /// The numbers of the extension that the functions read.
+    known: usize,
     rows: Vec<usize>,
     cascade: RefCell<Interpreter>,
     regression: RefCell<Interpreter>,
@@ -141,8 +143,6 @@ struct Derived<X, K, const N: usize> {
     /// In the output form: the rows of the regression, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
     output: Option<(usize, X)>,
-    /// The numbers of the extension that the functions read.
-    known: usize,
     /// There, the places of the outputs that estimates are made of as they are expected.
     expected: Option<Vec<usize>>,
     kind: PhantomData<(X, K)>,
