@@ -42,49 +42,11 @@ impl Derivation {
             permitted::left_inverse(plant, claim, found)
         });
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
-        let before = found.len();
-        let regression = match &cascade.result {
+        let (mut regression, mut identifiability) = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
-                limited(plant, "the regression", &mut found, |found| {
-                    let claim = regression::prove(plant, &domain, result, inverse, found);
-                    permitted::regression(plant, class, claim, found)
-                })
+                regressed(plant, &domain, (class, result, inverse), &mut found)
             }
-            _ => Claim::skipped(),
-        };
-        let identifiability = match (&cascade.result, &regression.result) {
-            (Some(cascade), Some(result)) if regression.verdict == Verdict::Proved => {
-                limited(plant, "identifiability", &mut found, |found| {
-                    identifiability::prove(plant, &domain, cascade, result, inverse, found)
-                })
-            }
-            _ => Claim::skipped(),
-        };
-        let (regression, identifiability) = match &cascade.result {
-            Some(result) if cascade.verdict == Verdict::Proved => {
-                let given = (regression, identifiability);
-                let claims = (class, result, inverse);
-                let given = forms::preferred(plant, &domain, claims, given, &mut found, before);
-                by_values(plant, &domain, claims, given, &mut found, before)
-            }
-            _ => (regression, identifiability),
-        };
-        let (regression, identifiability) = match &cascade.result {
-            Some(result) => {
-                from_identities(plant, &domain, (class, result, inverse), (regression, identifiability), &mut found)
-            }
-            None => (regression, identifiability),
-        };
-        let (mut regression, mut identifiability) = match (&cascade.result, &regression.result) {
-            (Some(cascade), Some(result))
-                if matches!(identifiability.verdict, Verdict::Refuted | Verdict::Undecided)
-                    && !plant.arena.budget().is_exhausted() =>
-            {
-                let given = (result, identifiability.verdict);
-                let more = strengthened(plant, &domain, (cascade, inverse), given, &mut found);
-                more.unwrap_or((regression, identifiability))
-            }
-            _ => (regression, identifiability),
+            _ => (Claim::skipped(), Claim::skipped()),
         };
         let settled = found.len();
         let mut conditions = Conditions::of(plant);
@@ -233,6 +195,39 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     } else {
         Outcome::Undecided
     }
+}
+
+/// The claims on regression and identifiability under a proved cascade: of the first of the forms of the regression that
+/// identifies the unknowns, or of the one that is asked for.
+fn regressed(
+    plant: &Plant,
+    domain: &Domain,
+    claims: (Class, &Cascade, Option<&LeftInverse>),
+    found: &mut Vec<Diagnostic>,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let (class, cascade, inverse) = claims;
+    let before = found.len();
+    let regression = limited(plant, "the regression", found, |found| {
+        let claim = regression::prove(plant, domain, cascade, inverse, found);
+        permitted::regression(plant, class, claim, found)
+    });
+    let identifiability = match &regression.result {
+        Some(result) if regression.verdict == Verdict::Proved => limited(plant, "identifiability", found, |found| {
+            identifiability::prove(plant, domain, cascade, result, inverse, found)
+        }),
+        _ => Claim::skipped(),
+    };
+    let given = forms::preferred(plant, domain, claims, (regression, identifiability), found, before);
+    let given = by_values(plant, domain, claims, given, found, before);
+    let mut given = from_identities(plant, domain, claims, given, found);
+    if let Some(result) = &given.0.result
+        && matches!(given.1.verdict, Verdict::Refuted | Verdict::Undecided)
+        && !plant.arena.budget().is_exhausted()
+        && let Some(more) = strengthened(plant, domain, (cascade, inverse), (result, given.1.verdict), found)
+    {
+        given = more;
+    }
+    forms::standing(plant, domain, claims, given, found, before)
 }
 
 /// Outputs that are given by their value stand by it wherever that identifies as much as their rates; else the given.

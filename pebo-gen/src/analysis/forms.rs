@@ -1,8 +1,10 @@
 //! Which form a relation between the components of the transform takes.
 //!
 //! In: the regression and its identifiability as they were proved of the plant's equations as they stand. Out: the same,
-//! or those of a relation under the derivative, where these are to be preferred or the model asks for them.
+//! or those of a relation under the derivative, where these are to be preferred; and whatever there is, a regression of the
+//! form that the model asks for, or a refusal.
 
+use crate::cas::Expr;
 use crate::cas::domain::Domain;
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
@@ -22,15 +24,12 @@ pub(super) fn preferred(
     before: usize,
 ) -> (Claim<Regression>, Claim<Identifiability>) {
     let is_static = given.result.as_ref().is_none_or(|result| result.kind == RegressionKind::Static);
-    if plant.arena.budget().is_exhausted() || !is_static {
+    let asks = plant.asks_for(RelationForm::Differentiated);
+    if plant.arena.budget().is_exhausted() || !(is_static || asks) {
         return (given, seen);
     }
     let Some(mut other) = regression::differentiated(plant, domain, cascade, inverse, &given) else {
-        return if plant.relation_form == Some(RelationForm::Differentiated) {
-            refused(plant, found)
-        } else {
-            (given, seen)
-        };
+        return if asks { refused(plant, found) } else { (given, seen) };
     };
     let unknowns = |claim: &Claim<Regression>| claim.result.as_ref().map(|result| result.eta.len());
     let (of_given, of_other) = (unknowns(&given), unknowns(&other));
@@ -41,26 +40,25 @@ pub(super) fn preferred(
     };
     // An author's own identity is used as it is written.
     let wanted = match plant.relation_form {
-        Some(form) => form == RelationForm::Differentiated,
+        Some(_) => asks,
         None => plant.identities.is_empty() || given.verdict != Verdict::Proved,
     };
     if wanted {
         let mut said = Vec::new();
-        offer(&mut other, RelationForm::Static, of_given);
+        offer(&mut other, RelationForm::Static, of_given.filter(|_| is_static));
         let other = permitted::regression(plant, class, other, &mut said);
         let shown = other
             .result
             .as_ref()
             .filter(|_| other.verdict == Verdict::Proved)
             .map(|result| identifiability::prove(plant, domain, cascade, result, inverse, &mut said));
-        let asked = plant.relation_form.is_some();
         match shown {
-            Some(shown) if shown.verdict == Verdict::Proved && (asked || !at_once(&seen) || at_once(&shown)) => {
+            Some(shown) if shown.verdict == Verdict::Proved && (asks || !at_once(&seen) || at_once(&shown)) => {
                 found.truncate(before);
                 found.extend(said);
                 return (other, shown);
             }
-            _ if asked => return refused(plant, found),
+            _ if asks => return refused(plant, found),
             _ => {}
         }
     } else {
@@ -74,8 +72,45 @@ pub(super) fn at_once(claim: &Claim<Identifiability>) -> bool {
     claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
 }
 
+/// The two claims with a relation as it holds at every instant, where the model asks for that and the given regression has
+/// none. Of the diagnostics, those from `before` on are of these claims.
+pub(super) fn standing(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let stands = |regression: &Regression| match regression.kind {
+        RegressionKind::Static => true,
+        RegressionKind::Dynamic => false,
+        RegressionKind::Implicit => {
+            let held = regression.primitive_0.iter().zip(&regression.primitive_1);
+            let nothing = |expr: &Expr| plant.arena.is_zero(*expr);
+            held.into_iter().any(|(known, factor)| nothing(known) && factor.iter().all(nothing))
+        }
+    };
+    if !plant.asks_for(RelationForm::Static) || given.0.result.as_ref().is_none_or(stands) {
+        return given;
+    }
+    let mut said = Vec::new();
+    let other = regression::from_identities(plant, domain, cascade, inverse, &mut said);
+    let other = permitted::regression(plant, class, other, &mut said);
+    let shown = other
+        .result
+        .as_ref()
+        .filter(|_| other.verdict == Verdict::Proved)
+        .map(|result| identifiability::prove(plant, domain, cascade, result, inverse, &mut said))
+        .filter(|shown| shown.verdict == Verdict::Proved);
+    let Some(shown) = shown else { return refused(plant, found) };
+    found.truncate(before);
+    found.extend(said);
+    (other, shown)
+}
+
 /// The claims where a form is asked for that there is not.
 fn refused(plant: &Plant, found: &mut Vec<Diagnostic>) -> (Claim<Regression>, Claim<Identifiability>) {
-    found.push(regression::not_differentiable(plant));
+    found.extend(plant.relation_form.map(|asked| regression::no_such_form(plant, asked)));
     (Claim { verdict: Verdict::Undecided, result: None }, Claim::skipped())
 }

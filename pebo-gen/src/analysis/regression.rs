@@ -28,7 +28,7 @@ use crate::source::{Diagnostic, Span};
 use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
 use cancelling::combinations;
-pub(super) use differentiated::{differentiated, not_differentiable};
+pub(super) use differentiated::{differentiated, no_such_form};
 use functions::{over_parameterised, under_derivative};
 use linear::{decompose, linear};
 use refusal::{hidden_by_signals, nonlinear, not_recovered, not_sought, refuted, undecided};

@@ -300,7 +300,10 @@ impl Observer {
 
     /// Reports gains beside the numbers that they would be derived from.
     fn contradictions(&self, diagnostics: &mut Diagnostics) {
-        let Some((key, known)) = self.known() else { return };
+        let Some((key, known)) = self.known() else {
+            self.idle_bounds(diagnostics);
+            return;
+        };
         let instead = [("covariance", &self.start, "start"), ("process_noise", &self.disturbance, "disturbance")];
         for (gain, entries, name) in instead {
             if let (Some(place), Some(first)) = (self.place(gain), entries.first()) {
@@ -335,6 +338,19 @@ impl Observer {
                 Diagnostic::error(Code::SettingConflict, place, message)
                     .also(known, format!("`{key}` is here"))
                     .help(help),
+            );
+        }
+    }
+
+    /// Reports bounds of the unknowns of an estimator that the section does not choose.
+    fn idle_bounds(&self, diagnostics: &mut Diagnostics) {
+        // An estimator that was misspelt is absent.
+        let bounds = self.bounds.lower.first().or(self.bounds.upper.first());
+        if let Some(bound) = bounds.filter(|_| !self.has_gains() && !diagnostics.has_errors()) {
+            let message = "`bounds` are those of an estimator's unknowns, and this section chooses no estimator";
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, bound.span, message)
+                    .help("bound the states instead, by `within`, or choose an `estimator` with its settings"),
             );
         }
     }

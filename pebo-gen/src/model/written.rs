@@ -305,15 +305,17 @@ impl Simulation {
 
     /// The keys that make the plant and its sensors differ from what the model says.
     pub fn departures(&self) -> Vec<&'static str> {
+        let acts = |number: &Spanned<Decimal>| number.value.to_f64() != 0.0;
+        let any = |entries: &[Entry<Spanned<Decimal>>]| entries.iter().any(|entry| acts(&entry.value));
         let keys = [
             ("plant", !self.plant.is_empty()),
-            ("bias", !self.bias.is_empty()),
-            ("delay", self.delay.written().next().is_some()),
-            ("jitter", self.jitter.is_some()),
-            ("noise", !self.noise.is_empty()),
-            ("quantisation", !self.quantisation.is_empty()),
-            ("dropped", self.dropped.is_some()),
-            ("every", !self.every.is_empty()),
+            ("bias", any(&self.bias)),
+            ("delay", self.delay.written().any(acts)),
+            ("jitter", self.jitter.as_ref().is_some_and(acts)),
+            ("noise", any(&self.noise)),
+            ("quantisation", any(&self.quantisation)),
+            ("dropped", self.dropped.as_ref().is_some_and(acts)),
+            ("every", any(&self.every)),
         ];
         keys.into_iter().filter_map(|(key, is_there)| is_there.then_some(key)).collect()
     }

@@ -36,8 +36,8 @@ pub struct Plant {
     pub proposal: Proposal,
     /// The cascade that the author asks for; without it either will do.
     pub asked: Option<CascadeClass>,
-    /// How the author wants a relation between the components of the transform to become a regression.
-    pub relation_form: Option<RelationForm>,
+    /// How the author wants a relation between the components of the transform to become a regression, and where that is said.
+    pub relation_form: Option<(RelationForm, Span)>,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
     /// Unmeasured states with their rates.
@@ -165,6 +165,11 @@ pub struct Assumption {
 }
 
 impl Plant {
+    /// Whether the author asks for this form of a relation between the components of the transform.
+    pub fn asks_for(&self, form: RelationForm) -> bool {
+        self.relation_form.is_some_and(|asked| asked.0 == form)
+    }
+
     /// The same plant with another transform, which was searched for: a component that fails is pointed at where the
     /// rates of the states begin.
     #[must_use]

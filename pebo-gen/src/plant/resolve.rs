@@ -109,7 +109,7 @@ impl Plant {
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
             asked: model.asked.as_ref().map(|asked| asked.value),
-            relation_form: model.relation_form.as_ref().map(|form| form.value),
+            relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
             proposal,
             parameters,
             x: states,

@@ -1,7 +1,7 @@
 //! The reference interpreter: a program and numbers in, numbers out.
 //!
-//! One flat table of values, filled in order; a run neither allocates nor branches on anything but
-//! the kind of operation.
+//! One flat table of values, filled in order: of the inputs those that are read, then constants, then results. A run
+//! neither allocates nor branches on anything but the kind of operation.
 
 use super::straight::{Operand, Operation, Program};
 use crate::cas::Function;
@@ -10,9 +10,11 @@ use crate::cas::function::Value;
 /// Runs one program at `f64`, as often as asked.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
-    /// Inputs, then constants, then the results of the instructions.
     values: Vec<f64>,
+    /// The number of inputs.
     inputs: usize,
+    /// The positions of the inputs that are read: a caller gives all that it has, and few programs need them all.
+    read: Vec<usize>,
     /// The position of the first result.
     first: usize,
     instructions: Vec<Instruction>,
@@ -35,14 +37,14 @@ enum Instruction {
 impl Interpreter {
     /// An interpreter for this program.
     pub fn new(program: &Program) -> Self {
-        let inputs = program.inputs.len();
-        let first = inputs + program.constants.len();
+        let read: Vec<usize> = (0..program.inputs.len()).filter(|input| program.reads(*input)).collect();
+        let (constant, first) = (read.len(), read.len() + program.constants.len());
         let place = |operand| match operand {
-            Operand::Input(index) => index,
-            Operand::Constant(index) => inputs + index,
+            Operand::Input(index) => read.partition_point(|input| *input < index),
+            Operand::Constant(index) => constant + index,
             Operand::Result(index) => first + index,
         };
-        let mut values = vec![0.0; inputs];
+        let mut values = vec![0.0; constant];
         values.extend(program.constants.iter().map(super::Constant::to_f64));
         values.resize(first + program.operations.len(), 0.0);
         let instructions = program
@@ -61,7 +63,7 @@ impl Interpreter {
             })
             .collect();
         let outputs = program.outputs.iter().copied().map(place).collect();
-        Self { values, inputs, first, instructions, outputs }
+        Self { values, inputs: program.inputs.len(), read, first, instructions, outputs }
     }
 
     /// The outputs for these inputs.
@@ -69,9 +71,19 @@ impl Interpreter {
     /// # Panics
     /// Panics unless there are as many inputs and outputs as the program has.
     pub fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
+        assert_eq!(inputs.len(), self.inputs, "number of inputs");
         assert_eq!(outputs.len(), self.outputs.len(), "number of outputs");
+        for (index, value) in self.evaluate(|input| inputs[input]).enumerate() {
+            outputs[index] = value;
+        }
+    }
+
+    /// The outputs in their order, for inputs that are asked for by their positions where they are read.
+    pub fn evaluate(&mut self, input: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let values = self.values.as_mut_slice();
-        values[..self.inputs].copy_from_slice(inputs);
+        for (place, &read) in self.read.iter().enumerate() {
+            values[place] = input(read);
+        }
         for (index, instruction) in self.instructions.iter().enumerate() {
             values[self.first + index] = match *instruction {
                 Instruction::Neg(a) => -values[a],
@@ -84,9 +96,7 @@ impl Interpreter {
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
-        for (output, &place) in outputs.iter_mut().zip(&self.outputs) {
-            *output = values[place];
-        }
+        self.outputs.iter().map(|&place| values[place])
     }
 }
 

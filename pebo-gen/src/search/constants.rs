@@ -9,43 +9,55 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::{Class, Verdict};
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{Output, Plant};
 
+use super::candidate::Candidate;
 use super::question::Question;
 
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
 
-/// The functions; none where the plant has no unknown constants beside other states, or with these measured no plain
-/// cascade.
-pub(super) fn closure(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
-    let arena = question.arena;
-    let is_constant = |state: &Symbol| question.rates.get(state).is_some_and(|rate| arena.is_zero(*rate));
-    let constants: BTreeSet<Symbol> = question.x.iter().copied().filter(is_constant).collect();
+/// The plant in which its unknown constants are outputs; none where there are none beside other states.
+pub(super) fn measured(question: &Question<'_>) -> Option<Plant> {
+    let constants = constants(question);
     if constants.is_empty() || constants.len() == question.x.len() {
-        return Ok(None);
+        return None;
     }
-    let measured = measured(question.plant, &constants);
-    let search = arena.budget().share(3, || super::solve(&measured, Some(Class::Pebo)));
-    let proved = |candidate: &&super::Candidate| {
-        let derivation = &candidate.derivation;
-        derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
-    };
-    let Some(candidate) = search.candidates.iter().find(proved) else { return Ok(None) };
-    let (Some(cascade), Some(inverse)) =
-        (&candidate.derivation.cascade.result, &candidate.derivation.left_inverse.result)
-    else {
+    let mut measured = question.plant.clone();
+    let known = question.plant.x.iter().filter(|state| constants.contains(&state.symbol));
+    measured.y.extend(known.map(|state| Output {
+        symbol: state.symbol,
+        rate: Some(state.rate),
+        value: None,
+        span: state.rate.span,
+    }));
+    measured.x.retain(|state| !constants.contains(&state.symbol));
+    measured.phi.clear();
+    Some(measured)
+}
+
+/// The states whose rate is zero.
+fn constants(question: &Question<'_>) -> BTreeSet<Symbol> {
+    let is_constant = |state: &Symbol| question.rates.get(state).is_some_and(|rate| question.arena.is_zero(*rate));
+    question.x.iter().copied().filter(is_constant).collect()
+}
+
+/// The functions, by a plain cascade with a left inverse of the plant whose constants are measured; none where there are
+/// too many, or the rates hold others.
+pub(super) fn closure(question: &Question<'_>, candidate: &Candidate) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = question.arena;
+    let derivation = &candidate.derivation;
+    let (Some(cascade), Some(inverse)) = (&derivation.cascade.result, &derivation.left_inverse.result) else {
         return Ok(None);
     };
     let z = &candidate.plant.z;
     let transform: BTreeMap<Symbol, Expr> = z.iter().copied().zip(candidate.plant.transform()).collect();
     let states: BTreeMap<Symbol, Expr> = inverse.x.iter().copied().collect();
     let rates: BTreeMap<Symbol, Expr> = z.iter().copied().zip(cascade.h.iter().copied()).collect();
-    let hidden: BTreeSet<Symbol> = constants.iter().chain(z).copied().collect();
+    let hidden: BTreeSet<Symbol> = constants(question).iter().chain(z).copied().collect();
     let mut found: Vec<Expr> = Vec::new();
     let mut open = arena.substitute_all(&question.output_rates(), &states);
     while let Some(formula) = open.pop() {
@@ -62,22 +74,6 @@ pub(super) fn closure(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obst
     // The simplest first, as an author would list them.
     found.sort_by_key(|function| (arena.print(*function).len(), *function));
     Ok(Some(arena.substitute_all(&found, &transform)))
-}
-
-/// The plant in which the constants are outputs.
-fn measured(plant: &Plant, constants: &BTreeSet<Symbol>) -> Plant {
-    let mut measured = plant.clone();
-    let is_constant = |symbol: Symbol| constants.contains(&symbol);
-    let known = plant.x.iter().filter(|state| is_constant(state.symbol));
-    measured.y.extend(known.map(|state| Output {
-        symbol: state.symbol,
-        rate: Some(state.rate),
-        value: None,
-        span: state.rate.span,
-    }));
-    measured.x.retain(|state| !is_constant(state.symbol));
-    measured.phi.clear();
-    measured
 }
 
 /// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they stand

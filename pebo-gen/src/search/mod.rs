@@ -284,8 +284,9 @@ impl Hunt<'_> {
         if self.is_over() {
             return;
         }
-        if let Some(closed) = constants::closure(question).transpose() {
-            self.judge(Form::Closure(Start::Constants), 0, closed);
+        self.with_constants();
+        if self.is_over() {
+            return;
         }
         // The bound of transforms affine in x is looked at where that of all plain cascades is small.
         if self.bound.is_some() {
@@ -307,6 +308,21 @@ impl Hunt<'_> {
                 Ok(Ansatz { of_x, of_y: functions::products(question, &outputs, degree)?, weight: degree + 1 })
             };
             self.attempt_with(Form::Frame(degree), Rate::Affine, ansatz());
+        }
+    }
+
+    /// A transform by way of one that there is if the unknown constants are measured.
+    fn with_constants(&mut self) {
+        let question = self.question;
+        let Some(measured) = constants::measured(question) else { return };
+        let search = question.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
+        let proved = |candidate: &&Candidate| {
+            let derivation = &candidate.derivation;
+            derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
+        };
+        if let Some(candidate) = search.candidates.iter().find(proved) {
+            let closed = constants::closure(question, candidate).map(Option::unwrap_or_default);
+            self.judge(Form::Closure(Start::Constants), 0, closed);
         }
     }
 

@@ -8,8 +8,9 @@
 use crate::source::{Code, Diagnostic, Span, listed};
 
 use super::excitation::Excitation;
+use super::score::SETTLED;
 use super::settings::Estimator;
-use super::summary::{Summary, short};
+use super::summary::{Rated, Summary, short};
 use super::timing::real;
 
 /// More samples refused than this share explain by themselves that an estimate does not settle.
@@ -63,6 +64,15 @@ pub(super) fn advise(
             .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
     } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
         diagnostic
+    } else if let Some((rated, steps, step)) = unsettled.iter().find_map(|rated| steps_away(rated)) {
+        let state = &rated.estimate.state;
+        let count = if steps.abs() > 1.0 { format!("{} steps", steps.abs()) } else { "one step".to_owned() };
+        diagnostic
+            .note(format!("the estimate of `{state}` is {count} of {} off, which the outputs do not show", short(step)))
+            .help(format!(
+                "if `{state}` is an angle, declare its period under `angles`: such an error is then none; if not, measure \
+                 another output"
+            ))
     } else if trend < FALLING {
         diagnostic
             .note(format!(
@@ -77,21 +87,42 @@ pub(super) fn advise(
             slowest.estimate.state,
             short(slowest.score.rms)
         );
-        match origin {
-            Origin::Recorded => diagnostic.note(note).help(
+        match (origin, explained(slowest)) {
+            (Origin::Recorded, _) => diagnostic.note(note).help(
                 "compare parameters and offsets of sensors with those of the bench: what they err by stays in the \
                  estimate; the sensor that it is compared with counts too",
             ),
-            Origin::Simulated([]) => {
+            (Origin::Simulated(_), Some(expected)) => diagnostic
+                .note(format!(
+                    "{note}, no more than the {} that the observer expects of its sensors and disturbances",
+                    short(expected)
+                ))
+                .help("choose a lower `disturbance` under `observer`, which averages more samples, or a better sensor"),
+            (Origin::Simulated([]), None) => {
                 let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
                 diagnostic.note(note).help(help)
             }
-            Origin::Simulated(departures @ [first, ..]) => {
+            (Origin::Simulated(departures @ [first, ..]), None) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
                 diagnostic.note(note).help(mend(first, summary.known.is_some()))
             }
         }
     })
+}
+
+/// The standard error that the observer expects, if the errors are no larger: then nothing else is wrong.
+fn explained(rated: &Rated) -> Option<f64> {
+    rated.expected.filter(|expected| rated.score.rms <= *expected)
+}
+
+/// The number of steps that an estimate rests away from its state, and their length, where the outputs show the state only
+/// up to multiples of these.
+fn steps_away(rated: &Rated) -> Option<(&Rated, f64, f64)> {
+    let (step, error) = (rated.step?.abs(), rated.score.last);
+    let count = (error / step).round();
+    // What an angle has settled to, and on average too: it was no moment on the way.
+    let rests = |error: f64| (error.abs() - count.abs() * step).abs() <= SETTLED * step;
+    (count != 0.0 && rests(error) && rests(rated.score.rms)).then_some((rated, count, step))
 }
 
 /// With what there is to say of data that do not determine the unknown.

@@ -1,7 +1,7 @@
 //! The runtime library's observer on a derived model that is interpreted.
 //!
 //! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of
-//! two sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
+//! a few sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
 //! target, but for the functions of the model.
 
 use std::cell::RefCell;
@@ -20,7 +20,7 @@ use crate::program::{Interpreter, Program};
 use super::excitation::Said;
 use super::observer::Design;
 use super::settings::{self, Operator};
-use super::sizes::{LARGEST, MOST_MIXED, pad, padded};
+use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
 use super::watched::Watched;
 use super::window::Passage;
 
@@ -50,11 +50,19 @@ pub(super) trait Estimation: fmt::Debug {
     fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
 }
 
-/// The observer of a design: of the size that DREM has, or of the largest.
+/// The observer of a design, of the smallest size that has room for it: a step takes time as the square of that, or its cube.
 pub(super) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
-    match design.size() {
-        0..=MOST_MIXED => of_size::<MOST_MIXED>(design),
-        _ => of_size::<LARGEST>(design),
+    const FEW: usize = SMALL[0];
+    const SOME: usize = SMALL[1];
+    let size = design.size();
+    if size <= FEW {
+        of_size::<FEW>(design)
+    } else if size <= SOME {
+        of_size::<SOME>(design)
+    } else if size <= MOST_MIXED {
+        of_size::<MOST_MIXED>(design)
+    } else {
+        of_size::<LARGEST>(design)
     }
 }
 
@@ -62,11 +70,11 @@ fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault
     if design.settings.output {
         return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
     }
-    Ok(match (&design.lambda, design.is_static) {
-        (None, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
-        (None, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
-        (Some(_), false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
-        (Some(_), true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
+    Ok(match (design.is_generalised, design.is_static) {
+        (false, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (false, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
+        (true, false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (true, true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
     })
 }
 
@@ -90,16 +98,16 @@ impl Kind for Static {
 
 /// An extension that shows what the regression depends on.
 trait Known<const N: usize>: Extension<f64, N> + 'static {
-    /// Writes the first `n` coordinates of the extension, and of its fundamental matrix by rows.
-    fn write(&self, n: usize, known: &mut Vec<f64>);
+    /// A number of an extension of `n` coordinates: one of these, or behind them of its fundamental matrix by rows.
+    fn value(&self, n: usize, place: usize) -> f64;
 
     /// What stands for z beside theta, and the factor of theta.
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
 }
 
 impl<const N: usize> Known<N> for Integrator<f64, N> {
-    fn write(&self, n: usize, known: &mut Vec<f64>) {
-        known.extend(&self.chi().as_slice()[..n]);
+    fn value(&self, _: usize, place: usize) -> f64 {
+        self.chi()[place]
     }
 
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
@@ -108,9 +116,8 @@ impl<const N: usize> Known<N> for Integrator<f64, N> {
 }
 
 impl<const N: usize> Known<N> for Fundamental<f64, N> {
-    fn write(&self, n: usize, known: &mut Vec<f64>) {
-        known.extend(&self.xi().as_slice()[..n]);
-        known.extend((0..n * n).map(|k| self.psi()[(k / n, k % n)]));
+    fn value(&self, n: usize, place: usize) -> f64 {
+        if place < n { self.xi()[place] } else { self.psi()[((place - n) / n, (place - n) % n)] }
     }
 
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
@@ -118,49 +125,24 @@ impl<const N: usize> Known<N> for Fundamental<f64, N> {
     }
 }
 
-/// A function of the model, with room for its arguments and values.
-#[derive(Debug)]
-struct Function {
-    interpreter: Interpreter,
-    arguments: Vec<f64>,
-    values: Vec<f64>,
-}
-
-impl Function {
-    fn new(program: &Program) -> RefCell<Self> {
-        RefCell::new(Self {
-            interpreter: Interpreter::new(program),
-            arguments: Vec::with_capacity(program.inputs.len()),
-            values: vec![0.0; program.outputs.len()],
-        })
-    }
-
-    /// The values for the arguments that `fill` writes.
-    fn call(&mut self, fill: impl FnOnce(&mut Vec<f64>)) -> &[f64] {
-        self.arguments.clear();
-        fill(&mut self.arguments);
-        self.interpreter.run(&self.arguments, &mut self.values);
-        &self.values
-    }
-}
-
 /// The model of a design. The trait's methods take `&self`, an interpreter's table does not: hence the cells.
 #[derive(Debug)]
 struct Derived<X, K, const N: usize> {
     ny: usize,
-    nu: usize,
     nz: usize,
+    nr: usize,
     ne: usize,
+    /// The numbers of the extension that the functions read.
+    known: usize,
     rows: Vec<usize>,
-    h: RefCell<Function>,
-    lambda: Option<RefCell<Function>>,
-    phi_0: RefCell<Function>,
-    phi_1: RefCell<Function>,
-    primitives: Option<[RefCell<Function>; 2]>,
-    theta: RefCell<Function>,
-    phi_left: RefCell<Function>,
-    /// In the output form: the rows of the regression, and the model's extension at its start as its functions read it.
-    output: Option<(usize, Vec<f64>)>,
+    cascade: RefCell<Interpreter>,
+    regression: RefCell<Interpreter>,
+    primitive: Option<RefCell<Interpreter>>,
+    theta: RefCell<Interpreter>,
+    phi_left: RefCell<Interpreter>,
+    /// In the output form: the rows of the regression, and the model's own extension, which its functions read at its
+    /// start. That of the output form is another.
+    output: Option<(usize, X)>,
     /// There, the places of the outputs that estimates are made of as they are expected.
     expected: Option<Vec<usize>>,
     kind: PhantomData<(X, K)>,
@@ -169,76 +151,79 @@ struct Derived<X, K, const N: usize> {
 impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
         let nz = design.coordinates;
-        let identity = (0..nz * nz).map(|k| if k / nz == k % nz { 1.0 } else { 0.0 });
-        let identity = identity.take(if design.lambda.is_some() { nz * nz } else { 0 });
-        let start = vec![0.0; nz].into_iter().chain(identity).collect();
         Self {
             expected: design.settings.expected.clone(),
-            output: design.settings.output.then_some((design.phi_0.outputs.len(), start)),
+            output: design.settings.output.then(|| (design.equations, X::new(SVector::zeros()))),
+            known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
-            nu: design.inputs,
             nz: design.coordinates,
+            nr: design.equations,
             ne: design.unknowns,
             rows: design.rows.clone(),
-            h: Function::new(&design.h),
-            lambda: design.lambda.as_ref().map(Function::new),
-            phi_0: Function::new(&design.phi_0),
-            phi_1: Function::new(&design.phi_1),
-            primitives: design.primitives.as_ref().map(|both| both.each_ref().map(Function::new)),
-            theta: Function::new(&design.theta),
-            phi_left: Function::new(&design.phi_left),
+            cascade: interpreter(&design.cascade),
+            regression: interpreter(&design.regression),
+            primitive: design.primitive.as_ref().map(interpreter),
+            theta: interpreter(&design.theta),
+            phi_left: interpreter(&design.phi_left),
             kind: PhantomData,
         }
     }
 
-    /// Writes the extension that the model's functions read: that of the output form is not the model's own.
-    fn write(&self, extension: &X, arguments: &mut Vec<f64>) {
-        match &self.output {
-            Some((_, start)) => arguments.extend(start),
-            None => extension.write(self.nz, arguments),
-        }
-    }
-
-    /// The values of a function that stands under the derivative.
-    fn held<'a>(&self, function: &'a mut Function, extension: &X, y: &SVector<f64, N>) -> &'a [f64] {
-        function.call(|arguments| {
-            self.write(extension, arguments);
-            arguments.extend(&y.as_slice()[..self.ny]);
-        })
-    }
-
     /// The cascade of the model itself.
     fn cascade(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
-        let h = pad(self.h.borrow_mut().call(|arguments| self.sampled(arguments, y, u)));
-        match &self.lambda {
-            Some(lambda) => {
-                let lambda = pad_rows(lambda.borrow_mut().call(|arguments| self.sampled(arguments, y, u)), self.nz);
-                Flow { lambda, h }
-            }
-            None => Flow::plain(h),
-        }
+        let mut cascade = self.cascade.borrow_mut();
+        let mut values = cascade.evaluate(|place| if place < self.ny { y[place] } else { u[place - self.ny] });
+        let h = column(&mut values, self.nz);
+        Flow { lambda: rows(&mut values, self.nz), h }
     }
 
     /// The sides of the model's own regression; in the output form, as a function of z.
     fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
-        let at = |arguments: &mut Vec<f64>| {
-            self.write(extension, arguments);
-            self.sampled(arguments, y, u);
-        };
-        let known = pad(self.phi_0.borrow_mut().call(at));
-        Sides { known, factor: pad_rows(self.phi_1.borrow_mut().call(at), self.ne) }
+        self.both(&mut self.regression.borrow_mut(), extension, y, u)
     }
 
-    fn sampled(&self, arguments: &mut Vec<f64>, y: &SVector<f64, N>, u: &SVector<f64, N>) {
-        arguments.extend(&y.as_slice()[..self.ny]);
-        arguments.extend(&u.as_slice()[..self.nu]);
+    /// Both sides of equations by the function that has their values: what is known, then the factor by rows.
+    fn both(
+        &self,
+        function: &mut Interpreter,
+        extension: &X,
+        y: &SVector<f64, N>,
+        u: &SVector<f64, N>,
+    ) -> Sides<f64, N, N> {
+        let extension = self.output.as_ref().map_or(extension, |(_, start)| start);
+        let mut values = function.evaluate(|place| match place.checked_sub(self.known) {
+            None => extension.value(self.nz, place),
+            Some(place) if place < self.ny => y[place],
+            Some(place) => u[place - self.ny],
+        });
+        let known = column(&mut values, self.nr);
+        Sides { known, factor: rows(&mut values, self.ne) }
     }
 }
 
-fn pad_rows<const N: usize>(values: &[f64], columns: usize) -> SMatrix<f64, N, N> {
+fn interpreter(program: &Program) -> RefCell<Interpreter> {
+    RefCell::new(Interpreter::new(program))
+}
+
+/// The next `n` values, and zeros behind them.
+fn column<const N: usize>(values: &mut impl Iterator<Item = f64>, n: usize) -> SVector<f64, N> {
+    let mut padded = SVector::zeros();
+    for (place, value) in values.take(n).enumerate() {
+        padded[place] = value;
+    }
+    padded
+}
+
+/// All values that are left as rows of so many columns, and zeros besides.
+fn rows<const N: usize>(values: &mut impl Iterator<Item = f64>, columns: usize) -> SMatrix<f64, N, N> {
     let mut padded = SMatrix::zeros();
-    for (k, &value) in values.iter().enumerate() {
-        padded[(k / columns, k % columns)] = value;
+    let (mut row, mut column) = (0, 0);
+    for value in values {
+        padded[(row, column)] = value;
+        column += 1;
+        if column == columns {
+            (row, column) = (row + 1, 0);
+        }
     }
     padded
 }
@@ -286,11 +271,8 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 
     fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
-        if let Some([known, factor]) = &self.primitives {
-            return Sides {
-                known: pad(self.held(&mut known.borrow_mut(), extension, y)),
-                factor: pad_rows(self.held(&mut factor.borrow_mut(), extension, y), self.ne),
-            };
+        if let Some(primitive) = &self.primitive {
+            return self.both(&mut primitive.borrow_mut(), extension, y, &SVector::zeros());
         }
         let mut used = SVector::zeros();
         for (row, &output) in self.rows.iter().enumerate() {
@@ -303,7 +285,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         if self.output.is_some() {
             return *eta;
         }
-        pad(self.theta.borrow_mut().call(|arguments| arguments.extend(&eta.as_slice()[..self.ne])))
+        column(&mut self.theta.borrow_mut().evaluate(|place| eta[place]), self.nz)
     }
 
     fn begin(&self, extension: &X, y: &SVector<f64, N>) -> X {
@@ -321,11 +303,9 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         for (row, place) in self.expected.iter().flatten().enumerate() {
             y[*place] = z[row];
         }
-        pad(self.phi_left.borrow_mut().call(|arguments| {
-            let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
-            arguments.extend(&z.as_slice()[first..first + self.nz]);
-            arguments.extend(&y.as_slice()[..self.ny]);
-        }))
+        let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
+        let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };
+        column(&mut self.phi_left.borrow_mut().evaluate(of), N)
     }
 }
 
@@ -365,7 +345,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
         let mut rows = [usize::MAX; N];
         rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
-        let whole = settings.output && design.primitives.is_none();
+        let whole = settings.output && design.primitive.is_none();
         Ok(Self {
             observer: match settings.rebase {
                 Some(every) => observer.rebasing(every)?,
@@ -376,7 +356,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
             chi_0: pad(&settings.chi_0),
             restarts: 0,
             rows: whole.then_some(rows),
-            sizes: (design.recovered.len(), design.phi_0.outputs.len()),
+            sizes: (design.recovered.len(), design.equations),
             is_certain: matches!(settings.operator, Operator::Sampled(_)),
         })
     }

@@ -315,7 +315,7 @@ impl Ensemble {
                 Some(baseline) => Label::text(baseline),
             };
             panels.push(Panel {
-                title: format!("Error of {state}, median and 10 to 90 %"),
+                title: format!("Error of {state}"),
                 unit: of_state().find_map(|(spread, _)| spread.estimate.unit.clone()),
                 scale: Scale::Log,
                 curves: of_state().map(|(spread, _)| label(&spread.estimate.baseline)).collect(),
@@ -324,7 +324,7 @@ impl Ensemble {
             bands
                 .push(of_state().map(|(_, course)| course.iter().map(|(t, q)| (*t, [q[0], q[2]])).collect()).collect());
         }
-        let title = Label::text(&scenario.title).remark(&format!("{} runs", self.runs));
+        let title = Label::text(&scenario.title).remark(&format!("median and 10 to 90 % of {} runs", self.runs));
         let duration = scenario.timing.at(scenario.timing.samples);
         let time = ([0.0, duration], Label::name("t"));
         Sheet { title: (&scenario.title, title), time, panels: &panels, curves: &curves }.draw_with(&bands)

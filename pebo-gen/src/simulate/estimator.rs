@@ -1,9 +1,9 @@
 //! Every estimator of the runtime library behind one face, so that the observer need not be compiled for each.
 //!
-//! A model is padded with zeros to one of two sizes. Zero rows and columns of a regressor change no estimate of a
+//! A model is padded with zeros to one of a few sizes. Zero rows and columns of a regressor change no estimate of a
 //! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: what its extension has to
 //! say of the padding is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled
-//! once or twice, not for every number of unknowns.
+//! once for each size, not for every number of unknowns.
 
 use std::fmt;
 
@@ -14,14 +14,17 @@ use pebo_runtime::{
 };
 
 use super::settings::{self, Covariance, Extension};
-use super::sizes::{LARGEST, MOST_MIXED, pad, padded};
+use super::sizes::{LARGEST, MOST_MIXED, pad, padded, resized};
 
 /// An estimator of a model that was padded to the size N.
+/// Not behind a pointer where that can be: the observer works on a copy in each step.
 #[derive(Debug)]
 pub(super) enum Chosen<const N: usize> {
+    Gradient(Gradient<f64, N>),
+    Normalised(NormalisedGradient<f64, N>),
     /// The one that knows how uncertain it is.
-    Squares(Box<LeastSquares<f64, N>>),
-    Other(Box<dyn Face<N>>),
+    Squares(LeastSquares<f64, N>),
+    Mixed(Box<dyn Face<N>>),
 }
 
 impl<const N: usize> Chosen<N> {
@@ -29,30 +32,34 @@ impl<const N: usize> Chosen<N> {
     pub(super) fn new(settings: &settings::Estimator) -> Result<Self, Fault> {
         // What is set for a padded unknown has no effect, but must be positive.
         let all = |values: &[f64]| -> SVector<f64, N> { padded(values, 1.0) };
-        Ok(Self::Other(match settings {
-            settings::Estimator::Gradient(gain) => Box::new(Gradient::diagonal(&all(gain))?),
+        Ok(match settings {
+            settings::Estimator::Gradient(gain) => Self::Gradient(Gradient::diagonal(&all(gain))?),
             settings::Estimator::NormalisedGradient { gain, mu } => {
-                Box::new(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
+                Self::Normalised(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
             }
             settings::Estimator::LeastSquares(Covariance { start, forgetting, process_noise }) => {
                 let squares = LeastSquares::diagonal(&all(start), *forgetting)?;
-                return Ok(Self::Squares(Box::new(match process_noise {
+                Self::Squares(match process_noise {
                     Some(noise) => squares.with_process_noise(&pad(noise))?,
                     None => squares,
-                })));
+                })
             }
-            settings::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => mixed(gain, extension)?,
+            settings::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => {
+                Self::Mixed(mixed(gain, extension)?)
+            }
             // Refused with the settings.
             settings::Estimator::Drem { .. } => return Err(Fault::Gain),
-        }))
+        })
     }
 }
 
 impl<const N: usize> Clone for Chosen<N> {
     fn clone(&self) -> Self {
         match self {
-            Self::Squares(squares) => Self::Squares(squares.clone()),
-            Self::Other(other) => Self::Other(other.boxed()),
+            Self::Gradient(gradient) => Self::Gradient(*gradient),
+            Self::Normalised(gradient) => Self::Normalised(*gradient),
+            Self::Squares(squares) => Self::Squares(*squares),
+            Self::Mixed(mixed) => Self::Mixed(mixed.boxed()),
         }
     }
 }
@@ -60,15 +67,19 @@ impl<const N: usize> Clone for Chosen<N> {
 impl<const N: usize> Chosen<N> {
     fn face(&self) -> &dyn Face<N> {
         match self {
-            Self::Squares(squares) => &**squares,
-            Self::Other(other) => &**other,
+            Self::Gradient(gradient) => gradient,
+            Self::Normalised(gradient) => gradient,
+            Self::Squares(squares) => squares,
+            Self::Mixed(mixed) => &**mixed,
         }
     }
 
     fn face_mut(&mut self) -> &mut dyn Face<N> {
         match self {
-            Self::Squares(squares) => &mut **squares,
-            Self::Other(other) => &mut **other,
+            Self::Gradient(gradient) => gradient,
+            Self::Normalised(gradient) => gradient,
+            Self::Squares(squares) => squares,
+            Self::Mixed(mixed) => &mut **mixed,
         }
     }
 }
@@ -77,7 +88,7 @@ impl<const N: usize> Uncertain<f64, N> for Chosen<N> {
     fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
         match self {
             Self::Squares(squares) => squares.covariance_root(dt),
-            Self::Other(_) => None,
+            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => None,
         }
     }
 }
@@ -285,24 +296,24 @@ impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N
         for (mut wide, column) in rows.column_iter_mut().zip(regressor.column_iter()) {
             wide.rows_mut(0, N).copy_from(&column);
         }
-        self.0.advance(&rows, &pad(regressand.as_slice()), dt)
+        self.0.advance(&rows, &resized(regressand), dt)
     }
 
     fn estimate(&self) -> SVector<f64, N> {
-        pad(self.0.estimate().as_slice())
+        resized(&self.0.estimate())
     }
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
-        self.0.shift(&pad(&shift.as_slice()[..MOST_MIXED]));
+        self.0.shift(&resized(shift));
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {
-        // What is beyond is padding, which no turn mixes with the unknowns.
+        // What one of the sizes has beyond the other is padding, which no turn mixes with the unknowns.
         self.0.turn(&turn.leading());
     }
 
     fn reset(&mut self, estimate: &SVector<f64, N>) {
-        self.0.reset(&pad(&estimate.as_slice()[..MOST_MIXED]));
+        self.0.reset(&resized(estimate));
     }
 
     fn is_finite(&self) -> bool {

@@ -71,7 +71,6 @@ struct Rates {
     /// Signals that the rates depend on, with their positions in the table.
     signals: Vec<(usize, Course)>,
     formulas: Interpreter,
-    values: Vec<f64>,
 }
 
 impl Flow {
@@ -86,7 +85,6 @@ impl Flow {
             origin: 0.0,
             signals: read.iter().map(|(position, signal)| (*position, signal.course())).collect(),
             formulas: Interpreter::new(rates),
-            values: vec![0.0; rates.outputs.len()],
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
         let solver: Box<dyn Solve> = match state.len() {
@@ -131,7 +129,8 @@ trait Solve: fmt::Debug {
     fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck>;
 }
 
-/// The method before its first step: its table of coefficients is made once for the run, not at each sample.
+/// The method, made once for the run: its start sets all that a step changes but the count of its steps, which nothing
+/// depends on.
 struct Solver<const N: usize>(ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>);
 
 impl<const N: usize> Solver<N> {
@@ -150,7 +149,8 @@ impl<const N: usize> Solve for Solver<N> {
     fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck> {
         let mut start = [0.0; N];
         start[..state.len()].copy_from_slice(state);
-        let mut method = self.0.clone().h0(length);
+        let method = &mut self.0;
+        method.h0 = length;
         let mut steps = 0;
         method.init(rates, 0.0, length, &start).map_err(|_| Stuck(steps))?;
         loop {
@@ -175,18 +175,17 @@ impl<const N: usize> Solve for Solver<N> {
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {
     fn diff(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
         let mut inner = self.0.borrow_mut();
-        let Rates { table, state: place, origin, signals, formulas, values } = &mut *inner;
+        let Rates { table, state: place, origin, signals, formulas } = &mut *inner;
         let now = *origin + t;
         table[TIME] = now;
         for (position, signal) in signals {
             table[*position] = signal.value(now);
         }
-        let count = place.len();
-        table[place.clone()].copy_from_slice(&state[..count]);
-        formulas.run(table, values);
-        for (rate, &value) in rates.iter_mut().zip(values.iter()) {
-            *rate = if value.abs() < STILL { 0.0 } else { value };
+        let of =
+            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
+        for (index, value) in formulas.evaluate(of).enumerate() {
+            rates[index] = if value.abs() < STILL { 0.0 } else { value };
         }
-        rates[count..].fill(0.0);
+        rates[place.len()..].fill(0.0);
     }
 }

@@ -63,6 +63,29 @@ impl Label {
         label
     }
 
+    /// The label of a unit behind "in": `m^3/s` has its 3 raised.
+    pub(super) fn unit(unit: &str) -> Self {
+        let mut label = Self::default();
+        let mut parts = unit.split('^');
+        label.upright(parts.next().unwrap_or_default());
+        for part in parts {
+            let digits = part.trim_start_matches('-').trim_start_matches(|c: char| c.is_ascii_digit());
+            let (exponent, rest) = part.split_at(part.len() - digits.len());
+            if exponent.trim_start_matches('-').is_empty() {
+                label.upright(&format!("^{part}"));
+            } else {
+                label.push(&exponent.replace('-', "−"), false, Height::Above);
+                label.upright(rest);
+            }
+        }
+        label
+    }
+
+    /// The label with its unit behind it.
+    pub(super) fn in_unit(self, unit: &str) -> Self {
+        self.then(Self::text(" in ")).then(Self::unit(unit))
+    }
+
     /// The label with another one behind it.
     pub(super) fn then(mut self, other: Self) -> Self {
         for run in other.runs {
@@ -169,6 +192,9 @@ impl Label {
     }
 
     fn push(&mut self, text: &str, italic: bool, height: Height) {
+        if text.is_empty() {
+            return;
+        }
         match self.runs.last_mut() {
             Some(last) if last.italic == italic && last.height == height => last.text.push_str(text),
             _ => self.runs.push(Run { text: text.to_owned(), italic, height }),
@@ -191,4 +217,25 @@ fn hatted(letter: &str) -> String {
     const HATTED: &str = "âĉêĝĥîĵôŝûŵŷẑÂĈÊĜĤÎĴÔŜÛŴŶẐ";
     let found = PLAIN.chars().zip(HATTED.chars()).find(|(plain, _)| letter.starts_with(*plain));
     found.map_or_else(|| format!("{letter}\u{302}"), |(_, hatted)| hatted.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Height, Label};
+
+    #[test]
+    fn exponents_of_units_are_raised() {
+        let runs = |unit: &str| {
+            let height = |height| if height == Height::Above { "^" } else { "_" };
+            let label = Label::unit(unit);
+            label.runs.iter().flat_map(|run| [height(run.height), run.text.as_str()]).collect::<String>()
+        };
+        assert_eq!(runs("m^3/s"), "_m^3_/s");
+        assert_eq!(runs("N m s^-1"), "_N m s^−1");
+        assert_eq!(runs("rad/s"), "_rad/s");
+        // What is no exponent stays as it is written.
+        assert_eq!(runs("V^x ^"), "_V^x ^");
+        assert_eq!(runs("m^-"), "_m^-");
+        assert_eq!(runs(""), "");
+    }
 }

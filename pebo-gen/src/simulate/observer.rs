@@ -27,17 +27,16 @@ pub(super) struct Design {
     pub(super) inputs: usize,
     /// The number of coordinates z.
     pub(super) coordinates: usize,
-    /// From y, u to h.
-    pub(super) h: Program,
-    /// From y, u to Lambda by rows, in a generalised cascade.
-    pub(super) lambda: Option<Program>,
-    /// From the extension, y, u to the known part of the regression.
-    pub(super) phi_0: Program,
-    /// From the extension, y, u to the factor of the unknowns, by rows.
-    pub(super) phi_1: Program,
-    /// From the extension and y to what is known under the derivative, and the factor of the unknowns there by
-    /// rows, in an implicit regression.
-    pub(super) primitives: Option<[Program; 2]>,
+    /// The number of equations of the regression.
+    pub(super) equations: usize,
+    /// Whether the cascade is generalised.
+    pub(super) is_generalised: bool,
+    /// From y, u to h, and in a generalised cascade behind it to Lambda by rows.
+    pub(super) cascade: Program,
+    /// From the extension, y, u to the known part of the regression, and behind it to the factor of the unknowns by rows.
+    pub(super) regression: Program,
+    /// From the extension and y to the same under the derivative, in an implicit regression.
+    pub(super) primitive: Option<Program>,
     /// From eta to theta.
     pub(super) theta: Program,
     /// From z, y to the recovered states.
@@ -75,6 +74,8 @@ impl Design {
             Some(_) => [plant.xi.clone(), plant.psi.concat()].concat(),
             None => plant.chi.clone(),
         };
+        let sides = |known: &[Expr], factor: &[Vec<Expr>]| [known, &factor.concat()].concat();
+        let lambda = cascade.lambda.as_ref().map(|rows| rows.concat()).unwrap_or_default();
         let at_sample: [&[Symbol]; 2] = [&y, &plant.u];
         let regressed: [&[Symbol]; 3] = [&extension, &y, &plant.u];
         // The unknowns of the output form are what stands under the derivative at the start, then those of z.
@@ -82,18 +83,14 @@ impl Design {
         let starts: Vec<String> = if settings.output { outputs.collect() } else { Vec::new() };
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
         let design = Self {
-            h: compile(&at_sample, &cascade.h)?,
-            lambda: match &cascade.lambda {
-                Some(lambda) => Some(compile(&at_sample, &lambda.concat())?),
-                None => None,
-            },
-            phi_0: compile(&regressed, &regression.phi_0)?,
-            phi_1: compile(&regressed, &regression.phi_1.concat())?,
-            primitives: match regression.kind {
-                RegressionKind::Implicit => Some([
-                    compile(&[&extension, &y], &regression.primitive_0)?,
-                    compile(&[&extension, &y], &regression.primitive_1.concat())?,
-                ]),
+            equations: regression.phi_0.len(),
+            is_generalised: cascade.lambda.is_some(),
+            cascade: compile(&at_sample, &[cascade.h.as_slice(), &lambda].concat())?,
+            regression: compile(&regressed, &sides(&regression.phi_0, &regression.phi_1))?,
+            primitive: match regression.kind {
+                RegressionKind::Implicit => {
+                    Some(compile(&[&extension, &y], &sides(&regression.primitive_0, &regression.primitive_1))?)
+                }
                 RegressionKind::Dynamic | RegressionKind::Static => None,
             },
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,
@@ -117,7 +114,7 @@ impl Design {
 
     /// The largest number of quantities of one kind.
     pub(super) fn size(&self) -> usize {
-        let regression = self.phi_0.outputs.len().max(self.unknowns);
+        let regression = self.equations.max(self.unknowns);
         let plant = self.outputs.max(self.inputs).max(self.coordinates);
         plant.max(regression).max(self.recovered.len()).max(self.settings.chi_0.len())
     }

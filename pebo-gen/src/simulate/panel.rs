@@ -32,7 +32,7 @@ impl Panel {
         let unit_of = |symbol: &Symbol| plant.units.get(symbol).map(String::as_str);
         let unit = unit::same(curves.iter().map(|curve| unit_of(&curve.0))).map(str::to_owned);
         let labelled = |(symbol, label): (Symbol, Label)| match unit_of(&symbol).filter(|_| unit.is_none()) {
-            Some(unit) => label.then(Label::text(&format!(" in {unit}"))),
+            Some(unit) => label.in_unit(unit),
             None => label,
         };
         let curves = curves.into_iter().map(labelled).collect();

@@ -80,7 +80,7 @@ impl Scenario {
             let score = score.finish();
             let own = judged.estimate.baseline.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
-            Rated { estimate: judged.estimate.clone(), score, expected }
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step }
         };
         Ok(Summary {
             end: machine.table[TIME],
@@ -175,7 +175,7 @@ impl<'a> Machine<'a> {
             machine.measure(0);
         }
         machine.admit(layout.state.clone())?;
-        let (x, y) = (&machine.table[layout.x.clone()], machine.measured.of(&machine.table));
+        let (x, y) = (&machine.table[layout.x.clone()], &machine.measured.values);
         let followers = scenario.followers.iter();
         machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
         machine.estimate(0, true)?;
@@ -196,11 +196,13 @@ impl<'a> Machine<'a> {
         }
         let arrives = self.measure(sample);
         self.admit(self.scenario.layout.state.clone())?;
-        let mut y = self.measured.of(&self.table).to_vec();
-        self.scenario.sensors.leave_out(sample, &mut y);
-        let y = Some(y.as_slice()).filter(|_| arrives);
-        let u = &self.table[self.scenario.layout.u.clone()];
-        self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
+        if !self.followers.is_empty() {
+            let mut y = self.measured.values.clone();
+            self.scenario.sensors.leave_out(sample, &mut y);
+            let y = Some(y.as_slice()).filter(|_| arrives);
+            let u = &self.table[self.scenario.layout.u.clone()];
+            self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
+        }
         self.estimate(sample, arrives)
     }
 
@@ -220,11 +222,14 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Lets the sensors take this sample; whether it arrives.
+    /// Lets the sensors take this sample, which `measured` then has; whether it arrives.
     fn measure(&mut self, sample: u64) -> bool {
         let layout = &self.scenario.layout;
         let (before, after) = self.table.split_at_mut(layout.shown.start);
-        self.sensing.sample(sample, before[TIME], &before[layout.y.clone()], &mut after[..layout.shown.len()])
+        let (outputs, shown) = (&before[layout.y.clone()], &mut after[..layout.shown.len()]);
+        let arrives = self.sensing.sample(sample, before[TIME], outputs, shown);
+        self.measured.of(&self.table);
+        arrives
     }
 
     /// Lets all observers have the sample of now, if it arrives, and the inputs of the interval before.
@@ -237,9 +242,9 @@ impl<'a> Machine<'a> {
         let estimates = self.rivals.of(&self.table);
         self.table[layout.rivals.clone()].copy_from_slice(estimates);
         // The observer's first call gives its inputs and its step no effect.
-        let mut y = self.measured.of(&self.table).to_vec();
+        let y = &mut self.measured.values;
         if self.stepping.observer.has_parts() {
-            self.scenario.sensors.leave_out(sample, &mut y);
+            self.scenario.sensors.leave_out(sample, y);
         }
         let (before, after) = self.table.split_at_mut(layout.hat.start);
         let hat = &mut after[..layout.hat.len()];
@@ -248,7 +253,7 @@ impl<'a> Machine<'a> {
             self.stepping.miss(u, step);
             return Ok(());
         }
-        match self.stepping.arrive(&y, u, step, hat) {
+        match self.stepping.arrive(y, u, step, hat) {
             Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
             _ => Ok(()),
         }

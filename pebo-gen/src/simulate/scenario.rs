@@ -89,6 +89,8 @@ pub(super) struct Judged {
     pub(super) truth: usize,
     /// Of an angle.
     pub(super) period: Option<f64>,
+    /// Of a state that the outputs show only up to multiples of it.
+    pub(super) step: Option<f64>,
 }
 
 impl Scenario {
@@ -180,7 +182,7 @@ impl Resolution<'_> {
             .collect();
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
-        let errors = errors(plant, &periods(plant, derivation, &numbers), &hats);
+        let errors = errors(plant, &Periods::of(plant, derivation, &numbers), &hats);
         let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
 
         let layout = Layout::new(plant, simulation, &design.recovered);
@@ -203,7 +205,8 @@ impl Resolution<'_> {
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
-        let (judged, errors) = judged((plant, &layout.symbols), &periods(plant, derivation, &numbers), &hats, &rivals);
+        let (judged, errors) =
+            judged((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &rivals);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
@@ -311,24 +314,35 @@ fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range
     rivals.iter_mut().filter_map(follower).collect()
 }
 
-/// The periods of angles.
-pub(super) fn periods(
-    plant: &Plant,
-    derivation: &Derivation,
-    numbers: &BTreeMap<Symbol, Expr>,
-) -> BTreeMap<Symbol, Expr> {
-    let modulo = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.modulo);
-    modulo.map(|(state, period)| (*state, plant.arena.substitute(*period, numbers))).collect()
+/// Up to what states are known.
+#[derive(Debug)]
+pub(super) struct Periods {
+    /// Of angles: what differs by it is the same.
+    of_angles: BTreeMap<Symbol, Expr>,
+    /// Of states that are no angles, which the outputs do not tell from one another.
+    steps: BTreeMap<Symbol, Expr>,
+}
+
+impl Periods {
+    pub(super) fn of(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>) -> Self {
+        let each = |pairs: &[(Symbol, Expr)]| {
+            pairs.iter().map(|(state, period)| (*state, plant.arena.substitute(*period, numbers))).collect()
+        };
+        Self {
+            of_angles: each(derivation.left_inverse.result.as_ref().map_or(&[], |inverse| &inverse.modulo)),
+            steps: each(derivation.regression.result.as_ref().map_or(&[], |regression| &regression.steps)),
+        }
+    }
 }
 
 /// Estimate less truth; for an angle, the difference that is least in magnitude.
-fn errors(plant: &Plant, periods: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> Vec<Expr> {
+fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
     use crate::cas::Function::{Atan2, Cos, Sin};
     let arena = &plant.arena;
     let error = |(state, hat): &(String, Expr)| {
         let symbol = arena.symbol(state);
         let difference = arena.sub(*hat, arena.of_symbol(symbol));
-        let Some(&period) = periods.get(&symbol) else { return difference };
+        let Some(&period) = periods.of_angles.get(&symbol) else { return difference };
         let turn = arena.div(arena.turn(), period);
         let angle = arena.mul(turn, difference);
         arena.div(arena.call(Atan2, &[arena.call(Sin, &[angle]), arena.call(Cos, &[angle])]), turn)
@@ -339,7 +353,7 @@ fn errors(plant: &Plant, periods: &BTreeMap<Symbol, Expr>, hats: &Estimates) -> 
 /// Every estimate with its error: those of the observer, then those of each baseline.
 pub(super) fn judged(
     (plant, table): (&Plant, &[Symbol]),
-    periods: &BTreeMap<Symbol, Expr>,
+    periods: &Periods,
     hats: &Estimates,
     rivals: &[Rival],
 ) -> (Vec<Judged>, Vec<Expr>) {
@@ -355,15 +369,15 @@ pub(super) fn judged(
     let (baselines, estimates): (Vec<_>, Estimates) = own.chain(of_rivals).unzip();
     let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
         let symbol = arena.symbol(state);
-        let period = periods.get(&symbol).and_then(|period| program(arena, &[], &[*period], Span::NOWHERE).ok());
+        let number = |periods: &BTreeMap<Symbol, Expr>| {
+            let program = program(arena, &[], &[*periods.get(&symbol)?], Span::NOWHERE).ok()?;
+            Interpreter::new(&program).evaluate(|_| f64::NAN).next()
+        };
         Some(Judged {
             estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
             truth: table.iter().position(|known| *known == symbol)?,
-            period: period.map(|period| {
-                let mut value = [f64::NAN];
-                Interpreter::new(&period).run(&[], &mut value);
-                value[0]
-            }),
+            period: number(&periods.of_angles),
+            step: number(&periods.steps),
         })
     };
     let judged = baselines.into_iter().zip(&estimates).filter_map(judge).collect();

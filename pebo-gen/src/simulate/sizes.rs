@@ -6,6 +6,9 @@ use pebo_runtime::nalgebra::SVector;
 /// The most states, outputs, inputs or unknowns.
 pub(super) const LARGEST: usize = 16;
 
+/// Small plants have no more of anything than one of these.
+pub(super) const SMALL: [usize; 2] = [2, 4];
+
 /// The most unknowns of DREM, to which fewer are padded.
 pub(super) const MOST_MIXED: usize = 6;
 
@@ -22,4 +25,9 @@ pub(super) fn padded<const N: usize>(values: &[f64], other: f64) -> SVector<f64,
     let mut vector = SVector::<f64, N>::repeat(other);
     vector.as_mut_slice()[..values.len()].copy_from_slice(values);
     vector
+}
+
+/// The vector in another size: with zeros behind it, or without what is behind.
+pub(super) fn resized<const N: usize, const M: usize>(vector: &SVector<f64, N>) -> SVector<f64, M> {
+    pad(&vector.as_slice()[..N.min(M)])
 }

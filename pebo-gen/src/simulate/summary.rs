@@ -51,6 +51,8 @@ pub struct Rated {
     pub score: Score,
     /// The standard error that the observer expects, from when the errors are told on; none where it does not know.
     pub expected: Option<f64>,
+    /// What the outputs show the state up to multiples of, where it is not declared an angle; none where they show it.
+    pub step: Option<f64>,
 }
 
 /// Whose estimate, and of what.
@@ -93,7 +95,7 @@ impl Summary {
         let headings =
             ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then", "expected"];
         let mut rows = vec![headings.map(str::to_owned)];
-        for Rated { estimate, score, expected } in &self.estimates {
+        for Rated { estimate, score, expected, .. } in &self.estimates {
             let settled = match score.settled {
                 Some(t) => format!("{} s", short(t)),
                 None => "no".to_owned(),

@@ -33,17 +33,17 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
 
     fn step(&self, sides: [&Sides<f64, N, N>; 2], dt: f64) -> Taken<N> {
         match self {
-            Self::Filtered(filtered) => Taken::Filtered(Box::new(filtered.step(sides, dt))),
+            Self::Filtered(filtered) => Taken::Filtered(filtered.step(sides, dt)),
             Self::Windowed(window) => Taken::Windowed(Box::new(window.step(sides, dt))),
-            Self::Sampled(sampled) => Taken::Sampled(Box::new(sampled.step(sides, dt))),
+            Self::Sampled(sampled) => Taken::Sampled(sampled.step(sides, dt)),
         }
     }
 
     fn take(&mut self, step: Taken<N>) {
         match (self, step) {
-            (Self::Filtered(filtered), Taken::Filtered(step)) => filtered.take(*step),
+            (Self::Filtered(filtered), Taken::Filtered(step)) => filtered.take(step),
             (Self::Windowed(window), Taken::Windowed(step)) => window.take(*step),
-            (Self::Sampled(sampled), Taken::Sampled(step)) => sampled.take(*step),
+            (Self::Sampled(sampled), Taken::Sampled(step)) => sampled.take(step),
             _ => unreachable!("a step is taken by what worked it out"),
         }
     }
@@ -97,34 +97,34 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
     }
 }
 
-/// A step of each kind.
+/// A step of each kind; that of a window, the largest by far, behind a pointer.
 #[derive(Clone, Debug)]
 pub(super) enum Taken<const N: usize> {
-    Filtered(Box<FilteredRegression<f64, N, N>>),
+    Filtered(FilteredRegression<f64, N, N>),
     Windowed(Box<Moved<N>>),
-    Sampled(Box<SampledRegression<f64, N, N>>),
+    Sampled(SampledRegression<f64, N, N>),
 }
 
 impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
     fn regressand(&self) -> SVector<f64, N> {
         match self {
-            Self::Filtered(step) => Outcome::regressand(&**step),
+            Self::Filtered(step) => Outcome::regressand(step),
             Self::Windowed(step) => step.regressand(),
-            Self::Sampled(step) => Outcome::regressand(&**step),
+            Self::Sampled(step) => Outcome::regressand(step),
         }
     }
 
     fn regressor(&self) -> SMatrix<f64, N, N> {
         match self {
-            Self::Filtered(step) => Outcome::regressor(&**step),
+            Self::Filtered(step) => Outcome::regressor(step),
             Self::Windowed(step) => step.regressor(),
-            Self::Sampled(step) => Outcome::regressor(&**step),
+            Self::Sampled(step) => Outcome::regressor(step),
         }
     }
 
     fn blemish(&self) -> f64 {
         match self {
-            Self::Filtered(step) => Outcome::blemish(&**step),
+            Self::Filtered(step) => Outcome::blemish(step),
             Self::Windowed(step) => step.blemish(),
             Self::Sampled(step) => step.blemish(),
         }
@@ -142,7 +142,7 @@ impl<const N: usize> Rows<f64, N> for Taken<N> {
 
     fn without(self, left_out: &[bool; N]) -> Self {
         match self {
-            Self::Sampled(step) => Self::Sampled(Box::new(step.without(left_out))),
+            Self::Sampled(step) => Self::Sampled(step.without(left_out)),
             other => other,
         }
     }

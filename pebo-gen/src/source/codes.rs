@@ -124,7 +124,7 @@ codes! {
          covariance, forgetting, process_noise for least-squares; gain, regressor_gain, forgetting for drem, and clip, period \
          besides for finite-time-drem; gain, regressor_gain for gradient-drem; gain, covariance, forgetting for \
          least-squares-drem. All have bounds, and rebase where the regression is affine in z. The regression goes through a filter \
-         or through a window, not both. What is known of sensors, start and disturbance stands in place of all these: \
+         or through a window, not both, and hold is how these join samples. bounds are those of an estimator that is chosen. What is known of sensors, start and disturbance stands in place of all these: \
          gains are derived of it, and beside it only covariance in place of start, and process_noise in place of \
          disturbance, may be written. form: output needs a regression of rates that is affine in z."
     EmptyList "empty-list" "a list must not be empty"

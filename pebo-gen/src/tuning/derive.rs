@@ -39,6 +39,10 @@ pub(super) fn derive(
 ) -> Option<Tuned> {
     let can_rebase = derivation.can_rebase(plant);
     let kind = kind(model, plant, derivation, problems)?;
+    if let Some(hold) = model.observer.hold.as_ref().filter(|_| kind != Kind::Filtered) {
+        problems.push(idle_hold(plant, hold.span));
+        return None;
+    }
     let states = derivation.left_inverse.result.as_ref()?.x.len();
     let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
     let frame = Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)?;
@@ -117,7 +121,7 @@ pub(super) fn derive(
         operator,
         output: kind == Kind::Output,
         expected: if kind == Kind::Output { expected(plant, derivation) } else { None },
-        straight: frame.straight || kind != Kind::Filtered,
+        straight: frame.straight,
         estimator: Estimator::LeastSquares(Covariance {
             start,
             forgetting: Rational::from(0),
@@ -185,6 +189,12 @@ fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Di
     };
     problems.push(problem);
     None
+}
+
+fn idle_hold(plant: &Plant, hold: Span) -> Diagnostic {
+    let message = format!("the observer of `{}` takes each sample by itself: there is no hold between two", plant.name);
+    Diagnostic::error(Code::SettingConflict, hold, message)
+        .help("remove `hold`, or choose a `filter` or `window` and the numbers of an estimator")
 }
 
 fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagnostic {

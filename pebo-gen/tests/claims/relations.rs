@@ -82,6 +82,35 @@ pub(super) const RELATIONS: &[Row] = &[
          phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}\nregression: static",
         Accepted("static over-parameterised excitation"),
     ),
+    // The form that is asked for, whatever the outputs' rates would give.
+    (
+        "a circle beside rates",
+        "x: [q]\ny: [c, d]\nu: [u, v, r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
+         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "a circle in place of rates",
+        "x: [q]\ny: [c, d]\nu: [u, v, r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
+         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}\nregression: static",
+        Accepted("static over-parameterised excitation"),
+    ),
+    (
+        "a circle under the derivative in place of rates",
+        "x: [q]\ny: [c, d]\nu: [u, v, r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\
+         phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}\nregression: differentiated",
+        Accepted("implicit linear excitation"),
+    ),
+    (
+        "rates that no relation can stand for",
+        "x: [v]\ny: [q]\nf_x: {v: -q}\nf_y: {q: v}\nphi: [v]\nregression: static",
+        Undecided(Code::RegressionUndecided),
+    ),
+    (
+        "rates of which no derivative of a relation is to be had",
+        "x: [v]\ny: [q]\nf_x: {v: -q}\nf_y: {q: v}\nphi: [v]\nregression: differentiated",
+        Undecided(Code::RegressionUndecided),
+    ),
     (
         "a square whose coefficient moves has no such derivative",
         "x: [a]\ny: [s, k]\nu: [u]\nf_x: {a: u}\nphi: [a]\nregression: differentiated\nidentities: [s - k*a^2]",

@@ -100,7 +100,11 @@ fn many_runs_are_told_by_their_quantiles() {
         assert_eq!((alone.rms.median, alone.rms.ninety), (score.map(|rated| rated.score.rms), alone.rms.median));
     }
     assert_eq!(few_ensemble, runs(7).ensemble.as_ref().expect("asked for"));
-    assert!(few.figure.as_ref().is_some_and(|svg| svg.contains("fill-opacity") && svg.contains("(7 runs)")));
+    assert!(
+        few.figure
+            .as_ref()
+            .is_some_and(|svg| svg.contains("fill-opacity") && svg.contains("(median and 10 to 90 % of 7 runs)"))
+    );
     assert!(few.trace.is_none());
     let json = serde_json::to_value(few_ensemble).expect("it serialises");
     assert!(json["estimates"][0]["settled"]["median"].is_number(), "{json}");

@@ -35,9 +35,9 @@ pub(in crate::analysis) fn differentiated(
     left_inverse: Option<&LeftInverse>,
     given: &Claim<Regression>,
 ) -> Option<Claim<Regression>> {
-    let asked = plant.relation_form == Some(RelationForm::Differentiated);
-    let longer = |g: &Regression| g.kind == RegressionKind::Static && (asked || g.eta.len() > plant.theta.len());
-    if !proved(given).is_none_or(longer) {
+    let asked = plant.asks_for(RelationForm::Differentiated);
+    let longer = |g: &Regression| g.kind == RegressionKind::Static && g.eta.len() > plant.theta.len();
+    if !asked && !proved(given).is_none_or(longer) {
         return None;
     }
     let relations = if !plant.identities.is_empty() {
@@ -56,20 +56,30 @@ pub(in crate::analysis) fn differentiated(
         .filter(|claim| proved(claim).is_some_and(|regression| regression.is_linear(plant)))
 }
 
-/// Says that the form that was asked for does not exist.
-pub(in crate::analysis) fn not_differentiable(plant: &Plant) -> Diagnostic {
-    let span = plant.identities.first().map(|identity| identity.span).or_else(|| plant.phi.first().map(|phi| phi.span));
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span.unwrap_or(Span::point(0)),
-        "no identifiable regression was found by differentiating a relation among the components of phi",
-    )
-    .label("`regression: differentiated` asks for one")
-    .note(
-        "it needs a relation of degree two in the components of phi, with constant coefficients at their products, whose \
-         derivative is affine in them",
-    )
-    .help("leave out `regression`, or write `regression: static`")
+/// Says that no regression has the form that was asked for.
+pub(in crate::analysis) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
+    let (how, needs, other) = match form {
+        RelationForm::Static => (
+            "from a relation among the components of phi as it holds at every instant",
+            "it needs an output that is given by its value (`g_y`), an identity, or components of phi that outputs and \
+             parameters relate",
+            "differentiated",
+        ),
+        RelationForm::Differentiated => (
+            "by differentiating a relation among the components of phi",
+            "it needs a relation of degree two in the components of phi, with constant coefficients at their products, \
+             whose derivative is affine in them",
+            "static",
+        ),
+    };
+    let message = format!("no identifiable regression was found {how}");
+    let diagnostic = Diagnostic::error(Code::RegressionUndecided, span, message)
+        .label(format!("`regression: {}` asks for one", form.name()))
+        .note(needs);
+    let about = plant.identities.first().map(|identity| (identity.span, "the identity"));
+    let about = about.or_else(|| Some((plant.phi.first()?.span, "phi")));
+    let diagnostic = about.into_iter().fold(diagnostic, |diagnostic, (span, what)| diagnostic.also(span, what));
+    diagnostic.help(format!("leave out `regression`, or write `regression: {other}`"))
 }
 
 fn proved(claim: &Claim<Regression>) -> Option<&Regression> {

@@ -34,9 +34,10 @@ pub(super) fn over_parameterised(
         let recovered = separation::recover(plant, domain, &separated.eta)?;
         (separated, recovered)
     };
-    if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
-        return Some(refusal);
-    }
+    let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
+        Ok(steps) => steps,
+        Err(verdict) => return Some(Claim { verdict, result: None }),
+    };
     // With sides of a primitive first, these are the first half of the rows.
     let short = |row: &Vec<Expr>| row.iter().map(|e| shortest(&plant.arena, domain, *e)).collect::<Vec<Expr>>();
     let (mut phi_0, mut phi_1) = (short(&separated.known), separated.factors.iter().map(short).collect::<Vec<_>>());
@@ -50,6 +51,7 @@ pub(super) fn over_parameterised(
         primitive_0,
         primitive_1,
         eta_symbols: plant.eta(separated.eta.len()),
+        steps,
         alternative: None,
         eta: separated.eta,
         theta: recovered.theta,
@@ -77,18 +79,22 @@ pub(super) fn under_derivative(
     over_parameterised(plant, domain, left_inverse, (outputs.to_vec(), outputs.len()), separated, found)
 }
 
-/// The refusal, where theta is determined only up to multiples of a step and a state is lost by that: one that does not move
-/// by a constant, or an angle that moves by a part of its period. A state that moves by a constant, which the outputs do not
-/// tell from an angle, is a warning.
-pub(super) fn turned_away(
+/// The states that move by a constant where theta moves by a step up to multiples of which it is determined: the outputs do
+/// not tell them from angles, which is a warning.
+///
+/// # Errors
+/// The verdict on a regression by which a state is lost: one that does not move by a constant, or an angle that moves by a part of its
+/// period.
+pub(super) fn steps(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,
     eta: &[Expr],
     recovered: &Recovered,
     found: &mut Vec<Diagnostic>,
-) -> Option<Claim<Regression>> {
+) -> Result<Vec<(Symbol, Expr)>, Verdict> {
     let arena = &plant.arena;
+    let mut steps = Vec::new();
     for &(index, step) in &recovered.turning {
         let turned = |expr: Expr, symbol: Symbol, step: Expr| {
             let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), step))]);
@@ -111,14 +117,15 @@ pub(super) fn turned_away(
             if blind && !bounded && constant && plant.period(state).is_none() {
                 // The state may well be an angle: nothing that the outputs tell distinguishes it from one.
                 found.push(up_to_steps(plant, index, (state, shift)));
+                steps.push((state, shift));
                 continue;
             }
             found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
             let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
-            return Some(Claim { verdict, result: None });
+            return Err(verdict);
         }
     }
-    None
+    Ok(steps)
 }
 
 /// What a step of an unknown does to a state.

@@ -100,6 +100,7 @@ pub(super) fn linear(
         eta: theta.clone(),
         theta: plant.eta(theta.len()).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(theta.len()),
+        steps: Vec::new(),
         alternative: None,
     }
 }

@@ -13,7 +13,7 @@ use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Span};
 
-use super::functions::turned_away;
+use super::functions::steps;
 use super::refusal::undecided;
 
 /// A static regression `Phi_0 = Phi_1 eta` from the identities.
@@ -144,6 +144,7 @@ fn under_lambda(
         theta: eta_symbols.iter().map(|s| arena.of_symbol(*s)).collect(),
         eta: theta,
         eta_symbols,
+        steps: Vec::new(),
         alternative: None,
     };
     Claim { verdict: Verdict::Proved, result: Some(result) }
@@ -162,9 +163,10 @@ fn standing_still(
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
             if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
-                if let Some(refusal) = turned_away(plant, domain, left_inverse, &separated.eta, &recovered, found) {
-                    return refusal;
-                }
+                let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
+                    Ok(steps) => steps,
+                    Err(verdict) => return Claim { verdict, result: None },
+                };
                 // identity = known + factors eta = 0, so known = -factors eta
                 let negated = |row: &Vec<Expr>| row.iter().map(|e| shortest(arena, domain, arena.neg(*e))).collect();
                 let result = Regression {
@@ -175,6 +177,7 @@ fn standing_still(
                     primitive_0: Vec::new(),
                     primitive_1: Vec::new(),
                     eta_symbols: plant.eta(separated.eta.len()),
+                    steps,
                     alternative: None,
                     eta: separated.eta,
                     theta: recovered.theta,

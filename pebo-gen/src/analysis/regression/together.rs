@@ -219,6 +219,7 @@ pub(super) fn joined(
         primitive_1: held.into_iter().map(of_theta).collect(),
         theta: plant.eta(unknowns).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(unknowns),
+        steps: Vec::new(),
         alternative: None,
         eta: theta,
     };

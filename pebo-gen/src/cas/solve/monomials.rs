@@ -28,7 +28,7 @@ struct Product {
 impl Product {
     fn of(arena: &Arena, Equation { formula, value }: Equation) -> Option<Self> {
         match arena.node(formula) {
-            Node::Product(product) => Some(Self { factors: product.factors.to_vec(), value }),
+            Node::Product(product) => Some(Self { factors: product.factors.clone(), value }),
             Node::Symbol(_) | Node::Call(..) => Some(Self { factors: vec![(formula, Rational::ONE)], value }),
             _ => None,
         }

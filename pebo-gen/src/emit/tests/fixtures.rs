@@ -167,6 +167,7 @@ impl Sketch {
                 eta: formulas(self.eta),
                 theta: eta[..count].iter().map(|&eta| arena.of_symbol(eta)).collect(),
                 eta_symbols: eta,
+                steps: Vec::new(),
                 alternative: None,
             }),
             identifiability: proved(Identifiability {

@@ -140,6 +140,8 @@ fn help_names_the_nearest() {
     assert_eq!(help("phi:", "observer: {estimator: lest-squares}\nphi:"), "did you mean `least-squares`?");
     assert_eq!(help("f_y: {v2", "f_y: {v22"), "did you mean `v2`?");
     assert_eq!(help("x: [i1", "x: [λ"), "spell it out: `lambda`");
+    let course = "write it under `simulation`: of a signal in `signals`, of a parameter or a constant state in `plant`";
+    assert_eq!(help("phi:", "simulation: {initial: {i1: {0: 0, 0.1: 1}}}\nphi:"), course);
     assert_eq!(help("[i1, i3]\ny", "i1\ny"), "write for example `x: [i1, i3]`");
     let unknown = super::super::unknown_name("v_2", crate::source::Span::default(), ["v2", "d"]);
     assert_eq!(unknown.help.as_deref(), Some("did you mean `v2`?"));

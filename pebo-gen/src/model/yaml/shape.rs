@@ -205,12 +205,22 @@ impl Fitter<'_> {
             Content::Broken => return stand_in,
         };
         let message = format!("expected {}, found {found}", describe(shape));
-        self.diagnostics.push(
-            Diagnostic::error(Code::WrongShape, node.span, message)
-                .help(format!("write for example `{}`", self.example)),
-        );
+        let diagnostic = Diagnostic::error(Code::WrongShape, node.span, message);
+        self.diagnostics.push(if stand_in.is_some() && is_course(node) {
+            diagnostic.note("a map from start times to formulas would be a value that changes over time").help(
+                "write it under `simulation`: of a signal in `signals`, of a parameter or a constant state in `plant`",
+            )
+        } else {
+            diagnostic.help(format!("write for example `{}`", self.example))
+        });
         stand_in
     }
+}
+
+/// Whether the keys are numbers, as start times are.
+fn is_course(node: &Node) -> bool {
+    let Content::Map(entries) = &node.content else { return false };
+    !entries.is_empty() && entries.iter().all(|(key, _)| key.text.parse::<f64>().is_ok())
 }
 
 fn describe(shape: &Shape) -> String {

@@ -68,7 +68,7 @@ impl Sheet<'_> {
             let plot = Plot { panel, curves, bands, time: &time, factor, left: LEFT, top: top + HEADING };
             top = plot.draw(&mut drawing);
         }
-        plot::time_axis(&mut drawing, &time, top, &name.clone().then(Label::text(&format!(" in {unit}"))));
+        plot::time_axis(&mut drawing, &time, top, name, unit);
         drawing.finish((page, top + BOTTOM), title)
     }
 }

@@ -102,14 +102,16 @@ impl Plot<'_> {
 
 /// The title of a panel with unit and power of ten.
 fn heading(panel: &Panel, exponent: i32) -> Label {
-    let title = Label::text(&panel.title);
-    match (exponent, panel.unit.as_deref()) {
-        (0, None) => title,
-        (0, Some(unit)) => title.then(Label::text(&format!(" in {unit}"))),
-        (exponent, unit) => {
-            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
-            title.then(Label::text(" in ")).then(Label::power_of_ten(exponent)).then(Label::text(&unit))
-        }
+    measured(Label::text(&panel.title), exponent, panel.unit.as_deref())
+}
+
+/// What is measured, in a power of ten of a unit.
+fn measured(what: Label, exponent: i32, unit: Option<&str>) -> Label {
+    match (exponent, unit) {
+        (0, None) => what,
+        (0, Some(unit)) => what.in_unit(unit),
+        (exponent, None) => what.then(Label::text(" in ")).then(Label::power_of_ten(exponent)),
+        (exponent, Some(unit)) => measured(what, exponent, None).then(Label::text(" ")).then(Label::unit(unit)),
     }
 }
 
@@ -119,14 +121,11 @@ pub(super) fn longest_heading(panel: &Panel) -> Label {
 }
 
 /// The marks and the name of the time axis under the last panel, whose lower edge is `y`.
-pub(super) fn time_axis(drawing: &mut Drawing, time: &Axis, y: f64, name: &Label) {
+pub(super) fn time_axis(drawing: &mut Drawing, time: &Axis, y: f64, name: &Label, unit: &str) {
     for mark in &time.marks {
         drawing.label((LEFT + mark.place * PLOT_WIDTH, y + 15.0), Anchor::Middle, TEXT, &mark.label);
     }
-    let name = match time.exponent {
-        0 => name.clone(),
-        exponent => name.clone().then(Label::text(" · ")).then(Label::power_of_ten(exponent)),
-    };
+    let name = measured(name.clone(), time.exponent, Some(unit));
     drawing.label((LEFT + PLOT_WIDTH / 2.0, y + 31.0), Anchor::Middle, TEXT, &name);
 }
 

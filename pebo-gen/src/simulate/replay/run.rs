@@ -291,7 +291,7 @@ impl<'a, 'w> Machine<'a, 'w> {
         let rated = |((judged, score), place): ((&Judged, &Scoring), &usize)| {
             let score = score.finish();
             let expected = self.expected.since(score.since, *place);
-            Rated { estimate: judged.estimate.clone(), score, expected }
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step }
         };
         let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
             output: names.y[*output].clone(),

@@ -11,7 +11,7 @@ use crate::program::Program;
 use crate::simulate::advice::{Origin, advise};
 use crate::simulate::asked::Asked;
 use crate::simulate::observer::Design;
-use crate::simulate::scenario::{Judged, judged, periods};
+use crate::simulate::scenario::{Judged, Periods, judged};
 use crate::simulate::trace::Trace;
 use crate::source::{Diagnostic, Diagnostics, Span};
 
@@ -92,7 +92,7 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
     let measured: Vec<usize> =
         (0..hats.len()).filter(|place| layout.of_state(layout.estimated[*place].0).is_some()).collect();
     let compared: Vec<(String, Expr)> = measured.iter().map(|place| hats[*place].clone()).collect();
-    let (judged, errors) = judged((plant, &layout.symbols), &periods(plant, derivation, &numbers), &compared, &[]);
+    let (judged, errors) = judged((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &compared, &[]);
     let states: Vec<Symbol> = measured.iter().map(|place| layout.estimated[*place].0).collect();
     let errors = problems.keep(layout.program(arena, &errors, span))?;
     let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;

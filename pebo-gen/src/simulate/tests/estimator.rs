@@ -10,7 +10,7 @@ use super::{CUK_CASE_2, resolve, run};
 use crate::simulate::Overrides;
 use crate::simulate::estimator::Chosen;
 use crate::simulate::settings::{self, Covariance, Extension};
-use crate::simulate::sizes::{MOST_MIXED, padded};
+use crate::simulate::sizes::{LARGEST, MOST_MIXED, padded};
 use crate::simulate::window::Window;
 use crate::source::Code;
 
@@ -62,9 +62,15 @@ fn data(k: u32) -> (SMatrix<f64, 3, 2>, SVector<f64, 3>) {
     (factor, factor * Vector2::new(1.0, -2.0) + SVector::<f64, 3>::repeat(1e-3 * t.sin()))
 }
 
-/// The estimate of the erased estimator in a padded model, against that of the estimator itself.
-fn same(settings: &settings::Estimator, mut plain: impl Estimator<f64, 3, 2>) {
-    let mut erased = Chosen::<MOST_MIXED>::new(settings).unwrap();
+/// The estimate of the erased estimator, padded to any size, against that of the estimator itself.
+fn same(settings: &settings::Estimator, plain: impl Estimator<f64, 3, 2>) {
+    same_of::<4>(settings, plain.clone());
+    same_of::<MOST_MIXED>(settings, plain.clone());
+    same_of::<LARGEST>(settings, plain);
+}
+
+fn same_of<const N: usize>(settings: &settings::Estimator, mut plain: impl Estimator<f64, 3, 2>) {
+    let mut erased = Chosen::<N>::new(settings).unwrap();
     for k in 0..50 {
         let (factor, known) = data(k);
         erased.advance(&padded_square(&factor), &padded(known.as_slice(), 0.0), 0.1).unwrap();
@@ -81,14 +87,14 @@ fn same(settings: &settings::Estimator, mut plain: impl Estimator<f64, 3, 2>) {
     copy.advance(&padded_square(&factor), &padded(known.as_slice(), 1.0), 0.1).unwrap();
     assert_eq!(erased.estimate(), before);
     erased.shift(&padded(&[1.0, 2.0], 0.0));
-    assert!((erased.estimate() - before - padded::<MOST_MIXED>(&[1.0, 2.0], 0.0)).norm() < 1e-13);
+    assert!((erased.estimate() - before - padded::<N>(&[1.0, 2.0], 0.0)).norm() < 1e-13);
     erased.reset(&padded(&[3.0, 4.0], 0.0));
-    assert!(erased.estimate() == padded::<MOST_MIXED>(&[3.0, 4.0], 0.0) && erased.is_finite());
+    assert!(erased.estimate() == padded::<N>(&[3.0, 4.0], 0.0) && erased.is_finite());
 }
 
-fn padded_square(factor: &SMatrix<f64, 3, 2>) -> SMatrix<f64, MOST_MIXED, MOST_MIXED> {
-    let mut wide = SMatrix::<f64, MOST_MIXED, MOST_MIXED>::zeros();
-    wide.fixed_view_mut::<3, 2>(0, 0).copy_from(factor);
+fn padded_square<const N: usize>(factor: &SMatrix<f64, 3, 2>) -> SMatrix<f64, N, N> {
+    let mut wide = SMatrix::<f64, N, N>::zeros();
+    wide.view_mut((0, 0), (3, 2)).copy_from(factor);
     wide
 }
 

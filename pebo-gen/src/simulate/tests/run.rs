@@ -232,6 +232,25 @@ fn the_error_of_an_angle_is_the_shorter_way_round() {
     assert!(column("q").last().unwrap() > &6.9 && column("q_hat").last().unwrap() < &0.7);
 }
 
+/// What the outputs show only up to a turn may rest a turn away: no gain mends that.
+#[test]
+fn an_estimate_that_rests_a_turn_away_is_told_so() {
+    let rotor = "model: rotor\nx: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: sin(q), b: cos(q)}\nphi: [q]\n\
+                 simulation: {duration: 10, step: 0.01, initial: {q: 7, a: 0, b: 1}, control: {w: 0.5}}\n";
+    let advice = |text: &str| {
+        let scenario = resolve(text, &Overrides::default()).unwrap();
+        let trace = scenario.run().unwrap();
+        scenario.advise(trace.summary()).map(|found| (found.notes.join("\n"), found.help.unwrap_or_default()))
+    };
+    let (note, help) = advice(rotor).expect("it is no angle");
+    assert_eq!(note, "the estimate of `q` is one step of 6.28 off, which the outputs do not show");
+    assert!(help.contains("declare its period under `angles`"), "{help}");
+    assert_eq!(advice(&format!("{rotor}angles: {{q: 2*pi}}\n")), None);
+    assert_eq!(advice(&format!("{rotor}observer: {{extension: [6]}}\n")), None);
+    let (note, _) = advice(&with(rotor, "q: 7", "q: -14")).expect("it is no angle");
+    assert!(note.contains("is 2 steps of 6.28 off"), "{note}");
+}
+
 /// A regression that stands under the derivative as well: what is moved from the extension into the unknown is nothing that
 /// the estimate sees.
 #[test]
