@@ -95,7 +95,8 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
     ("2 - x", &["1 - x", "x"], Positive),
     ("x*(1 - x)", &["1 - x", "x"], Positive),
     ("x*(x - 1)", &["1 - x", "x"], Negative),
-    ("1 - x^2", &["1 - x", "x"], Open),
+    ("1 - x^2", &["1 - x", "x"], Positive),
+    ("1 - 3*x^2", &["1 - x", "x"], Open),
     // Factors, also hidden ones, and squares written out.
     ("x^2 - 2*x*y + y^2", &[], NotNegative),
     ("x^2 - 2*x*y + y^2", &["x - y"], Positive),

@@ -45,6 +45,12 @@ pub trait Real: RealField + Copy {
     fn cosh(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
+    /// Inverse hyperbolic sine.
+    fn asinh(self) -> Self;
+    /// Inverse hyperbolic cosine of a number of at least 1, not negative.
+    fn acosh(self) -> Self;
+    /// Inverse hyperbolic tangent of a number in (-1, 1).
+    fn atanh(self) -> Self;
     /// Exponential.
     fn exp(self) -> Self;
     /// `exp(self) - 1`, accurate near 0.
@@ -128,10 +134,10 @@ macro_rules! real {
 }
 
 real!(
-    f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs;
+    f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh, acosh, atanh, exp, exp_m1, ln, sqrt, abs;
     atan2 = RealField::atan2, sin_cos = ComplexField::sin_cos
 );
 real!(
-    f32: tan, asin, acos, sinh, cosh, tanh, exp_m1, ln, sqrt, abs;
+    f32: tan, asin, acos, sinh, cosh, tanh, asinh, acosh, atanh, exp_m1, ln, sqrt, abs;
     atan2 = single::atan2, sin_cos = single::sin_cos, sin = single::sin, cos = single::cos, atan = single::atan, exp = single::exp
 );

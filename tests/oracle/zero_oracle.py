@@ -46,7 +46,7 @@ def power(base, exponent):
 
 
 
-FUNCTIONS = {name: getattr(mpmath, name) for name in "sin cos tan sinh cosh tanh exp atan atan2".split()} | {
+FUNCTIONS = {name: getattr(mpmath, name) for name in "sin cos tan sinh cosh tanh asinh exp atan atan2".split()} | {
     "abs": abs,
     "min": min,
     "max": max,
@@ -55,6 +55,8 @@ FUNCTIONS = {name: getattr(mpmath, name) for name in "sin cos tan sinh cosh tanh
     "pi": mpmath.pi,
     "sqrt": real(mpmath.sqrt, lambda a: a >= 0),
     "log": real(mpmath.log, lambda a: a > 0),
+    "acosh": real(mpmath.acosh, lambda a: a >= 1),
+    "atanh": real(mpmath.atanh, lambda a: abs(a) < 1),
     "asin": real(mpmath.asin, lambda a: abs(a) <= 1),
     "acos": real(mpmath.acos, lambda a: abs(a) <= 1),
     "atan2": real(mpmath.atan2, lambda a, b: (a, b) != (0, 0)),

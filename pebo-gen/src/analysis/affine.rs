@@ -4,10 +4,10 @@
 //! In: a formula. Out: its coefficients, free of x and proved; or points that show that there are none.
 
 use crate::cas::Expr;
-use crate::cas::combination::{combine, combine_on};
+use crate::cas::combination::combine_on;
 use crate::cas::contrast::{Contrast, contrast};
 use crate::cas::domain::Domain;
-use crate::cas::field::{Field, Obstacle};
+use crate::cas::field::Obstacle;
 use crate::cas::zero::{Answer, decide};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
@@ -18,12 +18,16 @@ pub(super) type Row = Vec<Expr>;
 /// An expression as an affine combination of the transform with coefficients free of x, proved: the known part, then
 /// the factors; none where there is no such combination.
 pub(super) fn of(plant: &Plant, domain: &Domain, expr: Expr) -> Result<Option<Row>, Obstacle> {
+    let mut basis = vec![plant.arena.one()];
+    basis.extend(plant.transform());
+    over(plant, domain, expr, &basis)
+}
+
+/// The same over any basis.
+fn over(plant: &Plant, domain: &Domain, expr: Expr, basis: &[Expr]) -> Result<Option<Row>, Obstacle> {
     let arena = &plant.arena;
-    let phi = plant.transform();
-    let mut basis = vec![arena.one()];
-    basis.extend(&phi);
-    let Some(row) = combine_on(arena, domain, expr, &basis, &plant.hidden())? else { return Ok(None) };
-    match decide(arena, arena.sub(expr, dot(arena, &row, &basis)), domain) {
+    let Some(row) = combine_on(arena, domain, expr, basis, &plant.hidden())? else { return Ok(None) };
+    match decide(arena, arena.sub(expr, dot(arena, &row, basis)), domain) {
         Answer::Zero => Ok(Some(row)),
         Answer::Open(obstacle) => Err(obstacle),
         Answer::NonZero(_) => Err(Obstacle::NoWitness),
@@ -38,17 +42,13 @@ pub(super) fn refuted(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Cont
     contrast(&plant.arena, expr, &basis, &plant.hidden(), domain)
 }
 
-/// The components of the transform that are no combination of 1 and those before them with coefficients free of x.
+/// The components of the transform that are no combination of 1 and those before them with coefficients free of x, on the
+/// domain: where an output is given by value, one may be a function of y and u.
 fn independent(plant: &Plant, domain: &Domain) -> Vec<Expr> {
-    let arena = &plant.arena;
-    let mut basis = vec![arena.one()];
+    let mut basis = vec![plant.arena.one()];
     for component in plant.transform() {
-        let combined = || {
-            let field = Field::over(arena, &domain.facts, &[basis.as_slice(), &[component]].concat())?;
-            combine(&field, component, &basis, &plant.hidden())
-        };
         // One that is undecided stays: what it hides is then not refuted.
-        if !matches!(combined(), Ok(Some(_))) {
+        if !matches!(over(plant, domain, component, &basis), Ok(Some(_))) {
             basis.push(component);
         }
     }
@@ -73,5 +73,17 @@ mod tests {
             assert!(refuted(&plant, &domain, straight).is_none() && of(&plant, &domain, straight).unwrap().is_some());
             assert!(refuted(&plant, &domain, arena.mul(a, b)).is_some(), "{phi}");
         }
+    }
+
+    #[test]
+    fn a_component_that_an_output_gives_hides_no_bend() {
+        let text =
+            "model: m\nx: [a, b]\ny: [y]\nu: [u]\nw: [v]\nf_x: {a: u - b, b: a - v}\ng_y: {y: u - a}\nphi: [a, b]\n";
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let (arena, domain) = (&plant.arena, plant.domain());
+        let [a, b, v] = ["a", "b", "v"].map(|name| arena.of_symbol(arena.symbol(name)));
+        assert!(refuted(&plant, &domain, arena.sub(a, v)).is_some());
+        assert!(refuted(&plant, &domain, arena.mul(a, b)).is_none(), "it is known times b");
+        assert!(refuted(&plant, &domain, arena.mul(b, b)).is_some());
     }
 }

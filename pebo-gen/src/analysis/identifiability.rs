@@ -42,6 +42,7 @@ pub(super) fn prove(
     let formulas = Formulas {
         regressor: regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect(),
         rates: rates.chain(cascade.lambda.iter().flatten().flatten().copied()).collect(),
+        identities: plant.identities.iter().map(|identity| identity.expr).collect(),
     };
     let hidden = plant.hidden();
     let sees_states = depends_on_states(plant, &formulas, cascade);
@@ -53,7 +54,7 @@ pub(super) fn prove(
     let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
         where_analytic(plant, domain, cascade, regression, left_inverse, found)
     };
-    divided::decide(plant, domain, regression, formulas, found, on)
+    divided::decide(plant, domain, regression, &formulas, found, on)
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
 }
 

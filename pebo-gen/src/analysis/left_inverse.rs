@@ -11,15 +11,17 @@ use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
 use crate::cas::frozen::Frozen;
+use crate::cas::rational::Rational;
+use crate::cas::twice::Twice;
 use crate::cas::zero::{self, Answer, decide, refute};
-use crate::cas::{Arena, Expr, Function, Symbol};
+use crate::cas::{self, Arena, Expr, Function, Symbol};
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
-use crate::analysis::design::{Claim, LeftInverse, Origin, Verdict, Witness};
+use crate::analysis::design::{Claim, Comparison, LeftInverse, Origin, Verdict, Witness};
 use crate::cas::rank::null_vectors;
 use crate::cas::solve::{Equation, solve};
-use crate::cas::tidy::{functions, operations, shortest};
+use crate::cas::tidy::{functions, operations, root_differences, shortest};
 
 /// Proves or refutes the left inverse.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Claim<LeftInverse> {
@@ -78,6 +80,11 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     if origin == Origin::Derived && !missing.is_empty() {
         if let Some(direction) = unseen_direction(plant, domain) {
             found.push(degenerate(plant, &direction));
+            verdict = Verdict::Refuted;
+        } else if let Some((state, witness)) = missing.iter().find_map(|s| Some((*s, taken_twice(plant, domain, *s)?)))
+        {
+            found.push(takes_twice(plant, state, &witness));
+            result.witness.get_or_insert(witness);
             verdict = Verdict::Refuted;
         } else {
             found.push(underivable(plant, &missing, None));
@@ -157,6 +164,44 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, 
     refute(arena, tested, &both)
 }
 
+/// A point of the domain beside which another state of the domain has the same transform, where one state alone differs
+/// and one component alone depends on it.
+fn taken_twice(plant: &Plant, domain: &Domain, state: Symbol) -> Option<Witness> {
+    const POINTS: usize = 6;
+    let arena = &plant.arena;
+    let hidden = [state].into();
+    let transform = plant.transform();
+    let mut own = transform.iter().filter(|component| arena.depends_on(**component, &hidden));
+    let (component, None) = (*own.next()?, own.next()) else { return None };
+    let bound = plant.identities.iter().any(|identity| arena.depends_on(identity.expr, &hidden));
+    if bound || plant.period(state).is_some() {
+        return None;
+    }
+    // The domain is where the plant and the transform have values and derivatives.
+    let formulas: Vec<Expr> = transform.iter().copied().chain(plant.rates().into_values()).collect();
+    let asks = arena.asks(&formulas, Want::Slope);
+    let points = domain.points(arena, &formulas).take(POINTS);
+    points.into_iter().find_map(|point| {
+        let Twice { at, between, values } = cas::twice::taken_twice(arena, domain, &asks, component, state, &point)?;
+        let difference = arena.sub(arena.of_symbol(state), arena.number(at.clone()));
+        let ends = [&between[0] - &at, &between[1] - &at].map(|end| end.to_f64());
+        let place = |value: &Rational| vec![(state, arena.number(value.clone()))];
+        let symbols = arena.symbols_of(&[component]);
+        let known: Vec<(Symbol, Expr)> =
+            point.into_iter().filter(|(symbol, _)| *symbol != state && symbols.contains(symbol)).collect();
+        let places = if between[0] == between[1] { 2 } else { 3 };
+        let compared = Comparison {
+            expr: component,
+            read: component,
+            points: [&at, &between[0], &between[1]].into_iter().map(place).take(places).collect(),
+            known: known.clone(),
+            values: values.iter().map(|value| (value.lo(), value.hi())).take(places).collect(),
+        };
+        let bounds = (ends[0].next_down(), ends[1].next_up());
+        Some(Witness { expr: difference, point: known, bounds, compared: Some(compared) })
+    })
+}
+
 /// A direction of x that the transform does not see anywhere, if there is one.
 fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
@@ -202,9 +247,14 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
             let mut candidates: Vec<Expr> = proposed.map(|formula| shortest(arena, domain, formula)).collect();
             candidates.sort_by_cached_key(|formula| operations(arena, *formula));
             candidates.extend(solved.get(&state.symbol).into_iter().flatten());
+            let likeliest = candidates.first().copied();
             // Of several the one that has a value wherever the plant has.
+            // Then the one in which no root is taken from what is near it, and the shortest.
             if candidates.len() > 1 {
-                candidates.sort_by_cached_key(|formula| unshown(plant, domain, *formula).len());
+                candidates.sort_by_cached_key(|formula| {
+                    let cancelling = root_differences(arena, *formula).len();
+                    (unshown(plant, domain, *formula).len(), cancelling, operations(arena, *formula))
+                });
             }
             let right = |formula: &Expr| check(plant, domain, state.symbol, *formula).1.is_zero();
             let found = candidates.iter().copied().find(right);
@@ -215,10 +265,11 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
                 let foreign = functions(arena, &[*formula]).into_iter().filter(|call| {
                     !own.contains(call) && arena.symbols_of(&[*call]).is_disjoint(&plant.z.iter().copied().collect())
                 });
-                (unshown(plant, domain, *formula).len(), foreign.count(), operations(arena, *formula))
+                let cancelling = root_differences(arena, *formula).len();
+                (unshown(plant, domain, *formula).len(), foreign.count(), cancelling, operations(arena, *formula))
             };
             // A candidate that is wrong may still show that the transform is not one-to-one.
-            let formula = forms.min_by_key(merit).or(candidates.first().copied())?;
+            let formula = forms.min_by_key(merit).or(likeliest)?;
             Some((state.symbol, shortest(arena, domain, formula), state.rate.span))
         })
         .collect())
@@ -331,6 +382,23 @@ fn not_injective(plant: &Plant, state: Symbol, formula: Expr, witness: &Witness)
         .label(format!("the states {name} and {other} give the same z"))
         .note(format!("they differ: {}", witness.sentence(arena)))
         .help(format!("state the sign of {name} under `assume`, or choose a phi that is one-to-one in {name}"))
+}
+
+fn takes_twice(plant: &Plant, state: Symbol, witness: &Witness) -> Diagnostic {
+    let arena = &plant.arena;
+    let name = arena.name(state);
+    let mut diagnostic =
+        Diagnostic::error(Code::LeftInverseRefuted, at_phi(plant), format!("phi does not determine {name}"))
+            .label(format!("two values of {name} give the same z"));
+    if let Some(compared) = &witness.compared {
+        let what = format!("`{}`", arena.print(compared.expr));
+        diagnostic = diagnostic.note(compared.sentence(arena, &what));
+        if compared.points.len() > 2 {
+            diagnostic = diagnostic
+                .note("it is continuous between the last two, so somewhere there it has the first value once more");
+        }
+    }
+    diagnostic.help(format!("bound {name} under `assume`, or choose a phi that is one-to-one in {name}"))
 }
 
 fn degenerate(plant: &Plant, direction: &[Expr]) -> Diagnostic {

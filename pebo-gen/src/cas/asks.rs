@@ -150,9 +150,12 @@ mod tests {
 
     #[test]
     fn functions_ask_of_their_arguments() {
-        let cases: [(Function, Shown, Shown); 13] = [
+        let cases: [(Function, Shown, Shown); 16] = [
             (Function::Sin, &[], &[]),
             (Function::Tanh, &[], &[]),
+            (Function::Asinh, &[], &[]),
+            (Function::Acosh, &["a - 1 >= 0"], &["a - 1 > 0"]),
+            (Function::Atanh, &["1 - a^2 > 0"], &["1 - a^2 > 0"]),
             (Function::Tan, &["cos(a) != 0"], &["cos(a) != 0"]),
             (Function::Log, &["a > 0"], &["a > 0"]),
             (Function::Asin, &["1 - a^2 >= 0"], &["1 - a^2 > 0"]),

@@ -34,6 +34,12 @@ pub enum Function {
     Cosh,
     /// Hyperbolic tangent.
     Tanh,
+    /// Inverse hyperbolic sine.
+    Asinh,
+    /// Inverse hyperbolic cosine, not negative.
+    Acosh,
+    /// Inverse hyperbolic tangent.
+    Atanh,
     /// Exponential.
     Exp,
     /// Natural logarithm.
@@ -168,6 +174,33 @@ fn inverse_circle(arena: &Arena, a: Expr) -> Expr {
     recip(arena, arena.sqrt(beyond(arena, a)))
 }
 
+/// Near 1 the standard library's loses the digits that `a - 1` has.
+fn acosh(a: f64) -> f64 {
+    let above = a - 1.0;
+    (above + (above * (a + 1.0)).sqrt()).ln_1p()
+}
+
+/// Near -1 the standard library's loses the digits that `1 + a` has.
+fn atanh(a: f64) -> f64 {
+    let size = a.abs();
+    (0.5 * (2.0 * size / (1.0 - size)).ln_1p()).copysign(a)
+}
+
+/// `sqrt(a^2 + 1)`
+fn hypotenuse(arena: &Arena, a: Expr) -> Expr {
+    arena.sqrt(arena.add(square(arena, a), arena.one()))
+}
+
+/// `sqrt(a^2 - 1)`
+fn leg(arena: &Arena, a: Expr) -> Expr {
+    arena.sqrt(arena.neg(beyond(arena, a)))
+}
+
+/// `a - 1`
+fn above_one(arena: &Arena, a: Expr) -> Expr {
+    arena.sub(a, arena.one())
+}
+
 /// `a^2 + b^2`
 fn radius(arena: &Arena, a: &[Expr]) -> Expr {
     arena.add(square(arena, a[0]), square(arena, a[1]))
@@ -183,7 +216,7 @@ fn within_one(arena: &Arena, a: &[Expr]) -> Asks {
     vec![(beyond(arena, a[0]), Relation::NonNegative)]
 }
 
-/// Of their derivatives: an argument strictly within.
+/// Of their derivatives, and of an inverse hyperbolic tangent: an argument strictly within.
 fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Asks {
     vec![(beyond(arena, a[0]), Relation::Positive)]
 }
@@ -214,7 +247,7 @@ fn shares(arena: &Arena, lead: Expr) -> Vec<Expr> {
     vec![half_of(arena, arena.add(arena.one(), sign)), half_of(arena, arena.sub(arena.one(), sign))]
 }
 
-static TABLE: [Row; 18] = [
+static TABLE: [Row; 21] = [
     Row {
         function: Function::Sin,
         name: "sin",
@@ -361,7 +394,7 @@ static TABLE: [Row; 18] = [
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Cosh, a)],
         in_terms: None,
-        inverse: None,
+        inverse: Some(Function::Asinh),
     },
     Row {
         function: Function::Cosh,
@@ -379,7 +412,7 @@ static TABLE: [Row; 18] = [
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Sinh, a)],
         in_terms: None,
-        inverse: None,
+        inverse: Some(Function::Acosh),
     },
     Row {
         function: Function::Tanh,
@@ -397,7 +430,64 @@ static TABLE: [Row; 18] = [
         smooth: None,
         derivative: |arena, a| vec![arena.sub(arena.one(), square(arena, arena.call(Function::Tanh, a)))],
         in_terms: None,
-        inverse: None,
+        inverse: Some(Function::Atanh),
+    },
+    Row {
+        function: Function::Asinh,
+        name: "asinh",
+        aliases: &["arcsinh"],
+        arity: 1,
+        at_zero: Some(0),
+        rational: None,
+        parity: Some(Parity::Odd),
+        rust: "asinh",
+        latex: r"\operatorname{arsinh}",
+        value: Value::Unary(f64::asinh),
+        enclosure: |a, p| a[0].asinh(p),
+        asks: nothing,
+        smooth: None,
+        derivative: |arena, a| vec![recip(arena, hypotenuse(arena, a[0]))],
+        in_terms: Some(|arena, a| arena.call(Function::Log, &[arena.add(a[0], hypotenuse(arena, a[0]))])),
+        inverse: Some(Function::Sinh),
+    },
+    Row {
+        function: Function::Acosh,
+        name: "acosh",
+        aliases: &["arccosh"],
+        arity: 1,
+        at_zero: None,
+        rational: None,
+        parity: None,
+        rust: "acosh",
+        latex: r"\operatorname{arcosh}",
+        value: Value::Unary(acosh),
+        enclosure: |a, p| a[0].acosh(p),
+        asks: |arena, a| vec![(above_one(arena, a[0]), Relation::NonNegative)],
+        smooth: Some(|arena, a| vec![(above_one(arena, a[0]), Relation::Positive)]),
+        derivative: |arena, a| vec![recip(arena, leg(arena, a[0]))],
+        in_terms: Some(|arena, a| arena.call(Function::Log, &[arena.add(a[0], leg(arena, a[0]))])),
+        inverse: Some(Function::Cosh),
+    },
+    Row {
+        function: Function::Atanh,
+        name: "atanh",
+        aliases: &["arctanh"],
+        arity: 1,
+        at_zero: Some(0),
+        rational: None,
+        parity: Some(Parity::Odd),
+        rust: "atanh",
+        latex: r"\operatorname{artanh}",
+        value: Value::Unary(atanh),
+        enclosure: |a, p| a[0].atanh(p),
+        asks: strictly_within_one,
+        smooth: None,
+        derivative: |arena, a| vec![recip(arena, beyond(arena, a[0]))],
+        in_terms: Some(|arena, a| {
+            let [above, below] = [arena.add(arena.one(), a[0]), arena.sub(arena.one(), a[0])];
+            half_of(arena, arena.call(Function::Log, &[arena.div(above, below)]))
+        }),
+        inverse: Some(Function::Tanh),
     },
     Row {
         function: Function::Exp,

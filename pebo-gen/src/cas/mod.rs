@@ -42,6 +42,7 @@ pub(crate) mod reducible;
 pub(crate) mod residues;
 pub(crate) mod solve;
 pub(crate) mod tidy;
+pub(crate) mod twice;
 pub mod zero;
 
 pub use arena::Arena;

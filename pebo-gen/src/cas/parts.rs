@@ -1,15 +1,19 @@
 //! The parts of a domain on each of which formulas are analytic.
 //!
-//! In: a domain, and formulas with absolute values, signs, least and greatest values. Out: the domain divided by the signs of
-//! what stands under these. What is seen at a point of a part holds almost everywhere in that part, and need not in another:
-//! `q + |q|` is no zero, and vanishes wherever q is negative.
+//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse sines.
+//! Out: the domain divided by the signs of what stands under these. What is seen at a point of a part holds almost
+//! everywhere in that part, and need not in another: `q + |q|` is no zero, and vanishes wherever q is negative.
+//!
+//! An angle that is taken back from its functions, as `asin(sin(q))`, is another straight line on each of infinitely many
+//! intervals. Where the normal form does not know on which, this is an obstacle.
 
 use super::Arena;
 use super::domain::Domain;
 use super::expr::{Expr, Node};
 use super::facts::Relation;
-use super::field::Obstacle;
+use super::field::{Field, Obstacle};
 use super::function::Function;
+use super::rational::Rational;
 
 /// Parts that are looked at one by one.
 const MOST_PARTS: usize = 16;
@@ -52,7 +56,7 @@ impl Domain {
         varies: impl Fn(Expr) -> bool,
     ) -> Result<Vec<Part>, Obstacle> {
         let mut parts = vec![Part { domain: self.clone(), sides: Vec::new() }];
-        for divisor in arena.dividers(exprs).into_iter().filter(|divisor| varies(*divisor)) {
+        for divisor in self.dividers(arena, exprs)?.into_iter().filter(|divisor| varies(*divisor)) {
             let mut finer = Vec::new();
             for part in parts {
                 finer.extend(part.divided(arena, divisor)?);
@@ -62,7 +66,82 @@ impl Domain {
             }
             parts = finer;
         }
+        for part in &parts {
+            part.domain.tell_angles_apart(arena, exprs, &varies)?;
+        }
         Ok(parts)
+    }
+
+    /// The factors of what stands under absolute values, also where these are written as roots of squares.
+    fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+        let mut under = arena.dividers(exprs);
+        let magnitudes: Vec<Expr> =
+            arena.magnitudes(exprs).into_iter().filter(|root| !arena.symbols_of(&[*root]).is_empty()).collect();
+        let field = Field::on(arena, self, &magnitudes)?;
+        for magnitude in &magnitudes {
+            field.fraction(*magnitude)?;
+        }
+        let of_magnitude = |kernel: Expr| match arena.node(kernel) {
+            Node::Call(Function::Abs, argument) => Some(argument[0]),
+            _ => None,
+        };
+        under.extend(field.kernels().into_iter().filter_map(of_magnitude));
+        let field = Field::on(arena, self, &under)?;
+        let mut found = Vec::new();
+        for divider in under {
+            let fraction = field.fraction(divider)?;
+            for part in [fraction.numerator(), fraction.denominator()] {
+                for (factor, _) in part.factored(field.limit())?.factors {
+                    let factor = field.show(&field.of_polynomial(&factor)?);
+                    if !found.contains(&factor) {
+                        found.push(factor);
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// An obstacle where an inverse circular function that stays in the normal form moves as a multiple of its arguments,
+    /// or as another one: what it differs by is then another number on each of many intervals. Equations of the domain are
+    /// left out: one that gives an output as an angle makes that no other function of its arguments.
+    fn tell_angles_apart(&self, arena: &Arena, exprs: &[Expr], varies: &impl Fn(Expr) -> bool) -> Result<(), Obstacle> {
+        let is_angle = |e: &Expr| {
+            let inverse = [Function::Asin, Function::Acos, Function::Atan, Function::Atan2];
+            matches!(arena.node(*e), Node::Call(function, _) if inverse.contains(&function)) && varies(*e)
+        };
+        let angles: Vec<Expr> = arena.postorder(exprs).into_iter().filter(is_angle).collect();
+        let mut known: Vec<(Expr, Vec<Expr>)> = Vec::new();
+        for angle in angles {
+            let field = Field::over(arena, &self.facts, &[angle])?;
+            let normal = field.show(&field.fraction(angle)?);
+            if !arena.postorder(&[normal]).iter().any(is_angle) {
+                continue;
+            }
+            let signals: Vec<_> =
+                arena.symbols_of(&[angle]).into_iter().filter(|symbol| varies(arena.of_symbol(*symbol))).collect();
+            let slopes: Vec<Expr> = signals.iter().map(|signal| arena.derivative(normal, *signal)).collect();
+            let field = Field::over(arena, &self.facts, &slopes)?;
+            let shown = slopes.iter().map(|slope| Ok(field.show(&field.fraction(*slope)?)));
+            let shown = shown.collect::<Result<Vec<Expr>, Obstacle>>()?;
+            if shown.iter().all(|slope| !varies(*slope)) {
+                return Err(Obstacle::Kernel(arena.print(angle)));
+            }
+            for (other, slopes) in &known {
+                let twice = |slope: &Expr| arena.scale(*slope, &Rational::from(2));
+                let alike = |own: &[Expr], other: &[Expr]| {
+                    let minus: Vec<Expr> = other.iter().map(|slope| arena.neg(*slope)).collect();
+                    own == other || own == minus
+                };
+                let (double, others): (Vec<Expr>, Vec<Expr>) =
+                    (shown.iter().map(twice).collect(), slopes.iter().map(twice).collect());
+                if alike(&shown, slopes) || alike(&double, slopes) || alike(&shown, &others) {
+                    return Err(Obstacle::Related(arena.print(*other), arena.print(angle)));
+                }
+            }
+            known.push((angle, shown));
+        }
+        Ok(())
     }
 }
 
@@ -99,6 +178,26 @@ impl Arena {
                     None if function == Function::Abs && !found.contains(&arguments[0]) => found.push(arguments[0]),
                     None => {}
                 }
+            }
+        }
+        found
+    }
+
+    /// What may be the magnitude of something: even roots, and the cosines of inverse sines and cosines.
+    fn magnitudes(&self, exprs: &[Expr]) -> Vec<Expr> {
+        let mut found = Vec::new();
+        for node in self.postorder(exprs) {
+            match self.node(node) {
+                Node::Product(product) => {
+                    let is_even_root = |power: &Rational| power.denominator().trailing_zeros() > 0;
+                    let roots = product.factors.iter().filter(|(_, power)| is_even_root(power));
+                    found.extend(roots.map(|(base, power)| self.power(*base, power)));
+                }
+                Node::Call(Function::Asin | Function::Acos, argument) => {
+                    let square = self.mul(argument[0], argument[0]);
+                    found.push(self.sqrt(self.sub(self.one(), square)));
+                }
+                _ => {}
             }
         }
         found

@@ -5,8 +5,13 @@
 //!
 //! An equation in which the unknown stands in one place is turned inside out. Where none is left, the
 //! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and
-//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`. What is known is
-//! left as it is written ([`super::frozen`]), and only then taken apart, for what needs a relation within it.
+//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`, and products come
+//! apart ([`monomials`]). What is left of one unknown may be quadratic ([`quadratic`]). What is known is left as it is
+//! written ([`super::frozen`]), and only then taken apart, for what needs a relation within it.
+
+mod equation;
+mod monomials;
+mod quadratic;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,20 +19,15 @@ use super::domain::Domain;
 use super::field::{Field, Fraction, Obstacle};
 use super::frozen::Frozen;
 use super::function::Function;
+use super::interval::Precision;
 use super::linear::Echelon;
 use super::poly::Monomial;
 use super::rational::Rational;
 use super::tidy::shorter;
 use super::{Arena, Expr, Node, Symbol};
+use equation::{angle_of, unpower};
 
-/// `formula = value`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Equation {
-    /// What depends on the unknowns.
-    pub formula: Expr,
-    /// What it equals.
-    pub value: Expr,
-}
+pub(crate) use equation::Equation;
 
 /// Candidates for those unknowns that the equations give, the likelier first.
 pub(crate) fn solve(
@@ -37,11 +37,13 @@ pub(crate) fn solve(
     unknowns: &[Symbol],
 ) -> Result<BTreeMap<Symbol, Vec<Expr>>, Obstacle> {
     let mut alone: BTreeMap<Symbol, Expr> = BTreeMap::new();
-    for equation in equations {
-        if let Some(Equation { formula, value }) = turned_out(arena, domain, *equation, unknowns)
-            && let Some(symbol) = arena.as_symbol(formula)
-        {
-            alone.entry(symbol).and_modify(|known| *known = shorter(arena, *known, value)).or_insert(value);
+    let turned_out = |equation: &Equation| turned_out(arena, domain, *equation, unknowns);
+    let mut turned: Vec<Equation> = equations.iter().map(turned_out).collect();
+    let apart: Vec<Equation> = monomials::apart(arena, domain, &turned).iter().map(turned_out).collect();
+    turned.extend(apart);
+    for Equation { formula, value } in &turned {
+        if let Some(symbol) = arena.as_symbol(*formula) {
+            alone.entry(symbol).and_modify(|known| *known = shorter(arena, *known, *value)).or_insert(*value);
         }
     }
     let mut candidates: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
@@ -64,10 +66,88 @@ pub(crate) fn solve(
             add(found);
         }
     }
-    for start in starts {
-        add(eliminated(arena, domain, equations, unknowns, start, Known::Normal)?);
+    for start in &starts {
+        add(eliminated(arena, domain, equations, unknowns, start.clone(), Known::Normal)?);
+    }
+    // Inside out as far as they go: `p/(1 - p) = exp(z)` for `log(p/(1 - p)) = z`.
+    let [given, _] = starts;
+    if unknowns.iter().any(|unknown| !candidates.contains_key(unknown)) {
+        for (symbol, value) in eliminated(arena, domain, &turned, unknowns, given, Known::Normal).unwrap_or_default() {
+            candidates.entry(symbol).or_default().push(value);
+        }
+    }
+    let all = [equations, &turned].concat();
+    for (symbol, values) in by_roots(arena, domain, &all, unknowns, &candidates) {
+        candidates.entry(symbol).or_default().extend(values);
     }
     Ok(candidates)
+}
+
+/// The unknowns that equations in one unknown give by a quadratic equation, and what follows from them.
+fn by_roots(
+    arena: &Arena,
+    domain: &Domain,
+    equations: &[Equation],
+    unknowns: &[Symbol],
+    candidates: &BTreeMap<Symbol, Vec<Expr>>,
+) -> BTreeMap<Symbol, Vec<Expr>> {
+    let mut known: BTreeMap<Symbol, Expr> = candidates.iter().map(|(symbol, values)| (*symbol, values[0])).collect();
+    let mut found: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
+    while known.len() < unknowns.len() {
+        let open: BTreeSet<Symbol> = unknowns.iter().copied().filter(|symbol| !known.contains_key(symbol)).collect();
+        let differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
+        let mut differences = arena.substitute_all(&differences, &known);
+        differences.extend(without_one(arena, &differences, &open));
+        let mut roots = Vec::new();
+        for difference in differences {
+            let unknown: Vec<Symbol> = arena.symbols_of(&[difference]).intersection(&open).copied().collect();
+            let [unknown] = unknown.as_slice() else { continue };
+            for root in quadratic::roots(arena, domain, difference, *unknown).unwrap_or_default() {
+                let Equation { formula, value } = turned_out(arena, domain, root, &[*unknown]);
+                if arena.as_symbol(formula) == Some(*unknown) && fits(arena, domain, equations, *unknown, value) {
+                    roots.push((*unknown, value));
+                }
+            }
+        }
+        let Some((unknown, value)) = roots.first().copied() else { break };
+        known.insert(unknown, value);
+        found.insert(unknown, roots.iter().filter(|root| root.0 == unknown).map(|root| root.1).collect());
+        let rest = eliminated(arena, domain, equations, unknowns, known.clone(), Known::Normal).unwrap_or_default();
+        for (symbol, value) in rest {
+            if known.insert(symbol, value).is_none() {
+                found.insert(symbol, vec![value]);
+            }
+        }
+    }
+    found
+}
+
+/// Of two differences in two unknowns, one of which stands alone in a sum: the other difference without it.
+fn without_one(arena: &Arena, differences: &[Expr], open: &BTreeSet<Symbol>) -> Vec<Expr> {
+    let mut found = Vec::new();
+    for difference in differences {
+        let Node::Sum(sum) = arena.node(*difference) else { continue };
+        let single = |(term, slope): &(Expr, Rational)| Some((arena.as_symbol(*term)?, slope.recip()?));
+        for (unknown, factor) in sum.terms.iter().filter_map(single).filter(|(symbol, _)| open.contains(symbol)) {
+            let value = arena.sub(arena.of_symbol(unknown), arena.scale(*difference, &factor));
+            if !arena.depends_on(value, &BTreeSet::from([unknown])) {
+                let others = differences.iter().filter(|other| *other != difference);
+                let map = BTreeMap::from([(unknown, value)]);
+                found.extend(others.map(|other| arena.substitute(*other, &map)));
+            }
+        }
+    }
+    found
+}
+
+/// Whether a value may be that of the unknown: at points of the domain it is not another.
+fn fits(arena: &Arena, domain: &Domain, equations: &[Equation], unknown: Symbol, value: Expr) -> bool {
+    const POINTS: usize = 3;
+    let meaning = equations.iter().filter_map(|e| Some((arena.as_symbol(e.value)?, e.formula))).collect();
+    let error = arena.sub(arena.substitute(value, &meaning), arena.of_symbol(unknown));
+    let at = |point| arena.enclose_all(&[error], &point, Precision::new(64));
+    let values: Vec<_> = domain.points(arena, &[error]).take(2 * POINTS).filter_map(at).take(POINTS).collect();
+    !values.is_empty() && values.iter().all(|value| value[0].contains_zero())
 }
 
 /// How elimination reads what is free of the unknowns.
@@ -123,33 +203,38 @@ fn eliminated(
     Ok(found)
 }
 
-/// The equation with its formula reduced to one unknown, if that stands in one place of it.
-fn turned_out(arena: &Arena, domain: &Domain, equation: Equation, unknowns: &[Symbol]) -> Option<Equation> {
+/// The equation turned inside out as far as the unknowns stand in one place: where there is one unknown in one place,
+/// to the unknown itself.
+fn turned_out(arena: &Arena, domain: &Domain, mut equation: Equation, unknowns: &[Symbol]) -> Equation {
     let open: BTreeSet<Symbol> = unknowns.iter().copied().collect();
-    let mut equation = equation;
-    loop {
-        let Equation { formula, value } = equation;
-        let alone = |e: &Expr| arena.depends_on(*e, &open);
-        equation = match arena.node(formula) {
-            Node::Symbol(symbol) => return open.contains(&symbol).then_some(equation),
-            Node::Sum(sum) => {
-                let (inner, rest): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(t, _)| alone(t));
-                let [(term, slope)] = inner.as_slice() else { return None };
-                let rest = arena.combine(&sum.constant, rest);
-                Equation { formula: *term, value: arena.scale(arena.sub(value, rest), &slope.recip()?) }
-            }
-            Node::Product(product) => {
-                let (inner, rest): (Vec<_>, Vec<_>) = product.factors.iter().cloned().partition(|(b, _)| alone(b));
-                let [(base, exponent)] = inner.as_slice() else { return None };
-                let rest = arena.multiply(&product.coefficient, rest);
-                unpower(arena, domain, *base, exponent, arena.div(value, rest))?
-            }
-            Node::Call(function, arguments) => {
-                let [inside] = arguments.as_ref() else { return None };
-                Equation { formula: *inside, value: arena.call(function.row().inverse?, &[value]) }
-            }
-            Node::Number(_) | Node::Pi => return None,
-        };
+    while let Some(inner) = turned_once(arena, domain, equation, &open) {
+        equation = inner;
+    }
+    equation
+}
+
+/// Without the outermost operation around the one place where unknowns stand.
+fn turned_once(arena: &Arena, domain: &Domain, equation: Equation, open: &BTreeSet<Symbol>) -> Option<Equation> {
+    let Equation { formula, value } = equation;
+    let alone = |e: &Expr| arena.depends_on(*e, open);
+    match arena.node(formula) {
+        Node::Sum(sum) => {
+            let (inner, rest): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(t, _)| alone(t));
+            let [(term, slope)] = inner.as_slice() else { return None };
+            let rest = arena.combine(&sum.constant, rest);
+            Some(Equation { formula: *term, value: arena.scale(arena.sub(value, rest), &slope.recip()?) })
+        }
+        Node::Product(product) => {
+            let (inner, rest): (Vec<_>, Vec<_>) = product.factors.iter().cloned().partition(|(b, _)| alone(b));
+            let [(base, exponent)] = inner.as_slice() else { return None };
+            let rest = arena.multiply(&product.coefficient, rest);
+            unpower(arena, domain, *base, exponent, arena.div(value, rest))
+        }
+        Node::Call(function, arguments) => {
+            let [inside] = arguments.as_ref() else { return None };
+            Some(Equation { formula: *inside, value: arena.call(function.row().inverse?, &[value]) })
+        }
+        Node::Symbol(_) | Node::Number(_) | Node::Pi => None,
     }
 }
 
@@ -234,43 +319,8 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
         };
         inverted.extend(next);
     }
+    inverted.extend(monomials::apart(arena, domain, known));
     inverted
-}
-
-/// `base = value^(1/exponent)`: the positive root unless the base is known to be negative.
-fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, value: Expr) -> Option<Equation> {
-    if exponent.is_one() {
-        return Some(Equation { formula: base, value });
-    }
-    let inverse = exponent.recip()?;
-    if !exponent.is_integer() {
-        return Some(Equation { formula: base, value: arena.power(value, &inverse) });
-    }
-    let field = Field::over(arena, &domain.facts, &[base]).ok()?;
-    let fraction = field.fraction(base).ok()?;
-    let root = arena.power(value, &inverse);
-    let even = exponent.numerator().trailing_zeros() > 0;
-    let negative = even && field.signs().is_positive(&fraction.opposite()).ok()?;
-    Some(Equation { formula: base, value: if negative { arena.neg(root) } else { root } })
-}
-
-/// The angle with this sine and cosine, a common positive denominator left out.
-fn angle_of(arena: &Arena, domain: &Domain, sin: Expr, cos: Expr) -> Expr {
-    let scaled = || -> Result<Option<[Expr; 2]>, Obstacle> {
-        let field = Field::over(arena, &domain.facts, &[sin, cos])?;
-        let (y, x) = (field.fraction(sin)?, field.fraction(cos)?);
-        let common = y.denominator().lcm(x.denominator(), field.limit())?;
-        let common = field.of_polynomial(&common)?;
-        if !field.signs().is_positive(&common)? {
-            return Ok(None);
-        }
-        if common.is_one() {
-            return Ok(None);
-        }
-        Ok(Some([field.show(&field.mul(&y, &common)?), field.show(&field.mul(&x, &common)?)]))
-    };
-    let arguments = scaled().ok().flatten().unwrap_or([sin, cos]);
-    arena.call(Function::Atan2, &arguments)
 }
 
 /// The value that is known for another function of the same argument.

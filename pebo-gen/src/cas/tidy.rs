@@ -45,7 +45,8 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
     forms.fold(expr, |best, form| {
         let shorter = operations(arena, form) < operations(arena, best) && kept(form) && divides_as(arena, expr, form);
-        if shorter && asks_no_more(arena, domain, expr, form) { form } else { best }
+        let cancels = || !root_differences(arena, form).is_subset(&root_differences(arena, expr));
+        if shorter && !cancels() && asks_no_more(arena, domain, expr, form) { form } else { best }
     })
 }
 
@@ -140,6 +141,27 @@ pub(crate) fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
                 );
             }
             _ => {}
+        }
+    }
+    found
+}
+
+/// The sums in which a square root has another sign than a term beside it: they lose digits where the two are near, as
+/// `(sqrt(4*z + 1) - 1)/2` does for small z and `2*z/(sqrt(4*z + 1) + 1)` does not. Up to their signs.
+pub(crate) fn root_differences(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
+    let is_root = |term: Expr| match arena.node(term) {
+        Node::Product(product) => product.factors.iter().any(|(_, exponent)| !exponent.is_integer()),
+        _ => false,
+    };
+    let mut found = BTreeSet::new();
+    for e in arena.postorder(&[expr]) {
+        let Node::Sum(sum) = arena.node(e) else { continue };
+        let signs = |positive: bool| {
+            let constant = !sum.constant.is_zero() && sum.constant.is_negative() != positive;
+            constant || sum.terms.iter().any(|(_, factor)| factor.is_negative() != positive)
+        };
+        if sum.terms.iter().any(|(term, factor)| is_root(*term) && signs(factor.is_negative())) {
+            found.insert(e.min(arena.neg(e)));
         }
     }
     found

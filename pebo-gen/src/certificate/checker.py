@@ -13,9 +13,14 @@ import sympy as sp
 TOKEN = re.compile(r"(?P<number>(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<power>\^)|(?P<other>\S)|\s+")
 FUNCTIONS = {
     name: getattr(sp, name)
-    for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "sign")
+    for name in (
+        "sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log sqrt sign".split()
+    )
 }
 FUNCTIONS |= {"abs": sp.Abs, "min": sp.Min, "max": sp.Max, "sat": lambda a: sp.Min(sp.Max(a, -1), 1)}
+
+# Of the values at which a rank is looked at.
+DIGITS = 160
 
 NAMES = {}
 ZERO = sp.Integer(0)
@@ -203,6 +208,7 @@ def polynomial(expr):
         return kernel(e)
 
     expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
+    expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
     expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
     return convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))), relations
 
@@ -403,9 +409,10 @@ class Certificate:
             regressor = sp.Matrix.vstack(regressor, self.sides("primitive")[1])
         width = regressor.cols
         shown = self.derived.get("determinant of phi_1' phi_1")
+        # Psi can be inverted at all times, and is left out of what is asked of ranks.
+        at_start = dict(zip(flat(self.psi), sp.eye(len(self.phi)))) if self.psi else {}
         if shown and width <= 3 and "primitive_1" not in self.derived:
-            # Psi can be inverted at all times, and is left out of it.
-            start = regressor.subs(dict(zip(flat(self.psi), sp.eye(len(self.phi)))))
+            start = regressor.subs(at_start)
             self.vanishes("the determinant of phi_1' phi_1", (start.T * start).det() - formula(shown))
         rows, moved = [regressor], regressor
         rates = dict(zip(self.xi, self.Lambda * sp.Matrix(self.xi) + sp.Matrix(self.h)))
@@ -419,16 +426,20 @@ class Certificate:
                     rates.setdefault(last, sp.Symbol(f"{signal}^({order + 1})", real=True))
             moved = moved.applyfunc(lambda entry: plant.along(entry, rates))
             rows.append(moved)
-        stacked = sp.Matrix.vstack(*rows).subs(plant.given)
+        stacked = sp.Matrix.vstack(*rows).subs(plant.given).subs(at_start)
         for _ in range(12):
             points = [self.points.point(stacked.free_symbols) for _ in range(6 if kind == "parts" else 1)]
             if None in points:
                 break
-            values = sp.Matrix.vstack(*(stacked.subs(point).evalf(40) for point in points))
+            values = sp.Matrix.vstack(*(stacked.subs(point).evalf(DIGITS) for point in points))
             if all(value.is_number and value.is_finite for value in values):
-                # Of rows of the length one, the product of singular values is the square root of this.
-                scaled = [row / row.norm() for row in map(values.row, range(values.rows)) if row.norm() != 0]
-                if scaled and (lambda m: abs((m.T * m).det()))(sp.Matrix.vstack(*scaled)) > sp.Float("1e-25"):
+                # Columns and then rows of the length one: an unknown may enter with a factor such as exp(-8750/T).
+                for _ in range(2):
+                    lines = [line / line.norm() for line in map(values.col, range(values.cols)) if line.norm() != 0]
+                    values = sp.Matrix.hstack(*lines).T if len(lines) > 0 else sp.zeros(0, 0)
+                # The square of the product of singular values: rounding leaves less of a rank that is not full.
+                product = values.T * values if values.rows >= values.cols else sp.zeros(1, 1)
+                if values.cols == width and abs(product.det()) > sp.Float(10, DIGITS) ** (-DIGITS // 2):
                     return self.say(f"identifiability: {kind}", "proved")
         return self.say(f"identifiability: {kind}", "FALSE", ": the regressor has no full rank at twelve points")
 

@@ -200,7 +200,7 @@ fn in_all_digits(scalar: Scalar, place: &Place) -> Place {
     let mut part = 0.0;
     let moved = place.iter().map(|(&symbol, &value)| {
         part = (part + TURN) % 1.0;
-        (symbol, if value.abs() == 1.0 { value } else { value * (1.0 + BEYOND * part) })
+        (symbol, if [1.0, -1.0].contains(&value) { value } else { value * (1.0 + BEYOND * part) })
     });
     moved.collect()
 }

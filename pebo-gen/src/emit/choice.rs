@@ -48,7 +48,7 @@ pub(super) fn choose<'a>(
     plant: &Plant,
     derivation: &Derivation,
     (parameters, scalar): (&[Symbol], Scalar),
-    definitions: Definitions<'a>,
+    definitions: &Definitions<'a>,
     is_zero: impl Fn(&Arena, Expr) -> bool,
 ) -> Result<Choice<'a>, Undeclared> {
     let arena = &plant.arena;
@@ -62,7 +62,7 @@ pub(super) fn choose<'a>(
         let Some(other) = other.filter(|_| !cheaper.losing(scalar).is_empty()) else { return Ok(cheaper) };
         Ok(cheaper.or_better(of(definitions, other), scalar))
     };
-    let mut choice = measured(&definitions)?;
+    let mut choice = measured(definitions)?;
     if arena.budget().is_exhausted() {
         return Ok(choice);
     }

@@ -89,7 +89,8 @@ pub fn emit(
     let definitions = Definitions::of(plant, derivation)?;
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
-    let choice = choice::choose(plant, derivation, (&parameters, scalar), definitions, &is_zero).map_err(undeclared)?;
+    let choice =
+        choice::choose(plant, derivation, (&parameters, scalar), &definitions, &is_zero).map_err(undeclared)?;
     let Choice { definitions, staged, accuracy } = choice;
     if arena.budget().is_exhausted() {
         // What could not be enclosed was not measured.

@@ -23,8 +23,17 @@ macro_rules! agree {
 
 #[test]
 fn functions_are_the_standard_ones() {
-    agree!(f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs);
-    agree!(f32: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, exp_m1, ln, sqrt, abs);
+    agree!(f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh, atanh, exp, exp_m1, ln, sqrt, abs);
+    agree!(f32: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh, atanh, exp, exp_m1, ln, sqrt, abs);
+}
+
+#[test]
+fn the_inverse_hyperbolic_cosine_is_the_standard_one() {
+    for point in POINTS.map(|point| 1.0 + point) {
+        // Both subtract 1 from the point, which is exact, and round a few times after.
+        assert!((Real::acosh(point) - point.acosh()).abs() <= 8.0 * f64::EPSILON * point.acosh());
+    }
+    assert!(Real::acosh(0.5_f32).is_nan());
 }
 
 #[test]

@@ -15,7 +15,7 @@ import { range } from "./places.js";
 import { about, choices, keys } from "./schema.js";
 
 const FUNCTIONS =
-  "sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign min max sat pi".split(" ");
+  "sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log sqrt abs sign min max sat pi".split(" ");
 
 /** The keys above a place, outermost first; null stands for an item of a list. */
 function path(state, place) {

@@ -10,10 +10,11 @@ use crate::cas::field::Obstacle;
 use crate::cas::parts::Part;
 use crate::cas::rank::full_rank_together;
 use crate::plant::Plant;
-use crate::source::Diagnostic;
+use crate::source::{Code, Diagnostic};
 
 use super::motion::seen;
 use crate::analysis::design::{Blind, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
+use crate::analysis::left_inverse::at_phi;
 
 /// An answer where all formulas are analytic.
 pub(super) struct Decided {
@@ -43,37 +44,95 @@ pub(super) struct Formulas {
     pub(super) regressor: Vec<Expr>,
     /// All rates.
     pub(super) rates: Vec<Expr>,
+    /// What is zero on the domain: it bends with them.
+    pub(super) identities: Vec<Expr>,
 }
 
-/// Answers on the whole domain; an obstacle where that is open.
+impl Formulas {
+    fn of_regressor(&self) -> Vec<Expr> {
+        [self.regressor.as_slice(), &self.identities].concat()
+    }
+
+    fn all(&self) -> Vec<Expr> {
+        [self.regressor.as_slice(), &self.rates, &self.identities].concat()
+    }
+}
+
+/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is open.
 pub(super) fn decide(
     plant: &Plant,
     domain: &Domain,
     regression: &Regression,
-    formulas: Formulas,
+    formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
     on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
-    let varies = |expr: Expr| {
-        arena.symbols_of(&[expr]).iter().any(|symbol| plant.parameters.iter().all(|known| known.symbol != *symbol))
-    };
+    let mut told = Vec::new();
+    let whole = on_parts(plant, domain, regression, formulas, &mut told, &on)?;
+    let identified =
+        |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
+    if identified(&whole) {
+        let parts = domain.parts(arena, &formulas.all(), |expr| !varies(plant, expr))?;
+        for part in parts.iter().filter(|part| !part.sides.is_empty()) {
+            let claim = on_parts(plant, &part.domain, regression, formulas, &mut Vec::new(), &on)?;
+            if !identified(&claim) {
+                found.push(depends_on_signs(plant, part));
+                return Ok(Claim { verdict: Verdict::Undecided, result: None });
+            }
+        }
+    }
+    found.extend(told);
+    Ok(whole)
+}
+
+/// Whether an expression is not of the parameters alone.
+fn varies(plant: &Plant, expr: Expr) -> bool {
+    let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
+    plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
+}
+
+/// With parameters of other signs there is another answer.
+fn depends_on_signs(plant: &Plant, part: &Part) -> Diagnostic {
+    let sides: Vec<String> =
+        part.sides.iter().map(|(expr, side)| format!("`{} {}`", plant.arena.print(*expr), side.sign())).collect();
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "whether the unknowns can be identified depends on the signs of parameters",
+    )
+    .label(format!("it was not shown for parameters with {}", sides.join(", ")))
+    .help("state the signs of the parameters under `assume`")
+}
+
+/// Answers on a domain by the answers on its parts.
+fn on_parts(
+    plant: &Plant,
+    domain: &Domain,
+    regression: &Regression,
+    formulas: &Formulas,
+    found: &mut Vec<Diagnostic>,
+    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+) -> Result<Claim<Identifiability>, Obstacle> {
+    let arena = &plant.arena;
+    let varies = |expr: Expr| varies(plant, expr);
     let mut told = Vec::new();
     let whole = on(domain, &mut told);
-    let Formulas { regressor, rates } = formulas;
     let instant = |part: &Part| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
     if whole.kind() == Some(Excitation::Instant) {
         let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
-        let everywhere = || {
-            let parts = domain.parts(arena, &regressor, varies)?;
-            Ok::<bool, Obstacle>(parts.len() == 1 || parts.iter().all(instant))
+        let everywhere = match domain.parts(arena, &formulas.of_regressor(), varies) {
+            Ok(parts) => parts.len() == 1 || parts.iter().all(instant),
+            // Where the rank drops is told even so.
+            Err(Obstacle::TooLarge | Obstacle::OutOfBudget | Obstacle::NoPoint) if listed => true,
+            Err(obstacle) => return Err(obstacle),
         };
-        if listed || everywhere()? {
+        if everywhere {
             found.extend(told);
             return Ok(whole.claim);
         }
     }
-    let parts = domain.parts(arena, &[regressor, rates].concat(), varies)?;
+    let parts = domain.parts(arena, &formulas.all(), varies)?;
     if parts.len() == 1 {
         found.extend(told);
         return Ok(whole.claim);

@@ -171,3 +171,35 @@ fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
     let (_, circle) = derive(&model("a^2 + b^2 - 1", "a: -b*v, b: a*v, r: p*(2 + a)", ""));
     assert_eq!(circle.outcome, Outcome::Accepted, "{:?}", codes(&circle));
 }
+
+/// Roots of squares and absolute values in identities bend too, and parameters have both signs unless one is given.
+#[test]
+fn what_vanishes_on_a_part_of_the_domain_is_seen_on_the_other() {
+    let model = |head: &str, rates: &str| format!("{head}\nx: [p]\nu: [v]\nf_x: {{p: v}}\nf_y: {{{rates}}}\nphi: [p]");
+    let judged = |head: &str, rates: &str| {
+        let (_, derivation) = derive(&model(head, rates));
+        let parts = derivation.identifiability.result.as_ref().and_then(|result| result.motion.as_ref());
+        (derivation.outcome, parts.map_or(0, |motion| motion.blind.len()))
+    };
+    let outputs = "y: [q, r]";
+    for factor in ["sqrt(q^2) + q", "(q^2)^(1/2) - q", "exp(abs(q)) - exp(q)", "atan2(q, abs(q)) - pi/4"] {
+        assert_eq!(judged(outputs, &format!("q: v, r: \"({factor})*p\"")), (Outcome::Accepted, 1), "{factor}");
+    }
+    for factor in ["asin(sin(q)) - q", "acos(cos(q)) - q", "atan(tan(q)) - q", "atan2(v, q) - atan(v/q)"] {
+        assert_eq!(judged(outputs, &format!("q: v, r: \"({factor})*p\"")), (Outcome::Undecided, 0), "{factor}");
+    }
+    // An angle of its own.
+    assert_eq!(judged(outputs, "q: v, r: atan(2*tan(q))*p").0, Outcome::Accepted);
+    assert_eq!(judged("y: [q, r]\nassume: [-1 < q < 1]", "q: v, r: (asin(sin(q)) + q)*p").0, Outcome::Accepted);
+    let bent = "y: [q, r, s]\nassume: [q > 0]\nidentities: [q - abs(r)]";
+    assert_eq!(judged(bent, "q: v*q, r: v*r, s: (q - r)*p"), (Outcome::Accepted, 1));
+    for factor in ["sqrt(k^2) - k", "abs(k*q) - k*abs(q)"] {
+        let of_parameter = |sign: &str| {
+            let head = format!("{outputs}\nparameters: {{k: null}}\nassume: [{sign}]");
+            judged(&head, &format!("q: v, r: \"({factor})*p\"")).0
+        };
+        assert_eq!(of_parameter(""), Outcome::Undecided, "{factor}");
+        assert_eq!(of_parameter("k > 0"), Outcome::Rejected, "{factor}");
+        assert_eq!(of_parameter("k < 0"), Outcome::Accepted, "{factor}");
+    }
+}

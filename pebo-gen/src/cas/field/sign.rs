@@ -2,11 +2,13 @@
 //!
 //! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the kernels have
 //! values, or none. The rules are sound and simple: numbers, kernels ([`kernel`]), sums of like signs, facts ([`facts`]),
-//! factors, discriminants ([`discriminant`]), distances from bounds ([`shift`]), and last enclosures over the box that the
-//! facts state. [`Signs`] asks, with the algebra of a field; [`Known`] is what is kept between questions. The field holds
-//! that, and looks into it nowhere: what a root or a logarithm becomes depends on signs, so that it asks too.
+//! factors, differences of exponentials ([`exponential`]), discriminants ([`discriminant`]), distances from bounds
+//! ([`shift`]), and last enclosures over the box that the facts state. [`Signs`] asks, with the algebra of a field;
+//! [`Known`] is what is kept between questions. The field holds that, and looks into it nowhere: what a root or a
+//! logarithm becomes depends on signs, so that it asks too.
 
 mod discriminant;
+mod exponential;
 mod facts;
 mod kernel;
 mod memo;
@@ -133,6 +135,9 @@ impl Signs<'_, '_> {
         if let Some(sign) = self.by_factors(&rest)? {
             return Ok(Some(sign));
         }
+        if let Some(sign) = self.by_exponents(&rest)? {
+            return Ok(Some(sign));
+        }
         if let Some(sign) = self.by_discriminant(&rest)? {
             return Ok(Some(sign));
         }
@@ -178,6 +183,9 @@ impl Signs<'_, '_> {
         let mut sign = self.by_terms(&rest);
         if sign.is_none() {
             sign = self.by_facts(&rest)?;
+        }
+        if sign.is_none() {
+            sign = self.by_exponents(&rest)?;
         }
         if sign.is_none() {
             sign = self.by_discriminant(&rest)?;

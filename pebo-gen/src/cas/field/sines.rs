@@ -14,6 +14,9 @@ use super::Field;
 use super::fraction::Fraction;
 use super::obstacle::Obstacle;
 
+/// Bases with their exponents.
+type Powers = Vec<(Expr, Rational)>;
+
 impl Field<'_> {
     /// The ways to write the fraction without common sines; none where there are none.
     pub fn show_without_sines(&self, fraction: &Fraction) -> Vec<Expr> {
@@ -24,7 +27,7 @@ impl Field<'_> {
     }
 
     /// The rest of the fraction, and the powers of sines that are left below, if any cancelled.
-    fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Vec<(Expr, Rational)>)>, Obstacle> {
+    fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Powers)>, Obstacle> {
         let Fraction { mut num, mut den } = fraction.clone();
         let mut left = Vec::new();
         let mut cancelled = false;

@@ -1,7 +1,7 @@
-//! Exponential, logarithm, and the hyperbolic functions.
+//! Exponential, logarithm, and the hyperbolic functions with their inverses.
 //!
 //! In: an interval and a precision. Out: the image, rounded outward; none of a logarithm where a
-//! number is not positive, nor of an exponential at 2^20 or more.
+//! number is not positive, of an inverse outside its domain, nor of an exponential at 2^20 or more.
 
 use dashu_int::IBig;
 use dashu_int::ops::{SquareRoot, UnsignedAbs};
@@ -41,6 +41,27 @@ impl Interval {
     /// The hyperbolic tangent.
     pub fn tanh(&self, p: Precision) -> Option<Self> {
         self.increasing(|x| odd(x, |x| tanh_at(x, p)))
+    }
+
+    /// The inverse hyperbolic sine.
+    pub fn asinh(&self, p: Precision) -> Option<Self> {
+        self.increasing(|x| odd(x, |x| asinh_at(x, p)))
+    }
+
+    /// The inverse hyperbolic cosine, not negative; none where a number is less than 1.
+    pub fn acosh(&self, p: Precision) -> Option<Self> {
+        if self.lo < Dyadic::ONE {
+            return None;
+        }
+        self.increasing(|x| acosh_at(x, p))
+    }
+
+    /// The inverse hyperbolic tangent; none where a number is not strictly between -1 and 1.
+    pub fn atanh(&self, p: Precision) -> Option<Self> {
+        if self.lo <= -&Dyadic::ONE || self.hi >= Dyadic::ONE {
+            return None;
+        }
+        self.increasing(|x| odd(x, |x| atanh_at(x, p)))
     }
 
     /// Between x - |x| 2^k and x + |x| 2^k.
@@ -125,6 +146,49 @@ fn tanh_at(x: &Dyadic, p: Precision) -> Option<Interval> {
     let d = exp_minus_one_at(&x.shifted(1), more)?;
     let quotient = d.div(&d.add(&Interval::point(Dyadic::power_of_two(1)), more)?, more)?;
     Some(quotient.rounded(p)?.within_unit())
+}
+
+/// log(1 + d) for d > 0, to as many digits of its own as `d` has: it is at least d/2 where d < 1.
+fn log_of_one_more(d: &Interval, p: Precision) -> Option<Interval> {
+    let lost = d.lo.top().map_or(0, |top| 2 - top.min(0));
+    d.add(&Interval::point(Dyadic::ONE), p.more(u32::try_from(lost).ok()?))?.log(p)
+}
+
+/// log(1 + d) with d = x + x^2/(1 + sqrt(1 + x^2)), for x > 0; it is less than x, and x - asinh x less than x^3.
+fn asinh_at(x: &Dyadic, p: Precision) -> Option<Interval> {
+    let top = x.top()?;
+    if 2 * top < -p.bits() - 4 {
+        return Interval::near(x, 2 * top + 2, p);
+    }
+    let more = p.more(8);
+    let (x, one) = (Interval::point(x.clone()), Interval::point(Dyadic::ONE));
+    let square = x.mul(&x, more)?;
+    let root = square.add(&one, more)?.sqrt(more)?;
+    let d = x.add(&square.div(&root.add(&one, more)?, more)?, more)?;
+    log_of_one_more(&d, more)?.rounded(p)
+}
+
+/// log(1 + d) with d = e + sqrt(e (e + 2)) for e = x - 1.
+fn acosh_at(x: &Dyadic, p: Precision) -> Option<Interval> {
+    let more = p.more(8);
+    let e = Interval::point(x.clone()).sub(&Interval::point(Dyadic::ONE), more)?;
+    if e.lo.is_zero() {
+        return (e.hi.is_zero()).then(|| Interval::point(Dyadic::ZERO));
+    }
+    let root = e.mul(&e.add(&Interval::point(Dyadic::power_of_two(1)), more)?, more)?.sqrt(more)?;
+    log_of_one_more(&e.add(&root, more)?, more)?.rounded(p)
+}
+
+/// log(1 + d)/2 with d = 2 x/(1 - x), for 0 < x < 1; atanh x - x is less than x^3 for x < 1/2.
+fn atanh_at(x: &Dyadic, p: Precision) -> Option<Interval> {
+    let top = x.top()?;
+    if 2 * top < -p.bits() - 4 {
+        return Interval::near(x, 2 * top + 2, p);
+    }
+    let more = p.more(8);
+    let below = Interval::point(Dyadic::ONE).sub(&Interval::point(x.clone()), more)?;
+    let d = Interval::point(x.shifted(1)).div(&below, more)?;
+    log_of_one_more(&d, more)?.shifted(-1).rounded(p)
 }
 
 /// log x = k log 2 + 2^(s+1) atanh z, with y the 2^s-th root of x 2^-k and z = (y - 1)/(y + 1).

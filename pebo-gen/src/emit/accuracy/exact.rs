@@ -3,7 +3,7 @@
 //! In: formulas and a place. Out: an enclosure of each value, and how much the value moves when all that it depends on is
 //! rounded; of computed values, their errors in units of what rounding causes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::literal::Scalar;
 use super::BITS;
@@ -21,37 +21,19 @@ pub(super) struct Exact {
 const MOVE: f64 = 1.0 / 1_073_741_824.0;
 
 pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
-    /// Patterns of signs: with the arguments up or down in turn, the effects of some pairs add up.
-    const PATTERNS: usize = 4;
     let symbols: Vec<Symbol> = arena.symbols_of(exprs).into_iter().collect();
-    let at = |pattern: Option<usize>| {
-        let moved = symbols.iter().enumerate().map(|(index, symbol)| {
-            let value = place.get(symbol).copied().unwrap_or(1.0);
-            let up = pattern.is_none_or(|pattern| (index >> pattern.saturating_sub(1)) & usize::from(pattern > 0) == 0);
-            (
-                *symbol,
-                value,
-                if pattern.is_none() {
-                    0.0
-                } else if up {
-                    MOVE
-                } else {
-                    -MOVE
-                },
-            )
-        });
-        let mut exact = BTreeMap::new();
-        for (symbol, value, part) in moved {
+    let at = |moved: Option<Symbol>| {
+        let entry = |symbol: &Symbol| {
             // In full: value (1 + part) has more digits than a number of f64.
-            let value = Rational::from_f64_exact(value)?;
-            let part = Rational::from_f64_exact(part)?;
+            let value = Rational::from_f64_exact(place.get(symbol).copied().unwrap_or(1.0))?;
+            let part = Rational::from_f64_exact(if moved == Some(*symbol) { MOVE } else { 0.0 })?;
             let moved = &value + &(&value * &part);
-            exact.insert(symbol, Interval::from_rational(&moved, Precision::new(BITS))?);
-        }
-        Some(exact)
+            Some((*symbol, Interval::from_rational(&moved, Precision::new(BITS))?))
+        };
+        symbols.iter().map(entry).collect::<Option<BTreeMap<_, _>>>()
     };
-    let all = |pattern| -> Vec<Option<Interval>> {
-        let Some(exact) = at(pattern) else { return vec![None; exprs.len()] };
+    let values = |exprs: &[Expr], moved| -> Vec<Option<Interval>> {
+        let Some(exact) = at(moved) else { return vec![None; exprs.len()] };
         match arena.enclose_over(exprs, &exact, Precision::new(BITS)) {
             Some(values) => values.into_iter().map(Some).collect(),
             None => {
@@ -59,18 +41,20 @@ pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
             }
         }
     };
-    let still = all(None);
-    let moved: Vec<Vec<Option<Interval>>> = (0..PATTERNS).map(|pattern| all(Some(pattern))).collect();
-    let values = still.into_iter().enumerate().map(|(index, value)| {
-        let value = value?;
-        let moves = moved.iter().filter_map(|moved| {
-            let difference = moved[index].as_ref()?.sub(&value, Precision::new(BITS))?;
-            Some(magnitude(&difference))
-        });
-        let condition = moves.fold(0.0, f64::max) / MOVE;
-        Some((value, condition))
-    });
-    Exact { values: values.collect() }
+    let still = values(exprs, None);
+    // One at a time: together the effects of some would cancel, as those of b and c in a*b - c where that is small.
+    let mut conditions = vec![0.0; exprs.len()];
+    for symbol in &symbols {
+        let moved: BTreeSet<Symbol> = [*symbol].into();
+        let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moved)).collect();
+        let there: Vec<Expr> = reached.iter().map(|index| exprs[*index]).collect();
+        for (index, value) in reached.iter().zip(values(&there, Some(*symbol))) {
+            let difference = still[*index].as_ref().and_then(|still| value?.sub(still, Precision::new(BITS)));
+            let size = difference.map_or(0.0, |difference| magnitude(&difference));
+            conditions[*index] += size / MOVE;
+        }
+    }
+    Exact { values: still.into_iter().zip(conditions).map(|(value, condition)| Some((value?, condition))).collect() }
 }
 
 impl Exact {

@@ -23,9 +23,6 @@ const REFUSED: &[(&str, &str)] = &[
     ("cbrt", "write `.powf(1.0 / 3.0)`, and state under `assume` that its base is positive"),
     ("exp_m1", "write `a.exp() - 1.0`"),
     ("ln_1p", "write `(1.0 + a).ln()`"),
-    ("asinh", "write `(a + (a * a + 1.0).sqrt()).ln()`"),
-    ("acosh", "write `(a + (a * a - 1.0).sqrt()).ln()`"),
-    ("atanh", "write `((1.0 + a) / (1.0 - a)).ln() / 2.0`"),
 ];
 
 /// Methods that this module spells out itself.

@@ -254,7 +254,7 @@ impl Field<'_> {
     }
 
     /// The square roots that occur linearly in a polynomial, with their radicands.
-    fn square_roots_in(&self, poly: &Poly) -> Vec<(u32, Poly)> {
+    pub(in crate::cas) fn square_roots_in(&self, poly: &Poly) -> Vec<(u32, Poly)> {
         let kernels = self.round.kernels.borrow();
         let of = |&variable: &u32| {
             let kernel = &kernels[variable];

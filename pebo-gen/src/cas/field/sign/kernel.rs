@@ -77,6 +77,7 @@ impl Signs<'_, '_> {
             Node::Call(function @ (Function::Asin | Function::Acos | Function::Atan | Function::Atan2), arguments) => {
                 self.field.range_of_inverse(function, &arguments).ok()?.sign()
             }
+            Node::Call(Function::Log, arguments) => self.by_logarithm(arguments[0]),
             Node::Call(..) => None,
             _ => self.of_polynomial(&radicand?).ok()?.filter(|sign| *sign == Sign::Positive),
         }

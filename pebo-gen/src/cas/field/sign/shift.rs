@@ -1,19 +1,21 @@
-//! Signs of polynomials by what is above a bound: on p > 3, `p^3 - 27 = t^3 + 9 t^2 + 27 t` with t = p - 3 > 0.
+//! Signs of polynomials by what is above a bound: on p > 3, `p^3 - 27 = t^3 + 9 t^2 + 27 t` with t = p - 3 > 0; and
+//! between two bounds: on 0 < p < 1, `(1 + t)^2 (1 - p^2) = 1 + 2 t` with t = p/(1 - p) > 0.
 //!
 //! In: a polynomial, and facts that are affine in a variable with a number as its factor. Out: the sign that all
-//! terms have after such variables are written as bound plus distance (or, from above, bound minus distance). The
-//! rewriting is exact, so the sign is.
+//! terms have after such variables are written as bound plus distance (or, from above, bound minus distance), or as
+//! `(near + far t)/(1 + t)`. The rewriting is exact, so the sign is.
 
 use std::collections::BTreeMap;
 
 use crate::cas::facts::Relation as Compared;
+use crate::cas::integer::Integer;
 use crate::cas::poly::Poly;
 
 use crate::cas::field::Obstacle;
 use crate::cas::field::sign::{Sign, Signs, sign_of_terms};
 
 /// How many ways of shifting are tried.
-const MOST_TRIES: u32 = 12;
+const MOST_TRIES: u32 = 24;
 
 /// Larger polynomials are left alone: shifting writes their powers out.
 const MOST_TERMS: usize = 24;
@@ -45,17 +47,26 @@ impl Signs<'_, '_> {
             if distances.contains_key(&variable) {
                 continue;
             }
-            for (fact, compared) in facts {
-                // A fact in which a distance stands for its variable would say something else.
-                let foreign = fact.variables().iter().any(|v| distances.contains_key(v));
-                if *compared == Compared::NonZero || foreign || *tries == 0 {
-                    continue;
+            // A fact in which a distance stands for its variable would say something else.
+            let foreign = |fact: &Poly| fact.variables().iter().any(|v| distances.contains_key(v));
+            let bounds = facts.iter().filter(|(fact, compared)| *compared != Compared::NonZero && !foreign(fact));
+            let bounds: Vec<Bound> =
+                bounds.filter_map(|(fact, compared)| Bound::of(fact, *compared, variable)).collect();
+            let above = bounds.iter().map(|near| (near, None));
+            // Where the far bound may be reached, t may be infinite, which is no number.
+            let far = |near: &Bound| {
+                let (near_is_below, is_far) = (near.is_below, |far: &&Bound| far.distance == Sign::Positive);
+                bounds.iter().filter(is_far).find(|far| far.is_below != near_is_below)
+            };
+            let between = bounds.iter().filter_map(|near| Some((near, Some(far(near)?))));
+            for (near, far) in above.chain(between) {
+                if *tries == 0 {
+                    return Ok(found);
                 }
-                let Some(moved) = self.measured(poly, variable, fact)? else { continue };
                 *tries -= 1;
+                let moved = self.measured(poly, variable, near, far)?;
                 let mut distances = distances.clone();
-                let distance = if *compared == Compared::Positive { Sign::Positive } else { Sign::NonNegative };
-                distances.insert(variable, distance);
+                distances.insert(variable, near.distance);
                 let of = |v: u32| distances.get(&v).copied().or_else(|| self.of_kernel(v));
                 let mut sign = sign_of_terms(&moved, of);
                 if sign.is_none() && moved.term_count() <= 4 * MOST_TERMS {
@@ -72,30 +83,53 @@ impl Signs<'_, '_> {
         Ok(found)
     }
 
-    /// The polynomial, times a positive number, with the variable written in `t = fact`, which takes its place; none
-    /// where the fact is not affine in it with a number as factor.
-    fn measured(&self, poly: &Poly, variable: u32, fact: &Poly) -> Result<Option<Poly>, Obstacle> {
-        if fact.degree(variable) != 1 {
-            return Ok(None);
-        }
-        let Some(slope) = fact.leading_coefficient_in(variable).to_constant() else { return Ok(None) };
-        // v = (t - rest)/slope
-        let rest = fact - &Poly::variable(variable).scale(&slope);
-        let mut value = &Poly::variable(variable) - &rest;
-        if slope.is_negative() {
-            value = -&value;
-        }
+    /// The polynomial, times something positive, with the variable written in its distance from the near bound, or in
+    /// the quotient of those from the near and the far one; it takes the variable's place.
+    fn measured(&self, poly: &Poly, variable: u32, near: &Bound, far: Option<&Bound>) -> Result<Poly, Obstacle> {
+        let t = Poly::variable(variable);
+        // The variable is value/scale.
+        let (value, scale) = match far {
+            None if near.is_below => (&near.rest + &t, Poly::constant(near.slope.clone())),
+            None => (&near.rest - &t, Poly::constant(near.slope.clone())),
+            Some(far) => {
+                let (slope, rest) = (&far.rest.scale(&near.slope), near.rest.scale(&far.slope));
+                let both = Poly::constant(&near.slope * &far.slope);
+                (&rest + &slope.mul(&t, self.field.limit())?, &both + &both.mul(&t, self.field.limit())?)
+            }
+        };
         let degree = poly.degree(variable);
         let mut total = Poly::zero();
         for (power, coefficient) in poly.coefficients_in(variable) {
-            let scale = Poly::constant(slope.abs()).pow(degree - power, self.field.limit())?;
             let term = value
                 .pow(power, self.field.limit())?
                 .mul(&coefficient, self.field.limit())?
-                .mul(&scale, self.field.limit())?;
+                .mul(&scale.pow(degree - power, self.field.limit())?, self.field.limit())?;
             total = &total + &term;
         }
-        Ok(Some(total))
+        Ok(total)
+    }
+}
+
+/// A bound `rest/slope` of a variable, with a number for the slope.
+struct Bound {
+    is_below: bool,
+    slope: Integer,
+    rest: Poly,
+    /// Of the variable from the bound.
+    distance: Sign,
+}
+
+impl Bound {
+    /// The bound that a fact sets; none where it is not affine in the variable with a number as factor.
+    fn of(fact: &Poly, compared: Compared, variable: u32) -> Option<Self> {
+        if fact.degree(variable) != 1 {
+            return None;
+        }
+        let slope = fact.leading_coefficient_in(variable).to_constant()?;
+        let is_below = !slope.is_negative();
+        let rest = fact - &Poly::variable(variable).scale(&slope);
+        let distance = if compared == Compared::Positive { Sign::Positive } else { Sign::NonNegative };
+        Some(Self { is_below, slope: slope.abs(), rest: if is_below { -&rest } else { rest }, distance })
     }
 }
 
@@ -120,6 +154,41 @@ mod tests {
     }
 
     const CASES: &[(&str, Case)] = &[
+        (
+            "between two bounds",
+            (
+                |a, [p, ..]| vec![(p, Relation::Positive), (a.sub(a.one(), p), Relation::NonNegative)],
+                |a, [p, ..]| a.sub(a.sub(a.number(2), p), power(a, p, 2)),
+                Some(Sign::NonNegative),
+            ),
+        ),
+        (
+            "between bounds that are not reached",
+            (
+                |a, [p, ..]| vec![(p, Relation::Positive), (a.sub(a.one(), p), Relation::Positive)],
+                |a, [p, ..]| less(a, power(a, p, 2), 1),
+                Some(Sign::Negative),
+            ),
+        ),
+        (
+            "between symbols, of two variables",
+            (
+                |a, [p, q, r]| {
+                    let positive = [p, q, r, a.sub(r, p), a.sub(r, q)];
+                    positive.map(|fact| (fact, Relation::Positive)).to_vec()
+                },
+                |a, [p, q, r]| a.sub(power(a, r, 2), a.mul(p, q)),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "both bounds reached show nothing here",
+            (
+                |a, [p, ..]| vec![(p, Relation::NonNegative), (a.sub(a.one(), p), Relation::NonNegative)],
+                |a, [p, ..]| a.sub(a.add(a.one(), p), a.scale(power(a, p, 2), &Rational::from(3))),
+                None,
+            ),
+        ),
         (
             "a cube above its bound",
             (

@@ -16,13 +16,14 @@ fn exact_values() {
     for function in [Interval::sin, Interval::tan, Interval::asin, Interval::atan] {
         assert!(is(function(&zero, p), 0));
     }
-    for function in [Interval::sinh, Interval::tanh, Interval::sqrt] {
+    for function in [Interval::sinh, Interval::tanh, Interval::asinh, Interval::atanh, Interval::sqrt] {
         assert!(is(function(&zero, p), 0));
     }
     assert!(is(zero.cos(p), 1));
     assert!(is(zero.exp(p), 1));
     assert!(is(one.log(p), 0));
     assert!(is(one.acos(p), 0));
+    assert!(is(one.acosh(p), 0));
     assert!(is(zero.atan2(&one, p), 0));
     assert!(is(number(144).sqrt(p), 12));
     assert!(is(number(-3).powi(5, p), -243));
@@ -51,6 +52,13 @@ fn known_digits() {
         (point(&gap, 140).acos(p), "0.00000134869915234871123674411922313787867091306525"),
         (number(3).sinh(p), "10.0178749274099018989745936194658280601781041"),
         (number(3).cosh(p), "10.0676619957777658419539360351158898368098037"),
+        (number(3).asinh(p), "1.81844645923206682348369896356070899378625394276812161745174"),
+        (number(3).acosh(p), "1.76274717403908605046521864995958461805632065652327082150659"),
+        (point(&ratio(1, 3), 140).atanh(p), "0.346573590279972654708616060729088284037750067180127627060340004"),
+        (
+            point(&ratio(1, 1 << 40), 140).asinh(p),
+            "0.000000000000909494701772928237915038937113935912289332483334816035575045",
+        ),
         (number(7).pow(&ratio(5, 9), p), "2.94780608573672307340623863529620899063899048"),
         (number(7).pow(&ratio(5, 19), p), "1.66876130582960815040539331208170210756261398"),
     ];
@@ -94,6 +102,8 @@ fn undefined_where_the_function_is() {
     assert!(one.hull(&two).tan(p).is_none());
     assert!(one.hull(&number(9)).tan(p).is_none());
     assert!(two.hull(&number(4)).tan(p).is_some());
+    assert!(zero.hull(&two).acosh(p).is_none());
+    assert!(one.atanh(p).is_none() && minus_one.hull(&zero).atanh(p).is_none());
     assert!(zero.atan2(&zero, p).is_none());
     assert!(around_zero.atan2(&minus_one, p).is_none());
     assert!(around_zero.atan2(&around_zero, p).is_none());
@@ -131,7 +141,8 @@ fn magnitudes_are_bounded() {
     assert!(huge.tan(p).is_none());
     assert!(meets(&huge.add(&number(1), p).expect("in range"), &huge));
     let tiny = number(2).powi(-(1 << 39), p).expect("in range");
-    for function in [Interval::sin, Interval::atan, Interval::sinh, Interval::tanh, Interval::asin] {
+    let odd = [Interval::sin, Interval::atan, Interval::sinh, Interval::tanh, Interval::asin];
+    for function in odd.into_iter().chain([Interval::asinh, Interval::atanh]) {
         let image = function(&tiny, p).expect("in the domain");
         assert!(meets(&image, &tiny) && image.is_positive());
     }

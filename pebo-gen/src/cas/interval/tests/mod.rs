@@ -18,7 +18,7 @@ struct Unary {
     domain: (i64, i64),
 }
 
-const FUNCTIONS: [Unary; 15] = [
+const FUNCTIONS: [Unary; 18] = [
     row("sin", Interval::sin, f64::sin, (-1000, 1000)),
     row("cos", Interval::cos, f64::cos, (-1000, 1000)),
     row("tan", Interval::tan, f64::tan, (-1, 1)),
@@ -28,6 +28,9 @@ const FUNCTIONS: [Unary; 15] = [
     row("sinh", Interval::sinh, f64::sinh, (-300, 300)),
     row("cosh", Interval::cosh, f64::cosh, (-300, 300)),
     row("tanh", Interval::tanh, f64::tanh, (-300, 300)),
+    row("asinh", Interval::asinh, f64::asinh, (-1000, 1000)),
+    row("acosh", Interval::acosh, |x| (x - 1.0 + ((x - 1.0) * (x + 1.0)).sqrt()).ln_1p(), (1, 1000)),
+    row("atanh", Interval::atanh, |x| (0.5 * (2.0 * x.abs() / (1.0 - x.abs())).ln_1p()).copysign(x), (-1, 1)),
     row("exp", Interval::exp, f64::exp, (-300, 300)),
     row("log", Interval::log, f64::ln, (0, 1000)),
     row("sqrt", Interval::sqrt, f64::sqrt, (0, 1000)),
