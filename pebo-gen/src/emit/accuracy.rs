@@ -25,16 +25,10 @@ use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Program, Staged};
-use exact::exact;
+use exact::{BITS, MOST, exact};
 use own::Own;
 use places::{Place, places};
 use rounded::{round, run};
-
-/// More units are a loss that no author expects.
-pub(super) const MOST: f64 = 100.0;
-
-/// Bits of the enclosures: those of `f64`, and as many to be lost.
-const BITS: u32 = 128;
 
 /// Steps of work that a measurement may take: beyond, fewer places are looked at.
 const MOST_VALUES: usize = 100_000;

@@ -6,11 +6,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::literal::Scalar;
-use super::BITS;
 use super::places::Place;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
+
+/// More units are a loss that no author expects.
+pub(super) const MOST: f64 = 100.0;
+
+/// Bits of the enclosures: those of `f64`, and as many to be lost.
+pub(super) const BITS: u32 = 128;
 
 /// Exact values at a place, and how much they move when all that they depend on is rounded.
 pub(super) struct Exact {

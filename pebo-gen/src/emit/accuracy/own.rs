@@ -9,9 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::definition::{Argument, Definitions};
 use super::super::literal::Scalar;
-use super::MOST;
 use super::core::cores;
-use super::exact::exact;
+use super::exact::{MOST, exact};
 use super::places::Place;
 use super::rounded::{round, run};
 use crate::cas::{Arena, Expr, Node, Symbol};
