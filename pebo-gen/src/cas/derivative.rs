@@ -85,7 +85,7 @@ impl Arena {
     }
 
     /// The expression over new operands; `known` has an entry for each of its operands.
-    pub(super) fn rebuild(&self, expr: Expr, known: &FxHashMap<Expr, Expr>) -> Expr {
+    pub(crate) fn rebuild(&self, expr: Expr, known: &FxHashMap<Expr, Expr>) -> Expr {
         match self.node(expr) {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => expr,
             Node::Sum(sum) => self.combine(&sum.constant, sum.terms.iter().map(|(t, c)| (known[t], c.clone()))),

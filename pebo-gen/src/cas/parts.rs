@@ -120,6 +120,9 @@ impl Domain {
             }
             let signals: Vec<_> =
                 arena.symbols_of(&[angle]).into_iter().filter(|symbol| varies(arena.of_symbol(*symbol))).collect();
+            if signals.is_empty() {
+                continue;
+            }
             let slopes: Vec<Expr> = signals.iter().map(|signal| arena.derivative(normal, *signal)).collect();
             let field = Field::over(arena, &self.facts, &slopes)?;
             let shown = slopes.iter().map(|slope| Ok(field.show(&field.fraction(*slope)?)));

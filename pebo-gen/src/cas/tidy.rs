@@ -50,6 +50,28 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     })
 }
 
+/// The other ways to write an expression that have a value wherever it has, those with the fewest operations first. They
+/// may be in other functions than the author's and divide by other sums: that they are equal, the caller decides.
+pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
+    let Ok(field) = Field::over(arena, &domain.facts, &[expr]) else { return Vec::new() };
+    let orientation = Orientation::new(arena, domain);
+    let own = functions(arena, &[expr]);
+    let mut ways = written(&field, expr);
+    if let Ok(fraction) = field.fraction(expr) {
+        ways.extend(field.show_without_sines(&fraction));
+        ways.extend(field.show_rationalised(&fraction));
+    }
+    ways.extend(in_own_functions(&field, &domain.facts, expr, &own, |form| functions(arena, &[form]).is_subset(&own)));
+    let mut found: Vec<Expr> = Vec::new();
+    for form in ways.into_iter().flat_map(|form| [orientation.of(form), form]) {
+        if form != expr && !found.contains(&form) && asks_no_more(arena, domain, expr, form) {
+            found.push(form);
+        }
+    }
+    found.sort_by_cached_key(|form| operations(arena, *form));
+    found
+}
+
 /// The ways to write the normal form.
 fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
     let Ok(fraction) = field.fraction(expr) else { return Vec::new() };

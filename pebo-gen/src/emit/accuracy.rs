@@ -6,10 +6,14 @@
 //! the rounding of the result. Exact values are enclosures. Holds after: a function that loses more than
 //! [`MOST`] units, or is not finite where the exact value exists, is found out at the places looked at.
 
+mod core;
+mod exact;
+mod own;
 mod places;
 mod rounded;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 use super::definition::{Argument, Definitions, Group, VELOCITY};
 use super::literal::Scalar;
@@ -18,21 +22,13 @@ use super::tasks::varying;
 use crate::analysis::Derivation;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Node, Symbol};
+use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
-use crate::program::{Program, Staged, lower};
+use crate::program::{Program, Staged};
+use exact::{BITS, MOST, exact};
+use own::Own;
 use places::{Place, places};
 use rounded::{round, run};
-
-/// More units are a loss that no author expects.
-pub(super) const MOST: f64 = 100.0;
-
-/// A loss up to so many times that of the author's formulas is theirs: a function that is made of several of them, as the
-/// rate of phi, adds up a few.
-const LIKE: f64 = 4.0;
-
-/// Bits of the enclosures: those of `f64`, and as many to be lost.
-const BITS: u32 = 128;
 
 /// Steps of work that a measurement may take: beyond, fewer places are looked at.
 const MOST_VALUES: usize = 100_000;
@@ -71,7 +67,8 @@ pub struct Worst {
     pub units: f64,
     /// Where, as `y2 = 0.01, z1 = 0.5`.
     pub place: String,
-    /// Whether the author's own formulas, computed so, lose as much there.
+    /// Whether it is a part of the author's own formulas that loses digits there, and these lose as much, or the error is
+    /// small beside what the value is elsewhere.
     pub as_written: bool,
 }
 
@@ -88,9 +85,14 @@ impl Worst {
         if self.units.is_finite() { told_units(self.units) } else { "not finite".to_owned() }
     }
 
+    /// Whether digits are lost that no author expects to lose.
+    pub(super) fn is_loss(&self) -> bool {
+        self.units > MOST
+    }
+
     /// Whether the emission is refused for it.
     pub(super) fn is_refused(&self) -> bool {
-        self.units > MOST && !self.as_written
+        self.is_loss() && !self.as_written
     }
 }
 
@@ -123,26 +125,30 @@ pub(super) fn measure(plant: &Plant, derivation: &Derivation, definitions: &Defi
     let mut losses: Vec<Loss> = functions
         .map(|group| Loss { function: group.name, single: Worst::default(), double: Worst::default() })
         .collect();
-    let mut looked_at = 0;
+    let places: Vec<Place> = places.iter().filter_map(|place| extended(plant, definitions, place)).collect();
+    let own = OnceCell::new();
+    let is_own = |value: Expr, place: &Place, scalar: Scalar, units: f64| {
+        own.get_or_init(|| Own::of(plant, definitions, &places)).has(value, place, scalar, units)
+    };
     for place in &places {
-        let Some(place) = extended(plant, definitions, place) else { continue };
-        looked_at += 1;
         for scalar in [Scalar::F32, Scalar::F64] {
-            let computed = computed(plant, definitions, staged, scalar, &place);
+            let there = &in_all_digits(scalar, place);
+            let computed = computed(plant, definitions, staged, scalar, there);
             for (group, found) in groups.iter().zip(computed).filter(|(group, _)| measured(group)) {
-                let units = exact(arena, &values(group), &place).units(&found, scalar);
+                let values = values(group);
                 let Some(loss) = losses.iter_mut().find(|loss| loss.function == group.name) else { continue };
                 let worst = loss.worst_mut(scalar);
-                let as_written = units > MOST && LIKE * own_units(plant, &values(group), &place, scalar) >= units;
-                let found = Worst { units, place: told(arena, &values(group), &place), as_written };
-                // A loss that the author does not have is not to hide behind a larger one that he has.
-                if (found.is_refused(), units) > (worst.is_refused(), worst.units) {
-                    *worst = found;
+                for (&value, units) in values.iter().zip(exact(arena, &values, there).units(&found, scalar)) {
+                    // A loss that the author does not have is not to hide behind a larger one that he has.
+                    let as_written = units > MOST && is_own(value, there, scalar, units);
+                    if (units > MOST && !as_written, units) > (worst.is_refused(), worst.units) {
+                        *worst = Worst { units, place: told(arena, &values, place), as_written };
+                    }
                 }
             }
         }
     }
-    Accuracy { places: looked_at, losses }
+    Accuracy { places: places.len(), losses }
 }
 
 /// The formulas of a group.
@@ -175,6 +181,24 @@ fn extended(plant: &Plant, definitions: &Definitions, place: &Place) -> Option<P
     Some(extended)
 }
 
+/// The place in numbers with all digits of the scalar, but for 0, 1 and -1: sums and products of numbers of `f32` are exact
+/// in `f64`, so that these would hide what is lost there.
+fn in_all_digits(scalar: Scalar, place: &Place) -> Place {
+    /// Beyond the last digit of `f32`.
+    const BEYOND: f64 = 1.0 / 33_554_432.0;
+    /// No two numbers move alike.
+    const TURN: f64 = 0.618_033_988_749_894_9;
+    if scalar == Scalar::F32 {
+        return place.clone();
+    }
+    let mut part = 0.0;
+    let moved = place.iter().map(|(&symbol, &value)| {
+        part = (part + TURN) % 1.0;
+        (symbol, if [1.0, -1.0].contains(&value) { value } else { value * (1.0 + BEYOND * part) })
+    });
+    moved.collect()
+}
+
 /// What the programs give at a place, group by group.
 fn computed(plant: &Plant, definitions: &Definitions, staged: &Staged, scalar: Scalar, place: &Place) -> Vec<Vec<f64>> {
     let of = |symbols: &[Symbol]| symbols.iter().map(|symbol| place.get(symbol).copied().unwrap_or(1.0)).collect();
@@ -191,100 +215,6 @@ fn computed(plant: &Plant, definitions: &Definitions, staged: &Staged, scalar: S
         run(program, scalar, &[inputs.as_slice(), &arguments].concat())
     };
     definitions.groups().iter().zip(&staged.programs).map(program).collect()
-}
-
-/// The most units that the author's own formulas lose at a place, and those of their sums that the values hold: a factor
-/// `exp(u) - 1` loses digits that nobody misses in the rate which the author has it in.
-fn own_units(plant: &Plant, values: &[Expr], place: &Place, scalar: Scalar) -> f64 {
-    let arena = &plant.arena;
-    let mut own: Vec<Expr> = plant.rates().into_values().chain(plant.transform()).collect();
-    let written: BTreeSet<Expr> = arena.postorder(&own).into_iter().collect();
-    let is_written = |part: &Expr| written.contains(part) || written.contains(&arena.neg(*part));
-    let sums = arena.postorder(values).into_iter().filter(|part| matches!(arena.node(*part), Node::Sum(_)));
-    own.extend(sums.filter(is_written));
-    let symbols: Vec<Symbol> = arena.symbols_of(&own).into_iter().collect();
-    let inputs: Option<Vec<f64>> = symbols.iter().map(|symbol| place.get(symbol).copied()).collect();
-    let (Some(inputs), Ok(program)) = (inputs, lower(arena, &symbols, &own)) else { return 0.0 };
-    exact(arena, &own, place).units(&run(&program, scalar, &inputs), scalar)
-}
-
-/// Exact values at a place, and how much they move when all that they depend on is rounded.
-struct Exact {
-    values: Vec<Option<(Interval, f64)>>,
-}
-
-/// The relative move of the arguments by which their effect is found.
-const MOVE: f64 = 1.0 / 1_073_741_824.0;
-
-fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
-    let symbols: Vec<Symbol> = arena.symbols_of(exprs).into_iter().collect();
-    let at = |moved: Option<Symbol>| {
-        let entry = |symbol: &Symbol| {
-            // In full: value (1 + part) has more digits than a number of f64.
-            let value = Rational::from_f64_exact(place.get(symbol).copied().unwrap_or(1.0))?;
-            let part = Rational::from_f64_exact(if moved == Some(*symbol) { MOVE } else { 0.0 })?;
-            let moved = &value + &(&value * &part);
-            Some((*symbol, Interval::from_rational(&moved, Precision::new(BITS))?))
-        };
-        symbols.iter().map(entry).collect::<Option<BTreeMap<_, _>>>()
-    };
-    let values = |exprs: &[Expr], moved| -> Vec<Option<Interval>> {
-        let Some(exact) = at(moved) else { return vec![None; exprs.len()] };
-        match arena.enclose_over(exprs, &exact, Precision::new(BITS)) {
-            Some(values) => values.into_iter().map(Some).collect(),
-            None => {
-                exprs.iter().map(|&expr| arena.enclose_over(&[expr], &exact, Precision::new(BITS))?.pop()).collect()
-            }
-        }
-    };
-    let still = values(exprs, None);
-    // One at a time: together the effects of some would cancel, as those of b and c in a*b - c where that is small.
-    let mut conditions = vec![0.0; exprs.len()];
-    for symbol in &symbols {
-        let moved: BTreeSet<Symbol> = [*symbol].into();
-        let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moved)).collect();
-        let there: Vec<Expr> = reached.iter().map(|index| exprs[*index]).collect();
-        for (index, value) in reached.iter().zip(values(&there, Some(*symbol))) {
-            let difference = still[*index].as_ref().and_then(|still| value?.sub(still, Precision::new(BITS)));
-            let size = difference.map_or(0.0, |difference| difference.lo().abs().max(difference.hi().abs()));
-            conditions[*index] += size / MOVE;
-        }
-    }
-    Exact { values: still.into_iter().zip(conditions).map(|(value, condition)| Some((value?, condition))).collect() }
-}
-
-impl Exact {
-    /// The largest error of computed values, in units of what rounding causes.
-    fn units(&self, computed: &[f64], scalar: Scalar) -> f64 {
-        // Half the distance from 1 to the next number, and the least number with all digits.
-        let (roundoff, least) = match scalar {
-            Scalar::F32 => (f64::from(f32::EPSILON) / 2.0, f64::from(f32::MIN_POSITIVE)),
-            Scalar::F64 => (f64::EPSILON / 2.0, f64::MIN_POSITIVE),
-        };
-        let largest = match scalar {
-            Scalar::F32 => f64::from(f32::MAX),
-            Scalar::F64 => f64::MAX,
-        };
-        let mut worst: f64 = 0.0;
-        for (exact, &found) in self.values.iter().zip(computed) {
-            let Some((value, condition)) = exact else { continue };
-            if value.hi().abs().max(value.lo().abs()) > largest / 4.0 {
-                // Nothing that the scalar could hold.
-                continue;
-            }
-            let Some(found) = Rational::from_f64_exact(found) else { return f64::INFINITY };
-            let error = Interval::from_rational(&found, Precision::new(BITS))
-                .and_then(|found| found.sub(value, Precision::new(BITS)))
-                .map_or(f64::INFINITY, |error| error.lo().abs().max(error.hi().abs()));
-            let unit = roundoff * (condition + value.hi().abs().max(value.lo().abs()));
-            // Without a unit the value is 0 and stays so, whatever the arguments: what is left is the rounding of numbers
-            // in the formula.
-            if error > least && unit > 0.0 {
-                worst = worst.max(error / unit);
-            }
-        }
-        worst
-    }
 }
 
 /// Values as intervals.
@@ -312,7 +242,7 @@ pub(super) fn lines(accuracy: &Accuracy) -> Vec<String> {
     for loss in &accuracy.losses {
         for (scalar, worst) in [(Scalar::F32, &loss.single), (Scalar::F64, &loss.double)] {
             if worst.units > MOST {
-                let author = if worst.as_written { ", as the model's own formulas do" } else { "" };
+                let author = if worst.as_written { ", by a part that the model's own formulas have" } else { "" };
                 let (function, scalar, place) = (loss.function, scalar.name(), &worst.place);
                 lines.extend([String::new(), format!("`{function}` loses digits in `{scalar}` at {place}{author}.")]);
             }

@@ -66,12 +66,17 @@ impl fmt::Display for EmitError {
             Self::LimitReached => f.write_str(
                 "the limit on time or memory was reached in the check of the emitted code; allow more with `--limit SECONDS`",
             ),
-            Self::Inaccurate { function, place, units, scalar } => write!(
-                f,
-                "`{function}` would lose digits in `{scalar}`: at {place} its error is {units} times what rounding of its \
-                 arguments causes; give `phi_left` in the form in which it is to be computed, or assume what keeps the \
-                 formulas away from there"
-            ),
+            Self::Inaccurate { function, place, units, scalar } => {
+                let mend = match function.as_str() {
+                    "recover" => "give `phi_left` in the form in which it is to be computed",
+                    _ => "write in another form what cancels there, as `x/(sqrt(1 + x) + 1)` for `sqrt(1 + x) - 1`",
+                };
+                write!(
+                    f,
+                    "`{function}` would lose digits in `{scalar}`: at {place} its error is {units} times what rounding \
+                     of its arguments causes; {mend}, or assume what keeps the formulas away from there"
+                )
+            }
             Self::Differs { function, row, column } => {
                 write!(f, "the emitted `{function}` differs from the derived one in row {row}, column {column}")
             }

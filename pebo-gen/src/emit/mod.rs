@@ -1,7 +1,7 @@
 //! Rust for an accepted derivation.
 //!
 //! ```text
-//! Derivation -> definitions -> tasks -> program::stage -> tokens -> read back and compared -> text
+//! Derivation -> definitions -> tasks -> program::stage -> accuracy -> tokens -> read back and compared -> text
 //! ```
 //!
 //! In: a plant and its derivation, every claim proved. Out: the tokens and the text of one module
@@ -11,6 +11,7 @@
 mod accuracy;
 mod block;
 mod check;
+mod choice;
 mod definition;
 mod describe;
 mod document;
@@ -47,6 +48,7 @@ use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr};
 use crate::plant::{Plant, Settings};
 use crate::program::{Cost, Undeclared, lower};
+use choice::Choice;
 use definition::Definitions;
 use module::Module;
 
@@ -87,8 +89,9 @@ pub fn emit(
     let definitions = Definitions::of(plant, derivation)?;
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
-    let staged = tasks::staged(arena, &parameters, &definitions, &is_zero).map_err(undeclared)?;
-    let accuracy = accuracy::measure(plant, derivation, &definitions, &staged);
+    let choice =
+        choice::choose(plant, derivation, (&parameters, scalar), &definitions, &is_zero).map_err(undeclared)?;
+    let Choice { definitions, staged, accuracy } = choice;
     if arena.budget().is_exhausted() {
         // What could not be enclosed was not measured.
         return Err(EmitError::LimitReached);

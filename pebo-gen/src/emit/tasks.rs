@@ -1,7 +1,7 @@
 //! The functions of `Model` as tasks that share their work.
 //!
 //! In: the definitions. Out: their programs. A regression that is affine in the extension is computed by
-//! its factors where that takes less work; the caller's zero test must confirm that it is.
+//! its factors where that takes less work and keeps the digits; the caller's zero test must confirm that it is.
 
 use std::collections::BTreeMap;
 
@@ -10,18 +10,19 @@ use crate::analysis::RegressionKind;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::program::{Cost, Staged, Task, Undeclared, stage};
 
-/// The programs of all groups, in their order.
+/// The programs of all groups, in their order; where they are computed by the factors of the regression, those as derived
+/// too.
 pub(super) fn staged(
     arena: &Arena,
     parameters: &[Symbol],
     definitions: &Definitions,
     is_zero: impl Fn(&Arena, Expr) -> bool,
-) -> Result<Staged, Undeclared> {
+) -> Result<(Staged, Option<Staged>), Undeclared> {
     let sampled = definitions.symbols(Argument::Y);
     let as_derived = tasks(definitions);
     let derived = stage(arena, parameters, &sampled, &as_derived)?;
     let Some(affine) = Affine::of(arena, definitions, &is_zero) else {
-        return Ok(derived);
+        return Ok((derived, None));
     };
     let mut by_factors = as_derived;
     for (group, task) in definitions.groups().iter().zip(&mut by_factors) {
@@ -38,7 +39,7 @@ pub(super) fn staged(
     let shared = stage(arena, parameters, &sampled, &by_factors)?;
     // A sum that is multiplied out loses digits where its summands cancel: it has to be worth it.
     let saves = 10 * work(&shared, definitions) <= 9 * work(&derived, definitions);
-    Ok(if saves { shared } else { derived })
+    Ok(if saves { (shared, Some(derived)) } else { (derived, None) })
 }
 
 fn tasks(definitions: &Definitions) -> Vec<Task> {

@@ -53,11 +53,12 @@ pub struct Staged {
 pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[Task]) -> Result<Staged, Undeclared> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
-    let (mut varying, mut constants) = split(arena, &roots, parameters, "$", |_| true);
+    let (mut varying, mut constants) = split(arena, &roots, parameters, ("$", 0), |_| true);
     let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
     let regular: Vec<bool> = tasks.iter().flat_map(|task| values(task).into_iter().map(|_| task.is_regular)).collect();
     let steady: Vec<Expr> = varying.iter().zip(&regular).filter_map(|(value, &is)| is.then_some(*value)).collect();
-    let (steady, mut terms) = split(arena, &steady, &[&stored, sampled].concat(), "%", |expr| is_dear(arena, expr));
+    let (steady, mut terms) =
+        split(arena, &steady, &[&stored, sampled].concat(), ("%", 0), |expr| is_dear(arena, expr));
     let mut steady = steady.into_iter();
     for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| **regular) {
         *value = steady.next().unwrap_or(*value);
@@ -70,6 +71,7 @@ pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[
     let same = same(arena, &inputs, &terms)?;
     terms.retain(|term| !same.contains_key(&term.0));
     let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true);
+    let varying = merged(arena, varying, &mut terms, &mut constants);
 
     let used = arena.symbols_of(&varying);
     terms.retain(|term| used.contains(&term.0));
@@ -92,6 +94,34 @@ pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[
         programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
     }
     Ok(Staged { constants, setup, terms, sample, programs })
+}
+
+/// The functions and terms with constants that meet as one: a factor that left a sum stands beside others.
+fn merged(
+    arena: &Arena,
+    varying: Vec<Expr>,
+    terms: &mut [(Symbol, Expr)],
+    constants: &mut Vec<(Symbol, Expr)>,
+) -> Vec<Expr> {
+    /// What leaves a sum may leave the next one too.
+    const ROUNDS: usize = 4;
+    let formulas = terms.iter().map(|term| term.1);
+    let mut all = factor(arena, &formulas.chain(varying).collect::<Vec<Expr>>(), |_| true);
+    for _ in 0..ROUNDS {
+        let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
+        let (split, found) = split(arena, &all, &stored, ("$", stored.len()), |expr| arena.as_symbol(expr).is_none());
+        if found.is_empty() {
+            break;
+        }
+        let values: BTreeMap<Symbol, Expr> = constants.iter().copied().collect();
+        constants.extend(found.into_iter().map(|(symbol, value)| (symbol, arena.substitute(value, &values))));
+        all = factor(arena, &split, |_| true);
+    }
+    let varying = all.split_off(terms.len());
+    for (term, formula) in terms.iter_mut().zip(all) {
+        term.1 = formula;
+    }
+    varying
 }
 
 /// Terms that are computed as another before them, or as its opposite, and what they are then: two shapes of a formula
@@ -128,7 +158,7 @@ fn split(
     arena: &Arena,
     roots: &[Expr],
     symbols: &[Symbol],
-    prefix: &'static str,
+    (prefix, first): (&'static str, usize),
     worth: impl Fn(Expr) -> bool,
 ) -> (Vec<Expr>, Vec<(Symbol, Expr)>) {
     let symbols: BTreeSet<Symbol> = symbols.iter().copied().collect();
@@ -138,7 +168,7 @@ fn split(
         factor(arena, roots, |base| !fixed.contains(&base))
     };
     let fixed = fixed(arena, &factored, &symbols);
-    let mut split = Split { arena, fixed, prefix, worth, found: Vec::new(), symbols: FxHashMap::default() };
+    let mut split = Split { arena, fixed, prefix, first, worth, found: Vec::new(), symbols: FxHashMap::default() };
     (split.split(&factored), split.found)
 }
 
@@ -182,6 +212,8 @@ struct Split<'a, W> {
     arena: &'a Arena,
     fixed: FxHashSet<Expr>,
     prefix: &'static str,
+    /// The number of the first symbol.
+    first: usize,
     worth: W,
     found: Vec<(Symbol, Expr)>,
     symbols: FxHashMap<Expr, Expr>,
@@ -279,7 +311,7 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
             let known = self.constant(opposite);
             return arena.scale(known, &minus);
         }
-        let symbol = arena.generated(&format!("{}{}", self.prefix, self.found.len()));
+        let symbol = arena.generated(&format!("{}{}", self.prefix, self.first + self.found.len()));
         self.found.push((symbol, value));
         let constant = arena.of_symbol(symbol);
         self.symbols.insert(value, constant);

@@ -254,6 +254,18 @@ fn a_power_of_a_quotient_keeps_the_range_of_its_base() {
 }
 
 #[test]
+fn constants_that_meet_are_one() {
+    let build = |a: &Arena| {
+        let [x, y, d, l, c] = ["x", "y", "d", "L", "C"].map(|name| a.variable(name));
+        let sum = a.add(a.div(x, l), a.div(y, l));
+        vec![a.div(sum, c), a.add(d, sum)]
+    };
+    // What leaves the sum, 1/L, meets 1/C in the first: no product of both is computed with each call.
+    assert_eq!(formulas(build), ["1/L", "1/(L*C)"]);
+    assert_eq!(cost(build), "2 add, 2 mul");
+}
+
+#[test]
 fn several_denominators_are_one_division() {
     let quotient = cost(|a| {
         let [x, y, d] = ["x", "y", "d"].map(|name| a.variable(name));

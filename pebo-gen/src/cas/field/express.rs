@@ -54,6 +54,19 @@ impl Field<'_> {
         product().unwrap_or_else(|_| self.show(fraction))
     }
 
+    /// The fraction with a difference of its numerator that holds a root below the bar, as a sum: `1/(sqrt(1 + x) + 1)`
+    /// rather than `(sqrt(1 + x) - 1)/x`, which loses digits where `x` is small. None if there is no such difference.
+    pub fn show_rationalised(&self, fraction: &Fraction) -> Option<Expr> {
+        let conjugate = self.conjugate(&fraction.num).ok()??;
+        if conjugate.term_count() < 2 {
+            return None;
+        }
+        let conjugate = if conjugate.leading_coefficient().is_negative() { -&conjugate } else { conjugate };
+        let above = self.reduce(&fraction.num.mul(&conjugate, self.limit()).ok()?).ok()?;
+        let rest = self.fraction_of(&above, &fraction.den).ok()?;
+        Some(self.arena.div(self.show(&rest), self.show_polynomial(&conjugate)))
+    }
+
     /// What showing takes: each term is looked at once for each of its kernels that is taken out.
     fn count(&self, fraction: &Fraction) {
         const STEPS_OF_A_TERM: u64 = 16;
@@ -233,6 +246,25 @@ mod tests {
             assert_eq!(arena.print(field.show(&fraction)), expected);
         }
     }
+
+    #[test]
+    fn differences_with_roots_go_below() {
+        let arena = Arena::new();
+        let [a, x] = ["a", "x"].map(|name| arena.variable(name));
+        let root = |number: i64| arena.sqrt(arena.add(x, arena.number(number)));
+        let cases = [
+            (arena.div(arena.sub(root(1), arena.one()), x), Some("1/(sqrt(x + 1) + 1)")),
+            (arena.sub(root(1), root(0)), Some("1/(sqrt(x + 1) + sqrt(x))")),
+            (arena.mul(a, root(1)), None),
+            (arena.add(a, x), None),
+        ];
+        for (written, expected) in cases {
+            let field = Field::over(&arena, &Facts::default(), &[written]).expect("roots");
+            let shown = field.show_rationalised(&field.fraction(written).expect("roots"));
+            assert_eq!(shown.map(|shown| arena.print(shown)).as_deref(), expected);
+        }
+    }
+
     #[test]
     fn factors_are_shown_with_their_powers() {
         let arena = Arena::new();

@@ -256,7 +256,7 @@ impl Field<'_> {
     }
 
     /// What clears the last quadratic kernel from a denominator.
-    fn conjugate(&self, den: &Poly) -> Result<Option<Poly>, Obstacle> {
+    pub(in crate::cas::field) fn conjugate(&self, den: &Poly) -> Result<Option<Poly>, Obstacle> {
         let kernels = self.round.kernels.borrow();
         let algebraic = den
             .variables()

@@ -38,6 +38,7 @@ mod kernel;
 mod obstacle;
 pub(crate) mod residue;
 mod sign;
+mod sines;
 pub(crate) mod straight;
 
 use std::cell::{Cell, RefCell};

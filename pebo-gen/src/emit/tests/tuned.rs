@@ -40,6 +40,23 @@ fn tuned(settings: &Settings<Rational>) -> String {
     emit(&plant, &derivation, Some(settings), Scalar::F64, vanishes).unwrap().text
 }
 
+/// The module is what was given, and each change of its text is found out.
+fn refuse_changed(given: &Settings<Rational>, changes: &[(&str, &str)]) {
+    let (plant, derivation) = CUK.build();
+    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let asked = derivation.asked_of_parameters(&plant);
+    let confirm = |text: &str| {
+        let tokens = text.parse().unwrap();
+        read_back::confirm(&plant, &definitions, (&asked, Some(given)), Scalar::F64, &tokens, vanishes)
+    };
+    let text = tuned(given);
+    assert_eq!(confirm(&text), Ok(()));
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
+    }
+}
+
 /// The statements of the constructor.
 fn statements(text: &str) -> Vec<String> {
     function(text, "observer").lines().skip(1).map(|line| line.trim().to_owned()).collect()
@@ -163,16 +180,7 @@ fn what_samples_may_be_is_emitted_beside_the_observer() {
     let text = tuned(&Settings { limits: Some(inputs), ..gradient() });
     assert!(function(&text, "limits").ends_with("Ok(limits)"), "{text}");
 
-    let (plant, derivation) = CUK.build();
-    let definitions = Definitions::of(&plant, &derivation).unwrap();
-    let asked = derivation.asked_of_parameters(&plant);
-    let text = tuned(&given);
-    let confirm = |text: &str| {
-        let tokens = text.parse().unwrap();
-        read_back::confirm(&plant, &definitions, (&asked, Some(&given)), Scalar::F64, &tokens, vanishes)
-    };
-    assert_eq!(confirm(&text), Ok(()));
-    for (from, to) in [
+    let changes = [
         ("[-50.0, f64::NEG_INFINITY]", "[f64::NEG_INFINITY, -50.0]"),
         ("[-50.0, f64::NEG_INFINITY]", "[-50.0, f64::INFINITY]"),
         ("[50.0, f64::INFINITY]", "[50.0, 60.0]"),
@@ -181,26 +189,15 @@ fn what_samples_may_be_is_emitted_beside_the_observer() {
         ("limits.outputs(&least, &greatest)?", "limits.inputs(&least, &greatest)?"),
         ("limits.gap(0.001)", "limits.gap(0.01)"),
         ("limits.gap(0.001)", "Ok(limits)"),
-    ] {
-        assert!(text.contains(from), "{from}");
-        assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
-    }
+    ];
+    refuse_changed(&given, &changes);
 }
 
 #[test]
 fn a_constructor_with_other_settings_is_refused() {
     let within = [None, Some(numbers(["7", "8"]))];
     let given = Settings { within, upper: Some(numbers(["5", "6"])), rebase: Some(number("3")), ..gradient() };
-    let (plant, derivation) = CUK.build();
-    let definitions = Definitions::of(&plant, &derivation).unwrap();
-    let asked = derivation.asked_of_parameters(&plant);
-    let text = tuned(&given);
-    let confirm = |text: &str| {
-        let tokens = text.parse().unwrap();
-        read_back::confirm(&plant, &definitions, (&asked, Some(&given)), Scalar::F64, &tokens, vanishes)
-    };
-    assert_eq!(confirm(&text), Ok(()));
-    for (from, to) in [
+    let changes = [
         ("from([0.001, 2e-6])", "from([0.001, 2e-5])"),
         ("Filter::new(0.5", "Filter::new(0.6"),
         ("Hold::First", "Hold::Zero"),
@@ -214,10 +211,8 @@ fn a_constructor_with_other_settings_is_refused() {
         ("Gradient::diagonal(&gain)", "Gradient::diagonal(&upper)"),
         ("Tuned::new", "Tuned::with_regression"),
         ("rebasing(3)", "rebasing(4)"),
-    ] {
-        assert!(text.contains(from), "{from}");
-        assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
-    }
+    ];
+    refuse_changed(&given, &changes);
 }
 
 #[test]

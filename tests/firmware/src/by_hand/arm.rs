@@ -2,8 +2,8 @@
 
 use pebo_runtime::Real;
 
-use super::{Accumulator, Regression};
-use crate::counted::arm::{ALPHA, GAINS};
+use super::{Extension, Regression};
+use crate::counted::arm::TUNING;
 
 const M1: f32 = 0.8;
 const L1: f32 = 0.5;
@@ -78,7 +78,7 @@ pub struct ByHand {
     sampled: bool,
     y: [f32; 2],
     posture: Posture,
-    chi: [Accumulator; 2],
+    extension: Extension,
     regression: Regression<2>,
 }
 
@@ -89,7 +89,7 @@ impl ByHand {
             sampled: false,
             y: [0.0; 2],
             posture: Posture::NONE,
-            chi: [Accumulator::ZERO; 2],
+            extension: Extension::START,
             regression: Regression::START,
         }
     }
@@ -106,11 +106,10 @@ impl ByHand {
         }
         next.sampled = true;
         next.y = y;
-        if next.chi[0].blemish() + next.chi[1].blemish() + next.regression.blemish() != 0.0 {
+        if next.extension.blemish() + next.regression.blemish() != 0.0 {
             return None;
         }
-        let theta = next.regression.theta;
-        let z = [next.chi[0].value + theta[0].value, next.chi[1].value + theta[1].value];
+        let z = next.regression.coordinates(&next.extension);
         let along = |[cosine, sine]: [f32; 2]| z[1] * cosine - z[0] * sine;
         let second = L2 * along(posture.both);
         let estimate = [L1 * along(posture.first) + second, second];
@@ -124,21 +123,18 @@ impl ByHand {
 
     fn advance(&mut self, (y, posture): ([f32; 2], &Posture), u: [f32; 2], dt: f32) {
         let (before, earlier) = (self.y, self.posture);
-        let start = [self.chi[0].value, self.chi[1].value];
         let (h_start, h_end) = (earlier.h(u), posture.h(u));
-        self.chi[0].add((h_start[0] + h_end[0]) * (0.5 * dt));
-        self.chi[1].add((h_start[1] + h_end[1]) * (0.5 * dt));
-        let end = [self.chi[0].value, self.chi[1].value];
+        let [start, end] = self.extension.integrate(h_start, h_end, dt);
 
         let (known_start, known_end) = (earlier.phi_0(start), posture.phi_0(end));
         let regression = &mut self.regression;
-        regression.use_sample_time(ALPHA, dt);
+        regression.use_sample_time(TUNING.alpha, dt);
         for row in 0..2 {
             let rate = (y[row] - before[row]) / dt;
             let known = [rate - known_start[row], rate - known_end[row]];
             regression.filter(row, known, [earlier.regressor[row], posture.regressor[row]]);
         }
-        regression.correct(GAINS, dt);
+        regression.correct(TUNING.gains, dt);
     }
 }
 

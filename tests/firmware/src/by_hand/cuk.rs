@@ -1,6 +1,6 @@
 //! The observer of the Cuk converter, case II.
 
-use super::{Accumulator, Regression};
+use super::{Extension, Regression};
 use crate::converter::{ALPHA, GAINS};
 
 const INV_L1: f32 = 1.0 / 10e-3;
@@ -17,14 +17,14 @@ const L3_G_OVER_C4: f32 = G_OVER_C4 * 10e-3;
 pub struct ByHand {
     sampled: bool,
     y: [f32; 2],
-    chi: [Accumulator; 2],
+    extension: Extension,
     regression: Regression<2>,
 }
 
 impl ByHand {
     /// Before the first sample.
     pub fn new() -> Self {
-        Self { sampled: false, y: [0.0; 2], chi: [Accumulator::ZERO; 2], regression: Regression::START }
+        Self { sampled: false, y: [0.0; 2], extension: Extension::START, regression: Regression::START }
     }
 
     /// One sample: outputs at the end of an interval, the duty cycle during it, its length. None for a bad sample.
@@ -41,8 +41,8 @@ impl ByHand {
         if !next.is_finite() {
             return None;
         }
-        let theta = next.regression.theta;
-        let estimate = [next.chi[0].value + theta[0].value, next.chi[1].value + theta[1].value + y[1] * L3_G_OVER_C4];
+        let z = next.regression.coordinates(&next.extension);
+        let estimate = [z[0], z[1] + y[1] * L3_G_OVER_C4];
         if estimate[0] * 0.0 + estimate[1] * 0.0 != 0.0 {
             return None;
         }
@@ -52,12 +52,9 @@ impl ByHand {
 
     fn advance(&mut self, y: [f32; 2], d: f32, dt: f32) {
         let before = self.y;
-        let start = [self.chi[0].value, self.chi[1].value];
         let h = |[v2, i3]: [f32; 2]| [(E - v2 * (1.0 - d)) * INV_L1, (i3 + v2 * d * G) * INV_C4];
         let (h_start, h_end) = (h(before), h(y));
-        self.chi[0].add((h_start[0] + h_end[0]) * (0.5 * dt));
-        self.chi[1].add((h_start[1] + h_end[1]) * (0.5 * dt));
-        let end = [self.chi[0].value, self.chi[1].value];
+        let [start, end] = self.extension.integrate(h_start, h_end, dt);
 
         let phi_0 = |chi: [f32; 2], [v2, i3]: [f32; 2]| {
             [(chi[0] + d * (i3 - chi[0])) * INV_C2, -((chi[1] + v2 * d) * INV_L3 + i3 * G_OVER_C4)]
@@ -77,7 +74,7 @@ impl ByHand {
     }
 
     fn is_finite(&self) -> bool {
-        self.chi[0].blemish() + self.chi[1].blemish() + self.regression.blemish() == 0.0
+        self.extension.blemish() + self.regression.blemish() == 0.0
     }
 }
 

@@ -32,6 +32,31 @@ impl Accumulator {
     }
 }
 
+/// The two coordinates of an integrator.
+#[derive(Clone, Copy)]
+struct Extension([Accumulator; 2]);
+
+impl Extension {
+    const START: Self = Self([Accumulator::ZERO; 2]);
+
+    fn chi(&self) -> [f32; 2] {
+        self.0.map(|entry| entry.value)
+    }
+
+    /// Adds the rates at both ends of an interval by the trapezoidal rule; gives `chi` at both ends.
+    fn integrate(&mut self, start: [f32; 2], end: [f32; 2], dt: f32) -> [[f32; 2]; 2] {
+        let before = self.chi();
+        self.0[0].add((start[0] + end[0]) * (0.5 * dt));
+        self.0[1].add((start[1] + end[1]) * (0.5 * dt));
+        [before, self.chi()]
+    }
+
+    /// Zero, or NaN if a number is not finite.
+    fn blemish(&self) -> f32 {
+        self.0[0].blemish() + self.0[1].blemish()
+    }
+}
+
 /// The filtered regression with its unknowns.
 #[derive(Clone, Copy)]
 struct Regression<const ROWS: usize> {
@@ -97,6 +122,12 @@ impl<const ROWS: usize> Regression<ROWS> {
         }
         self.theta[1].add(target[1]);
         self.theta[0].add(target[0] - upper * target[1]);
+    }
+
+    /// The coordinates `z = chi + theta`.
+    fn coordinates(&self, extension: &Extension) -> [f32; 2] {
+        let chi = extension.chi();
+        [chi[0] + self.theta[0].value, chi[1] + self.theta[1].value]
     }
 
     /// The filter's weights for this sample time.

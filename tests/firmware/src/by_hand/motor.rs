@@ -2,8 +2,8 @@
 
 use pebo_runtime::Real;
 
-use super::{Accumulator, Regression};
-use crate::counted::motor::{ALPHA, GAINS};
+use super::{Extension, Regression};
+use crate::counted::motor::TUNING;
 
 const R: f32 = 8.875;
 const L: f32 = 40.03e-3;
@@ -21,14 +21,14 @@ const N_P_OVER_J: f32 = N_P * INV_J;
 pub struct ByHand {
     sampled: bool,
     y: [f32; 3],
-    chi: [Accumulator; 2],
+    extension: Extension,
     regression: Regression<3>,
 }
 
 impl ByHand {
     /// Before the first sample.
     pub fn new() -> Self {
-        Self { sampled: false, y: [0.0; 3], chi: [Accumulator::ZERO; 2], regression: Regression::START }
+        Self { sampled: false, y: [0.0; 3], extension: Extension::START, regression: Regression::START }
     }
 
     /// One sample: outputs at the end of an interval, the voltages during it, its length. None for a bad sample.
@@ -43,11 +43,10 @@ impl ByHand {
         }
         next.sampled = true;
         next.y = y;
-        if next.chi[0].blemish() + next.chi[1].blemish() + next.regression.blemish() != 0.0 {
+        if next.extension.blemish() + next.regression.blemish() != 0.0 {
             return None;
         }
-        let theta = next.regression.theta;
-        let z = [next.chi[0].value + theta[0].value, next.chi[1].value + theta[1].value];
+        let z = next.regression.coordinates(&next.extension);
         let estimate = Real::atan2(z[1] - y[1] * L, z[0] - y[0] * L) * INV_N_P;
         if estimate * 0.0 != 0.0 {
             return None;
@@ -58,12 +57,9 @@ impl ByHand {
 
     fn advance(&mut self, y: [f32; 3], [v1, v2]: [f32; 2], dt: f32) {
         let before = self.y;
-        let start = [self.chi[0].value, self.chi[1].value];
         let h = |[i1, i2, _]: [f32; 3]| [v1 - i1 * R, v2 - i2 * R];
         let (h_start, h_end) = (h(before), h(y));
-        self.chi[0].add((h_start[0] + h_end[0]) * (0.5 * dt));
-        self.chi[1].add((h_start[1] + h_end[1]) * (0.5 * dt));
-        let end = [self.chi[0].value, self.chi[1].value];
+        let [start, end] = self.extension.integrate(h_start, h_end, dt);
 
         let phi_0 = |[chi1, chi2]: [f32; 2], h: [f32; 2], [i1, i2, omega]: [f32; 3]| {
             let electrical = omega * N_P;
@@ -80,13 +76,13 @@ impl ByHand {
         let (known_start, known_end) = (phi_0(start, h_start, before), phi_0(end, h_end, y));
         let (factor_start, factor_end) = (phi_1(before), phi_1(y));
         let regression = &mut self.regression;
-        regression.use_sample_time(ALPHA, dt);
+        regression.use_sample_time(TUNING.alpha, dt);
         for row in 0..3 {
             let rate = (y[row] - before[row]) / dt;
             let known = [rate - known_start[row], rate - known_end[row]];
             regression.filter(row, known, [factor_start[row], factor_end[row]]);
         }
-        regression.correct(GAINS, dt);
+        regression.correct(TUNING.gains, dt);
     }
 }
 

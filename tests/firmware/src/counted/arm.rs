@@ -1,20 +1,17 @@
 //! The two-link arm. As for the motor, the signals are of the right size and no motion of the plant.
 
-use pebo_runtime::nalgebra::{SVector, Vector2};
-use pebo_runtime::{Fault, Filter, Gradient, Hold, Real};
+use pebo_runtime::Fault;
+use pebo_runtime::nalgebra::SVector;
 
-use super::Plant;
+use super::{Plant, Tuning, waves};
 use crate::by_hand::arm::ByHand;
 use crate::emitted::arm::{Arm as Model, Observer, Parameters, U, X, Y};
 
 /// Seconds between two samples.
 const DT: f32 = 1e-3;
 
-/// The gains of both observers.
-pub const GAINS: [f32; 2] = [1.0, 2.0];
-
-/// The filter of both observers, in rad/s.
-pub const ALPHA: f32 = 50.0;
+/// What both observers are tuned to.
+pub const TUNING: Tuning = Tuning { gains: [1.0, 2.0], alpha: 50.0 };
 
 /// Angles, then the torques of the interval before.
 pub type Sample = ([f32; 2], [f32; 2]);
@@ -31,16 +28,12 @@ impl Plant for Arm {
 
     fn observers() -> Result<(Observer, ByHand), Fault> {
         let model = Model::new(&Parameters::default());
-        let gradient = Gradient::diagonal(&Vector2::from(GAINS))?;
-        let filter = Filter::new(ALPHA, Hold::First)?;
+        let (gradient, filter) = TUNING.parts()?;
         Ok((Observer::new(model, gradient, filter, SVector::zeros())?, ByHand::new()))
     }
 
     fn samples() -> impl Iterator<Item = Sample> {
-        (0..=u16::MAX).cycle().map(|k| {
-            let (sine, cosine) = Real::sin_cos(0.01 * f32::from(k));
-            ([sine, 1.2 + 0.3 * cosine], [2.0 * cosine, sine])
-        })
+        waves().map(|(sine, cosine)| ([sine, 1.2 + 0.3 * cosine], [2.0 * cosine, sine]))
     }
 
     #[inline]

@@ -5,9 +5,27 @@ pub mod arm;
 pub mod cuk;
 pub mod motor;
 
-use pebo_runtime::Fault;
+use pebo_runtime::{Fault, Filter, Gradient, Hold, Real};
 
 use crate::report::Report;
+
+/// The program that counts the steps of a plant's observers: an image of its own, as in firmware. On the host it compares
+/// the two as the board does, and with the argument `emitted` or `hand` runs that one for an instruction counter.
+#[macro_export]
+macro_rules! count {
+    ($plant:ty) => {
+        #[cfg(feature = "board")]
+        #[cortex_m_rt::entry]
+        fn main() -> ! {
+            $crate::board::run($crate::board::count::<$plant>)
+        }
+
+        #[cfg(not(feature = "board"))]
+        fn main() -> Result<(), pebo_runtime::Fault> {
+            $crate::host::count::<$plant>()
+        }
+    };
+}
 
 /// A plant with both observers.
 pub trait Plant {
@@ -36,6 +54,26 @@ pub trait Plant {
 
     /// One step by hand.
     fn by_hand(observer: &mut Self::ByHand, sample: &Self::Sample) -> Option<Self::Estimate>;
+}
+
+/// What both observers of a plant with two unknowns are tuned to.
+pub struct Tuning {
+    /// The gains of the gradient estimator.
+    pub gains: [f32; 2],
+    /// The filter, in rad/s.
+    pub alpha: f32,
+}
+
+impl Tuning {
+    /// The estimator and the filter of the emitted observer.
+    fn parts(&self) -> Result<(Gradient<f32, 2>, Filter<f32>), Fault> {
+        Ok((Gradient::diagonal(&self.gains.into())?, Filter::new(self.alpha, Hold::First)?))
+    }
+}
+
+/// Sine and cosine of an angle that goes on: signals without a plant.
+fn waves() -> impl Iterator<Item = (f32, f32)> {
+    (0..=u16::MAX).cycle().map(|k| Real::sin_cos(0.01 * f32::from(k)))
 }
 
 /// Samples in a round of counting.

@@ -1,21 +1,18 @@
 //! The motor with currents and speed measured. What a step costs does not depend on what the sensors say: the signals
 //! are of the right size and no motion of the plant.
 
-use pebo_runtime::nalgebra::{SVector, Vector2};
-use pebo_runtime::{Fault, Filter, Gradient, Hold, Real};
+use pebo_runtime::Fault;
+use pebo_runtime::nalgebra::SVector;
 
-use super::Plant;
+use super::{Plant, Tuning, waves};
 use crate::by_hand::motor::ByHand;
 use crate::emitted::motor::{Motor as Model, Observer, Parameters, U, X, Y};
 
 /// Seconds between two samples.
 const DT: f32 = 1e-4;
 
-/// The gains of both observers.
-pub const GAINS: [f32; 2] = [2e-5, 1e-5];
-
-/// The filter of both observers, in rad/s.
-pub const ALPHA: f32 = 500.0;
+/// What both observers are tuned to.
+pub const TUNING: Tuning = Tuning { gains: [2e-5, 1e-5], alpha: 500.0 };
 
 /// Currents and speed, then the voltages of the interval before.
 pub type Sample = ([f32; 3], [f32; 2]);
@@ -32,16 +29,12 @@ impl Plant for Motor {
 
     fn observers() -> Result<(Observer, ByHand), Fault> {
         let model = Model::new(&Parameters::default());
-        let gradient = Gradient::diagonal(&Vector2::from(GAINS))?;
-        let filter = Filter::new(ALPHA, Hold::First)?;
+        let (gradient, filter) = TUNING.parts()?;
         Ok((Observer::new(model, gradient, filter, SVector::zeros())?, ByHand::new()))
     }
 
     fn samples() -> impl Iterator<Item = Sample> {
-        (0..=u16::MAX).cycle().map(|k| {
-            let (sine, cosine) = Real::sin_cos(0.01 * f32::from(k));
-            ([2.0 * cosine, 2.0 * sine, 10.0 + sine], [10.0 * cosine, 10.0 * sine])
-        })
+        waves().map(|(sine, cosine)| ([2.0 * cosine, 2.0 * sine, 10.0 + sine], [10.0 * cosine, 10.0 * sine]))
     }
 
     #[inline]

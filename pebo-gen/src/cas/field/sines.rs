@@ -1,0 +1,94 @@
+//! Sines that numerator and denominator have in common.
+//!
+//! In: a fraction whose denominator has `sin(q)^2`, which the normal form writes as `1 - cos(q)^2`. Out: the same without
+//! the sines that its numerator has too, for showing: `(sin(p)*sin(q)^2 - cos(p)*sin(q)*cos(q))/sin(q)^2` is
+//! `-cos(p + q)/sin(q)`. With `s^2 = 1 - c^2` a polynomial is `A(c) + B(c) s`, and `s` divides it where `1 - c^2`
+//! divides `A`; the normal form sees `A + B s` and `1 - c^2` without a factor in common.
+
+use crate::cas::expr::{Expr, Node};
+use crate::cas::function::Function;
+use crate::cas::poly::Poly;
+use crate::cas::rational::Rational;
+
+use super::Field;
+use super::fraction::Fraction;
+use super::obstacle::Obstacle;
+
+/// Bases with their exponents.
+type Powers = Vec<(Expr, Rational)>;
+
+impl Field<'_> {
+    /// The ways to write the fraction without common sines; none where there are none.
+    pub fn show_without_sines(&self, fraction: &Fraction) -> Vec<Expr> {
+        let Ok(Some((rest, sines))) = self.without_sines(fraction) else { return Vec::new() };
+        let over =
+            |shown: Expr| self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], sines.clone()].concat());
+        [Some(self.show(&rest)), self.show_by_angles(&rest)].into_iter().flatten().map(over).collect()
+    }
+
+    /// The rest of the fraction, and the powers of sines that are left below, if any cancelled.
+    fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Powers)>, Obstacle> {
+        let Fraction { mut num, mut den } = fraction.clone();
+        let mut left = Vec::new();
+        let mut cancelled = false;
+        for variable in den.variables().to_vec() {
+            let Some(sine) = self.sine_beside(variable) else { continue };
+            let square = &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?;
+            let mut times = 0_i64;
+            while let Some(rest) = den.div_exact(&square, self.limit())? {
+                den = rest;
+                times += 2;
+            }
+            while times > 0 {
+                let turned = self.reduce(&num.mul(&Poly::variable(sine), self.limit())?)?;
+                let Some(rest) = turned.div_exact(&square, self.limit())? else { break };
+                num = rest;
+                times -= 1;
+                cancelled = true;
+            }
+            if let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) {
+                left.push((self.arena.call(Function::Sin, &arguments), Rational::from(-times)));
+            }
+        }
+        if den.leading_coefficient().is_negative() {
+            (num, den) = (-&num, -&den);
+        }
+        Ok(cancelled.then_some((Fraction { num, den }, left)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Arena;
+    use crate::cas::domain::Domain;
+    use crate::cas::facts::Facts;
+    use crate::cas::zero::decide;
+
+    #[test]
+    fn common_sines_cancel() {
+        let arena = Arena::new();
+        let [p, q, a] = ["p", "q", "a"].map(|name| arena.variable(name));
+        let sin = |angle| arena.call(Function::Sin, &[angle]);
+        let cos = |angle| arena.call(Function::Cos, &[angle]);
+        let square = |expr| arena.power(expr, &Rational::from(2));
+        let below = arena.sub(arena.one(), square(cos(q)));
+        let sum = arena.sub(sin(p), arena.mul(cos(q), sin(arena.add(p, q))));
+        let cases = [
+            (arena.div(sum, below), Some("-cos(p + q)/sin(q)")),
+            (arena.div(arena.mul(a, sum), square(below)), Some("-a*cos(p + q)/sin(q)^3")),
+            (arena.div(arena.sub(a, cos(q)), arena.mul(below, a)), None),
+            (arena.div(sum, a), None),
+        ];
+        for (written, expected) in cases {
+            let field = Field::over(&arena, &Facts::default(), &[written]).unwrap();
+            let shown = field.show_without_sines(&field.fraction(written).unwrap());
+            let printed: Vec<String> = shown.iter().map(|form| arena.print(*form)).collect();
+            assert_eq!(printed.is_empty(), expected.is_none(), "{printed:?}");
+            assert!(expected.is_none_or(|expected| printed.iter().any(|form| form == expected)), "{printed:?}");
+            for form in shown {
+                assert!(decide(&arena, arena.sub(form, written), &Domain::default()).is_zero());
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Whether digits are lost that the author's own formulas lose too.
+//!
+//! In: an entry of a function, and a place at which it loses digits. Out: whether the loss is the author's. The entry loses
+//! them where a part of it does whose own parts do not. That has to be a part of the author's formulas, and these have to
+//! lose as much there; or what they hide, by adding it to something large, has to be small beside what the entry is
+//! elsewhere. Where a sum stands in the entry as the author wrote it, what that sum loses is the author's too.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::super::definition::{Argument, Definitions};
+use super::super::literal::Scalar;
+use super::core::cores;
+use super::exact::{MOST, exact};
+use super::places::Place;
+use super::rounded::{round, run};
+use crate::cas::{Arena, Expr, Node, Symbol};
+use crate::plant::Plant;
+use crate::program::lower;
+
+/// A loss up to so many times that of the author's formulas is theirs: a function that is made of several of them, as the
+/// rate of phi, adds up a few.
+const LIKE: f64 = 4.0;
+
+/// At one place the roundings of a formula may happen to cancel: as many others beside it are looked at,
+const BESIDE: u32 = 6;
+
+/// this far from each other, which is little beside the distance to what the places are near to.
+const APART: f64 = 1.0 / 262_144.0;
+
+/// The author's formulas.
+pub(super) struct Own<'a> {
+    arena: &'a Arena,
+    formulas: Vec<(Expr, BTreeSet<Expr>)>,
+    /// The rates and the transform, and all parts of these.
+    equations: Vec<Expr>,
+    written: BTreeSet<Expr>,
+    places: &'a [Place],
+}
+
+impl<'a> Own<'a> {
+    /// The plant's equations and its transform, their slopes in the states, which they lose the digits of where the other
+    /// terms are small, and the equations at the states that the coordinates give.
+    pub(super) fn of(plant: &'a Plant, definitions: &Definitions, places: &'a [Place]) -> Self {
+        let arena = &plant.arena;
+        let mut formulas: Vec<Expr> = plant.rates().into_values().chain(plant.transform()).collect();
+        let equations = formulas.clone();
+        let written = arena.postorder(&equations).into_iter().collect();
+        let slopes = |formula: &Expr| {
+            let formula = *formula;
+            let slopes = plant.x.iter().map(move |state| arena.derivative(formula, state.symbol));
+            slopes.filter(|slope| arena.as_number(*slope).is_none()).collect::<Vec<Expr>>()
+        };
+        let slopes: Vec<Expr> = formulas.iter().flat_map(slopes).collect();
+        formulas.extend(plant.y.iter().filter_map(|output| output.value).map(|value| value.expr));
+        formulas.extend(plant.identities.iter().map(|identity| identity.expr));
+        let states: BTreeMap<Symbol, Expr> = definitions.left_inverse.x.iter().copied().collect();
+        let at = |symbols: &[Symbol]| -> BTreeMap<Symbol, Expr> {
+            let coordinates: BTreeMap<Symbol, Expr> =
+                plant.z.iter().copied().zip(symbols.iter().map(|&symbol| arena.of_symbol(symbol))).collect();
+            states.iter().map(|(&state, &value)| (state, arena.substitute(value, &coordinates))).collect()
+        };
+        for coordinates in [&definitions.symbols(Argument::Z), &definitions.chi] {
+            let there = arena.substitute_all(&formulas[..plant.rates().len()], &at(coordinates));
+            formulas.extend(there);
+        }
+        formulas.extend(slopes);
+        formulas.extend(plant.phi_left.iter().flatten().map(|(_, formula)| formula.expr));
+        let formulas = formulas.into_iter().map(|formula| (formula, cores(arena, &[formula]).into_values().collect()));
+        Self { arena, formulas: formulas.collect(), equations, written, places }
+    }
+
+    /// Whether a loss of so many units is the author's.
+    pub(super) fn has(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> bool {
+        self.has_what_loses(value, place, scalar, units) || LIKE * self.of_sums(value, place, scalar) >= units
+    }
+
+    /// Whether what loses the digits is a part of the author's formulas.
+    fn has_what_loses(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> bool {
+        let culprits = self.culprits(value, place, scalar);
+        let holding = |culprit: &Expr| {
+            let with = self.formulas.iter().filter(move |(_, parts)| parts.contains(culprit));
+            with.map(|(formula, _)| *formula).collect::<Vec<Expr>>()
+        };
+        let formulas: Vec<Vec<Expr>> = culprits.iter().map(holding).collect();
+        if formulas.is_empty() || formulas.iter().any(Vec::is_empty) {
+            return false;
+        }
+        let lost = |formulas: &Vec<Expr>| {
+            let places = (0..=BESIDE).map(|step| beside(scalar, place, step));
+            places.flat_map(|place| self.units(formulas, &place, scalar)).fold(0.0, f64::max)
+        };
+        formulas.iter().any(|formulas| LIKE * lost(formulas) >= units) || self.is_small(value, place, units)
+    }
+
+    /// The most units that the author's formulas lose together with those of their sums that the value holds.
+    fn of_sums(&self, value: Expr, place: &Place, scalar: Scalar) -> f64 {
+        let arena = self.arena;
+        let is_written = |part: &Expr| self.written.contains(part) || self.written.contains(&arena.neg(*part));
+        let sums = arena.postorder(&[value]).into_iter().filter(|part| matches!(arena.node(*part), Node::Sum(_)));
+        let own: Vec<Expr> = self.equations.iter().copied().chain(sums.filter(is_written)).collect();
+        self.units(&own, place, scalar).into_iter().fold(0.0, f64::max)
+    }
+
+    /// Whether the error is a few roundings of what the value is elsewhere.
+    fn is_small(&self, value: Expr, place: &Place, units: f64) -> bool {
+        let size = |place: &Place| exact(self.arena, &[value], place).sizes().next().flatten();
+        let mut sizes: Vec<f64> = self.places.iter().filter_map(size).collect();
+        sizes.sort_by(f64::total_cmp);
+        let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+        size(place).is_some_and(|here| units * here <= MOST * usual)
+    }
+
+    /// The parts of a value that lose digits although their own parts lose none, by what they are.
+    fn culprits(&self, value: Expr, place: &Place, scalar: Scalar) -> Vec<Expr> {
+        let arena = self.arena;
+        let is_made = |part: &Expr| matches!(arena.node(*part), Node::Sum(_) | Node::Product(_) | Node::Call(..));
+        let parts: Vec<Expr> = arena.postorder(&[value]).into_iter().filter(is_made).collect();
+        let units = self.units(&parts, place, scalar);
+        let losing: BTreeSet<Expr> =
+            parts.iter().zip(units).filter(|(_, units)| *units > MOST / LIKE).map(|(part, _)| *part).collect();
+        let first = losing.iter().filter(|part| !arena.operands(**part).iter().any(|operand| losing.contains(operand)));
+        let cores = cores(arena, &[value]);
+        first.map(|part| cores[part]).collect()
+    }
+
+    /// What formulas lose when they are computed as they are written.
+    fn units(&self, formulas: &[Expr], place: &Place, scalar: Scalar) -> Vec<f64> {
+        let symbols: Vec<Symbol> = self.arena.symbols_of(formulas).into_iter().collect();
+        let inputs: Vec<f64> = symbols.iter().map(|symbol| place.get(symbol).copied().unwrap_or(1.0)).collect();
+        let Ok(program) = lower(self.arena, &symbols, formulas) else { return Vec::new() };
+        exact(self.arena, formulas, place).units(&run(&program, scalar, &inputs), scalar)
+    }
+}
+
+/// A place a few steps away, each number in its own direction.
+fn beside(scalar: Scalar, place: &Place, step: u32) -> Place {
+    let moved = place.iter().enumerate().map(|(index, (&symbol, &value))| {
+        let part = if index % 2 == 0 { APART } else { -APART };
+        (symbol, round(scalar, value * (1.0 + f64::from(step) * part)))
+    });
+    moved.collect()
+}
