@@ -18,7 +18,7 @@ use crate::program::{Staged, Undeclared};
 const MOST_WAYS: usize = 4;
 
 /// The part of the work that is left which these may take.
-const SHARE: u64 = 4;
+const SHARE: u64 = 2;
 
 /// What is emitted.
 #[derive(Clone, Debug)]

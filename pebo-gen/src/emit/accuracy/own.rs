@@ -3,7 +3,8 @@
 //! In: an entry of a function, and a place at which it loses digits. Out: whether the loss is the author's. The entry loses
 //! them where a part of it does whose own parts do not. That has to be a part of the author's formulas, and these have to
 //! lose as much there; or what they hide, by adding it to something large, has to be small beside what the entry is
-//! elsewhere. Where a sum stands in the entry as the author wrote it, what that sum loses is the author's too.
+//! elsewhere. Where no part of the entry as it is written loses them, what its sums as the author wrote them lose is
+//! compared.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -71,18 +72,17 @@ impl<'a> Own<'a> {
 
     /// Whether a loss of so many units is the author's.
     pub(super) fn has(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> bool {
-        self.has_what_loses(value, place, scalar, units) || LIKE * self.of_sums(value, place, scalar) >= units
-    }
-
-    /// Whether what loses the digits is a part of the author's formulas.
-    fn has_what_loses(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> bool {
         let culprits = self.culprits(value, place, scalar);
+        if culprits.is_empty() {
+            // As it is written the value keeps its digits: it is the order of the program that adds up roundings.
+            return LIKE * self.of_sums(value, place, scalar) >= units;
+        }
         let holding = |culprit: &Expr| {
             let with = self.formulas.iter().filter(move |(_, parts)| parts.contains(culprit));
             with.map(|(formula, _)| *formula).collect::<Vec<Expr>>()
         };
         let formulas: Vec<Vec<Expr>> = culprits.iter().map(holding).collect();
-        if formulas.is_empty() || formulas.iter().any(Vec::is_empty) {
+        if formulas.iter().any(Vec::is_empty) {
             return false;
         }
         let lost = |formulas: &Vec<Expr>| {
