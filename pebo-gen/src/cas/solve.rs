@@ -372,6 +372,55 @@ mod tests {
     }
 
     #[test]
+    fn quadratics_are_solved_for_the_root_of_the_domain_without_losing_its_digits() {
+        let arena = Arena::new();
+        let [p, b] = ["p", "b"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        domain.facts.assume(b, Relation::Positive);
+        let (one, square) = (arena.one(), arena.mul(p, p));
+        let call = |function, argument| arena.call(function, &[argument]);
+        let cases = [
+            (arena.add(square, arena.mul(b, p)), "2*z1/(b + sqrt(4*z1 + b^2))"),
+            (arena.add(p, arena.sqrt(p)), "2*z1^2/(2*z1 + sqrt(4*z1 + 1) + 1)"),
+            (arena.div(p, arena.sqrt(arena.add(one, square))), "z1/sqrt(1 - z1^2)"),
+            (arena.add(arena.mul(square, square), square), "sqrt(2*z1/(sqrt(4*z1 + 1) + 1))"),
+            (call(Function::Log, arena.div(p, arena.add(one, p))), "-exp(z1)/(exp(z1) - 1)"),
+            (call(Function::Sinh, p), "asinh(z1)"),
+        ];
+        for (formula, expected) in cases {
+            assert_eq!(solved(&arena, &domain, &[formula], p), expected, "{}", arena.print(formula));
+        }
+    }
+
+    #[test]
+    fn products_come_apart() {
+        let arena = Arena::new();
+        let [p, s] = ["p", "s"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        domain.facts.assume(s, Relation::Positive);
+        let turned = |function| arena.mul(s, arena.call(function, &[p]));
+        let product = arena.mul(p, s);
+        let cases = [
+            ([turned(Function::Sin), turned(Function::Cos)], "atan2(z1, z2)", "sqrt(z1^2 + z2^2)"),
+            ([product, arena.mul(product, s)], "z1^2/z2", "z2/z1"),
+            ([product, arena.div(p, s)], "sqrt(z1*z2)", "1/sqrt(z2/z1)"),
+            ([arena.add(p, s), product], "(z1 + sqrt(z1^2 - 4*z2))/2", "2*z2/(z1 + sqrt(z1^2 - 4*z2))"),
+        ];
+        for (formulas, first, second) in cases {
+            // Of two numbers with a sum and a product the first is the larger.
+            let mut domain = domain.clone();
+            domain.facts.assume(arena.sub(p, s), Relation::Positive);
+            let equation = |(formula, z): (&Expr, &str)| Equation { formula: *formula, value: arena.variable(z) };
+            let equations: Vec<Equation> = formulas.iter().zip(["z1", "z2"]).map(equation).collect();
+            let unknowns = [p, s].map(|unknown| arena.as_symbol(unknown).unwrap());
+            let candidates = solve(&arena, &domain, &equations, &unknowns).unwrap();
+            assert_eq!(unknowns.map(|unknown| arena.print(candidates[&unknown][0])), [first, second]);
+        }
+    }
+
+    #[test]
     fn an_unknown_that_stands_alone_is_not_taken_from_a_power() {
         let arena = Arena::new();
         let p = arena.variable("p");

@@ -2,7 +2,6 @@
 
 use pebo_gen::analysis::Class;
 use pebo_gen::search::Found;
-use pebo_gen::source::Source;
 
 use super::{search, written};
 
