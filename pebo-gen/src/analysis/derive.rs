@@ -243,17 +243,14 @@ fn by_values(
     let Some(rates) = given.0.result.as_ref().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
     let mut said = Vec::new();
     let Some(other) = regression::by_values(plant, domain, cascade, inverse, rates, &mut said) else { return given };
-    let other = permitted::regression(plant, class, other, &mut said);
-    let seen = other
-        .result
-        .as_ref()
-        .filter(|_| other.verdict == Verdict::Proved)
-        .map(|result| identifiability::prove(plant, domain, cascade, result, inverse, &mut said))
-        .filter(|seen| seen.verdict == Verdict::Proved && (!forms::at_once(&given.1) || forms::at_once(seen)));
-    let Some(seen) = seen else { return given };
-    found.truncate(before);
-    found.extend(said);
-    (other, seen)
+    match forms::proved(plant, domain, (class, cascade, inverse), other, &mut said) {
+        Some(both) if !forms::at_once(&given.1) || forms::at_once(&both.1) => {
+            found.truncate(before);
+            found.extend(said);
+            both
+        }
+        _ => given,
+    }
 }
 
 /// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.
@@ -269,16 +266,10 @@ fn from_identities(
     }
     let mut others = Vec::new();
     let other = regression::from_identities(plant, domain, cascade, inverse, &mut others);
-    let other = permitted::regression(plant, class, other, &mut others);
-    let seen = other
-        .result
-        .as_ref()
-        .map(|r| identifiability::prove(plant, domain, cascade, r, inverse, &mut others))
-        .filter(|seen| seen.verdict == Verdict::Proved);
-    let Some(seen) = seen else { return given };
+    let Some(both) = forms::proved(plant, domain, (class, cascade, inverse), other, &mut others) else { return given };
     found.retain(|d| d.code != Code::NeverIdentifiable);
     found.extend(others);
-    (other, seen)
+    both
 }
 
 /// Formulas that have no value where the claim is made.

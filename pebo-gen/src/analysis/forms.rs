@@ -46,14 +46,8 @@ pub(super) fn preferred(
     if wanted {
         let mut said = Vec::new();
         offer(&mut other, RelationForm::Static, of_given.filter(|_| is_static));
-        let other = permitted::regression(plant, class, other, &mut said);
-        let shown = other
-            .result
-            .as_ref()
-            .filter(|_| other.verdict == Verdict::Proved)
-            .map(|result| identifiability::prove(plant, domain, cascade, result, inverse, &mut said));
-        match shown {
-            Some(shown) if shown.verdict == Verdict::Proved && (asks || !at_once(&seen) || at_once(&shown)) => {
+        match proved(plant, domain, (class, cascade, inverse), other, &mut said) {
+            Some((other, shown)) if asks || !at_once(&seen) || at_once(&shown) => {
                 found.truncate(before);
                 found.extend(said);
                 return (other, shown);
@@ -96,17 +90,26 @@ pub(super) fn standing(
     }
     let mut said = Vec::new();
     let other = regression::from_identities(plant, domain, cascade, inverse, &mut said);
-    let other = permitted::regression(plant, class, other, &mut said);
-    let shown = other
-        .result
-        .as_ref()
-        .filter(|_| other.verdict == Verdict::Proved)
-        .map(|result| identifiability::prove(plant, domain, cascade, result, inverse, &mut said))
-        .filter(|shown| shown.verdict == Verdict::Proved);
-    let Some(shown) = shown else { return refused(plant, found) };
+    let Some(both) = proved(plant, domain, (class, cascade, inverse), other, &mut said) else {
+        return refused(plant, found);
+    };
     found.truncate(before);
     found.extend(said);
-    (other, shown)
+    both
+}
+
+/// A regression with its identifiability, where both claims are proved, and what is to be said of them.
+pub(super) fn proved(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    regression: Claim<Regression>,
+    said: &mut Vec<Diagnostic>,
+) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
+    let regression = permitted::regression(plant, class, regression, said);
+    let result = regression.result.as_ref().filter(|_| regression.verdict == Verdict::Proved)?;
+    let shown = identifiability::prove(plant, domain, cascade, result, inverse, said);
+    (shown.verdict == Verdict::Proved).then_some((regression, shown))
 }
 
 /// The claims where a form is asked for that there is not.
