@@ -104,6 +104,16 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             blind.extend(question.doubtful(&blind, symbols, stack));
         }
     }
+    if let Some(shown) = rest.as_ref().ok().filter(|_| at_rest) {
+        let known: Vec<Expr> = blind.iter().filter_map(|other| unshown_zero(&other.place)).collect();
+        blind.extend(
+            question
+                .doubtful_at_rest(&shown.stack)
+                .into_iter()
+                .filter(|zero| !known.contains(zero))
+                .map(|zero| Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() }),
+        );
+    }
     (Motion { by_itself, at_rest, blind }, constants)
 }
 
@@ -238,6 +248,24 @@ impl Question<'_> {
         found
     }
 
+    /// What makes rows that have full rank at rest lose it: what several signals make zero stays so there.
+    fn doubtful_at_rest(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
+        let &Self { plant, domain, .. } = self;
+        let arena = &plant.arena;
+        if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
+            return Vec::new();
+        }
+        let volume = Volume::of(arena, domain, stack);
+        let places = volume.and_then(|volume| volume.places(plant, domain)).unwrap_or_default();
+        let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+        // What is of inputs alone is looked at on all motions.
+        let of_several = |zero: &Expr| {
+            let signals: BTreeSet<Symbol> = arena.symbols_of(&[*zero]).difference(&constants).copied().collect();
+            signals.len() > 1 && signals.iter().any(|signal| !plant.u.contains(signal))
+        };
+        places.zeros.into_iter().filter(of_several).collect()
+    }
+
     /// Values of inputs at which an entry vanishes.
     fn values(&self, stack: &[Vec<Expr>]) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
         let arena = &self.plant.arena;
@@ -281,6 +309,14 @@ impl Question<'_> {
             there.is_none_or(|there| self.shown(&there).map_or(true, |shown| !shown.hidden.is_empty()))
         };
         places.constants.into_iter().filter(lost).collect()
+    }
+}
+
+/// What is zero where nothing was decided.
+fn unshown_zero(place: &Place) -> Option<Expr> {
+    match place {
+        Place::Unshown(zero) => Some(*zero),
+        _ => None,
     }
 }
 
@@ -490,5 +526,16 @@ mod tests {
         );
         let turned = "x: [a, b]\ny: [q, r]\nu: [v]\nf_x: {a: q*a, b: -q*b}\nf_y: {q: v, r: a + b}\nphi: [a, b]";
         assert_eq!(of(turned), [but, "while `q = 0`, it was not decided what is identified"]);
+    }
+
+    /// A heat exchanger with an unknown area: without a difference of temperatures it transfers nothing, for ever at rest.
+    #[test]
+    fn what_several_signals_hide_at_rest_is_listed() {
+        let exchanger = "x: [T, k]\ny: [S]\nu: [v, w]\nassume: [k > 0]\nf_x: {T: v - T - k*(T - S), k: 0}\n\
+                         f_y: {S: w - S + k*(T - S)}\nphi: [k, k*(T + S)]";
+        let lines = of(exchanger);
+        assert!(lines[0].ends_with("even at rest, but for these motions"), "{lines:?}");
+        assert!(lines[1].ends_with("= 0`, it was not decided what is identified"), "{lines:?}");
+        assert_eq!(lines.len(), 2, "{lines:?}");
     }
 }
