@@ -83,16 +83,16 @@ def compiled(text):
     return compile(ast.fix_missing_locations(tree), "case", "eval")
 
 
-def points(random_source):
+def points(random_source, reach):
     ranges = {"p": (0.05, 2.5), "q": (0.05, 2.5), "r": (0.05, 2.5), "t": (-0.95, 0.95), "w": (0.05, 1.5)}
     while True:
-        yield {n: mpmath.mpf(random_source.uniform(*ranges.get(n, (-2.5, 2.5)))) for n in NAMES}
+        yield {n: mpmath.mpf(random_source.uniform(*ranges.get(n, (-reach, reach)))) for n in NAMES}
 
 
-def largest(text, random_source, times=12):
+def largest(text, random_source, times=12, reach=2.5):
     """The largest magnitude over some points, zero where more digits let it shrink, and how many had a value."""
     code, best, seen = compiled(text), mpmath.mpf(0), 0
-    for _, point in zip(range(times), points(random_source)):
+    for _, point in zip(range(times), points(random_source, reach)):
         try:
             with mpmath.workdps(50):
                 coarse = abs(eval(code, FUNCTIONS, point))
@@ -122,8 +122,8 @@ def main():
         elif (value < TINY) == (said == "zero"):
             counts[group, said, "confirmed"] += 1
         else:
-            if said == "nonzero" and largest(text, source, 2000)[0] >= TINY:
-                # Differs on a small part of the domain only.
+            # It may differ on a small part of the domain only, or far out: `sat(4 + (y/3)^3)` is 1 but for y < -4.3.
+            if said == "nonzero" and any(largest(text, source, 2000, reach)[0] >= TINY for reach in (2.5, 20)):
                 counts[group, said, "confirmed"] += 1
                 continue
             counts[group, said, "WRONG"] += 1
