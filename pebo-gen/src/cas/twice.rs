@@ -42,8 +42,10 @@ pub(crate) fn taken_twice(
         arena.substitute(expr, &others.collect())
     };
     let formula = here(formula);
+    // The other facts hold at the point as well as elsewhere.
+    let facts = domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&symbol));
     let conditions: Vec<(Expr, Relation)> =
-        domain.facts.iter().chain(asks.iter().copied()).map(|(expr, relation)| (here(expr), relation)).collect();
+        facts.chain(asks.iter().copied()).map(|(expr, relation)| (here(expr), relation)).collect();
     let over = |values: &Interval| {
         let values = BTreeMap::from([(symbol, values.clone())]);
         let holds = |(expr, relation): &(Expr, Relation)| {
@@ -142,6 +144,8 @@ mod tests {
         ];
         for (formula, bounds, ask, expected) in cases {
             let mut domain = Domain::default();
+            // Of what the formula does not hold.
+            domain.facts.assume(arena.variable("r"), Relation::Positive);
             if let Some((low, high)) = bounds {
                 domain.facts.assume(arena.sub(p, arena.number(low)), Relation::Positive);
                 domain.facts.assume(arena.sub(arena.number(high), p), Relation::Positive);

@@ -74,8 +74,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     if class != Some(Class::Pebo) && !hunt.is_over() {
         hunt.generalised();
     }
-    hunt.rest();
     hunt.of_class();
+    hunt.rest();
     let (mut candidates, tried) = (std::mem::take(&mut hunt.candidates), std::mem::take(&mut hunt.tried));
     if let Some(class) = class {
         candidates.retain(|candidate| candidate.derivation.class == class);
@@ -184,7 +184,7 @@ impl Hunt<'_> {
         self.bound.is_some()
     }
 
-    /// The transform of the plant's class, where nothing else recovers the states: coils have their fluxes.
+    /// The transform of the plant's class, where nothing better recovers the states: coils have their fluxes.
     fn of_class(&mut self) {
         let plant = self.question.plant;
         if plant.origin == TransformOrigin::Class

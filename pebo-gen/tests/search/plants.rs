@@ -2,6 +2,8 @@
 
 use pebo_gen::analysis::Class;
 use pebo_gen::search::Found;
+use pebo_gen::source::Source;
+use pebo_gen::{Ask, solve};
 
 use super::{search, written};
 
@@ -143,14 +145,17 @@ fn a_mechanical_plant_needs_no_frame() {
 }
 
 #[test]
-fn fluxes_that_only_their_relation_identifies_are_found_together() {
-    // The speed is not measured, so that the outputs are affine in no transform.
+fn coils_have_their_fluxes_where_nothing_better_is_found() {
+    // The speed is not measured, and only a relation among the fluxes, which no affine output is, identifies them.
     let lines = "parameters: {R: 8.875, L: 0.04, n: 5, m: 0.2}\nx: [q]\ny: [i1, i2]\nu: [v1, v2]\nw: [omega]\n\
                  assume: [L > 0, m > 0, n > 0]\nangles: {q: 2*pi/n}\nelectromechanical:\n  L: [[L, 0], [0, L]]\n  \
                  mu: [m*cos(n*q), m*sin(n*q)]\n  R: [R, R]\n  speed: omega";
     let (_, found) = search(lines, None);
     assert_eq!(found.verdict, Found::Found);
-    assert_eq!(found.candidates[0].formulas(), ["cos(n*q) + L*i1/m", "sin(n*q) + L*i2/m"]);
+    assert_eq!(found.candidates[0].formulas(), ["m*cos(n*q) + L*i1", "m*sin(n*q) + L*i2"]);
+    // There is nothing to be written into the model.
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
+    assert_eq!(solve(&source, None, &Ask::new()).filled.as_deref(), Some(source.text()));
 }
 
 #[test]
