@@ -19,8 +19,11 @@ use super::kind::Kind;
 use super::magnitude::Deviations;
 use super::point::Point;
 use super::spread::Slopes;
+use super::start::beginning;
 #[cfg(feature = "simulate")]
 use super::told::Known;
+#[cfg(feature = "simulate")]
+use super::tuned::{Noise, Prediction};
 use super::tuned::Tuned;
 
 /// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
@@ -60,7 +63,7 @@ pub(super) fn derive(
     }
     let start = match frame.chi_0 {
         Some(written) => written,
-        None => somewhere(&said, plant, derivation)?,
+        None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
     let point = completed(&said, plant, &formulas, &start)?;
     let deviations = Deviations::of(model, plant, &said, period)?;
@@ -69,6 +72,9 @@ pub(super) fn derive(
     let at_start = formulas.phi.wide_variances(&point, &x_and_y)?;
     let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
     let mut noise = formulas.phi.variances(&point, &drifts)?;
+    let written = frame.process_noise.as_ref().map(|written| written.iter().map(Rational::to_f64).collect::<Vec<_>>());
+    #[cfg(feature = "simulate")]
+    let mut drift = written.clone().unwrap_or_else(|| noise.clone());
     let heard = |slopes: &Slopes, into: &mut [f64]| -> Option<()> {
         let variances = slopes.variances(&point, &deviations.sensors)?;
         into.iter_mut().zip(variances).for_each(|(q, variance)| *q += variance * period.unwrap_or_default());
@@ -77,7 +83,7 @@ pub(super) fn derive(
     heard(&formulas.flow, &mut noise)?;
     let covariance =
         frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
-    let noise = frame.process_noise.as_ref().map_or(noise, |written| written.iter().map(Rational::to_f64).collect());
+    let noise = written.unwrap_or(noise);
     #[cfg(feature = "simulate")]
     let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
@@ -86,6 +92,8 @@ pub(super) fn derive(
     let (operator, covariance, noise) = match kind {
         Kind::Output => {
             let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
+            #[cfg(feature = "simulate")]
+            drift.splice(0..0, of_rows.iter().copied());
             heard(&formulas.rates, &mut of_rows)?;
             // The first sample is where the outputs begin.
             let start = rows.iter().map(|deviation| deviation.powi(2));
@@ -135,11 +143,40 @@ pub(super) fn derive(
         gate: frame.gate,
         limits: None,
     };
+    #[cfg(feature = "simulate")]
+    let prediction = match kind {
+        Kind::Filtered => Prediction::None(FILTERED),
+        _ if !is_heard(plant, derivation, &formulas, kind) => Prediction::Covariance,
+        _ if can_rebase => Prediction::Noise(Noise { sensors: deviations.sensors.clone(), drift }),
+        _ => Prediction::None(ACCUMULATES),
+    };
     Some(Tuned {
         settings,
         #[cfg(feature = "simulate")]
-        known: Some(known),
+        known: Some(known.predicted(&prediction)),
+        #[cfg(feature = "simulate")]
+        prediction,
     })
+}
+
+/// Why nothing is predicted of what went through a filter.
+#[cfg(feature = "simulate")]
+const FILTERED: &str = "the filter makes the noise of one sample that of all later ones too";
+
+/// Why nothing is predicted of unknowns that are functions of theta.
+#[cfg(feature = "simulate")]
+const ACCUMULATES: &str =
+    "the noise of the outputs adds up in the extension, and the unknowns, which are functions of theta, do not follow it";
+
+/// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
+/// the left inverse.
+#[cfg(feature = "simulate")]
+fn is_heard(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: Kind) -> bool {
+    let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
+    let y = plant.y.iter().map(|output| output.symbol).collect();
+    let left_inverse = derivation.left_inverse.result.as_ref();
+    let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
+    recovered || depends(&formulas.flow) || (kind == Kind::Output && depends(&formulas.rates))
 }
 
 /// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
@@ -215,26 +252,6 @@ fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
     let message = format!("the filter of `{}` depends on the period of its samples", plant.name);
     Diagnostic::error(Code::SimulationIncomplete, span, message)
         .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
-}
-
-/// The extension at the start: zeros, unless `phi_left` has no value there, as a flux of 0 has no position. Then phi of
-/// states that are zero.
-fn somewhere(said: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
-    let zeros = vec![Rational::from(0); plant.phi.len()];
-    let inverse = derivation.left_inverse.result.as_ref()?;
-    let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
-    let is_inside = |z: &[f64]| {
-        let values = said.with(&plant.z, z).values(&states);
-        values.is_none_or(|values| values.iter().all(|value| value.is_finite()))
-    };
-    if is_inside(&vec![0.0; zeros.len()]) {
-        return Some(zeros);
-    }
-    let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
-    let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
-    let z = said.with(&x, &vec![0.0; x.len()]).values(&phi).filter(|z| is_inside(z));
-    let start = z.and_then(|z| z.iter().map(|value| rounded(*value)).collect::<Option<Vec<_>>>());
-    Some(start.unwrap_or(zeros))
 }
 
 /// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
@@ -385,7 +402,7 @@ fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<
 }
 
 /// A number in four digits, if it is one with which can be computed.
-fn rounded(value: f64) -> Option<Rational> {
+pub(super) fn rounded(value: f64) -> Option<Rational> {
     const RANGE: std::ops::Range<f64> = 1e-100..1e100;
     if value == 0.0 {
         return Some(Rational::from(0));
