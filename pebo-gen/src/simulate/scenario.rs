@@ -109,7 +109,7 @@ impl Scenario {
     ) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
         let mut problems = Diagnostics::new();
-        let model = &*changed(model, overrides, &mut problems);
+        let model = &*changed(model, overrides);
         let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
         let names = Names { model, simulation, plant };
         let scenario = Resolution { names, problems: &mut problems }.scenario(derivation, overrides);

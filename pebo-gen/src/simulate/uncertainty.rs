@@ -173,8 +173,7 @@ impl<const N: usize> Uncertainty<N> {
     {
         let Joint { errors, both, noise } = self.joint?;
         let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
-        let (by_error, by_noise, by_sample) =
-            (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
+        let (by_error, by_noise, by_sample) = (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
         let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
         let covariance = by_error * (errors * by_error.transpose() + both * by_noise.transpose())
@@ -223,9 +222,9 @@ impl<const N: usize> Uncertainty<N> {
         // By pivots, largest share first: what is left of a matrix that is singular is rounding.
         let whole: Vec<f64> = (0..2 * N).map(|i| left[i][i]).collect();
         let mut open: Vec<usize> = (0..2 * N).filter(|i| whole[*i] > 0.0).collect();
-        while let Some(place) = open.iter().copied().max_by(|a, b| {
-            (left[*a][*a] / whole[*a]).total_cmp(&(left[*b][*b] / whole[*b]))
-        }) {
+        while let Some(place) =
+            open.iter().copied().max_by(|a, b| (left[*a][*a] / whole[*a]).total_cmp(&(left[*b][*b] / whole[*b])))
+        {
             if left[place][place] <= ROUNDING * whole[place] {
                 break;
             }

@@ -22,9 +22,9 @@ use super::spread::Slopes;
 use super::start::beginning;
 #[cfg(feature = "simulate")]
 use super::told::Known;
+use super::tuned::Tuned;
 #[cfg(feature = "simulate")]
 use super::tuned::{Noise, Prediction};
-use super::tuned::Tuned;
 
 /// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
 pub(crate) const BANDWIDTH: f64 = 0.1;
@@ -165,8 +165,7 @@ const FILTERED: &str = "the filter makes the noise of one sample that of all lat
 
 /// Why nothing is predicted of unknowns that are functions of theta.
 #[cfg(feature = "simulate")]
-const ACCUMULATES: &str =
-    "the noise of the outputs adds up in the extension, and the unknowns, which are functions of theta, do not follow it";
+const ACCUMULATES: &str = "the noise of the outputs adds up in the extension, and the unknowns, which are functions of theta, do not follow it";
 
 /// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
 /// the left inverse.

@@ -38,9 +38,9 @@ pub(crate) use tuned::Tuned;
 #[cfg(feature = "simulate")]
 pub(crate) use derive::BANDWIDTH;
 #[cfg(feature = "simulate")]
-pub(crate) use tuned::Prediction;
-#[cfg(feature = "simulate")]
 pub use told::{Known, Numbers, Value};
+#[cfg(feature = "simulate")]
+pub(crate) use tuned::Prediction;
 
 impl Tuned {
     /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what
