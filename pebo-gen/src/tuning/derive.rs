@@ -15,16 +15,17 @@ use crate::plant::Plant;
 use crate::plant::settings::{Covariance, Estimator, Frame, Operator, Settings};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::digits::rounded;
 use super::kind::Kind;
 use super::magnitude::Deviations;
 use super::point::Point;
+#[cfg(feature = "simulate")]
+use super::prediction::{Noise, Prediction};
 use super::spread::Slopes;
 use super::start::beginning;
 #[cfg(feature = "simulate")]
 use super::told::Known;
 use super::tuned::Tuned;
-#[cfg(feature = "simulate")]
-use super::tuned::{Noise, Prediction};
 
 /// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
 pub(crate) const BANDWIDTH: f64 = 0.1;
@@ -398,13 +399,4 @@ fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<
     let least = if largest > 0.0 { CERTAIN * largest } else { CERTAIN };
     let covariance: Vec<f64> = covariance.iter().map(|variance| variance.max(least)).collect();
     Some((operator, all(&covariance)?, all(noise)?))
-}
-
-/// A number in four digits, if it is one with which can be computed.
-pub(super) fn rounded(value: f64) -> Option<Rational> {
-    const RANGE: std::ops::Range<f64> = 1e-100..1e100;
-    if value == 0.0 {
-        return Some(Rational::from(0));
-    }
-    RANGE.contains(&value.abs()).then(|| Rational::from_decimal(&format!("{value:.3e}")).ok())?
 }

@@ -13,9 +13,12 @@
 //! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
 
 mod derive;
+mod digits;
 mod kind;
 mod magnitude;
 mod point;
+#[cfg(feature = "simulate")]
+mod prediction;
 mod spread;
 mod start;
 #[cfg(feature = "simulate")]
@@ -38,9 +41,9 @@ pub(crate) use tuned::Tuned;
 #[cfg(feature = "simulate")]
 pub(crate) use derive::BANDWIDTH;
 #[cfg(feature = "simulate")]
-pub use told::{Known, Numbers, Value};
+pub(crate) use prediction::Prediction;
 #[cfg(feature = "simulate")]
-pub(crate) use tuned::Prediction;
+pub use told::{Known, Numbers, Value};
 
 impl Tuned {
     /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what

@@ -11,7 +11,7 @@ use crate::cas::{Expr, Symbol};
 use crate::model::Model;
 use crate::plant::Plant;
 
-use super::derive::rounded;
+use super::digits::rounded;
 use super::point::Point;
 
 /// Parts of the state that the plant is said to start with which the extension may start from, the first that will do: not

@@ -7,7 +7,7 @@ use crate::plant::Plant;
 
 use super::kind::Kind;
 use super::magnitude::Deviations;
-use super::tuned::Prediction;
+use super::prediction::Prediction;
 
 /// What is known of sensors, start and disturbances, with what was derived of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -4,6 +4,8 @@ use crate::cas::rational::Rational;
 use crate::plant::Settings;
 
 #[cfg(feature = "simulate")]
+use super::prediction::Prediction;
+#[cfg(feature = "simulate")]
 use super::told::Known;
 
 /// Settings, and what they were derived from where they were.
@@ -17,26 +19,4 @@ pub(crate) struct Tuned {
     /// How the errors of the estimates are predicted.
     #[cfg(feature = "simulate")]
     pub prediction: Prediction,
-}
-
-/// How the standard errors of estimates follow from the numbers that are known.
-#[cfg(feature = "simulate")]
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Prediction {
-    /// The covariance of least squares is that of the unknown.
-    Covariance,
-    /// Not that alone: the noise of a sample is elsewhere than in its row of the regression too.
-    Noise(Noise),
-    /// Not at all, and why.
-    None(&'static str),
-}
-
-/// Noise that an observer has to do with.
-#[cfg(feature = "simulate")]
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Noise {
-    /// The standard deviation of the samples of each output.
-    pub sensors: Vec<f64>,
-    /// What each unknown drifts by besides, as a variance per second.
-    pub drift: Vec<f64>,
 }

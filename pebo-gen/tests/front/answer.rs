@@ -268,8 +268,7 @@ fn what_is_set_of_a_loop_changes_nothing_that_was_derived() {
     let anew = pebo_gen::derive(&read(&settings)).expect("a model");
     let mut again = pebo_gen::derive(&read(&[])).expect("a model");
     again.model = model(&settings);
-    let [anew, again] = [anew, again].map(|derived| {
-        derived.scenario(&Overrides::default()).expect("a loop").run().expect("it runs").csv()
-    });
+    let [anew, again] = [anew, again]
+        .map(|derived| derived.scenario(&Overrides::default()).expect("a loop").run().expect("it runs").csv());
     assert_eq!(anew, again);
 }
