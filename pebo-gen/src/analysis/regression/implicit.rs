@@ -22,7 +22,7 @@ use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
-use crate::cas::tidy::shortest;
+use crate::cas::tidy::{asking_less, shortest};
 
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;
@@ -51,7 +51,10 @@ pub(super) fn equation(
     let slopes = plant.z.iter().map(|z| arena.derivative(primitive, *z));
     let along = slopes.enumerate().map(|(index, slope)| arena.mul(slope, velocity(plant, cascade, index)));
     let right = arena.add(arena.mul(factor, rate), arena.sum(along));
-    let right = shortest(arena, domain, right);
+    // What was divided by is gone: at z = chi + theta nothing keeps it from zero.
+    let field = Field::over(arena, &domain.facts, &[right])?;
+    let whole = field.show(&field.fraction(right)?);
+    let right = asking_less(arena, domain, shortest(arena, domain, right), &[whole]);
     // Proved of the plant itself: at z = phi(x, y), along its vector field.
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let moving = arena.directional(arena.substitute(primitive, &transform), &plant.rates());

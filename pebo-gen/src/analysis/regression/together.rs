@@ -184,7 +184,7 @@ pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regre
 }
 
 /// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside those
-/// whose rates are affine in z; none where another rate has not that form.
+/// whose rates are affine in z. Others are left unused; none where that is all of them.
 pub(super) fn under_derivative(
     plant: &Plant,
     domain: &Domain,
@@ -201,8 +201,11 @@ pub(super) fn under_derivative(
         Some(_) => Some(Equation { primitive: plant.arena.of_symbol(plant.y[output].symbol), rate }),
         None => implicit::equation(plant, domain, cascade, (output, rate)).ok()?,
     };
-    let equations: Option<Vec<Equation>> = rates.iter().map(equation).collect();
-    joined(plant, domain, cascade, Some(left_inverse), &equations?, found)
+    let equations: Vec<Equation> = rates.iter().filter_map(equation).collect();
+    if equations.is_empty() {
+        return None;
+    }
+    joined(plant, domain, cascade, Some(left_inverse), &equations, found)
 }
 
 /// The regression of the equations: linear where all are affine in z, else in functions of theta.
