@@ -47,9 +47,7 @@ pub(super) fn derive(
         problems.push(idle_hold(plant, hold.span));
         return None;
     }
-    let states = derivation.left_inverse.result.as_ref()?.x.len();
-    let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
-    let frame = Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)?;
+    let frame = frame(model, plant, derivation, problems)?;
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
     let formulas = Formulas::of(plant, derivation)?;
@@ -69,22 +67,8 @@ pub(super) fn derive(
     let point = completed(&said, plant, &formulas, &start)?;
     let deviations = Deviations::of(model, plant, &said, period)?;
 
-    let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
-    let at_start = formulas.phi.wide_variances(&point, &x_and_y)?;
-    let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
-    let mut noise = formulas.phi.variances(&point, &drifts)?;
-    let written = frame.process_noise.as_ref().map(|written| written.iter().map(Rational::to_f64).collect::<Vec<_>>());
-    #[cfg(feature = "simulate")]
-    let mut drift = written.clone().unwrap_or_else(|| noise.clone());
-    let heard = |slopes: &Slopes, into: &mut [f64]| -> Option<()> {
-        let variances = slopes.variances(&point, &deviations.sensors)?;
-        into.iter_mut().zip(variances).for_each(|(q, variance)| *q += variance * period.unwrap_or_default());
-        Some(())
-    };
-    heard(&formulas.flow, &mut noise)?;
-    let covariance =
-        frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
-    let noise = written.unwrap_or(noise);
+    let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
+    let Coordinates { covariance, mut drift, noise } = coordinates;
     #[cfg(feature = "simulate")]
     let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
@@ -92,10 +76,9 @@ pub(super) fn derive(
     let mut chi_0 = start;
     let (operator, covariance, noise) = match kind {
         Kind::Output => {
-            let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
-            #[cfg(feature = "simulate")]
+            let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
             drift.splice(0..0, of_rows.iter().copied());
-            heard(&formulas.rates, &mut of_rows)?;
+            let of_rows = heard(&formulas.rates, &point, &deviations, period, of_rows)?;
             // The first sample is where the outputs begin.
             let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
@@ -118,12 +101,7 @@ pub(super) fn derive(
     };
     let exact = exact(&operator, &covariance, &noise);
     let Some((operator, start, process_noise)) = exact else {
-        let span = asked.map_or(model.name.span, |(_, span)| span);
-        let message = "the numbers that are derived of these are out of range";
-        problems.push(
-            Diagnostic::error(Code::NumberOutOfRange, span, message)
-                .help("choose standard deviations, and units, in which numbers are nearer to 1"),
-        );
+        problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
         return None;
     };
     let settings = Settings {
@@ -145,11 +123,9 @@ pub(super) fn derive(
         limits: None,
     };
     #[cfg(feature = "simulate")]
-    let prediction = match kind {
-        Kind::Filtered => Prediction::None(FILTERED),
-        _ if !is_heard(plant, derivation, &formulas, kind) => Prediction::Covariance,
-        _ if can_rebase => Prediction::Noise(Noise { sensors: deviations.sensors.clone(), drift }),
-        _ => Prediction::None(ACCUMULATES),
+    let prediction = {
+        let is_heard = is_heard(plant, derivation, &formulas, kind);
+        Prediction::of(kind, is_heard, can_rebase, Noise { sensors: deviations.sensors, drift })
     };
     Some(Tuned {
         settings,
@@ -160,14 +136,6 @@ pub(super) fn derive(
     })
 }
 
-/// Why nothing is predicted of what went through a filter.
-#[cfg(feature = "simulate")]
-const FILTERED: &str = "the filter makes the noise of one sample that of all later ones too";
-
-/// Why nothing is predicted of unknowns that are functions of theta.
-#[cfg(feature = "simulate")]
-const ACCUMULATES: &str = "the noise of the outputs adds up in the extension, and the unknowns, which are functions of theta, do not follow it";
-
 /// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
 /// the left inverse.
 #[cfg(feature = "simulate")]
@@ -177,6 +145,58 @@ fn is_heard(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: K
     let left_inverse = derivation.left_inverse.result.as_ref();
     let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
     recovered || depends(&formulas.flow) || (kind == Kind::Output && depends(&formulas.rates))
+}
+
+/// Variances of the coordinates.
+struct Coordinates {
+    /// At the start.
+    covariance: Vec<f64>,
+    /// Of what they drift by in a second.
+    drift: Vec<f64>,
+    /// The same with what the sensors add, where outputs drive the cascade.
+    noise: Vec<f64>,
+}
+
+impl Coordinates {
+    fn of(
+        formulas: &Formulas,
+        point: &Point,
+        deviations: &Deviations,
+        frame: &Frame<Rational>,
+        period: Option<f64>,
+    ) -> Option<Self> {
+        let all = |written: &Vec<Rational>| written.iter().map(Rational::to_f64).collect::<Vec<_>>();
+        let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
+        let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
+        let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
+        let drift = formulas.phi.variances(point, &drifts)?;
+        let noise = heard(&formulas.flow, point, deviations, period, drift.clone())?;
+        let written = frame.process_noise.as_ref().map(all);
+        Some(Self {
+            covariance: frame.covariance.as_ref().map_or(at_start, all),
+            drift: written.clone().unwrap_or(drift),
+            noise: written.unwrap_or(noise),
+        })
+    }
+}
+
+/// Variances with what the noise of samples adds to rates, a sample for a period.
+fn heard(
+    rates: &Slopes,
+    point: &Point,
+    deviations: &Deviations,
+    period: Option<f64>,
+    variances: Vec<f64>,
+) -> Option<Vec<f64>> {
+    let added = rates.variances(point, &deviations.sensors)?;
+    Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
+}
+
+/// What the section says beside its standard deviations.
+fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Frame<Rational>> {
+    let states = derivation.left_inverse.result.as_ref()?.x.len();
+    let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+    Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
 }
 
 /// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
@@ -246,6 +266,11 @@ fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagno
         format!("say where it starts, as `simulation: {{initial: {{{name}: 0}}}}`")
     };
     Diagnostic::error(Code::SimulationIncomplete, span, message).help(help)
+}
+
+fn out_of_range(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::NumberOutOfRange, span, "the numbers that are derived of these are out of range")
+        .help("choose standard deviations, and units, in which numbers are nearer to 1")
 }
 
 fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {

@@ -69,7 +69,7 @@ impl Tuned {
             let begun = Some(()).filter(|()| model.observer.extension.is_empty());
             let chi_0 = begun.and_then(|()| start(model, plant, derivation)).unwrap_or(settings.chi_0);
             return Some(Self {
-                settings: Settings { limits, chi_0, ..settings },
+                settings: Settings { chi_0, limits, ..settings },
                 #[cfg(feature = "simulate")]
                 known: None,
                 #[cfg(feature = "simulate")]
