@@ -60,7 +60,7 @@ pub(super) fn derive(
         }
         return None;
     }
-    let start = match frame.chi_0 {
+    let start = match frame.chi_0.clone() {
         Some(written) => written,
         None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
@@ -78,7 +78,7 @@ pub(super) fn derive(
         Kind::Output => {
             let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
             drift.splice(0..0, of_rows.iter().copied());
-            let of_rows = heard(&formulas.rates, &point, &deviations, period, of_rows)?;
+            let of_rows = heard(&formulas.rates, &point, &deviations, period, &of_rows)?;
             // The first sample is where the outputs begin.
             let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
@@ -170,7 +170,7 @@ impl Coordinates {
         let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
         let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
         let drift = formulas.phi.variances(point, &drifts)?;
-        let noise = heard(&formulas.flow, point, deviations, period, drift.clone())?;
+        let noise = heard(&formulas.flow, point, deviations, period, &drift)?;
         let written = frame.process_noise.as_ref().map(all);
         Some(Self {
             covariance: frame.covariance.as_ref().map_or(at_start, all),
@@ -186,7 +186,7 @@ fn heard(
     point: &Point,
     deviations: &Deviations,
     period: Option<f64>,
-    variances: Vec<f64>,
+    variances: &[f64],
 ) -> Option<Vec<f64>> {
     let added = rates.variances(point, &deviations.sensors)?;
     Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
