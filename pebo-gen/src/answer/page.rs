@@ -48,7 +48,9 @@ pub(super) fn page(
         diagnostics: &diagnostics,
         emitted: emitted.as_ref(),
         #[cfg(feature = "simulate")]
-        run: run.as_ref().map_or(page::Run::Not, |run| run.as_ref().ok().and_then(of_run).map_or(page::Run::Failed, page::Run::Done)),
+        run: run.as_ref().map_or(page::Run::Not, |run| {
+            run.as_ref().ok().and_then(of_run).map_or(page::Run::Failed, page::Run::Done)
+        }),
     });
     (page, refusal)
 }

@@ -11,7 +11,9 @@ use super::{files, terminal};
 
 pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {
     if let Some((word, command)) = options.models.first().and_then(|first| misspelt(first)) {
-        terminal::say(&format!("error: there is no command and no file `{word}`\n  = help: did you mean `{command}`?\n"));
+        terminal::say(&format!(
+            "error: there is no command and no file `{word}`\n  = help: did you mean `{command}`?\n"
+        ));
         return Standing::Malformed;
     }
     let several = options.models.len() > 1;

@@ -31,8 +31,8 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let both = Group::new(model.x.iter().chain(&model.y), "a state of x or y");
     if !model.x.is_empty() && !model.y.is_empty() {
         pass.complete(&model.f_x, &model.x, "f_x");
-        pass.rates(&model.f_x, (&x, "x", "f_x"), (&y, "y", "f_y"));
-        pass.rates(&model.f_y, (&y, "y", "f_y"), (&x, "x", "f_x"));
+        pass.rates(&model.f_x, &scope, (&x, "x", "f_x"), (&y, "f_y"));
+        pass.rates(&model.f_y, &scope, (&y, "y", "f_y"), (&x, "f_x"));
         pass.belong(&model.g_y, &y, "g_y");
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
@@ -209,7 +209,8 @@ impl Pass<'_> {
         // Without any entry the section itself has been reported.
         let Some(first) = entries.first() else { return };
         let present: HashSet<&str> = entries.iter().map(|entry| entry.name.value.as_str()).collect();
-        let missing: Vec<&str> = names.iter().map(|name| name.value.as_str()).filter(|name| !present.contains(name)).collect();
+        let missing: Vec<&str> =
+            names.iter().map(|name| name.value.as_str()).filter(|name| !present.contains(name)).collect();
         let known: HashSet<&str> = names.iter().map(|name| name.value.as_str()).collect();
         let strangers = entries.iter().map(|entry| entry.name.value.as_str());
         let strangers = strangers.filter(|name| !known.contains(name)).take(MOST_STRANGERS);
@@ -239,8 +240,9 @@ impl Pass<'_> {
     fn rates(
         &mut self,
         entries: &[Entry<Formula>],
+        declared: &Scope<'_>,
         (own, key, section): (&Group<'_>, &str, &str),
-        (other, of, there): (&Group<'_>, &str, &str),
+        (other, there): (&Group<'_>, &str),
     ) {
         let missing = own.without(entries);
         for entry in entries.iter().filter(|entry| !own.set.contains(entry.name.value.as_str())) {
@@ -256,10 +258,12 @@ impl Pass<'_> {
                     return diagnostic.help(format!("it is {}: its rate stands under `{there}`", other.what));
                 }
                 if let Some(of) = derivative_of(name, missing.iter().copied()) {
-                    return diagnostic.help(format!("write `{of}: ..`: what stands under `{section}` is a rate already"));
+                    return diagnostic
+                        .help(format!("write `{of}: ..`: what stands under `{section}` is a rate already"));
                 }
                 match nearest(name, missing.iter().copied()) {
                     Some(near) => diagnostic.suggest(Some(near)),
+                    None if declared.contains_key(name) => diagnostic.help("remove it here, or its other declaration"),
                     None => {
                         let names = own.names.iter().copied().chain([name]).collect::<Vec<_>>().join(", ");
                         diagnostic.help(format!("declare it, as `{key}: [{names}]`, or remove it here"))
@@ -278,12 +282,10 @@ impl Pass<'_> {
         let Some(output) = model.y.first() else { return };
         let names = listed(model.y.iter().map(|name| name.value.as_str()));
         let message = format!("nothing says what {names} has to do with the states");
-        self.diagnostics.push(
-            Diagnostic::error(Code::MissingKey, output.span, message).help(format!(
-                "add the rate of an output, as `f_y: {{{0}: ..}}`, or its value, as `g_y: {{{0}: ..}}`",
-                output.value
-            )),
-        );
+        self.diagnostics.push(Diagnostic::error(Code::MissingKey, output.span, message).help(format!(
+            "add the rate of an output, as `f_y: {{{0}: ..}}`, or its value, as `g_y: {{{0}: ..}}`",
+            output.value
+        )));
     }
 
     fn simulation(

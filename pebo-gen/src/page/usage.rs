@@ -1,6 +1,6 @@
 //! What the proofs rest on, and what to know in use.
 
-use crate::analysis::Outcome;
+use crate::analysis::{Outcome, Verdict};
 use crate::report::remarks;
 
 use super::formula::{Setter, Steps};
@@ -31,7 +31,10 @@ pub(super) fn sections(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'
     html.section("use", "In use", |html| {
         let remarks = remarks::of(plant, derivation);
         if remarks.is_empty() {
-            html.paragraph("There is nothing to remark: the remarks rest on a proved cascade.");
+            html.paragraph(match derivation.cascade.verdict {
+                Verdict::Proved => "There is nothing to remark.",
+                _ => "There is nothing to remark: the remarks rest on a proved cascade.",
+            });
         }
         for remark in remarks {
             html.line("h3", &[], |html| html.text(&capitalised(remark.name)));

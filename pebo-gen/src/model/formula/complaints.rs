@@ -100,7 +100,8 @@ fn no_operator(word: &str) -> Option<&'static str> {
 }
 
 /// What to write in the place of two comparisons in one.
-pub(super) const AND: &str = "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
+pub(super) const AND: &str =
+    "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
 
 /// What to write in the place of branches.
 pub(super) const BRANCHES: &str = "formulas have no branches: use max, min, sat, sign or abs";
@@ -129,7 +130,8 @@ fn replaced(name: &str, timed: bool) -> Option<String> {
 }
 
 /// What to write in the place of a delayed signal.
-const DELAY: &str = "formulas have no delayed signals: a delayed input is an input of its own, with its own name under `u`";
+const DELAY: &str =
+    "formulas have no delayed signals: a delayed input is an input of its own, with its own name under `u`";
 
 /// A call of something that is no function; `argument` is what stands behind the parenthesis.
 pub(super) fn unknown_function(name: &str, span: Span, argument: &str) -> Diagnostic {

@@ -92,9 +92,8 @@ impl TryFrom<String> for Decimal {
 const UNITS: [&str; 21] = [
     "H", "F", "A", "V", "W", "s", "m", "Ohm", "ohm", "Ω", "Hz", "N", "Nm", "J", "Pa", "C", "Wb", "K", "S", "rad", "Ah",
 ];
-const PREFIXES: [(&str, i32); 10] = [
-    ("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("k", 3), ("K", 3), ("M", 6), ("G", 9),
-];
+const PREFIXES: [(&str, i32); 10] =
+    [("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("k", 3), ("K", 3), ("M", 6), ("G", 9)];
 
 /// What to write instead of a text that is no number.
 fn mended(text: &str) -> String {
@@ -121,7 +120,9 @@ fn mended(text: &str) -> String {
         (false, Some(number)) => format!("write `{number}`: a number has no unit and no prefix"),
         (true, None) => format!("write `{number}`: a number has no unit, which belongs under `units`"),
         // As of `5m`, metres or a thousandth.
-        (true, Some(other)) => format!("write `{number}`, or `{other}` if that is meant: a number has no unit and no prefix"),
+        (true, Some(other)) => {
+            format!("write `{number}`, or `{other}` if that is meant: a number has no unit and no prefix")
+        }
         (false, None) => format!("{HELP}; a number has no unit, which belongs under `units`"),
     }
 }

@@ -102,7 +102,8 @@ impl<'a> Lexer<'a> {
                 format!("write `{}/100` for a share of 1", if number.is_empty() { "50" } else { number })
             }
             '|' if !before.contains('|') => {
-                let inner = rest[1..].split('|').next().filter(|inner| !inner.is_empty() && inner.len() + 1 < rest.len());
+                let inner =
+                    rest[1..].split('|').next().filter(|inner| !inner.is_empty() && inner.len() + 1 < rest.len());
                 format!("the absolute value is `abs({})`", inner.unwrap_or("a"))
             }
             _ => return None,

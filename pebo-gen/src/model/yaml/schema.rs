@@ -347,13 +347,13 @@ const OBSERVER: &[Key] = &[
         "form",
         Shape::Choice(Form::NAMES),
         "form: output",
-        "What the regressand of a regression of rates is: rate, through a filter or window, or output, the outputs themselves; if left out, output unless gains are written",
+        "rate: the regression of the rates of the outputs, through a filter or a window; output: the same integrated, which needs no filter; if left out, output, or rate where gains are written",
     ),
     optional(
         "estimator",
         Shape::Choice(Estimator::NAMES),
         "estimator: gradient",
-        "The estimator; gradient if left out",
+        "The estimator; if left out beside gains, gradient",
     ),
     optional(
         "gain",

@@ -57,12 +57,10 @@ impl<'a> Fitter<'a> {
             (Shape::AllOrEach, Content::Map(_)) => {
                 Some(fields([("each", self.fit(node, &Shape::Map(&Shape::Number))?)]))
             }
-            (Shape::Map(shape), Content::Map(entries)) => Some(sequence(
-                entries.iter().map(|(key, node)| {
-                    self.entry = Some(&key.text);
-                    Some(entry(&key.text, key.span, self.fit(node, shape)?))
-                }),
-            )),
+            (Shape::Map(shape), Content::Map(entries)) => Some(sequence(entries.iter().map(|(key, node)| {
+                self.entry = Some(&key.text);
+                Some(entry(&key.text, key.span, self.fit(node, shape)?))
+            }))),
             (Shape::Kinds(keys, other), Content::Map(entries)) => {
                 let shape = |name: &str| keys.iter().find(|key| key.name == name).map_or(*other, |key| &key.shape);
                 let entries = entries.iter();
@@ -249,7 +247,8 @@ fn as_list(key: &str, node: &Node) -> Option<String> {
         Content::Map(entries) => entries.iter().map(|(key, _)| key.text.as_str()).collect::<Vec<_>>().join(", "),
         Content::Null | Content::List(_) | Content::Broken => return None,
     };
-    let is_line = !list.is_empty() && list.len() <= SHORT && list.chars().all(|c| !c.is_control() && !"[]{}\\`".contains(c));
+    let is_line =
+        !list.is_empty() && list.len() <= SHORT && list.chars().all(|c| !c.is_control() && !"[]{}\\`".contains(c));
     is_line.then(|| format!("`{key}: [{list}]`"))
 }
 
@@ -293,7 +292,8 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     let valid = format!("valid keys here are {}", listed(names()));
     let message = format!("unknown key {}", quoted(name));
     let diagnostic = Diagnostic::error(Code::UnknownKey, span, message);
-    let other = OTHERS.iter().find(|(other, key)| name.eq_ignore_ascii_case(other) && names().any(|known| known == *key));
+    let other =
+        OTHERS.iter().find(|(other, key)| name.eq_ignore_ascii_case(other) && names().any(|known| known == *key));
     if let Some(near) = other.map(|(_, key)| *key).or_else(|| nearest(name, names())) {
         return diagnostic.suggest(Some(near)).note(valid);
     }
