@@ -214,9 +214,9 @@ impl Pass<'_> {
         let known: HashSet<&str> = names.iter().map(|name| name.value.as_str()).collect();
         let strangers = entries.iter().map(|entry| entry.name.value.as_str());
         let strangers = strangers.filter(|name| !known.contains(name)).take(MOST_STRANGERS);
-        // What an entry of another name was meant for is told there.
+        // What an entry of another name was meant for is told there, and of an output among the states that it is one.
         let meant: HashSet<&str> = strangers.filter_map(|name| meant(name, &missing)).collect();
-        let missing: HashSet<&str> = missing.into_iter().filter(|name| !meant.contains(name)).collect();
+        let missing: HashSet<&str> = missing.into_iter().filter(|name| !meant.contains(name) && !self.both.contains(name)).collect();
         for name in names.iter().filter(|name| missing.contains(name.value.as_str())) {
             let message = format!("`{section}` has no entry for {}", quoted(&name.value));
             self.diagnostics.push(
@@ -229,10 +229,9 @@ impl Pass<'_> {
 
     /// Every entry has a name of the group.
     fn belong<T>(&mut self, entries: &[Entry<T>], group: &Group<'_>, section: &str) {
-        let missing = group.without(entries);
         let strangers = entries.iter().map(|entry| &entry.name);
         for name in strangers.filter(|name| !group.set.contains(name.value.as_str())) {
-            self.diagnostics.push_with(|| stranger(name, group, &missing, section));
+            self.diagnostics.push_with(|| stranger(name, group, section));
         }
     }
 
@@ -247,15 +246,11 @@ impl Pass<'_> {
         let missing = own.without(entries);
         for entry in entries.iter().filter(|entry| !own.set.contains(entry.name.value.as_str())) {
             let name = entry.name.value.as_str();
-            // Of a name among both, that has been told.
-            if self.both.contains(name) {
-                continue;
-            }
             self.diagnostics.push_with(|| {
                 let message = format!("{} under `{section}` is not {}", quoted(name), own.what);
                 let diagnostic = Diagnostic::error(Code::UnknownEntry, entry.name.span, message);
                 if other.set.contains(name) {
-                    return diagnostic.help(format!("it is {}: its rate stands under `{there}`", other.what));
+                    return diagnostic.help(format!("it is {}: its rate stands under `{there}`, and not here", other.what));
                 }
                 if let Some(of) = derivative_of(name, missing.iter().copied()) {
                     return diagnostic
@@ -463,11 +458,11 @@ fn meant<'a>(name: &str, missing: &[&'a str]) -> Option<&'a str> {
     derivative_of(name, missing.iter().copied()).or_else(|| nearest(name, missing.iter().copied()))
 }
 
-/// An entry for a name that is none of the group; `missing` are those of the group that have no entry yet.
-fn stranger(name: &Spanned<String>, group: &Group<'_>, missing: &[&str], section: &str) -> Diagnostic {
+/// An entry for a name that is none of the group.
+fn stranger(name: &Spanned<String>, group: &Group<'_>, section: &str) -> Diagnostic {
     let message = format!("{} under `{section}` is not {}", quoted(&name.value), group.what);
     let diagnostic = Diagnostic::error(Code::UnknownEntry, name.span, message);
-    match nearest(&name.value, missing.iter().copied()) {
+    match nearest(&name.value, group.names.iter().copied()) {
         Some(near) => diagnostic.suggest(Some(near)),
         None if group.names.is_empty() => diagnostic.help("remove it, or declare it"),
         None => diagnostic.help(format!("the entries of this map are for {}", listed(group.names.iter().copied()))),

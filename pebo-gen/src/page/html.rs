@@ -102,10 +102,10 @@ impl Html {
         self.line("pre", &[("tabindex", "0")], |html| html.within("code", &[], |html| html.text(text)));
     }
 
-    /// A table whose first column names its rows; it scrolls if it is wider than the page.
+    /// A table of numbers whose first column names its rows; it scrolls if it is wider than the page.
     pub(super) fn table(&mut self, caption: &str, columns: &[&str], rows: &[Vec<String>]) {
         self.block("div", &[("class", "wide")], |html| {
-            html.block("table", &[], |html| {
+            html.block("table", &[("class", "numbers")], |html| {
                 html.line("caption", &[], |html| html.prose(caption));
                 html.block("thead", &[], |html| {
                     html.line("tr", &[], |html| {

@@ -109,7 +109,7 @@ pub(super) const BRANCHES: &str = "formulas have no branches: use max, min, sat,
 /// What to write instead of a call that other languages have; the argument begins with time if it is `timed`.
 fn replaced(name: &str, timed: bool) -> Option<String> {
     Some(match name.to_ascii_lowercase().as_str() {
-        "if" | "ifelse" | "iif" | "where" | "piecewise" | "cases" | "select" => BRANCHES.to_owned(),
+        "if" | "ifelse" | "iif" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
         "interp" | "interp1" | "interp1d" | "interpolate" | "lookup" | "table" | "lut" | "spline" | "pchip" => {
             "formulas have no tables: fit a function to the table, as a polynomial, and write that".to_owned()
         }
@@ -120,8 +120,8 @@ fn replaced(name: &str, timed: bool) -> Option<String> {
             "formulas have no integrals: make the integral a state, whose rate stands under `f_x`".to_owned()
         }
         "delay" => DELAY.to_owned(),
-        "pow" | "power" => "write `a^b` for the power".to_owned(),
-        "heaviside" | "step" => format!("write `(1 + sign(a))/2` for `{name}(a)`"),
+        "pow" => "write `a^b` for the power".to_owned(),
+        "heaviside" => format!("write `(1 + sign(a))/2` for `{name}(a)`"),
         "log10" => "write `log(a)/log(10)`: `log` is the natural logarithm".to_owned(),
         "log2" => "write `log(a)/log(2)`: `log` is the natural logarithm".to_owned(),
         _ if timed => format!("write `{name}` for its value now; {DELAY}"),

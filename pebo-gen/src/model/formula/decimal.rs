@@ -95,17 +95,23 @@ const UNITS: [&str; 21] = [
 const PREFIXES: [(&str, i32); 10] =
     [("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("k", 3), ("K", 3), ("M", 6), ("G", 9)];
 
+/// Longer texts are not written again.
+const SHORT: usize = 40;
+
 /// What to write instead of a text that is no number.
 fn mended(text: &str) -> String {
     const HELP: &str = "write a decimal, as 12, 0.5 or 22e-6";
     let text = text.trim();
+    if text.len() > SHORT {
+        return HELP.to_owned();
+    }
     let point = text.replacen(',', ".", 1);
     if point != text && split(&point).is_some() {
         return format!("a decimal has a point: write `{point}`");
     }
     let end = text.rfind(|c: char| c.is_ascii_digit() || c == '.').map_or(0, |at| at + 1);
     let (number, unit) = (&text[..end], text[end..].trim());
-    if unit.is_empty() || split(number).is_none() || number.len() > DIGIT_LIMIT {
+    if unit.is_empty() || split(number).is_none() {
         return HELP.to_owned();
     }
     if unit == "%" {

@@ -96,11 +96,7 @@ impl<'a> Lexer<'a> {
         Some(match rest.chars().next()? {
             '&' => AND.to_owned(),
             '?' | ':' => BRANCHES.to_owned(),
-            '%' => {
-                let digits = before.rfind(|c: char| !c.is_ascii_digit() && c != '.').map_or(0, |at| at + 1);
-                let number = &before[digits..];
-                format!("write `{}/100` for a share of 1", if number.is_empty() { "50" } else { number })
-            }
+            '%' => "write a share of 1, as `0.5` for 50 %".to_owned(),
             '|' if !before.contains('|') => {
                 let inner =
                     rest[1..].split('|').next().filter(|inner| !inner.is_empty() && inner.len() + 1 < rest.len());

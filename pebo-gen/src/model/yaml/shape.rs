@@ -297,6 +297,9 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     if let Some(near) = other.map(|(_, key)| *key).or_else(|| nearest(name, names())) {
         return diagnostic.suggest(Some(near)).note(valid);
     }
+    if let Some(help) = of_class(name, keys) {
+        return diagnostic.help(help).note(valid);
+    }
     // A key of a section stands one level too high, or in another section.
     let section = MODEL.iter().find(|section| match &section.shape {
         Shape::Record(inner) => section.role != Role::Class && inner.iter().any(|key| key.name == name),
@@ -305,6 +308,20 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     match section {
         Some(section) => diagnostic.help(format!("write it under `{}`", section.name)).note(valid),
         None => diagnostic.help(valid),
+    }
+}
+
+/// What to write instead of a matrix that a class does not have.
+fn of_class(name: &str, keys: &'static [Key]) -> Option<&'static str> {
+    let has = |key: &str| keys.iter().any(|known| known.name == key);
+    match name {
+        "A" | "B" | "C" if has("A11") => {
+            Some("the matrices are those of x' = A11 x + A12 y + B1 u, y' = A21 x + A22 y + B2 u; for y = C x write f_x and g_y")
+        }
+        "D" | "R" | "B" | "friction" | "damping" if has("M") && has("G") => {
+            Some("a mechanical plant has no friction: with friction, write f_x and f_y")
+        }
+        _ => None,
     }
 }
 
