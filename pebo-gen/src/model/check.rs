@@ -216,13 +216,14 @@ impl Pass<'_> {
         let strangers = strangers.filter(|name| !known.contains(name)).take(MOST_STRANGERS);
         // What an entry of another name was meant for is told there, and of an output among the states that it is one.
         let meant: HashSet<&str> = strangers.filter_map(|name| meant(name, &missing)).collect();
-        let missing: HashSet<&str> = missing.into_iter().filter(|name| !meant.contains(name) && !self.both.contains(name)).collect();
+        let missing: HashSet<&str> =
+            missing.into_iter().filter(|name| !meant.contains(name) && !self.both.contains(name)).collect();
         for name in names.iter().filter(|name| missing.contains(name.value.as_str())) {
             let message = format!("`{section}` has no entry for {}", quoted(&name.value));
             self.diagnostics.push(
                 Diagnostic::error(Code::MissingEntry, name.span, message)
                     .also(first.name.span, format!("`{section}` begins here"))
-                    .help(format!("add its rate under `{section}`, as `{}: 0` if it is constant", name.value)),
+                    .help(format!("add its rate under `{section}`, 0 if it is constant")),
             );
         }
     }
@@ -250,7 +251,8 @@ impl Pass<'_> {
                 let message = format!("{} under `{section}` is not {}", quoted(name), own.what);
                 let diagnostic = Diagnostic::error(Code::UnknownEntry, entry.name.span, message);
                 if other.set.contains(name) {
-                    return diagnostic.help(format!("it is {}: its rate stands under `{there}`, and not here", other.what));
+                    return diagnostic
+                        .help(format!("it is {}: its rate stands under `{there}`, and not here", other.what));
                 }
                 if let Some(of) = derivative_of(name, missing.iter().copied()) {
                     return diagnostic

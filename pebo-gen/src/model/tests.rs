@@ -156,7 +156,8 @@ fn every_name_and_formula_has_its_place() {
 #[test]
 fn parameters_may_lack_values() {
     for parameters in ["[L, R]", "{L: null, R: ~}", "{L: , R: }", "{L, R}"] {
-        let text = format!("model: m\nx: [a]\ny: [v]\nparameters: {parameters}\nf_x: {{a: v/L}}\nf_y: {{v: a}}\nphi: [a]\n");
+        let text =
+            format!("model: m\nx: [a]\ny: [v]\nparameters: {parameters}\nf_x: {{a: v/L}}\nf_y: {{v: a}}\nphi: [a]\n");
         let model = parse(&text).expect(parameters);
         assert_eq!(model.parameters.len(), 2, "{parameters}");
         assert!(model.parameters.iter().all(|entry| entry.value.is_none()), "{parameters}");

@@ -170,7 +170,7 @@ fn a_help_is_the_cure() {
         ("{i: (", "{di: (", UnknownEntry, "write `i: ..`: what stands under `f_x` is a rate already"),
         ("{i: (", "{i': (", UnknownEntry, "write `i: ..`"),
         ("{i: (", "{di/dt: (", UnknownEntry, "write `i: ..`"),
-        (", load: 0}", "}", MissingEntry, "as `load: 0` if it is constant"),
+        (", load: 0}", "}", MissingEntry, "its rate under `f_x`, 0 if it is constant"),
         ("f_y: {omega: (K*i - load)/J}\n", "", MissingKey, "`f_y: {omega: ..}`, or its value, as `g_y: {omega: ..}`"),
         ("y: [omega]", "y: omega", WrongShape, "write `y: [omega]`"),
         ("x: [i, load]", "x: {i: A, load: Nm}", WrongShape, "write `x: [i, load]`"),

@@ -315,9 +315,9 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
 fn of_class(name: &str, keys: &'static [Key]) -> Option<&'static str> {
     let has = |key: &str| keys.iter().any(|known| known.name == key);
     match name {
-        "A" | "B" | "C" if has("A11") => {
-            Some("the matrices are those of x' = A11 x + A12 y + B1 u, y' = A21 x + A22 y + B2 u; for y = C x write f_x and g_y")
-        }
+        "A" | "B" | "C" if has("A11") => Some(
+            "the matrices are those of x' = A11 x + A12 y + B1 u, y' = A21 x + A22 y + B2 u; for y = C x write f_x and g_y",
+        ),
         "D" | "R" | "B" | "friction" | "damping" if has("M") && has("G") => {
             Some("a mechanical plant has no friction: with friction, write f_x and f_y")
         }
