@@ -82,6 +82,14 @@ impl Derived {
         Ok(Self { model, plant, derivation })
     }
 
+    /// Whether all that was derived holds of another reading of the model too, which then may stand in the place of
+    /// [`model`](Self::model): one that differs in the sections `observer`, `simulation` and `recording` alone, as with
+    /// [`Source::set`](crate::source::Source::set).
+    pub fn holds_of(&self, other: &Model) -> bool {
+        let Model { observer, simulation, recording, .. } = self.model.clone();
+        Model { observer, simulation, recording, ..other.clone() } == self.model
+    }
+
     /// What there is to tell of the claims; a refusal of a transform is followed by what a search for another found.
     pub fn advised(&self) -> Vec<Diagnostic> {
         let mut diagnostics = self.derivation.diagnostics.clone();

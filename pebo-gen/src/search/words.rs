@@ -47,6 +47,7 @@ impl Start {
             Self::Outputs => "the functions in the outputs' rates",
             Self::Rows => "the outputs' rates",
             Self::Both => "the functions in the outputs' rates and the states",
+            Self::Identities => "the functions in the identities and the states",
             Self::States => "the states",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
         }

@@ -135,6 +135,9 @@ impl Summary {
         if let Some(surprise) = self.surprise {
             line("innovation", &format!("normalised square {} on average, where 1 is expected", short(surprise)));
         }
+        if let Some(reason) = self.known.as_ref().and_then(|known| known.unpredicted.as_ref()) {
+            line("expected", &format!("no standard error is predicted: {reason}"));
+        }
         if self.parted > 0 {
             line("in part", &format!("{} of {} samples lack an output", self.parted, self.samples));
         }

@@ -1,8 +1,8 @@
 //! What the parser says about a text that is no formula.
 
-use super::{DEPTH_LIMIT, foreign};
 use super::lexer::{Kind, Token};
 use super::parser::Parser;
+use super::{DEPTH_LIMIT, foreign};
 use crate::cas::Function;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 

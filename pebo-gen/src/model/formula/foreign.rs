@@ -12,8 +12,7 @@ pub(super) fn operator(word: &str) -> Option<&'static str> {
 }
 
 /// What to write in the place of two comparisons in one.
-const AND: &str =
-    "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
+const AND: &str = "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
 
 /// What to write in the place of branches.
 const BRANCHES: &str = "formulas have no branches: use max, min, sat, sign or abs";

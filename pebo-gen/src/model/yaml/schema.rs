@@ -441,7 +441,7 @@ const OBSERVER: &[Key] = &[
         "extension",
         NUMBERS,
         "extension: [0, 0]",
-        "The dynamic extension at the start: one number for each component; zeros if left out",
+        "The dynamic extension at the start: one number for each component; if left out, zeros, or phi of a state that the plant can have where phi_left has no value at zero",
     ),
 ];
 
