@@ -60,7 +60,7 @@ pub(super) fn derive(
         }
         return None;
     }
-    let start = match frame.chi_0 {
+    let start = match frame.chi_0.clone() {
         Some(written) => written,
         None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
