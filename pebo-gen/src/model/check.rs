@@ -270,10 +270,10 @@ impl Pass<'_> {
         }
     }
 
-    /// An output tells something of the states.
+    /// An output tells something of the states; of a phi that is given, the regression says that it has no equation.
     fn measured(&mut self, model: &Model) {
         let nothing = model.f_y.is_empty() && model.g_y.is_empty() && model.identities.is_empty();
-        if self.diagnostics.has_errors() || model.class.is_some() || !nothing {
+        if self.diagnostics.has_errors() || model.class.is_some() || !model.phi.is_empty() || !nothing {
             return;
         }
         let Some(output) = model.y.first() else { return };

@@ -156,8 +156,7 @@ fn every_name_and_formula_has_its_place() {
 #[test]
 fn parameters_may_lack_values() {
     for parameters in ["[L, R]", "{L: null, R: ~}", "{L: , R: }", "{L, R}"] {
-        let text =
-            format!("model: m\nx: [a]\ny: [v]\nparameters: {parameters}\nf_x: {{a: v/L}}\nf_y: {{v: a}}\nphi: [a]\n");
+        let text = format!("model: m\nx: [a]\ny: [v]\nparameters: {parameters}\nf_x: {{a: v/L}}\nphi: [a]\n");
         let model = parse(&text).expect(parameters);
         assert_eq!(model.parameters.len(), 2, "{parameters}");
         assert!(model.parameters.iter().all(|entry| entry.value.is_none()), "{parameters}");
@@ -168,13 +167,13 @@ fn parameters_may_lack_values() {
 fn names_are_free() {
     // Functions, constants, words of Rust and of YAML, names that differ in case only.
     let names = "[E, I, S, e, N, n, sin, hat, pi, t, fn, self, gen, y, no, theta, z, z1a, chi_1]";
-    let text = format!("model: type\nx: [a]\ny: [v]\nw: {names}\nf_x: {{a: sin*pi}}\nf_y: {{v: a}}\nphi: [a]\n");
+    let text = format!("model: type\nx: [a]\ny: [v]\nw: {names}\nf_x: {{a: sin*pi}}\nphi: [a]\n");
     assert_eq!(parse(&text).map(|model| model.w.len()), Ok(19));
 }
 
 #[test]
 fn formulas_may_be_blocks() {
-    let text = "model: m\nx: [a]\ny: [v]\nf_x:\n  a: |\n    v +\n      v2x\nf_y: {v: a}\nphi:\n- >-\n  a +\n  v\n";
+    let text = "model: m\nx: [a]\ny: [v]\nf_x:\n  a: |\n    v +\n      v2x\nphi:\n- >-\n  a +\n  v\n";
     let source = source(text);
     let model = Model::parse(&source).expect("it is right");
     let places: Vec<&str> = [&model.f_x[0].value, &model.phi[0]]

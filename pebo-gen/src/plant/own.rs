@@ -69,7 +69,7 @@ mod tests {
         let list = |entry: &dyn Fn(usize) -> String| (1..=components).map(entry).collect::<Vec<_>>().join(", ");
         let x = list(&|i| format!("p{i}"));
         let text = format!(
-            "model: m\nparameters: [{parameters}]\nx: [{x}]\ny: [q]\nf_x: {{{}}}\nf_y: {{q: p1}}\nphi: [{x}]\n",
+            "model: m\nparameters: [{parameters}]\nx: [{x}]\ny: [q]\nf_x: {{{}}}\nphi: [{x}]\n",
             list(&|i| format!("p{i}: -p{i}")),
         );
         Plant::resolve(&Model::parse(&Source::new("m", text.as_str()).unwrap()).unwrap()).unwrap()

@@ -114,8 +114,8 @@ codes! {
     UnknownKey "unknown-key" "a key that model files do not have"
         "The help lists the keys that are valid in this place. Keys are written exactly so: case matters."
     MissingKey "missing-key" "a required key is absent"
-        "A model needs model, x, y and f_x, and of some output its rate under f_y, its value under g_y, or an identity that \
-         holds it; some of the nested maps have required keys of their own, and phi_left needs phi."
+        "A model needs model, x, y and f_x, and for a search for phi the rate of an output under f_y, its value under g_y, \
+         or an identity; some of the nested maps have required keys of their own, and phi_left needs phi."
     WrongShape "wrong-shape" "a value has the wrong shape"
         "A key expects a name, a number, a formula, a list or a map, and found another of these."
     WrongChoice "wrong-choice" "a word that is none of the choices"

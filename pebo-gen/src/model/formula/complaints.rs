@@ -1,8 +1,8 @@
 //! What the parser says about a text that is no formula.
 
-use super::DEPTH_LIMIT;
 use super::lexer::{Kind, Token};
 use super::parser::Parser;
+use super::{DEPTH_LIMIT, foreign};
 use crate::cas::Function;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 
@@ -51,7 +51,7 @@ impl Parser<'_> {
             Kind::Number | Kind::Name | Kind::Open => {
                 let (left, right) = (self.lexer.text(self.last), self.lexer.text(self.next));
                 let span = self.lexer.span(self.last).to(self.lexer.span(self.next));
-                if let Some(help) = no_operator(right) {
+                if let Some(help) = foreign::operator(right) {
                     return self.unexpected(&format!("{} is no operator of formulas", quoted(right))).help(help);
                 }
                 let message = "an operator is missing between two factors".to_owned();
@@ -88,51 +88,6 @@ pub(super) fn argument_count(function: Function, found: usize, span: Span) -> Di
         .help(format!("write `{name}({})`", if wanted == 1 { "a" } else { "a, b" }))
 }
 
-/// What to write instead of a word that other languages have between operands.
-fn no_operator(word: &str) -> Option<&'static str> {
-    Some(match word {
-        "and" => AND,
-        "or" => "what holds only sometimes is no assumption: write what holds wherever the plant operates",
-        "if" | "else" | "then" => BRANCHES,
-        "mod" => "formulas have no remainder; a state known up to a period stands under `angles`",
-        _ => return None,
-    })
-}
-
-/// What to write in the place of two comparisons in one.
-pub(super) const AND: &str =
-    "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
-
-/// What to write in the place of branches.
-pub(super) const BRANCHES: &str = "formulas have no branches: use max, min, sat, sign or abs";
-
-/// What to write instead of a call that other languages have; the argument begins with time if it is `timed`.
-fn replaced(name: &str, timed: bool) -> Option<String> {
-    Some(match name.to_ascii_lowercase().as_str() {
-        "if" | "ifelse" | "iif" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
-        "interp" | "interp1" | "interp1d" | "interpolate" | "lookup" | "table" | "lut" | "spline" | "pchip" => {
-            "formulas have no tables: fit a function to the table, as a polynomial, and write that".to_owned()
-        }
-        "der" | "diff" | "deriv" | "derivative" | "ddt" => {
-            "formulas have no derivatives: write the formula of the derivative in its place".to_owned()
-        }
-        "int" | "integral" | "integrate" => {
-            "formulas have no integrals: make the integral a state, whose rate stands under `f_x`".to_owned()
-        }
-        "delay" => DELAY.to_owned(),
-        "pow" => "write `a^b` for the power".to_owned(),
-        "heaviside" => format!("write `(1 + sign(a))/2` for `{name}(a)`"),
-        "log10" => "write `log(a)/log(10)`: `log` is the natural logarithm".to_owned(),
-        "log2" => "write `log(a)/log(2)`: `log` is the natural logarithm".to_owned(),
-        _ if timed => format!("write `{name}` for its value now; {DELAY}"),
-        _ => return None,
-    })
-}
-
-/// What to write in the place of a delayed signal.
-const DELAY: &str =
-    "formulas have no delayed signals: a delayed input is an input of its own, with its own name under `u`";
-
 /// A call of something that is no function; `argument` is what stands behind the parenthesis.
 pub(super) fn unknown_function(name: &str, span: Span, argument: &str) -> Diagnostic {
     let message = format!("{} is not a function", quoted(name));
@@ -140,7 +95,7 @@ pub(super) fn unknown_function(name: &str, span: Span, argument: &str) -> Diagno
     let timed = argument.trim_start().strip_prefix('t').is_some_and(|rest| {
         rest.trim_start().starts_with([')', '-', '+', ',']) && !rest.starts_with(|c: char| c.is_ascii_alphanumeric())
     });
-    if let Some(help) = replaced(name, timed) {
+    if let Some(help) = foreign::call(name, timed) {
         return diagnostic.help(help);
     }
     match nearest(name, Function::names()) {

@@ -1,7 +1,6 @@
 //! A formula's text, cut into tokens.
 
-use super::complaints::{AND, BRANCHES};
-use super::{Places, Relation};
+use super::{Places, Relation, foreign};
 use crate::source::{Code, Diagnostic, Span};
 
 /// What a token is.
@@ -90,29 +89,13 @@ impl<'a> Lexer<'a> {
         &self.text[self.at..]
     }
 
-    /// What to write instead of an operator of other languages.
-    fn instead(&self, start: usize) -> Option<String> {
-        let (before, rest) = (&self.text[..start], &self.text[start..]);
-        Some(match rest.chars().next()? {
-            '&' => AND.to_owned(),
-            '?' | ':' => BRANCHES.to_owned(),
-            '%' => "write a share of 1, as `0.5` for 50 %".to_owned(),
-            '|' if !before.contains('|') => {
-                let inner =
-                    rest[1..].split('|').next().filter(|inner| !inner.is_empty() && inner.len() + 1 < rest.len());
-                format!("the absolute value is `abs({})`", inner.unwrap_or("a"))
-            }
-            _ => return None,
-        })
-    }
-
     /// A character that no formula has.
     fn stranger(&self, start: usize) -> Diagnostic {
         let character = self.text[start..].chars().next().unwrap_or_default();
         let span = self.places.span(start, start + character.len_utf8());
         let message = format!("formulas cannot contain the character `{}`", character.escape_debug());
         let diagnostic = Diagnostic::error(Code::UnexpectedCharacter, span, message);
-        match self.instead(start).or_else(|| substitute(character)) {
+        match foreign::character(&self.text[..start], &self.text[start..]).or_else(|| substitute(character)) {
             Some(help) => diagnostic.help(help),
             None => diagnostic.help("formulas have names, numbers, + - * / ^ and parentheses"),
         }
