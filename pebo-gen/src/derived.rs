@@ -13,7 +13,7 @@ use crate::plant::{Class, Plant, Settings, TransformOrigin};
 use crate::search::{self, Found};
 #[cfg(feature = "yaml")]
 use crate::source::Source;
-use crate::source::{Code, Diagnostic, Diagnostics};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use crate::tuning::Tuned;
 
 /// A model with everything that was derived of it.
@@ -73,7 +73,12 @@ impl Derived {
             let best = search.candidates.swap_remove(0);
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }
-        let derivation = Derivation::without_transform(vec![search.refusal(&plant)]);
+        let names = (model.x.first(), model.x.last());
+        let states = match names {
+            (Some(first), Some(last)) => first.span.to(last.span),
+            _ => plant.x.first().map_or(Span::NOWHERE, |state| state.rate.span),
+        };
+        let derivation = Derivation::without_transform(vec![search.refusal(&plant, states)]);
         Ok(Self { model, plant, derivation })
     }
 

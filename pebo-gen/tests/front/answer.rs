@@ -130,7 +130,7 @@ fn an_input_under_signals_is_sent_to_the_control_law() {
     let source = with("simulation: {duration: 1, step: 1e-3, initial: {p: 1}, signals: {v: 1}}");
     let refused = answer(&source, &Ask::new());
     assert_eq!((refused.standing, refused.diagnostics.len()), (Standing::Malformed, 1));
-    assert!(refused.diagnostics[0].help.as_deref().is_some_and(|help| help.contains("under `control`")));
+    assert!(refused.diagnostics[0].help.as_deref().is_some_and(|help| help.contains("`control: {v: v_t}`")));
 }
 
 /// What a page or an editor reads: places in bytes, labels, notes, and no more than was asked for.
