@@ -8,6 +8,7 @@
 
 mod core;
 mod exact;
+mod moved;
 mod own;
 mod places;
 mod rounded;

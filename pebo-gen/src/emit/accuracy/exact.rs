@@ -5,7 +5,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rustc_hash::FxHashMap;
+
 use super::super::literal::Scalar;
+use super::moved::Moves;
 use super::places::Place;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
@@ -22,44 +25,68 @@ pub(super) struct Exact {
     values: Vec<Option<(Interval, f64)>>,
 }
 
-/// The relative move of the arguments by which their effect is found.
-const MOVE: f64 = 1.0 / 1_073_741_824.0;
+/// The relative move of an argument by which its effect is found where it is not found to first order.
+pub(super) const MOVE: f64 = 1.0 / 1_073_741_824.0;
 
+/// Of values that do not all exist, each by itself.
 pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
-    let symbols: Vec<Symbol> = arena.symbols_of(exprs).into_iter().collect();
-    let at = |moved: Option<Symbol>| {
-        let entry = |symbol: &Symbol| {
-            // In full: value (1 + part) has more digits than a number of f64.
-            let value = Rational::from_f64_exact(place.get(symbol).copied().unwrap_or(1.0))?;
-            let part = Rational::from_f64_exact(if moved == Some(*symbol) { MOVE } else { 0.0 })?;
-            let moved = &value + &(&value * &part);
-            Some((*symbol, Interval::from_rational(&moved, Precision::new(BITS))?))
+    let values = at_once(arena, exprs, place).unwrap_or_else(|| {
+        let alone = exprs.iter().map(|&expr| at_once(arena, &[expr], place)?.pop().flatten());
+        alone.collect()
+    });
+    Exact { values }
+}
+
+fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Vec<Option<(Interval, f64)>>> {
+    let still = at(arena, exprs, place, None)?;
+    let parts = arena.postorder(exprs);
+    let values = arena.enclose_over(&parts, &still, Precision::new(BITS))?;
+    let known: FxHashMap<Expr, &Interval> = parts.iter().copied().zip(&values).collect();
+    let moves = Moves::of(arena, &still, &parts, &values);
+    let effects: Vec<Option<f64>> = exprs.iter().map(|expr| moves.effect(*expr)).collect();
+    let unknown: Vec<Expr> =
+        exprs.iter().zip(&effects).filter(|(_, effect)| effect.is_none()).map(|(e, _)| *e).collect();
+    let still: Option<Vec<Interval>> = unknown.iter().map(|expr| Some((*known.get(expr)?).clone())).collect();
+    let mut others = by_differences(arena, &unknown, &still?, place).into_iter();
+    let values = exprs
+        .iter()
+        .zip(effects)
+        .map(|(expr, effect)| Some(((*known.get(expr)?).clone(), effect.or_else(|| others.next())?)));
+    Some(values.collect())
+}
+
+/// The effects of the arguments one at a time: together the effects of some would cancel, as those of b and c in a*b - c
+/// where that is small.
+fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], place: &Place) -> Vec<f64> {
+    let mut effects = vec![0.0; exprs.len()];
+    for symbol in arena.symbols_of(exprs) {
+        let moving: BTreeSet<Symbol> = [symbol].into();
+        let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moving)).collect();
+        let there = |indices: &[usize]| {
+            let exprs: Vec<Expr> = indices.iter().map(|index| exprs[*index]).collect();
+            arena.enclose_over(&exprs, &at(arena, &exprs, place, Some(symbol))?, Precision::new(BITS))
         };
-        symbols.iter().map(entry).collect::<Option<BTreeMap<_, _>>>()
-    };
-    let values = |exprs: &[Expr], moved| -> Vec<Option<Interval>> {
-        let Some(exact) = at(moved) else { return vec![None; exprs.len()] };
-        match arena.enclose_over(exprs, &exact, Precision::new(BITS)) {
+        let moved: Vec<Option<Interval>> = match there(&reached) {
             Some(values) => values.into_iter().map(Some).collect(),
-            None => {
-                exprs.iter().map(|&expr| arena.enclose_over(&[expr], &exact, Precision::new(BITS))?.pop()).collect()
-            }
-        }
-    };
-    let still = values(exprs, None);
-    // One at a time: together the effects of some would cancel, as those of b and c in a*b - c where that is small.
-    let mut conditions = vec![0.0; exprs.len()];
-    for symbol in &symbols {
-        let moved: BTreeSet<Symbol> = [*symbol].into();
-        let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moved)).collect();
-        let there: Vec<Expr> = reached.iter().map(|index| exprs[*index]).collect();
-        for (index, value) in reached.iter().zip(values(&there, Some(*symbol))) {
-            let difference = still[*index].as_ref().and_then(|still| value?.sub(still, Precision::new(BITS)));
-            let size = difference.map_or(0.0, |difference| magnitude(&difference));
-            conditions[*index] += size / MOVE;
+            None => reached.iter().map(|index| there(&[*index])?.pop()).collect(),
+        };
+        for (index, moved) in reached.iter().zip(moved) {
+            let difference = moved.and_then(|moved| moved.sub(&still[*index], Precision::new(BITS)));
+            effects[*index] += difference.map_or(0.0, |difference| magnitude(&difference) / MOVE);
         }
     }
-    Exact { values: still.into_iter().zip(conditions).map(|(value, condition)| Some((value?, condition))).collect() }
+    effects
+}
+
+/// What expressions depend on, at a place; one of them may be moved.
+fn at(arena: &Arena, exprs: &[Expr], place: &Place, moved: Option<Symbol>) -> Option<BTreeMap<Symbol, Interval>> {
+    let entry = |symbol: Symbol| {
+        // In full: value (1 + part) has more digits than a number of f64.
+        let value = Rational::from_f64_exact(place.get(&symbol).copied().unwrap_or(1.0))?;
+        let part = Rational::from_f64_exact(if moved == Some(symbol) { MOVE } else { 0.0 })?;
+        Some((symbol, Interval::from_rational(&(&value + &(&value * &part)), Precision::new(BITS))?))
+    };
+    arena.symbols_of(exprs).into_iter().map(entry).collect()
 }
 
 impl Exact {
