@@ -200,7 +200,7 @@ fn is_odd(integer: &Rational) -> bool {
 }
 
 /// Whether the number has an exact decimal: its denominator has no prime factor but 2 and 5.
-fn is_short(value: &Rational) -> bool {
+pub(super) fn is_short(value: &Rational) -> bool {
     let mut denominator = value.denominator();
     for prime in [2, 5] {
         while let Some(quotient) = denominator.div_exact(&prime.into()) {

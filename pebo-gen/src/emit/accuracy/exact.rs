@@ -128,3 +128,57 @@ impl Exact {
 fn magnitude(value: &Interval) -> f64 {
     value.hi().abs().max(value.lo().abs())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Function;
+
+    const PLACE: [f64; 3] = [0.3, 1.7, -0.6];
+
+    fn both(arena: &Arena, expr: Expr, place: [f64; 3]) -> (Option<f64>, f64) {
+        let place: Place = ["a", "b", "c"].map(|name| arena.symbol(name)).into_iter().zip(place).collect();
+        let still = at(arena, &[expr], &place, None).unwrap();
+        let parts = arena.postorder(&[expr]);
+        let values = arena.enclose_over(&parts, &still, Precision::new(BITS)).unwrap();
+        let effect = Moves::of(arena, &still, &parts, &values).effect(expr);
+        (effect, by_differences(arena, &[expr], &values[parts.len() - 1..], &place)[0])
+    }
+
+    #[test]
+    fn effects_to_first_order_are_those_of_small_moves() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let root = arena.sqrt(arena.add(arena.mul(a, a), arena.mul(b, b)));
+        for expr in [
+            arena.div(arena.mul(call(Function::Sin, &[a]), b), c),
+            arena.sub(root, c),
+            arena.mul(call(Function::Atan2, &[a, b]), call(Function::Exp, &[c])),
+            arena.sub(call(Function::Abs, &[arena.sub(a, b)]), call(Function::Max, &[a, c])),
+            arena.power(arena.mul(a, b), &Rational::new(-5, 2).unwrap()),
+            // Differences of two large products.
+            arena.sub(arena.mul(a, arena.add(b, c)), arena.mul(a, b)),
+        ] {
+            let (effect, difference) = both(&arena, expr, PLACE);
+            // What the value bends over a move of 1e-9.
+            let close = effect.is_some_and(|effect| (effect - difference).abs() <= 1e-6 * difference);
+            assert!(close, "{}: {effect:?}, {difference}", arena.print(expr));
+        }
+    }
+
+    #[test]
+    fn no_effect_is_told_where_it_is_not_of_first_order() {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let square = |e| arena.mul(e, e);
+        let difference = arena.sub(a, b);
+        // Zero everywhere; a kink; a root that begins.
+        let mixed = arena.scale(arena.mul(a, b), &Rational::from(2));
+        let zero = arena.sub(square(arena.add(a, b)), arena.sum([square(a), square(b), mixed]));
+        let kink = arena.call(Function::Abs, &[difference]);
+        for (expr, place) in [(zero, PLACE), (kink, [0.3, 0.3, 1.0]), (arena.sqrt(difference), [0.3, 0.3, 1.0])] {
+            assert_eq!(both(&arena, expr, place).0, None, "{}", arena.print(expr));
+        }
+    }
+}
