@@ -53,7 +53,8 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
             places.push(place);
         }
     };
-    for &symbol in &signals {
+    let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+    for &symbol in signals.iter().chain(&states) {
         for limit in inside.limits(arena, symbol, &base) {
             let size = if limit == 0.0 { 1.0 } else { limit.abs() };
             for part in BESIDE {
@@ -62,7 +63,7 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
             }
         }
     }
-    for &symbol in signals.iter().chain(plant.x.iter().map(|state| &state.symbol)) {
+    for &symbol in signals.iter().chain(&states) {
         for value in [0.0, 1.0, -1.0] {
             beside(symbol, value);
         }
