@@ -6,6 +6,7 @@
 //! ([`separation`]), else a static one from an identity (Ortega et al. 2015, eqs. 16 and 28).
 
 mod cancelling;
+mod cleared;
 mod differentiated;
 mod functions;
 mod implicit;
@@ -29,12 +30,13 @@ use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
 use cancelling::combinations;
 pub(super) use differentiated::{differentiated, no_such_form};
-use functions::{over_parameterised, under_derivative};
+use functions::over_parameterised;
 use linear::{decompose, linear};
 use refusal::{hidden_by_signals, nonlinear, not_recovered, not_sought, refuted, undecided};
 pub(super) use standing::from_identities;
 use standing::from_relations;
 pub(super) use together::together;
+use together::under_derivative;
 pub(super) use valued::by_values;
 
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
@@ -112,14 +114,13 @@ pub(super) fn prove(
                 }
                 unrecovered = Some(eta.join(", "));
             }
-            Ok(None) if cascade.lambda.is_none() => {
-                let outputs: Vec<usize> = rows.iter().map(|r| r.0).collect();
-                let claim = under_derivative(plant, domain, cascade, left_inverse, &outputs, &rates, found);
+            Ok(None) => {
+                let of_outputs: Vec<(usize, Expr)> = rows.iter().map(|row| row.0).zip(rates).collect();
+                let claim = under_derivative(plant, domain, cascade, left_inverse, &of_outputs, found);
                 if let Some(claim) = claim {
                     return claim;
                 }
             }
-            Ok(None) => {}
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
         }
     }
@@ -129,7 +130,8 @@ pub(super) fn prove(
             return claim;
         }
     }
-    let mut verdict = Verdict::Refuted;
+    // What the rates do not say an identity may, in a form that was not found.
+    let mut verdict = if plant.identities.is_empty() { Verdict::Refuted } else { Verdict::Undecided };
     for (index, rate, span, obstacle) in obstacles {
         if unsought {
             verdict = Verdict::Undecided;

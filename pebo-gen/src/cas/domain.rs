@@ -23,6 +23,9 @@ const FEW_TRIALS: u64 = 4;
 /// Trials with small integers and random signs.
 const PLAIN_TRIALS: u64 = 8;
 
+/// How often a value is made smaller for a fact that does not hold of it: down to some 1e-10 of what is drawn.
+const MOST_SHRINKS: usize = 8;
+
 /// Steps that drawing a value takes.
 const STEPS_OF_A_VALUE: u64 = 50;
 
@@ -60,21 +63,27 @@ impl Domain {
     fn points_within<'a>(&'a self, arena: &'a Arena, exprs: &[Expr], most: u64) -> impl Iterator<Item = Point> + 'a {
         let mut symbols = arena.symbols_of(exprs);
         let (facts, equations) = self.relevant(arena, &mut symbols);
-        let ranges = ranges(arena, &facts);
+        let facts: Vec<(Expr, Relation)> =
+            facts.into_iter().map(|(fact, relation)| (arena.substitute(fact, &self.fixed), relation)).collect();
         let plan = self.manifold.plan(arena, &equations, &self.fixed);
         let trials = if plan.is_some() { most } else { 0 };
         let plan = plan.unwrap_or_default();
         let solved = plan.symbols();
+        let free: Vec<(usize, Symbol)> = symbols
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, symbol)| !solved.contains(symbol) && !self.fixed.contains_key(symbol))
+            .collect();
+        let confined = Confined::new(arena, &facts, free.iter().map(|(_, symbol)| *symbol));
         (0..trials).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
             arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
             let mut draw = Draw::new(trial);
-            let mut point = Point::new();
-            for (index, &symbol) in symbols.iter().enumerate().filter(|(_, symbol)| !solved.contains(symbol)) {
-                let value = match self.fixed.get(&symbol) {
-                    Some(value) => *value,
-                    None => arena.number(draw.value(ranges.get(&symbol), index)),
-                };
-                point.insert(symbol, value);
+            let given = |symbol: &Symbol| Some((*symbol, *self.fixed.get(symbol)?));
+            let mut point: Point = symbols.iter().filter(|symbol| !solved.contains(symbol)).filter_map(given).collect();
+            for (index, symbol) in &free {
+                let value = confined.draw(arena, *symbol, &point, |range| draw.value(range, *index));
+                point.insert(*symbol, value);
             }
             plan.complete(arena, &mut point, || draw.choice())?;
             facts.iter().all(|fact| holds(arena, *fact, &point)).then_some(point)
@@ -169,6 +178,86 @@ fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bo
     }
 }
 
+/// What each symbol is confined to by facts in it and in symbols that are drawn before it.
+struct Confined {
+    /// By facts in the symbol alone.
+    ranges: BTreeMap<Symbol, Range>,
+    /// Facts in others as well, and those that are not affine in the symbol.
+    others: BTreeMap<Symbol, Vec<(Expr, Relation)>>,
+}
+
+impl Confined {
+    /// For symbols that are drawn in this order.
+    fn new(arena: &Arena, facts: &[(Expr, Relation)], order: impl Iterator<Item = Symbol>) -> Self {
+        let place: BTreeMap<Symbol, usize> = order.enumerate().map(|(place, symbol)| (symbol, place)).collect();
+        let mut others: BTreeMap<Symbol, Vec<(Expr, Relation)>> = BTreeMap::new();
+        for fact in facts.iter().filter(|(fact, _)| affine(arena, *fact).is_none()) {
+            let symbols = arena.symbols_of(&[fact.0]);
+            // One that holds a symbol that an equation gives is looked at when the point is complete.
+            if !symbols.iter().all(|symbol| place.contains_key(symbol)) {
+                continue;
+            }
+            if let Some(last) = symbols.into_iter().max_by_key(|symbol| place[symbol]) {
+                others.entry(last).or_default().push(*fact);
+            }
+        }
+        Self { ranges: ranges(arena, facts), others }
+    }
+
+    /// A value of the symbol beside those that are drawn: within what the facts say of it there, as far as they are affine
+    /// in it, and as small as it takes for the others, as `i^2 < 1e-6`.
+    fn draw(
+        &self,
+        arena: &Arena,
+        symbol: Symbol,
+        point: &Point,
+        mut value: impl FnMut(Option<&Range>) -> Rational,
+    ) -> Expr {
+        let mut range = self.ranges.get(&symbol).cloned();
+        let mut bent = Vec::new();
+        for (fact, relation) in self.others.get(&symbol).into_iter().flatten() {
+            let there = (arena.substitute(*fact, point), *relation);
+            match ranges(arena, &[there]).remove(&symbol) {
+                Some(bounds) => range.get_or_insert_default().narrow(bounds),
+                None => bent.push(there),
+            }
+        }
+        let drawn = value(range.as_ref());
+        let holds_at = |value: &Rational| {
+            let at = Point::from([(symbol, arena.number(value.clone()))]);
+            bent.iter().all(|fact| holds(arena, *fact, &at))
+        };
+        let mut smaller = drawn.clone();
+        let share = Rational::new(1, 16).unwrap_or(Rational::ONE);
+        for _ in 0..MOST_SHRINKS {
+            if holds_at(&smaller) {
+                return arena.number(smaller);
+            }
+            smaller = &smaller * &share;
+            if range.as_ref().is_some_and(|range| !range.contains(&smaller)) {
+                break;
+            }
+        }
+        arena.number(drawn)
+    }
+}
+
+impl Range {
+    /// What is within both.
+    fn narrow(&mut self, other: Self) {
+        if let Some(low) = other.low {
+            self.low = Some(self.low.take().map_or(low.clone(), |known| known.max(low)));
+        }
+        if let Some(high) = other.high {
+            self.high = Some(self.high.take().map_or(high.clone(), |known| known.min(high)));
+        }
+    }
+
+    fn contains(&self, value: &Rational) -> bool {
+        self.low.as_ref().is_none_or(|low| low < value) && self.high.as_ref().is_none_or(|high| value < high)
+    }
+}
+
 /// The bounds that facts of the form `c*s + d > 0` state.
 fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> {
     let mut ranges: BTreeMap<Symbol, Range> = BTreeMap::new();
@@ -179,12 +268,12 @@ fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> 
         let Some((symbol, slope, constant)) = affine(arena, *expr) else { continue };
         // Of an irrational constant the greater end, which only widens the range.
         let Some(bound) = (-&constant).checked_div(&slope) else { continue };
-        let range = ranges.entry(symbol).or_default();
-        if slope.is_negative() {
-            range.high = Some(range.high.take().map_or(bound.clone(), |high| high.min(bound)));
+        let bounds = if slope.is_negative() {
+            Range { low: None, high: Some(bound) }
         } else {
-            range.low = Some(range.low.take().map_or(bound.clone(), |low| low.max(bound)));
-        }
+            Range { low: Some(bound), high: None }
+        };
+        ranges.entry(symbol).or_default().narrow(bounds);
     }
     ranges
 }

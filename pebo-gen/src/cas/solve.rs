@@ -9,6 +9,7 @@
 //! apart ([`monomials`]). What is left of one unknown may be quadratic ([`quadratic`]). What is known is left as it is
 //! written ([`super::frozen`]), and only then taken apart, for what needs a relation within it.
 
+mod cleared;
 mod equation;
 mod monomials;
 mod quadratic;
@@ -27,6 +28,7 @@ use super::tidy::shorter;
 use super::{Arena, Expr, Node, Symbol};
 use equation::{angle_of, unpower};
 
+pub(crate) use cleared::cleared;
 pub(crate) use equation::Equation;
 
 /// Candidates for those unknowns that the equations give, the likelier first.

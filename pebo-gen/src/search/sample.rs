@@ -16,6 +16,9 @@ use super::question::Question;
 /// Points that are given up because a denominator vanishes there.
 const MOST_POLES: usize = 50;
 
+/// Primes that are tried where kernels have no values modulo the first: a root of a root has one modulo every fourth or so.
+const MOST_PRIMES: usize = 16;
+
 /// Rows that bring nothing new, after which no more are looked at.
 const IDLE: usize = 3;
 
@@ -35,13 +38,23 @@ pub(super) type Values = Vec<Residue>;
 
 impl<'a> Sample<'a> {
     pub(super) fn of(question: &Question<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
-        let prime = prime_of_kernels().ok_or(Obstacle::TooLarge)?;
-        let formulas = Straight::of(question.arena, &question.domain.facts, &prime, formulas)?;
+        let mut words = Words::new(0x5eed);
+        let of = |prime: &PrimeField| Straight::of(question.arena, &question.domain.facts, prime, formulas);
+        let first_prime = prime_of_kernels().ok_or(Obstacle::TooLarge)?;
+        let mut straight = of(&first_prime)?;
+        let mut found = straight.field().draw(&first_prime, &mut words, |_| None).map(|values| (first_prime, values));
+        if found.is_none() {
+            let at = |prime: PrimeField| Some((prime.clone(), straight.field().draw(&prime, &mut words, |_| None)?));
+            found = straight.field().primes().take(MOST_PRIMES).find_map(at);
+            if let Some((prime, _)) = &found {
+                straight = of(prime)?;
+            }
+        }
+        let (prime, first) = found.ok_or(Obstacle::NoResidue)?;
+        let formulas = straight;
         let field = formulas.field();
         let hidden = field.kernels_of(&question.hidden);
         let moving = field.kernels_of(&question.signals);
-        let mut words = Words::new(0x5eed);
-        let first = field.draw(&prime, &mut words, |_| None).ok_or(Obstacle::TooLarge)?;
         let constant = |(number, value): (u32, Residue)| (!moving.contains(&number)).then_some(value);
         let constants = (0..).zip(first).map(constant).collect();
         Ok(Self { prime, formulas, hidden, constants, words })

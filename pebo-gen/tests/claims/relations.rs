@@ -40,6 +40,56 @@ pub(super) const RELATIONS: &[Row] = &[
         "x: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - a, b: u - 2*b}\nphi: [a, b]\nidentities: [s - a^2 - b^2]",
         Undecided(Code::RegressionUndecided),
     ),
+    // What stands around the states in an output's value is taken away.
+    (
+        "a share",
+        "assume: [p > 0]\nx: [p]\ny: [V]\nu: [v]\nf_x: {p: v}\ng_y: {V: p/(1 + p)}\nphi: [p]",
+        Accepted("static linear instant"),
+    ),
+    (
+        "a root",
+        "assume: [p > 0]\nx: [p]\ny: [V]\nu: [v]\nf_x: {p: v}\ng_y: {V: sqrt(p)}\nphi: [p]",
+        Accepted("static linear instant"),
+    ),
+    (
+        "a range",
+        "x: [p, s]\ny: [V]\nu: [v, w]\nf_x: {p: v, s: w}\ng_y: {V: 'sqrt(p^2 + s^2)'}\nphi: [p, s]",
+        Accepted("static over-parameterised excitation"),
+    ),
+    (
+        "a bearing by its angle",
+        "x: [p, s]\ny: [V]\nu: [v, w]\nf_x: {p: v, s: w}\ng_y: {V: 'atan2(p, s)'}\nphi: [p, s]",
+        Accepted("static linear excitation"),
+    ),
+    (
+        "a ratio of unknowns that move alike is all that it shows",
+        "assume: [s > 0]\nx: [p, s]\ny: [V]\nu: [v]\nf_x: {p: 0, s: 0}\ng_y: {V: p/s}\nphi: [p, s]",
+        Rejected(Code::NeverIdentifiable),
+    ),
+    (
+        "a logarithm under a generalised cascade",
+        "parameters: {U: 3.5, a: 0.03}\nassume: [0 < c < 1]\nx: [b, c]\ny: [V]\nu: [I]\n\
+         f_x: {b: c - b, c: b - c - I}\ng_y: {V: U + a*log((1 - c)/c)}\nphi: [b, c]",
+        Accepted("gpebo static linear excitation"),
+    ),
+    (
+        "a state that its voltage tells, in a charge that is quadratic in it",
+        "parameters: [C, k, R]\nassume: [C > 0, k > 0, v > 0]\nx: [v]\ny: [V]\nu: [I]\nf_x: {v: -I/(C + k*v)}\n\
+         g_y: {V: v - R*I}\nphi: [C*v + k*v^2/2]",
+        Accepted("static over-parameterised instant"),
+    ),
+    // A rate that holds the unknown in a denominator.
+    (
+        "a denominator under a generalised cascade",
+        "assume: [p > 0, q > 0]\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - q*p}\nf_y: {q: 1/(p + q)}\nphi: [p]",
+        Accepted("gpebo implicit linear instant"),
+    ),
+    (
+        "a denominator beside a rate that is affine",
+        "assume: [p > 0, q > 0]\nx: [p, s]\ny: [q, r]\nu: [v]\nf_x: {p: v, s: 0}\nf_y: {q: 1/(p + q), r: s - p}\n\
+         phi: [p, s]",
+        Accepted("implicit linear instant"),
+    ),
     // An output's value tells more than the rate that follows from it.
     (
         "an inclination that is measured, beside a position",

@@ -90,7 +90,7 @@ const CASES: &[Case] = &[
         lines: "parameters: [mu, K, k]\nx: [S]\ny: [X]\nu: [D, Sin]\n\
                 assume: [mu > 0, K > 0, k > 0, S > 0, X > 0]\n\
                 f_x: {S: D*(Sin - S) - k*mu*S/(K + S)*X}\nf_y: {X: mu*S/(K + S)*X - D*X}",
-        truth: Truth::Open,
+        truth: Truth::Found,
     },
     Case {
         from: "susceptible, exposed, infected (Anderson, May 1991)",

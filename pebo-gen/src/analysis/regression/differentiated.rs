@@ -13,8 +13,8 @@
 
 use std::collections::BTreeSet;
 
-use super::relations;
 use super::together::{Equation, joined};
+use super::{cleared, relations};
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::cas::domain::Domain;
 use crate::cas::rational::half;
@@ -23,8 +23,6 @@ use crate::cas::zero::point_of;
 use crate::cas::{Expr, Symbol};
 use crate::plant::{Plant, RelationForm};
 use crate::source::{Code, Diagnostic, Span};
-
-use super::standing::identities_in_z;
 
 /// The regression under the derivative, in theta itself, where it has fewer unknowns than the given one, or the model asks
 /// for it.
@@ -41,7 +39,7 @@ pub(in crate::analysis) fn differentiated(
         return None;
     }
     let relations = if !plant.identities.is_empty() {
-        identities_in_z(plant, left_inverse?)
+        cleared::in_z(plant, domain, left_inverse?)
     } else if relations::possible(plant, domain) {
         relations::among(plant, domain).ok()?
     } else {
@@ -136,7 +134,7 @@ fn without_constant(plant: &Plant, domain: &Domain, expr: Expr) -> Expr {
 }
 
 /// The rate of a component of the transform: `Lambda z + h`.
-fn velocity(plant: &Plant, cascade: &Cascade, component: usize) -> Expr {
+pub(super) fn velocity(plant: &Plant, cascade: &Cascade, component: usize) -> Expr {
     let arena = &plant.arena;
     let own = cascade.lambda.iter().flat_map(|lambda| lambda[component].iter().zip(&plant.z));
     let own = arena.sum(own.map(|(factor, z)| arena.mul(*factor, arena.of_symbol(*z))));

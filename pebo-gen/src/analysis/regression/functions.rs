@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
+use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::analysis::left_inverse::is_whole_turns;
-use crate::analysis::regression::implicit;
 use crate::analysis::regression::separation::{self, Recovered, Separated};
 use crate::cas::domain::Domain;
 use crate::cas::tidy::shortest;
@@ -57,26 +56,6 @@ pub(super) fn over_parameterised(
         theta: recovered.theta,
     };
     Some(Claim { verdict: Verdict::Proved, result: Some(result) })
-}
-
-/// A regression with the unknowns under the derivative, where the rates have that form.
-pub(super) fn under_derivative(
-    plant: &Plant,
-    domain: &Domain,
-    cascade: &Cascade,
-    left_inverse: &LeftInverse,
-    outputs: &[usize],
-    rates: &[Expr],
-    found: &mut Vec<Diagnostic>,
-) -> Option<Claim<Regression>> {
-    let (mut primitives, mut rights) = (Vec::new(), Vec::new());
-    for (output, rate) in outputs.iter().zip(rates) {
-        let sides = implicit::sides(plant, domain, &cascade.h, (*output, *rate)).ok()??;
-        primitives.push(sides.primitive);
-        rights.push(sides.rate);
-    }
-    let separated = separation::separate(plant, domain, &[primitives, rights].concat()).ok()??;
-    over_parameterised(plant, domain, left_inverse, (outputs.to_vec(), outputs.len()), separated, found)
 }
 
 /// The states that move by a constant where theta moves by a step up to multiples of which it is determined: the outputs do

@@ -3,15 +3,18 @@
 //! In: rates of outputs as functions of z, y and u. Out: for each a primitive A(z, y) with
 //!
 //! ```text
-//! a(z, y) y' = N(z, y, u)      dA/dy = a      d/dt A = N + dA/dz h = R(z, y, u)
+//! a(z, y) y' = N(z, y, u)      dA/dy = a      d/dt A = N + dA/dz z' = R(z, y, u)
 //! ```
 //!
-//! Where A and R are linear in functions of theta at z = chi + theta, filtering both sides gives a linear
+//! Where A and R are affine in z, or linear in functions of theta at z = chi + theta, filtering both sides gives a linear
 //! regression without the rate (Ortega et al. 2015, Section 5.2: for the levitated ball a = z, A = z i).
 //! Nothing is divided by a, so the regression holds also where a vanishes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::differentiated::velocity;
+use super::together::Equation;
+use crate::analysis::design::Cascade;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::Rational;
@@ -19,28 +22,19 @@ use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
-use crate::cas::tidy::shortest;
+use crate::cas::tidy::{asking_less, shortest};
 
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;
 
-/// Both sides of `d/dt A = R`, in z.
-pub(super) struct Sides {
-    pub(super) primitive: Expr,
-    pub(super) rate: Expr,
-}
-
-/// The sides for the rate of an output, as a function of z; none where it has no such form.
-pub(super) fn sides(
+/// The equation for the rate of an output, which is a function of z, y and u; none where it has no such form.
+pub(super) fn equation(
     plant: &Plant,
     domain: &Domain,
-    h: &[Expr],
+    cascade: &Cascade,
     (output, rate): (usize, Expr),
-) -> Result<Option<Sides>, Obstacle> {
+) -> Result<Option<Equation>, Obstacle> {
     let arena = &plant.arena;
-    if arena.depends_on(rate, &plant.hidden()) {
-        return Ok(None);
-    }
     let y = plant.y[output].symbol;
     let Some(factor) = factor(plant, domain, rate)? else { return Ok(None) };
     // The unknown itself multiplies the rate; what is not affine in it is not taken for such a regression.
@@ -54,14 +48,18 @@ pub(super) fn sides(
         return Ok(None);
     }
     let Some(primitive) = primitive(plant, domain, factor, y) else { return Ok(None) };
-    let along = plant.z.iter().zip(h).map(|(z, h)| arena.mul(arena.derivative(primitive, *z), *h));
+    let slopes = plant.z.iter().map(|z| arena.derivative(primitive, *z));
+    let along = slopes.enumerate().map(|(index, slope)| arena.mul(slope, velocity(plant, cascade, index)));
     let right = arena.add(arena.mul(factor, rate), arena.sum(along));
-    let right = shortest(arena, domain, right);
+    // What was divided by is gone: at z = chi + theta nothing keeps it from zero.
+    let field = Field::over(arena, &domain.facts, &[right])?;
+    let whole = field.show(&field.fraction(right)?);
+    let right = asking_less(arena, domain, shortest(arena, domain, right), &[whole]);
     // Proved of the plant itself: at z = phi(x, y), along its vector field.
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let moving = arena.directional(arena.substitute(primitive, &transform), &plant.rates());
     let difference = arena.sub(moving, arena.substitute(right, &transform));
-    Ok(decide(arena, difference, domain).is_zero().then_some(Sides { primitive, rate: right }))
+    Ok(decide(arena, difference, domain).is_zero().then_some(Equation { primitive, rate: right }))
 }
 
 /// What the rate has to be multiplied by: the part of its denominator that holds z.

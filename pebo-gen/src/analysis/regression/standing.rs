@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{relations, separation};
+use super::{cleared, relations, separation};
 use crate::analysis::affine;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::tidy::{proved_shortest, shortest, shortest_equal};
 use crate::cas::{Expr, Symbol};
-use crate::plant::Plant;
 use crate::plant::matrix::dot;
+use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use super::functions::steps;
@@ -41,20 +41,16 @@ pub(in crate::analysis) fn from_identities(
         return Claim { verdict: Verdict::Refuted, result: None };
     }
     if cascade.lambda.is_some() {
-        // Where it holds an identity says 0 = 0: what it says of z is read off it elsewhere.
-        let everywhere = domain.everywhere();
-        let rows = plant.identities.iter().map(|identity| affine::of(plant, &everywhere, identity.expr)).collect();
+        let of = |identity: &Formula| match cleared::rows(plant, domain, identity.expr) {
+            Ok(rows) => rows.into_iter().map(Ok).collect(),
+            Err(obstacle) => vec![Err(obstacle)],
+        };
+        let rows = plant.identities.iter().flat_map(of).collect();
         return under_lambda(plant, domain, (rows, plant.identities[0].span), found);
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
-    let identities = identities_in_z(plant, left_inverse);
+    let identities = cleared::in_z(plant, domain, left_inverse);
     standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
-}
-
-/// The identities as equations between z, y and u.
-pub(super) fn identities_in_z(plant: &Plant, left_inverse: &LeftInverse) -> Vec<Expr> {
-    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-    plant.identities.iter().map(|identity| plant.arena.substitute(identity.expr, &inverse)).collect()
 }
 
 /// A static regression from what the components of the transform have to do with each other; none if that
@@ -71,7 +67,7 @@ pub(super) fn from_relations(
     let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
     let claim = match cascade.lambda {
         Some(_) => {
-            let rows = relations.iter().map(|relation| Ok(in_z(plant, *relation))).collect();
+            let rows = relations.iter().filter_map(|relation| in_z(plant, *relation)).map(Ok).collect();
             under_lambda(plant, domain, (rows, span), &mut own)
         }
         None => standing_still(plant, domain, left_inverse?, (&relations, span), &mut own),
@@ -100,14 +96,14 @@ fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
 fn under_lambda(
     plant: &Plant,
     domain: &Domain,
-    (rows, span): (Vec<Result<Option<affine::Row>, Obstacle>>, Span),
+    (rows, span): (Vec<Result<affine::Row, Obstacle>>, Span),
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
     let xi: Vec<Expr> = plant.xi.iter().map(|s| arena.of_symbol(*s)).collect();
     let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
     let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
-    for row in rows.iter().filter_map(|row| row.as_ref().ok()?.as_ref()) {
+    for row in rows.iter().filter_map(|row| row.as_ref().ok()) {
         // known + factors (xi + Psi theta) = 0
         phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
         let column = |column: usize| {

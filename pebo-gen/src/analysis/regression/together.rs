@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{relations, separation};
+use super::{cleared, implicit, relations, separation};
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::cas::domain::Domain;
 use crate::cas::tidy::shortest;
@@ -121,10 +121,13 @@ fn in_z(
 /// and whether these are all.
 fn standing(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
     let arena = &plant.arena;
-    let inverse: BTreeMap<Symbol, Expr> = left_inverse.iter().flat_map(|l| &l.x).copied().collect();
-    let identities = plant.identities.iter().map(|i| arena.substitute(i.expr, &inverse));
+    let identities = match left_inverse {
+        Some(left_inverse) => cleared::in_z(plant, domain, left_inverse),
+        None => plant.identities.iter().map(|identity| identity.expr).collect(),
+    };
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
     let (identities, open): (Vec<Expr>, Vec<Expr>) = identities
+        .into_iter()
         .filter(|e| arena.depends_on(*e, &unknown) || arena.depends_on(*e, &plant.hidden()))
         .partition(|e| !arena.depends_on(*e, &plant.hidden()));
     let mut complete = open.is_empty();
@@ -178,6 +181,31 @@ pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regre
         rate: arena.substitute(arena.add(*phi_0, dot(arena, phi_1, &eta)), &at_z),
     });
     Some(equations.collect())
+}
+
+/// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside those
+/// whose rates are affine in z. Others are left unused; none where that is all of them.
+pub(super) fn under_derivative(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: &LeftInverse,
+    rates: &[(usize, Expr)],
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let hidden = plant.hidden();
+    if rates.iter().any(|(_, rate)| plant.arena.depends_on(*rate, &hidden)) {
+        return None;
+    }
+    let equation = |&(output, rate): &(usize, Expr)| match affine(plant, domain, rate) {
+        Some(_) => Some(Equation { primitive: plant.arena.of_symbol(plant.y[output].symbol), rate }),
+        None => implicit::equation(plant, domain, cascade, (output, rate)).ok()?,
+    };
+    let equations: Vec<Equation> = rates.iter().filter_map(equation).collect();
+    if equations.is_empty() {
+        return None;
+    }
+    joined(plant, domain, cascade, Some(left_inverse), &equations, found)
 }
 
 /// The regression of the equations: linear where all are affine in z, else in functions of theta.

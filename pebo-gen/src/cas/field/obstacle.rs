@@ -15,6 +15,8 @@ pub enum Obstacle {
     DivisionByZero,
     /// Two kernels that could not be shown independent, or one that has no rules here.
     Kernel(String),
+    /// Roots that have no values together modulo any prime that was tried.
+    NoResidue,
     /// No point of the assumed domain was found at which the expression has a value.
     NoPoint,
     /// An equation of the domain that the normal form does not know of.
@@ -32,6 +34,7 @@ impl fmt::Display for Obstacle {
             Self::OutOfBudget => f.write_str("the limit on time or memory is reached"),
             Self::DivisionByZero => f.write_str("a denominator is zero everywhere"),
             Self::Kernel(what) => write!(f, "no rule decides {what}"),
+            Self::NoResidue => f.write_str("its roots have no values together modulo the primes that were tried"),
             Self::NoPoint => f.write_str("no point of the assumed domain was found where the formula has a value"),
             Self::Unsolved(equation) => {
                 write!(f, "the identity `{equation}` could not be solved for a symbol without losing solutions")

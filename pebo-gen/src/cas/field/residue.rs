@@ -6,7 +6,7 @@
 //! nothing.
 
 use crate::cas::field::{Field, Fraction};
-use crate::cas::poly::{PrimeField, Residue};
+use crate::cas::poly::{Poly, PrimeField, Residue};
 
 /// How often the kernels are drawn anew where a root has no value.
 const MOST_DRAWS: usize = 200;
@@ -14,6 +14,9 @@ const MOST_DRAWS: usize = 200;
 /// The largest prime p below 2^62 for which (p - 1)/2 is prime as well: every root of odd degree exists once, and every
 /// root of even degree exists of each square.
 const PRIME: u64 = (1 << 62) - 10_565;
+
+/// Each such prime is 11 modulo 12.
+const STEP: usize = 12;
 
 /// Random words (`SplitMix64`, Steele, Lea and Flood 2014), the same ones every time.
 #[derive(Debug)]
@@ -39,6 +42,21 @@ pub(crate) fn prime_of_kernels() -> Option<PrimeField> {
 }
 
 impl Field<'_> {
+    /// The primes modulo which the kernels may have values, the largest first: the square roots of numbers exist there, as
+    /// that of 2 does modulo every other.
+    pub(crate) fn primes(&self) -> impl Iterator<Item = PrimeField> {
+        let kernels = self.round.kernels.borrow();
+        let relations = kernels.iter().filter_map(|(_, kernel)| kernel.relation.as_ref());
+        let of_numbers = relations.filter(|relation| relation.degree % 2 == 0 && relation.value.variables().is_empty());
+        let radicands: Vec<Poly> = of_numbers.map(|relation| relation.value.clone()).collect();
+        let fits = move |prime: &PrimeField| {
+            let value = |radicand: &Poly| radicand.evaluate_mod(prime, |_| Residue::ZERO);
+            radicands.iter().all(|radicand| prime.is_square(value(radicand)))
+        };
+        let safe = |prime: u64| PrimeField::new(prime >> 1).and_then(|_| PrimeField::new(prime));
+        (1..=PRIME).rev().step_by(STEP).filter_map(safe).filter(fits)
+    }
+
     /// Residues of all kernels, which are kept where they are given; none if a relation cannot be met.
     pub(crate) fn draw(
         &self,
@@ -112,7 +130,23 @@ fn root(prime: &PrimeField, value: Residue, degree: u32) -> Option<Residue> {
 mod tests {
     use super::*;
     use crate::cas::facts::Facts;
+    use crate::cas::rational::Rational;
     use crate::cas::{Arena, Function};
+
+    #[test]
+    fn square_roots_of_numbers_have_values_modulo_one_of_the_primes() {
+        let arena = Arena::new();
+        let h = arena.variable("h");
+        let number = |above: i64, below: i64| arena.number(Rational::new(above, below).expect("a rational"));
+        let roots = [number(2, 1), number(3, 1), number(5, 7), number(981, 50), number(1, 11), number(13, 1)];
+        let nested = arena.sqrt(arena.add(arena.sqrt(number(2, 1)), number(2, 1)));
+        let roots: Vec<_> =
+            roots.into_iter().map(|radicand| arena.sqrt(arena.mul(radicand, h))).chain([nested]).collect();
+        let field = Field::over(&arena, &Facts::new(), &roots).expect("a field");
+        let values = |prime: PrimeField| field.draw(&prime, &mut Words::new(1), |_| None);
+        assert!(values(prime_of_kernels().expect("a prime")).is_none());
+        assert!(field.primes().take(16).any(|prime| values(prime).is_some()));
+    }
 
     #[test]
     fn residues_agree_with_the_relations_of_kernels() {

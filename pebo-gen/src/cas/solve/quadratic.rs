@@ -25,27 +25,8 @@ pub(super) fn roots(
 ) -> Result<Vec<Equation>, Obstacle> {
     let field = Field::over(arena, &domain.facts, &[difference])?;
     let of_unknown = BTreeSet::from([unknown]);
-    let mut poly = field.fraction(difference)?.numerator().clone();
-    for _ in 0..MOST_ROOTS {
-        let hidden = field.kernels_of(&of_unknown);
-        let Some((root, radicand)) = field.square_roots_in(&poly).into_iter().find(|(root, _)| hidden.contains(root))
-        else {
-            break;
-        };
-        // (a + b r)(a - b r) = a^2 - b^2 r^2
-        let [mut a, mut b] = [Poly::zero(), Poly::zero()];
-        for (exponent, coefficient) in poly.coefficients_in(root) {
-            *(if exponent == 0 { &mut a } else { &mut b }) = coefficient;
-        }
-        let square = b.mul(&b, field.limit())?.mul(&radicand, field.limit())?;
-        poly = &a.mul(&a, field.limit())? - &square;
-        // Taking the root out of a denominator has brought in its radicand.
-        while let Some(quotient) = poly.div_exact(&radicand, field.limit())?
-            && !poly.is_zero()
-        {
-            poly = quotient;
-        }
-    }
+    let above = field.fraction(difference)?.numerator().clone();
+    let poly = without_roots(&field, above, &of_unknown)?;
     let hidden = field.kernels_of(&of_unknown);
     let present: Vec<u32> = poly.variables().iter().copied().filter(|variable| hidden.contains(variable)).collect();
     let [kernel] = present.as_slice() else { return Ok(Vec::new()) };
@@ -67,6 +48,31 @@ pub(super) fn roots(
     let (base, step) = (field.kernel(*kernel), if b.is_zero() { degree.div_ceil(2) } else { degree / 2 });
     let step = Rational::from(i64::from(step));
     Ok(powers.into_iter().filter_map(|value| unpower(arena, domain, base, &step, value)).collect())
+}
+
+/// A polynomial that vanishes with this one, some square roots over unknowns taken away.
+pub(super) fn without_roots(field: &Field<'_>, mut poly: Poly, unknown: &BTreeSet<Symbol>) -> Result<Poly, Obstacle> {
+    for _ in 0..MOST_ROOTS {
+        let hidden = field.kernels_of(unknown);
+        let Some((root, radicand)) = field.square_roots_in(&poly).into_iter().find(|(root, _)| hidden.contains(root))
+        else {
+            break;
+        };
+        // (a + b r)(a - b r) = a^2 - b^2 r^2
+        let [mut a, mut b] = [Poly::zero(), Poly::zero()];
+        for (exponent, coefficient) in poly.coefficients_in(root) {
+            *(if exponent == 0 { &mut a } else { &mut b }) = coefficient;
+        }
+        let square = b.mul(&b, field.limit())?.mul(&radicand, field.limit())?;
+        poly = &a.mul(&a, field.limit())? - &square;
+        // Taking the root out of a denominator has brought in its radicand.
+        while let Some(quotient) = poly.div_exact(&radicand, field.limit())?
+            && !poly.is_zero()
+        {
+            poly = quotient;
+        }
+    }
+    Ok(poly)
 }
 
 /// The values of `v` in `a v^2 + b v + c = 0`, each as a quotient by a sum and as a sum: of the two the one in which nothing
