@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(found.lines(&arena)[0], "b1 = alpha_first + beta_second + gamma_third");
         assert_eq!(found.print(&arena, short), "delta*b1");
         assert_eq!((found.print(&arena, shared).as_str(), found.defined(&arena, shared)), ("b1", arena.print(shared)));
-        let long = found.print(&arena, long);
+        let long = found.defined(&arena, long);
         assert!(long.contains("b1") && !long.contains("alpha_first"), "{long}");
     }
 }
