@@ -28,7 +28,7 @@ pub(super) struct Exact {
 /// The relative move of an argument by which its effect is found where it is not found to first order.
 pub(super) const MOVE: f64 = 1.0 / 1_073_741_824.0;
 
-/// Of values that do not all exist, each by itself.
+/// The values of expressions; where they do not all exist, of each by itself.
 pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
     let values = at_once(arena, exprs, place).unwrap_or_else(|| {
         let alone = exprs.iter().map(|&expr| at_once(arena, &[expr], place)?.pop().flatten());
@@ -37,6 +37,7 @@ pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
     Exact { values }
 }
 
+/// The same in one pass, none if one of them has no value.
 fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Vec<Option<(Interval, f64)>>> {
     let still = at(arena, exprs, place, None)?;
     let parts = arena.postorder(exprs);
