@@ -43,48 +43,6 @@ fn text_of_every_model() {
     }
 }
 
-/// Three links with two masses: the author's formulas lose digits where two links are in line, and so may the emitted
-/// ones, but in no other part.
-const CHAIN: &str = "\
-model: chain3
-parameters: [m1, l1, l2, I, g]
-x: [x1, x2, x3]
-y: [y1, y2, y3]
-u: [u1, u2, u3]
-assume: [m1 > 0, l1 > 0, l2 > 0, I > 0, sin(y2) > 0]
-define:
-  c1: l1*cos(y1)
-  s1: l1*sin(y1)
-  c2: l2*cos(y1+y2)
-  s2: l2*sin(y1+y2)
-  X_2_1: s2
-  Y_2_1: c2
-  X_1_1: s1 + X_2_1
-  Y_1_1: c1 + Y_2_1
-  d1: l1*l2*sin(y2)
-  T_1_1: Y_2_1/d1
-  T_1_2: X_2_1/d1
-  T_2_1: -Y_1_1/d1
-  T_2_2: -X_1_1/d1
-  T_3_1: -(T_1_1 + T_2_1)
-  T_3_2: -(T_1_2 + T_2_2)
-mechanical:
-  M: [[m1*(X_1_1*X_1_1 + Y_1_1*Y_1_1) + I, m1*(X_1_1*X_2_1 + Y_1_1*Y_2_1) + I, I], [m1*(X_2_1*X_1_1 + Y_2_1*Y_1_1) + I, m1*(X_2_1*X_2_1 + Y_2_1*Y_2_1) + I, I], [I, I, I]]
-  V: m1*g*X_1_1
-  G: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-  T: [[T_1_1, T_1_2, 0], [T_2_1, T_2_2, 0], [T_3_1, T_3_2, 1]]
-";
-
-#[test]
-fn what_the_author_loses_is_no_reason_to_refuse() {
-    let derived = derive(&Source::new("chain", CHAIN.to_owned()).expect("a text")).expect("a model");
-    for scalar in Scalar::ALL {
-        let text = derived.emit(scalar).unwrap_or_else(|error| panic!("{error}")).text;
-        // Its long formulas name their parts.
-        assert!(text.contains("# Parts of the formulas"), "{text}");
-    }
-}
-
 /// Faults seen in the Rust of other generators.
 #[test]
 fn text_is_free_of_known_faults() {

@@ -28,8 +28,6 @@ pub(super) struct Choice<'a> {
     pub(super) staged: Staged,
     /// The functions that lose digits.
     losing: Vec<&'static str>,
-    /// The programs of the regression as it was derived, where it is computed by its factors.
-    as_derived: Option<Staged>,
 }
 
 impl Choice<'_> {
@@ -54,14 +52,13 @@ pub(super) fn choose<'a>(
     let ground = Ground::of(plant, derivation);
     let of = |definitions: &Definitions<'a>, staged: Staged| {
         let losing = ground.losing(definitions, &staged, scalar);
-        Choice { definitions: definitions.clone(), staged, losing, as_derived: None }
+        Choice { definitions: definitions.clone(), staged, losing }
     };
     let measured = |definitions: &Definitions<'a>| -> Result<Choice<'a>, Undeclared> {
         let (cheaper, other) = tasks::staged(arena, parameters, definitions, &is_zero)?;
         let cheaper = of(definitions, cheaper);
-        let Some(other) = other else { return Ok(cheaper) };
-        let cheaper = Choice { as_derived: Some(other.clone()), ..cheaper };
-        Ok(if cheaper.losing.is_empty() { cheaper } else { cheaper.or_better(of(definitions, other)) })
+        let Some(other) = other.filter(|_| !cheaper.losing.is_empty()) else { return Ok(cheaper) };
+        Ok(cheaper.or_better(of(definitions, other)))
     };
     let mut choice = measured(definitions)?;
     for function in choice.losing.clone() {
@@ -87,14 +84,6 @@ pub(super) fn choose<'a>(
         }
     }
     let accuracy = ground.measure(&choice.definitions, &choice.staged);
-    let is_refused = |accuracy: &Accuracy| accuracy.of(scalar).any(|(_, worst)| worst.is_refused());
-    if let Some(staged) = choice.as_derived.take_if(|_| is_refused(&accuracy)) {
-        // What the author's formulas lose may be lost as they lose it.
-        let other = ground.measure(&choice.definitions, &staged);
-        if !is_refused(&other) {
-            return Ok((Choice { staged, ..choice }, other));
-        }
-    }
     Ok((choice, accuracy))
 }
 

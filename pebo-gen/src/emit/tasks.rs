@@ -37,8 +37,8 @@ pub(super) fn staged(
         }
     }
     let shared = stage(arena, parameters, &sampled, &by_factors)?;
-    // A sum that is multiplied out may lose digits where its summands cancel: it has to be worth measuring.
-    let saves = 30 * work(&shared, definitions) <= 29 * work(&derived, definitions);
+    // A sum that is multiplied out loses digits where its summands cancel: it has to be worth it.
+    let saves = 10 * work(&shared, definitions) <= 9 * work(&derived, definitions);
     Ok(if saves { (shared, Some(derived)) } else { (derived, None) })
 }
 

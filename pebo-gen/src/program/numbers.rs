@@ -4,7 +4,6 @@
 //! whole. Beside something stored, as a parameter, a number is a part of what is stored. Of equal costs a product has its
 //! sum with whole numbers that have no divisor in common, so that `y*(10 - 2*x)` and `2*y*(5 - x)` are one.
 
-use super::product::is_short;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Product, Sum};
 
@@ -94,6 +93,17 @@ impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
     }
 }
 
+/// Whether the number has an exact decimal: its denominator has no prime factor but 2 and 5.
+pub(super) fn is_short(value: &Rational) -> bool {
+    let mut denominator = value.denominator();
+    for prime in [2, 5] {
+        while let Some(quotient) = denominator.div_exact(&prime.into()) {
+            denominator = quotient;
+        }
+    }
+    denominator.is_one()
+}
+
 /// Whether the denominator is a power of two.
 fn is_dyadic(value: &Rational) -> bool {
     let denominator = value.denominator();
@@ -146,5 +156,12 @@ mod tests {
             arena.scale(arena.mul(d, sum(arena, 0, [(a, 3), (arena.mul(c, p), -1)])), &third)
         });
         assert_eq!(stored, "d*(a - c*p/3)");
+    }
+
+    #[test]
+    fn what_has_a_finite_decimal_is_short() {
+        let short = |n: i64, d: i64| is_short(&Rational::new(n, d).unwrap());
+        assert!(short(3, 1) && short(1, 8) && short(7, 25) && short(1, 40));
+        assert!(!short(1, 3) && !short(1, 30));
     }
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rustc_hash::FxHashMap;
 
 use super::super::literal::Scalar;
-use super::moved::Moves;
+use super::moved::{BITS, MOVE, Moves};
 use super::places::Place;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
@@ -17,16 +17,10 @@ use crate::cas::{Arena, Expr, Symbol};
 /// More units are a loss that no author expects.
 pub(super) const MOST: f64 = 100.0;
 
-/// Bits of the enclosures: those of `f64`, and as many to be lost.
-pub(super) const BITS: u32 = 128;
-
 /// Exact values at a place, and how much they move when all that they depend on is rounded.
 pub(super) struct Exact {
     values: Vec<Option<(Interval, f64)>>,
 }
-
-/// The relative move of an argument by which its effect is found where it is not found to first order.
-pub(super) const MOVE: f64 = 1.0 / 1_073_741_824.0;
 
 /// The values of expressions; where they do not all exist, of each by itself.
 pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {

@@ -8,10 +8,15 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use super::exact::{BITS, MOVE};
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
+
+/// Bits of the enclosures: those of `f64`, and as many to be lost.
+pub(super) const BITS: u32 = 128;
+
+/// The relative move of an argument by which its effect is found where it is not found to first order.
+pub(super) const MOVE: f64 = 1.0 / 1_073_741_824.0;
 
 /// A sum of tangents that is less than this part of its summands is not taken: their roundings in `f64`, some hundred
 /// of 1e-16 each, have to be small beside it.

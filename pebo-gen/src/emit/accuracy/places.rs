@@ -25,8 +25,9 @@ const SPREAD: usize = 12;
 /// All points.
 const MOST: usize = 48;
 
-/// How far beside a limit a value is taken, in parts of it.
-const BESIDE: [f64; 2] = [1.0 / 128.0, 1.0 / 16384.0];
+/// How far beside a limit a value is taken, in parts of it: no powers of two, with which sums and squares would be exact in
+/// `f32` and hide what is lost.
+const BESIDE: [f64; 2] = [1.0 / 129.0, 1.0 / 16389.0];
 
 /// The places, the spread ones first.
 pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
