@@ -27,8 +27,8 @@ for (const [name, text] of models) {
   questions.push({ what: "solve", text });
   // As many samples as a second or less takes: what a sample does, and not how many there are.
   const step = Number(text.match(/^ *step: (\S+)/m)?.[1] ?? 1);
-  for (const set of [{}, { initial_error: 0.5, estimator: "least-squares" }]) {
-    questions.push({ what: "simulate", text, set: { ...set, duration: 500 * step }, csv: true });
+  for (const how of [{}, { initial_error: 0.5, estimator: "least-squares" }]) {
+    questions.push({ what: "simulate", text, set: [`simulation.duration=${500 * step}`], how, csv: true });
   }
   questions.push({ what: "replay", text, name: "bench.csv", csv: recording });
 }

@@ -13,7 +13,7 @@ use crate::plant::{Class, Plant, Settings, TransformOrigin};
 use crate::search::{self, Found};
 #[cfg(feature = "yaml")]
 use crate::source::Source;
-use crate::source::{Code, Diagnostic, Diagnostics};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use crate::tuning::Tuned;
 
 /// A model with everything that was derived of it.
@@ -73,8 +73,21 @@ impl Derived {
             let best = search.candidates.swap_remove(0);
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }
-        let derivation = Derivation::without_transform(vec![search.refusal(&plant)]);
+        let names = (model.x.first(), model.x.last());
+        let states = match names {
+            (Some(first), Some(last)) => first.span.to(last.span),
+            _ => plant.x.first().map_or(Span::NOWHERE, |state| state.rate.span),
+        };
+        let derivation = Derivation::without_transform(vec![search.refusal(&plant, states)]);
         Ok(Self { model, plant, derivation })
+    }
+
+    /// Whether all that was derived holds of another reading of the model too, which then may stand in the place of
+    /// [`model`](Self::model): one that differs in the sections `observer`, `simulation` and `recording` alone, as with
+    /// [`Source::set`](crate::source::Source::set).
+    pub fn holds_of(&self, other: &Model) -> bool {
+        let Model { observer, simulation, recording, .. } = self.model.clone();
+        Model { observer, simulation, recording, ..other.clone() } == self.model
     }
 
     /// What there is to tell of the claims; a refusal of a transform is followed by what a search for another found.

@@ -6,6 +6,8 @@ const SCHEMES = ["light", "dark"];
 // WCAG 2.2, 1.4.3: the least contrast of text with what is behind it.
 const CONTRAST = 4.5;
 
+const PAPER = document.createElement("canvas").getContext("2d");
+
 function channels(colour) {
   return colour.match(/[\d.]+/g).map(Number);
 }
@@ -32,6 +34,23 @@ function behind(element, view) {
   return [255, 255, 255];
 }
 
+// Whether a part of a name is not shown: of a name that is broken over lines, a browser shows the first line alone.
+function isBroken(token, view) {
+  const style = view.getComputedStyle(token);
+  PAPER.font = `${style.fontStyle} ${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
+  const { left, right } = extent(token);
+  // A letter is wider than two pixels; a single one may be set as another glyph.
+  return [...token.textContent].length > 1 && right - left < PAPER.measureText(token.textContent).width - 2;
+}
+
+// From where to where what is in an element reaches, which may be more than the element.
+function extent(element) {
+  const range = element.ownerDocument.createRange();
+  range.selectNodeContents(element);
+  const boxes = [...range.getClientRects()].filter((box) => box.width > 0);
+  return { left: Math.min(...boxes.map((box) => box.left)), right: Math.max(...boxes.map((box) => box.right)) };
+}
+
 function wrong(frame, scheme) {
   const [view, page] = [frame.contentWindow, frame.contentDocument];
   const found = [];
@@ -47,6 +66,21 @@ function wrong(frame, scheme) {
   for (const math of page.querySelectorAll("math")) {
     const { width, height } = math.getBoundingClientRect();
     if (!(width > 0 && height > 0)) found.push(`a formula has no size: ${math.textContent.slice(0, 60)}`);
+  }
+  for (const token of page.querySelectorAll("mi, mn, mo, mtext")) {
+    if (isBroken(token, view)) found.push(`a name is broken in a formula: ${token.textContent.slice(0, 60)}`);
+  }
+  for (const row of page.querySelectorAll("math mtr")) {
+    const cells = [...row.children].map(extent).filter((cell) => cell.right > cell.left);
+    cells.sort((one, other) => one.left - other.left);
+    for (let i = 1; i < cells.length; i++) {
+      // Half a pixel is rounding of the layout.
+      if (cells[i].left < cells[i - 1].right - 0.5) found.push(`a formula overlaps: ${row.textContent.slice(0, 60)}`);
+    }
+  }
+  for (const drawing of page.querySelectorAll("figure svg")) {
+    const { right } = drawing.getBoundingClientRect();
+    if (right > width) found.push(`a figure ends at ${right}, and is cut`);
   }
   for (const fraction of page.querySelectorAll("mfrac")) {
     const [above, below] = [...fraction.children].map((part) => part.getBoundingClientRect());

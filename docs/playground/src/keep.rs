@@ -39,7 +39,7 @@ impl Kept {
         let known = self.last.take().filter(|(text, within, _)| (text.as_str(), *within) == wanted);
         match known {
             Some((_, _, derived)) => derived,
-            None => derive_within(source, Budget::of_seconds(limit.unwrap_or(Budget::SECONDS))),
+            None => derive_within(source, budget(limit)),
         }
     }
 
@@ -47,4 +47,9 @@ impl Kept {
     pub(super) fn keep(&mut self, source: &Source, limit: Option<f64>, derived: Result<Derived, Vec<Diagnostic>>) {
         self.last = Some((source.text().to_owned(), limit, derived));
     }
+}
+
+/// The budget within so many seconds.
+pub(super) fn budget(limit: Option<f64>) -> Budget {
+    Budget::of_seconds(limit.unwrap_or(Budget::SECONDS))
 }

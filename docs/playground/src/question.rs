@@ -1,7 +1,5 @@
 //! What a page may ask.
 
-use std::collections::BTreeMap;
-
 use pebo_gen::emit::Scalar;
 use pebo_gen::model::Estimator;
 use pebo_gen::simulate::Overrides;
@@ -33,9 +31,12 @@ pub(super) enum Question {
         text: String,
         /// As of the commands.
         limit: Option<f64>,
-        /// What goes before the file.
+        /// What the file is to say instead, each `NAME=VALUE` as of `--set`.
         #[serde(default)]
-        set: Set,
+        set: Vec<String>,
+        /// How it is run.
+        #[serde(default)]
+        how: How,
         /// Whether the table of all signals is wanted.
         #[serde(default)]
         csv: bool,
@@ -85,30 +86,17 @@ impl From<Number> for Scalar {
     }
 }
 
-/// Settings of a run that go before those of the file.
-#[derive(Clone, Debug, Default, Deserialize)]
+/// How a loop is run.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct Set {
+pub(super) struct How {
     seed: Option<u64>,
-    step: Option<f64>,
-    duration: Option<f64>,
-    noise: BTreeMap<String, f64>,
-    plant: BTreeMap<String, f64>,
     initial_error: Option<f64>,
     estimator: Option<Estimator>,
 }
 
-impl From<Set> for Overrides {
-    fn from(set: Set) -> Self {
-        Self {
-            seed: set.seed,
-            step: set.step,
-            duration: set.duration,
-            noise: set.noise,
-            plant: set.plant,
-            initial_error: set.initial_error,
-            estimator: set.estimator,
-            ..Self::default()
-        }
+impl From<How> for Overrides {
+    fn from(how: How) -> Self {
+        Self { seed: how.seed, initial_error: how.initial_error, estimator: how.estimator, ..Self::default() }
     }
 }

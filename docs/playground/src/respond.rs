@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use pebo_gen::model::{Estimator, Model, json_schema};
 use pebo_gen::source::{Code, Diagnostic, Source};
-use pebo_gen::{Answer, Ask, AskRun, Derived, Solution, Tape, solve};
+use pebo_gen::{Answer, Ask, AskRun, Derived, Solution, Tape, derive_within, solve};
 use serde::Serialize;
 
-use super::keep::Kept;
+use super::keep::{Kept, budget};
 use super::question::Question;
 
 /// What a page calls the text of its editor.
@@ -111,10 +111,11 @@ pub(super) fn respond(kept: &mut Kept, question: &str) -> String {
             })
             .0,
         ),
-        Question::Simulate { text, limit, set, csv } => {
-            let run = AskRun { overrides: set.into(), trace: csv, figure: true, runs: None };
-            let (mut answer, _) =
-                of_model(kept, &text, limit, |kept, derived, source| Answer::on(derived, source, &kept.ask().run(run)));
+        Question::Simulate { text, limit, set, how, csv } => {
+            let run = AskRun { overrides: how.into(), trace: csv, figure: true, runs: None };
+            let (mut answer, _) = of_setting(kept, (&text, &set), limit, |kept, derived, source| {
+                Answer::on(derived, source, &kept.ask().run(run))
+            });
             let trace = answer.run.as_mut().and_then(|run| run.trace.take());
             json(&Ran { csv: trace.map(|trace| trace.csv()), answer })
         }
@@ -160,16 +161,41 @@ fn of_model(
     limit: Option<f64>,
     answer: impl FnOnce(&Kept, &Derived, &Source) -> Answer,
 ) -> (Answer, Option<Model>) {
-    let source = match Source::new(NAME, text) {
-        Ok(source) => source,
+    of_setting(kept, (text, &[]), limit, answer)
+}
+
+/// The same on a text with settings. Of the text alone what was derived is kept, and what is set of its loop changes nothing
+/// of that.
+fn of_setting(
+    kept: &mut Kept,
+    (text, settings): (&str, &[String]),
+    limit: Option<f64>,
+    answer: impl FnOnce(&Kept, &Derived, &Source) -> Answer,
+) -> (Answer, Option<Model>) {
+    let both = Source::new(NAME, text).and_then(|source| Ok((source.clone(), source.set(settings)?)));
+    let (source, set) = match both {
+        Ok(both) => both,
         Err(diagnostic) => {
             return (Answer::of_unread("model", vec![diagnostic], &Source::unread(NAME)), None);
         }
     };
-    let derived = kept.take(&source, limit);
-    let answered = match &derived {
-        Ok(derived) => (answer(kept, derived, &source), Some(derived.model.clone())),
-        Err(diagnostics) => (Answer::of_unread("model", diagnostics.clone(), &source), None),
+    let unread = |diagnostics: Vec<Diagnostic>| (Answer::of_unread("model", diagnostics, &set), None);
+    let mut derived = kept.take(&source, limit);
+    let answered = match &mut derived {
+        Ok(derived) if settings.is_empty() => (answer(kept, derived, &set), Some(derived.model.clone())),
+        Ok(derived) => match Model::parse(&set) {
+            Ok(model) if derived.holds_of(&model) => {
+                let usual = std::mem::replace(&mut derived.model, model);
+                let answer = answer(kept, derived, &set);
+                (answer, Some(std::mem::replace(&mut derived.model, usual)))
+            }
+            Ok(_) => match derive_within(&set, budget(limit)) {
+                Ok(other) => (answer(kept, &other, &set), Some(other.model)),
+                Err(diagnostics) => unread(diagnostics),
+            },
+            Err(diagnostics) => unread(diagnostics),
+        },
+        Err(diagnostics) => unread(diagnostics.clone()),
     };
     kept.keep(&source, limit, derived);
     answered

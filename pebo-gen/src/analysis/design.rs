@@ -246,6 +246,8 @@ pub enum Place {
     Constant(Vec<Symbol>),
     /// The input has this value.
     Value(Symbol, Expr),
+    /// All inputs are constant, and the input or parameter has this value.
+    Steady(Symbol, Expr),
     /// This stays zero, where rows with all their derivatives may be of a lower rank: what is seen then was not decided.
     Unshown(Expr),
     /// These keep their signs: the regressor bends where one changes.

@@ -33,9 +33,11 @@ pub(super) fn page(
         None => None,
     };
     #[cfg(feature = "simulate")]
-    let run = emitted.as_ref().and_then(|_| {
-        let run = described(derived, ask)?;
-        run.map_err(|failed| refusal = Some(failed)).map(|(run, _)| run).ok()
+    let run = emitted.as_ref().and_then(|_| described(derived, ask)).map(|run| {
+        run.map(|(run, _)| run).map_err(|(standing, found)| {
+            let note = |found: Diagnostic| found.note("the page is written without the figure of the closed loop");
+            refusal = Some((standing, found.into_iter().map(note).collect()));
+        })
     });
     let diagnostics: Vec<Diagnostic> =
         known.iter().chain(refusal.iter().flat_map(|(_, found)| found)).cloned().collect();
@@ -46,7 +48,9 @@ pub(super) fn page(
         diagnostics: &diagnostics,
         emitted: emitted.as_ref(),
         #[cfg(feature = "simulate")]
-        run: run.as_ref().and_then(of_run),
+        run: run.as_ref().map_or(page::Run::Not, |run| {
+            run.as_ref().ok().and_then(of_run).map_or(page::Run::Failed, page::Run::Done)
+        }),
     });
     (page, refusal)
 }
@@ -64,7 +68,7 @@ pub(super) fn sections(
         diagnostics,
         emitted,
         #[cfg(feature = "simulate")]
-        run: None,
+        run: page::Run::Not,
     })
 }
 
@@ -75,9 +79,13 @@ fn described(derived: &Derived, ask: &Ask) -> Option<Result<(Run, Option<Diagnos
     Some(run::run(derived, ask, &AskRun { figure: true, ..AskRun::default() }))
 }
 
+/// What the page shows of a run: the table without the columns that nobody has anything in.
 #[cfg(feature = "simulate")]
 fn of_run(run: &Run) -> Option<page::Loop<'_>> {
-    let errors =
-        run.errors.iter().map(|error| page::Errors { state: &error.state, start: error.start, end: error.end });
-    Some(page::Loop { figure: run.figure.as_deref()?, end: run.end, errors: errors.collect() })
+    let rows = run.summary.rows();
+    let filled = |column: usize| rows.iter().any(|row| !row[column].is_empty());
+    let shown = |row: &[String; 7]| (0..row.len()).filter(|i| filled(*i)).map(|i| row[i].clone()).collect();
+    let errors = rows.iter().map(shown).collect();
+    let lines = run.summary.lines().iter().map(|line| line.trim_start().to_owned()).collect();
+    Some(page::Loop { figure: run.figure.as_deref()?, end: run.end, errors, lines })
 }

@@ -18,6 +18,9 @@ use super::rational::Rational;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
+/// Terms of a numerator that may be a product of sums worth looking for, as `(p - 1)*(q - 1)`.
+const PRODUCT_TERMS: std::ops::RangeInclusive<usize> = 4..=12;
+
 /// The shortest of an expression and the ways to write its normal form.
 pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     shortest_turned(arena, &Orientation::new(arena, domain), expr)
@@ -75,7 +78,10 @@ pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
 /// The ways to write the normal form.
 fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
     let Ok(fraction) = field.fraction(expr) else { return Vec::new() };
-    let forms = [Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction)];
+    let few = PRODUCT_TERMS.contains(&fraction.numerator().term_count());
+    let factored = few.then(|| field.show_factored(&fraction));
+    let forms =
+        [Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction), factored];
     forms.into_iter().flatten().collect()
 }
 

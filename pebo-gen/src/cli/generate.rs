@@ -2,12 +2,20 @@
 
 use std::path::Path;
 
+use clap::CommandFactory as _;
 use pebo_gen::Standing;
+use pebo_gen::source::nearest;
 
-use super::arguments::{GenerateOptions, Limit};
+use super::arguments::{Arguments, GenerateOptions, Limit};
 use super::{files, terminal};
 
 pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {
+    if let Some((word, command)) = options.models.first().and_then(|first| misspelt(first)) {
+        terminal::say(&format!(
+            "error: there is no command and no file `{word}`\n  = help: did you mean `{command}`?\n"
+        ));
+        return Standing::Malformed;
+    }
     let several = options.models.len() > 1;
     if several && options.output.as_deref().is_none_or(|output| !output.is_dir()) {
         terminal::say(
@@ -17,6 +25,14 @@ pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {
     }
     let standings = options.models.iter().map(|model| one(model, options, limit));
     standings.max().unwrap_or(Standing::Malformed)
+}
+
+/// A word in the place of a model file that is none, and the command that it is nearly.
+fn misspelt(path: &Path) -> Option<(&str, String)> {
+    let word = path.to_str().filter(|_| !path.exists())?;
+    let commands = Arguments::command();
+    let names: Vec<&str> = commands.get_subcommands().map(clap::Command::get_name).collect();
+    Some((word, nearest(word, names)?.to_owned()))
 }
 
 fn one(path: &Path, options: &GenerateOptions, limit: Limit) -> Standing {

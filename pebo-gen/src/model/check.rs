@@ -7,7 +7,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::definitions::circles;
-use super::names::admit;
+use super::names::{admit, derivative_of};
 use super::recording::Recording;
 use super::spanned::{Entry, Spanned};
 use super::written::{Baseline, Model, Simulation};
@@ -19,7 +19,10 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted
 /// A list of states or outputs that is empty has been reported where it was read: what depends on
 /// it is not reported again.
 pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
-    let mut pass = Pass { diagnostics, simulated: model.simulation.is_some() || model.recording.is_some() };
+    let measured: HashSet<&str> = model.y.iter().map(|output| output.value.as_str()).collect();
+    let both = model.x.iter().map(|state| state.value.as_str()).filter(|state| measured.contains(state));
+    let simulated = model.simulation.is_some() || model.recording.is_some();
+    let mut pass = Pass { diagnostics, simulated, both: both.collect() };
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
     pass.circles(&model.define);
@@ -28,8 +31,8 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let both = Group::new(model.x.iter().chain(&model.y), "a state of x or y");
     if !model.x.is_empty() && !model.y.is_empty() {
         pass.complete(&model.f_x, &model.x, "f_x");
-        pass.belong(&model.f_x, &x, "f_x");
-        pass.belong(&model.f_y, &y, "f_y");
+        pass.rates(&model.f_x, &scope, (&x, "x", "f_x"), (&y, "f_y"));
+        pass.rates(&model.f_y, &scope, (&y, "y", "f_y"), (&x, "f_x"));
         pass.belong(&model.g_y, &y, "g_y");
         pass.belong(&model.phi_left, &x, "phi_left");
         pass.belong(&model.angles, &both, "angles");
@@ -70,12 +73,16 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     }
     pass.units(model);
     pass.inverted(model);
+    pass.measured(model);
     pass.known(&model.observer.sensors, [&model.observer.start, &model.observer.disturbance]);
     model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
         pass.simulation(simulation, &scope, (&model.u, &model.w));
     }
 }
+
+/// Entries for no name of the model whose names are compared with those that miss one: of more, nobody misspelt each.
+const MOST_STRANGERS: usize = 20;
 
 /// Names declared in one place of the model, with their places in the file.
 type Scope<'a> = HashMap<&'a str, Span>;
@@ -94,10 +101,18 @@ impl<'a> Group<'a> {
         let names: Vec<&str> = names.into_iter().map(|name| name.value.as_str()).collect();
         Self { set: names.iter().copied().collect(), names, what }
     }
+
+    /// The names for which there is no entry.
+    fn without<T>(&self, entries: &[Entry<T>]) -> Vec<&'a str> {
+        let present: HashSet<&str> = entries.iter().map(|entry| entry.name.value.as_str()).collect();
+        self.names.iter().copied().filter(|name| !present.contains(name)).collect()
+    }
 }
 
 struct Pass<'a> {
     diagnostics: &'a mut Diagnostics,
+    /// Names among the states and the outputs.
+    both: HashSet<&'a str>,
     /// Whether `t` is time: where there is a simulation or a recording.
     simulated: bool,
 }
@@ -119,7 +134,14 @@ impl Pass<'_> {
                 self.diagnostics.push(
                     Diagnostic::error(Code::DuplicateName, name.span, message)
                         .also(first, "first here")
-                        .help("rename one of them"),
+                        .help(if outside.is_none() && self.both.contains(text) {
+                            format!(
+                                "a state that is measured stands under `y` alone, with its rate under `f_y`: remove {} from `x`",
+                                quoted(text)
+                            )
+                        } else {
+                            "rename one of them".to_owned()
+                        }),
                 );
             }
         }
@@ -187,12 +209,21 @@ impl Pass<'_> {
         // Without any entry the section itself has been reported.
         let Some(first) = entries.first() else { return };
         let present: HashSet<&str> = entries.iter().map(|entry| entry.name.value.as_str()).collect();
-        for name in names.iter().filter(|name| !present.contains(name.value.as_str())) {
+        let missing: Vec<&str> =
+            names.iter().map(|name| name.value.as_str()).filter(|name| !present.contains(name)).collect();
+        let known: HashSet<&str> = names.iter().map(|name| name.value.as_str()).collect();
+        let strangers = entries.iter().map(|entry| entry.name.value.as_str());
+        let strangers = strangers.filter(|name| !known.contains(name)).take(MOST_STRANGERS);
+        // What an entry of another name was meant for is told there, and of an output among the states that it is one.
+        let meant: HashSet<&str> = strangers.filter_map(|name| meant(name, &missing)).collect();
+        let missing: HashSet<&str> =
+            missing.into_iter().filter(|name| !meant.contains(name) && !self.both.contains(name)).collect();
+        for name in names.iter().filter(|name| missing.contains(name.value.as_str())) {
             let message = format!("`{section}` has no entry for {}", quoted(&name.value));
             self.diagnostics.push(
                 Diagnostic::error(Code::MissingEntry, name.span, message)
                     .also(first.name.span, format!("`{section}` begins here"))
-                    .help(format!("add its rate under `{section}`")),
+                    .help(format!("add its rate under `{section}`, 0 if it is constant")),
             );
         }
     }
@@ -203,6 +234,55 @@ impl Pass<'_> {
         for name in strangers.filter(|name| !group.set.contains(name.value.as_str())) {
             self.diagnostics.push_with(|| stranger(name, group, section));
         }
+    }
+
+    /// Every rate is of a name of its own group, which the list of the key declares.
+    fn rates(
+        &mut self,
+        entries: &[Entry<Formula>],
+        declared: &Scope<'_>,
+        (own, key, section): (&Group<'_>, &str, &str),
+        (other, there): (&Group<'_>, &str),
+    ) {
+        let missing = own.without(entries);
+        for entry in entries.iter().filter(|entry| !own.set.contains(entry.name.value.as_str())) {
+            let name = entry.name.value.as_str();
+            self.diagnostics.push_with(|| {
+                let message = format!("{} under `{section}` is not {}", quoted(name), own.what);
+                let diagnostic = Diagnostic::error(Code::UnknownEntry, entry.name.span, message);
+                if other.set.contains(name) {
+                    return diagnostic
+                        .help(format!("it is {}: its rate stands under `{there}`, and not here", other.what));
+                }
+                if let Some(of) = derivative_of(name, missing.iter().copied()) {
+                    return diagnostic
+                        .help(format!("write `{of}: ..`: what stands under `{section}` is a rate already"));
+                }
+                match nearest(name, missing.iter().copied()) {
+                    Some(near) => diagnostic.suggest(Some(near)),
+                    None if declared.contains_key(name) => diagnostic.help("remove it here, or its other declaration"),
+                    None => {
+                        let names = own.names.iter().copied().chain([name]).collect::<Vec<_>>().join(", ");
+                        diagnostic.help(format!("declare it, as `{key}: [{names}]`, or remove it here"))
+                    }
+                }
+            });
+        }
+    }
+
+    /// An output tells something of the states; of a phi that is given, the regression says that it has no equation.
+    fn measured(&mut self, model: &Model) {
+        let nothing = model.f_y.is_empty() && model.g_y.is_empty() && model.identities.is_empty();
+        if self.diagnostics.has_errors() || model.class.is_some() || !model.phi.is_empty() || !nothing {
+            return;
+        }
+        let Some(output) = model.y.first() else { return };
+        let names = listed(model.y.iter().map(|name| name.value.as_str()));
+        let message = format!("nothing says what {names} has to do with the states");
+        self.diagnostics.push(Diagnostic::error(Code::MissingKey, output.span, message).help(format!(
+            "add the rate of an output, as `f_y: {{{0}: ..}}`, or its value, as `g_y: {{{0}: ..}}`",
+            output.value
+        )));
     }
 
     fn simulation(
@@ -222,7 +302,8 @@ impl Pass<'_> {
             let message = format!("{} is an input, which has no course under `signals`", quoted(&name.value));
             self.diagnostics.push(
                 Diagnostic::error(Code::UnknownEntry, name.span, message).help(format!(
-                    "set it under `control`, as `{}: 0`, perhaps by a signal of another name",
+                    "give the course a name of its own and set the input to it: `signals: {{{0}_t: ..}}` and `control: {{{0}: \
+                     {0}_t}}`",
                     name.value
                 )),
             );
@@ -372,6 +453,11 @@ impl Pass<'_> {
             );
         }
     }
+}
+
+/// Which of the names an entry was meant for that is for none.
+fn meant<'a>(name: &str, missing: &[&'a str]) -> Option<&'a str> {
+    derivative_of(name, missing.iter().copied()).or_else(|| nearest(name, missing.iter().copied()))
 }
 
 /// An entry for a name that is none of the group.

@@ -29,6 +29,7 @@ mod tests;
 pub use check::check;
 pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
+pub(crate) use names::derivative_of;
 pub use names::unknown_name;
 pub use observer::{Bounds, Estimator, Form, Hold, Observer};
 pub use recording::Recording;

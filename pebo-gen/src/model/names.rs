@@ -35,7 +35,28 @@ fn invalid(text: &str, span: Span) -> Diagnostic {
     if is_identifier(&spelled) {
         return diagnostic.help(format!("spell it out: `{spelled}`"));
     }
+    if !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit()) {
+        let decimal = quoted(&format!("0.{text}"));
+        return diagnostic.help(format!("if it is the end of a decimal, write that with a point, as {decimal}"));
+    }
+    let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let plain = plain.trim_end_matches('_');
+    if is_identifier(plain) {
+        return diagnostic.help(format!("write {}: letters, digits and underscores", quoted(plain)));
+    }
     diagnostic.help("use ASCII letters, digits and underscores, beginning with a letter")
+}
+
+/// The candidate whose derivative `name` looks like, as `i` for `di`, `i'`, `di/dt` and `i_dot`.
+pub(crate) fn derivative_of<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    candidates.into_iter().find(|of| {
+        let rest = |before: &str, after: &str| {
+            name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after)).is_some_and(|rest| rest == *of)
+        };
+        let marks = [("d", ""), ("D", ""), ("d", "/dt"), ("d", "_dt"), ("d", "dt"), ("", "'"), ("", "′"), ("", "_dot")];
+        let words = [("", "dot"), ("dot_", ""), ("dot", ""), ("d_", ""), ("der(", ")"), ("d(", ")/dt")];
+        marks.iter().chain(&words).any(|(before, after)| rest(before, after))
+    })
 }
 
 /// What the generator itself calls by this name.

@@ -56,7 +56,7 @@ pub struct Observer {
     pub limits: Vec<Entry<Vec<Spanned<Decimal>>>>,
     /// The longest time in seconds between two accepted samples; any if absent.
     pub gap: Option<Spanned<Decimal>>,
-    /// The extension chi at the start: one value each; empty for zeros.
+    /// The extension chi at the start: one value each; empty where the author does not say.
     pub extension: Vec<Spanned<Decimal>>,
 }
 

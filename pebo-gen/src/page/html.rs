@@ -102,6 +102,34 @@ impl Html {
         self.line("pre", &[("tabindex", "0")], |html| html.within("code", &[], |html| html.text(text)));
     }
 
+    /// A table of numbers whose first column names its rows; it scrolls if it is wider than the page.
+    pub(super) fn table(&mut self, caption: &str, columns: &[&str], rows: &[Vec<String>]) {
+        self.block("div", &[("class", "wide")], |html| {
+            html.block("table", &[("class", "numbers")], |html| {
+                html.line("caption", &[], |html| html.prose(caption));
+                html.block("thead", &[], |html| {
+                    html.line("tr", &[], |html| {
+                        for name in columns {
+                            html.within("th", &[("scope", "col")], |html| html.prose(name));
+                        }
+                    });
+                });
+                html.block("tbody", &[], |html| {
+                    for row in rows {
+                        html.line("tr", &[], |html| {
+                            for (index, cell) in row.iter().enumerate() {
+                                match index {
+                                    0 => html.within("th", &[("scope", "row")], |html| html.prose(cell)),
+                                    _ => html.within("td", &[], |html| html.prose(cell)),
+                                }
+                            }
+                        });
+                    }
+                });
+            });
+        });
+    }
+
     /// What a reader may unfold.
     pub(super) fn folded(&mut self, summary: &str, content: impl FnOnce(&mut Self)) {
         self.block("details", &[], |html| {

@@ -1,6 +1,6 @@
 //! Claim 4: the unknowns are told apart, where they are not, and what excitation it takes.
 
-use crate::analysis::{Excitation, Gram, Verdict};
+use crate::analysis::{Class, Excitation, Gram, Motion, Verdict};
 use crate::report::notes;
 
 use super::formula::{Setter, Steps};
@@ -22,6 +22,10 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
                 "One sample of the filtered regression is enough: the columns of the regressor are independent at almost \
                  every point."
             }
+            Excitation::Excitation if derivation.class == Class::Gpebo && result.motion.as_ref().is_some_and(at_rest) => {
+                "No single sample is enough, but samples at several times are, also while the plant rests: Ψ changes between \
+                 them."
+            }
             Excitation::Excitation => {
                 "No single sample is enough: the regressor has to move, so that samples at several times show together \
                  what one does not."
@@ -35,6 +39,11 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
             determinant(html, setter, gram);
         }
     });
+}
+
+/// Whether no signal of the plant has to move.
+fn at_rest(motion: &Motion) -> bool {
+    motion.at_rest && !motion.is_divided()
 }
 
 /// `Phi_1' Phi_1`, whose determinant vanishes where the unknowns are not seen.

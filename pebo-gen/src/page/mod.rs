@@ -21,6 +21,7 @@ mod transform;
 mod usage;
 mod verdict;
 
+use crate::analysis::{Class, Derivation};
 use formula::Setter;
 use html::Html;
 
@@ -28,7 +29,7 @@ pub use sections::Section;
 pub(crate) use sections::sections;
 pub(crate) use subject::Subject;
 #[cfg(feature = "simulate")]
-pub(crate) use subject::{Errors, Loop};
+pub(crate) use subject::{Loop, Run};
 
 /// The style of every page.
 const STYLE: &str = include_str!("page.css");
@@ -44,7 +45,7 @@ pub(crate) fn page(subject: &Subject<'_>) -> String {
             html.block("header", &[], |html| verdict::header(html, subject));
             html.block("main", &[], |html| {
                 verdict::diagnostics(html, subject);
-                idea(html);
+                idea(html, subject.derivation);
                 plant::section(html, &setter, subject);
                 transform::section(html, &setter, subject);
                 cascade::section(html, &setter, subject);
@@ -73,7 +74,7 @@ fn head(html: &mut Html, subject: &Subject<'_>) {
 }
 
 /// What the claims are for.
-fn idea(html: &mut Html) {
+fn idea(html: &mut Html, derivation: &Derivation) {
     html.section("idea", "The idea", |html| {
         html.line("p", &[], |html| {
             html.text("A parameter-estimation-based observer turns the estimation of a moving state ");
@@ -82,18 +83,32 @@ fn idea(html: &mut Html) {
             html.formula(
                 "<mi>z</mi><mo>=</mo><mi>φ</mi><mrow><mo>(</mo><mi>x</mi><mo>,</mo><mi>y</mi><mo>)</mo></mrow>",
             );
-            html.text(
-                " that moves by known signals: the outputs y and the inputs u. An integrator that is fed with these \
-                 follows z but for a constant, ",
-            );
-            html.formula("<mi>z</mi><mo>=</mo><mi>χ</mi><mo>+</mo><mi>θ</mi>");
-            html.text(
-                ", which depends on where the plant began. An estimator finds θ from the outputs, and x is read off z.",
-            );
+            match derivation.class {
+                Class::Pebo => {
+                    html.text(
+                        " that moves by known signals: the outputs y and the inputs u. An integrator that is fed with \
+                         these follows z but for a constant, ",
+                    );
+                    html.formula("<mi>z</mi><mo>=</mo><mi>χ</mi><mo>+</mo><mi>θ</mi>");
+                    html.text(", which depends on where the plant began.");
+                }
+                Class::Gpebo => {
+                    html.text(
+                        " whose rate is affine in z itself, with coefficients of known signals: the outputs y and the \
+                         inputs u. A copy of it that is fed with these, ",
+                    );
+                    html.formula("<mi>ξ</mi>");
+                    html.text(", differs from z by a known matrix times a constant, ");
+                    html.formula("<mi>z</mi><mo>=</mo><mi>ξ</mi><mo>+</mo><mi>Ψ</mi><mi>θ</mi>");
+                    html.text(", which depends on where the plant began.");
+                }
+            }
+            html.text(" An estimator finds θ from the outputs, and x is read off z.");
         });
         html.paragraph(
             "Four claims make this right. Each is shown below with its derivation. Proved means: by exact algebra, for all \
-             values of the signals and of the parameters that the assumptions and the conditions below allow. A point over a signal is its rate.",
+             values of the signals and of the parameters that the assumptions and the conditions below allow. A dot over a \
+             signal marks its rate.",
         );
     });
 }

@@ -14,9 +14,9 @@ pub(crate) struct Subject<'a> {
     pub(crate) diagnostics: &'a [Diagnostic],
     /// The code for `f64`, if the model is accepted.
     pub(crate) emitted: Option<&'a Emitted>,
-    /// The closed loop, if the model describes one.
+    /// The closed loop.
     #[cfg(feature = "simulate")]
-    pub(crate) run: Option<Loop<'a>>,
+    pub(crate) run: Run<'a>,
 }
 
 impl Subject<'_> {
@@ -24,6 +24,18 @@ impl Subject<'_> {
     pub(super) fn title(&self) -> &str {
         self.plant.title.as_deref().unwrap_or(&self.plant.name)
     }
+}
+
+/// What is there of the closed loop.
+#[cfg(feature = "simulate")]
+#[derive(Debug)]
+pub(crate) enum Run<'a> {
+    /// It was not run, as nothing asks for it.
+    Not,
+    /// It did not come to its end: a diagnostic says why.
+    Failed,
+    /// It did.
+    Done(Loop<'a>),
 }
 
 /// A run of the closed loop.
@@ -34,16 +46,8 @@ pub(crate) struct Loop<'a> {
     pub(crate) figure: &'a str,
     /// When it ended, in seconds.
     pub(crate) end: f64,
-    pub(crate) errors: Vec<Errors<'a>>,
-}
-
-/// The error of the estimate of a state.
-#[cfg(feature = "simulate")]
-#[derive(Debug)]
-pub(crate) struct Errors<'a> {
-    pub(crate) state: &'a str,
-    /// When the run began.
-    pub(crate) start: f64,
-    /// When it ended.
-    pub(crate) end: f64,
+    /// The table of errors with its headings: as many cells in each row.
+    pub(crate) errors: Vec<Vec<String>>,
+    /// What there is to say beside.
+    pub(crate) lines: Vec<String>,
 }

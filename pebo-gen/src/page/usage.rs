@@ -1,6 +1,6 @@
 //! What the proofs rest on, and what to know in use.
 
-use crate::analysis::Outcome;
+use crate::analysis::{Outcome, Verdict};
 use crate::report::remarks;
 
 use super::formula::{Setter, Steps};
@@ -15,7 +15,12 @@ pub(super) fn sections(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'
             derivation.conditions.iter().map(|(expr, relation)| setter.compared(*expr, *relation)).collect();
         match (derivation.outcome, conditions.is_empty()) {
             (Outcome::Accepted, true) => {
-                html.paragraph("None: what the formulas ask to have values follows from the assumptions.");
+                html.paragraph(if derivation.asked_of_estimates(plant).is_empty() {
+                    "None: what the formulas ask to have values follows from the assumptions."
+                } else {
+                    "None on the plant: what the formulas ask to have values follows from the assumptions. What estimates \
+                     have to satisfy stands with claim 2."
+                });
             }
             (_, true) => html.paragraph("No claim is proved under conditions."),
             (_, false) => {
@@ -26,7 +31,10 @@ pub(super) fn sections(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'
     html.section("use", "In use", |html| {
         let remarks = remarks::of(plant, derivation);
         if remarks.is_empty() {
-            html.paragraph("There is nothing to remark: the remarks rest on a proved cascade.");
+            html.paragraph(match derivation.cascade.verdict {
+                Verdict::Proved => "There is nothing to remark.",
+                _ => "There is nothing to remark: the remarks rest on a proved cascade.",
+            });
         }
         for remark in remarks {
             html.line("h3", &[], |html| html.text(&capitalised(remark.name)));

@@ -5,6 +5,8 @@ use crate::report::notes;
 use crate::source::{Colour, render};
 
 use super::html::Html;
+#[cfg(feature = "simulate")]
+use super::subject::Run;
 use super::subject::Subject;
 
 /// The title, the verdict, and the contents.
@@ -55,7 +57,7 @@ fn contents(subject: &Subject<'_>) -> Vec<(&'static str, &'static str)> {
         ("use", "In use"),
     ]);
     #[cfg(feature = "simulate")]
-    if subject.run.is_some() {
+    if !matches!(subject.run, Run::Not) {
         contents.push(("run", "Closed loop"));
     }
     if subject.emitted.is_some() {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::cas::Expr;
+use crate::model::derivative_of;
 use crate::source::{Code, Diagnostic, Span, nearest};
 
 /// Names with their meaning, in one place of the model.
@@ -66,6 +67,14 @@ impl Scope {
 fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>) -> Diagnostic {
     let diagnostic = Diagnostic::error(Code::UnknownName, span, format!("unknown name `{name}`"))
         .label("not declared in this model");
+    let candidates: Vec<&str> = candidates.collect();
+    // What is near its name is another quantity.
+    if let Some(of) = derivative_of(name, candidates.iter().copied()) {
+        return diagnostic.help(format!(
+            "if it is the derivative of `{of}`, write the formula of that derivative in its place; if not, declare it under \
+             `parameters`, `x`, `y`, `u`, `w` or `define`"
+        ));
+    }
     match nearest(name, candidates) {
         Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
         // What varies with time on its own the observer has to be told at each sample: that is an input.
@@ -73,7 +82,10 @@ fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>
             "declare what varies with time as an input under `u`; `control` of the simulation gives it in t, the application \
              at each sample",
         ),
-        None => diagnostic.help("declare it under `parameters`, `x`, `y`, `u`, `w` or `define`"),
+        None => diagnostic.help(
+            "declare it: a constant under `parameters`, what is commanded or known under `u`, what is measured under `y`, what \
+             is to be estimated under `x`, an unknown signal under `w`, a part of a formula under `define`",
+        ),
     }
 }
 
@@ -85,6 +97,14 @@ mod tests {
     fn time_in_a_plant_is_an_input() {
         let help = |name| unknown(name, Span::default(), ["v", "q"].into_iter()).help.unwrap_or_default();
         assert!(help("t").contains("an input under `u`"), "{}", help("t"));
-        assert!(help("speed").contains("declare it under"), "{}", help("speed"));
+        assert!(help("speed").contains("commanded or known under `u`"), "{}", help("speed"));
+    }
+
+    #[test]
+    fn a_derivative_is_no_misspelt_state() {
+        for name in ["dq", "q'", "q_dot", "dq_dt"] {
+            let help = unknown(name, Span::default(), ["v", "q"].into_iter()).help.unwrap_or_default();
+            assert!(help.contains("the derivative of `q`"), "{name}: {help}");
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! What to know in use, in a line each: whether Psi stays bounded, where the plant rests, what drifts, how long theta holds.
+//! What to know in use, in a line each: whether Psi stays bounded, where the plant rests, what drifts. What holds of every
+//! model stands in the manual.
 
 use super::growth::Growth;
 use crate::analysis::{Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict};
@@ -37,8 +38,6 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
                 remark("drift", vec![grows(plant, drift), format!("remedy: {}", remedy(plant, derivation))])
             }),
         );
-        let jump = "a jump of the state changes theta: restart the observer then, or use an estimator with forgetting";
-        remarks.push(remark("theta", vec![jump.to_owned()]));
     }
     remarks
 }
@@ -124,9 +123,6 @@ fn rest(class: Class, point: &OperatingPoint) -> Vec<String> {
             Class::Pebo => "h = 0 there: chi is constant if no sensor or input has a bias".to_owned(),
             Class::Gpebo => "Lambda z + h = 0 there: z is constant".to_owned(),
         });
-        lines.extend(point.rank.filter(|rank| *rank > 0).map(|rank| {
-            format!("rank [f; h_i] drops from {rank} to 0 there, so Frobenius' theorem says nothing of phi: it is proved directly")
-        }));
     }
     lines
 }

@@ -155,6 +155,9 @@ pub fn search_summary(plant: &Plant, search: &Search) -> String {
         text.extend([format!("  bound: {}\n", bound.sentence(&plant.arena))]);
         text.extend(bound.certificate(&plant.arena).iter().map(|line| format!("  certificate: {line}\n")));
     }
+    if let Some(open) = search.open() {
+        text.extend([format!("  {open}\n")]);
+    }
     for tried in &search.tried {
         text.extend([format!("  tried: {}\n", tried.sentence())]);
     }

@@ -54,9 +54,9 @@ fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
     let rows = gram.matrix.iter().map(row).collect::<Vec<_>>().join(", ");
     let determinant = arena.print(gram.determinant);
     if rows.len() <= MOST_CHARACTERS {
-        lines.push(format!("Phi_1' Phi_1 = [{rows}]"));
+        lines.push(format!("Phi_1^T Phi_1 = [{rows}], with the transpose Phi_1^T"));
     }
-    lines.push(format!("det(Phi_1' Phi_1) = {determinant}"));
+    lines.push(format!("det(Phi_1^T Phi_1) = {determinant}"));
     lines.extend(notes::positive(gram).map(str::to_owned));
     lines
 }

@@ -125,7 +125,7 @@ impl Ansatz {
             };
             Some(columns.iter().map(entry).collect())
         };
-        sample.rows(question, columns.len(), points, row).ok_or(Obstacle::OutOfBudget)
+        sample.rows(columns.len(), points, row).ok_or(Obstacle::OutOfBudget)
     }
 }
 

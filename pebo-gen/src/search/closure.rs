@@ -16,6 +16,9 @@ use super::sample::is_affine_in;
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
 
+/// Nor do functions of more parts: rates of rates that do not close grow with every step.
+const MOST_PARTS: usize = 3_000;
+
 /// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave what it can say.
 pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
     let mut found: Vec<Expr> = Vec::new();
@@ -27,6 +30,7 @@ pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<
                 continue;
             }
             if found.len() == MOST
+                || is_long(question, function)
                 || question.bends_in_states(function)
                 || question.arena.depends_on(function, &question.plant.w.iter().copied().collect())
             {
@@ -55,6 +59,9 @@ pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obst
     while next < found.len() {
         let rate = question.rate(found[next]);
         next += 1;
+        if is_long(question, rate) {
+            return Ok(None);
+        }
         if is_affine_in(question, &[rate], &found)? {
             continue;
         }
@@ -64,6 +71,10 @@ pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obst
         found.push(rate);
     }
     Ok((!found.is_empty()).then_some(found))
+}
+
+fn is_long(question: &Question<'_>, function: Expr) -> bool {
+    question.arena.postorder(&[function]).len() > MOST_PARTS
 }
 
 /// The functions of x of which a formula is a combination with coefficients that are free of x; none where they are not

@@ -86,6 +86,8 @@ pub enum Start {
     Both,
     /// The states.
     States,
+    /// The identities and the states; the value of an output is an identity.
+    Identities,
     /// The outputs' rates, where unknown constants are taken for known.
     Constants,
 }

@@ -269,7 +269,11 @@ impl Hunt<'_> {
         }
         let rates = question.output_rates();
         let both = [rates.as_slice(), &states].concat();
-        for (start, formulas) in [(Start::Outputs, &rates), (Start::Both, &both), (Start::States, &states)] {
+        let identities: Vec<Expr> = question.plant.identities.iter().map(|identity| identity.expr).collect();
+        let told = if identities.is_empty() { Vec::new() } else { [identities.as_slice(), &states].concat() };
+        let starts =
+            [(Start::Outputs, &rates), (Start::Both, &both), (Start::States, &states), (Start::Identities, &told)];
+        for (start, formulas) in starts.into_iter().filter(|(_, formulas)| !formulas.is_empty()) {
             if self.is_over() {
                 return;
             }

@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 
 use crate::cas::Expr;
+use crate::cas::budget::Budget;
 use crate::cas::field::Obstacle;
 use crate::cas::field::residue::{Words, prime_of_kernels};
 use crate::cas::field::straight::Straight;
@@ -31,6 +32,7 @@ pub(super) struct Sample<'a> {
     /// The kernels of constants, with their values.
     constants: Vec<Option<Residue>>,
     words: Words,
+    budget: Budget,
 }
 
 /// The residues of all formulas at a point.
@@ -57,12 +59,15 @@ impl<'a> Sample<'a> {
         let moving = field.kernels_of(&question.signals);
         let constant = |(number, value): (u32, Residue)| (!moving.contains(&number)).then_some(value);
         let constants = (0..).zip(first).map(constant).collect();
-        Ok(Self { prime, formulas, hidden, constants, words })
+        Ok(Self { prime, formulas, hidden, constants, words, budget: question.arena.budget().clone() })
     }
 
     /// The values at so many points that differ in the unmeasured states and signals alone; the parameters are those of
     /// every point of this sample.
     pub(super) fn fibre(&mut self, points: usize) -> Option<Vec<Values>> {
+        if !self.budget.take((points * self.formulas.length()) as u64) {
+            return None;
+        }
         (0..MOST_POLES).find_map(|_| {
             let constants = &self.constants;
             let base = self.formulas.field().draw(&self.prime, &mut self.words, |kernel| constants[kernel as usize])?;
@@ -81,7 +86,6 @@ impl<'a> Sample<'a> {
     /// The rows that a fibre of so many points gives, each with so many columns, until they bring nothing new.
     pub(super) fn rows(
         &mut self,
-        question: &Question<'_>,
         columns: usize,
         points: usize,
         row: impl Fn(&PrimeField, &[Values]) -> Option<Values>,
@@ -90,8 +94,7 @@ impl<'a> Sample<'a> {
         let mut rows = Rows::new(&prime, columns);
         let mut idle = 0;
         while idle < IDLE && rows.rank() < columns {
-            let steps = columns * (rows.rank() + 1) + points * self.formulas.length();
-            if !question.arena.budget().take(steps as u64) {
+            if !self.budget.take((columns * (rows.rank() + 1)) as u64) {
                 return None;
             }
             let fibre = self.fibre(points)?;
@@ -106,8 +109,7 @@ impl<'a> Sample<'a> {
 pub(super) fn independent(question: &Question<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let mut sample = Sample::of(question, functions)?;
     let columns = functions.len();
-    let dependent =
-        sample.rows(question, columns, 1, |_, fibre| fibre.first().cloned()).ok_or(Obstacle::OutOfBudget)?;
+    let dependent = sample.rows(columns, 1, |_, fibre| fibre.first().cloned()).ok_or(Obstacle::OutOfBudget)?;
     let is_free = |column: &usize| dependent.iter().all(|(free, _)| free != column);
     Ok(functions.iter().enumerate().filter(|(column, _)| is_free(column)).map(|(_, e)| *e).collect())
 }

@@ -1,5 +1,7 @@
 //! What a search came to, in words.
 
+use std::collections::BTreeSet;
+
 use crate::analysis::{Class, Derivation, Origin, Outcome};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::{self, Plant};
@@ -45,6 +47,7 @@ impl Start {
             Self::Outputs => "the functions in the outputs' rates",
             Self::Rows => "the outputs' rates",
             Self::Both => "the functions in the outputs' rates and the states",
+            Self::Identities => "the functions in the identities and the states",
             Self::States => "the states",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
         }
@@ -185,9 +188,26 @@ impl Search {
         Some(format!("{fields}, and T needs {needed}: measure more than the positions, such as a velocity"))
     }
 
-    /// That no transform was found, for the author of a model without one.
-    pub(crate) fn refusal(&self, plant: &Plant) -> Diagnostic {
-        let span = plant.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+    /// The candidates in order of merit; of those with the same components in another order, the first.
+    fn nearest(&self) -> impl Iterator<Item = &Candidate> {
+        let mut told = BTreeSet::new();
+        self.candidates.iter().filter(move |candidate| {
+            let mut components = candidate.formulas();
+            components.sort_unstable();
+            told.insert((candidate.derivation.class.name(), components))
+        })
+    }
+
+    /// What a search that found none leaves open, where it does.
+    pub(crate) fn open(&self) -> Option<&'static str> {
+        let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
+        (self.verdict == Found::None && excluded).then_some(
+            "not excluded: a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
+        )
+    }
+
+    /// That no transform was found, for the author of a model without one; `span` is where it declares its states.
+    pub(crate) fn refusal(&self, plant: &Plant, span: Span) -> Diagnostic {
         if plant.arena.budget().is_exhausted() {
             return Diagnostic::limit_reached("the search for phi", span);
         }
@@ -195,18 +215,20 @@ impl Search {
         let states = listed(states.iter().map(String::as_str));
         let message = format!("no transform from which {states} can be recovered was found");
         let mut diagnostic = Diagnostic::error(Code::TransformNotFound, span, message);
-        for candidate in self.candidates.iter().take(2) {
+        for candidate in self.nearest().take(2) {
             diagnostic = diagnostic.note(candidate.sentence());
         }
         if let Some((candidate, signs)) = &self.assumed {
             diagnostic = diagnostic.note(assumed(candidate, signs));
         }
-        for bound in self.bounds().filter(|bound| bound.excludes()) {
+        // What is said of all smooth ones is said of those affine in x too.
+        let smooth = self.bounds().find(|bound| bound.excludes() && bound.class == BoundClass::Smooth);
+        let implied =
+            |bound: &Bound| bound.class == BoundClass::Affine && smooth.is_some_and(|smooth| smooth.rank <= bound.rank);
+        for bound in self.bounds().filter(|bound| bound.excludes() && !implied(bound)) {
             diagnostic = diagnostic.note(bound.sentence(&plant.arena));
         }
-        for tried in &self.tried {
-            diagnostic = diagnostic.note(format!("tried: {}", tried.sentence()));
-        }
+        diagnostic = diagnostic.note("`pebo-gen solve` shows what was tried");
         diagnostic.help("measure another signal, assume the signs of what is positive, or write a phi of your own")
     }
 

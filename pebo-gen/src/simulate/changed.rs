@@ -1,93 +1,26 @@
-//! A model with what a call sets in its sections.
+//! A model with another estimator.
 //!
-//! In: the model, and the settings of the call. Out: the model as if its file had them, without a place where they would
-//! stand.
+//! In: the model, and the estimator of the call. Out: the model as if its file had it, with settings that play the same part
+//! as those of the file's own.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
-use crate::model::{Decimal, Entry, Estimator, Formula, Model, Observer, Operator, Piece, Simulation, Spanned, Term};
-use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
+use crate::model::{Decimal, Estimator, Model, Observer, Spanned};
+use crate::source::Span;
 use crate::tuning::BANDWIDTH;
 
 use super::overrides::Overrides;
 
-/// The model with noise, true parameters and estimator of the call; names and numbers that cannot be are reported.
-pub(super) fn changed<'a>(model: &'a Model, overrides: &Overrides, problems: &mut Diagnostics) -> Cow<'a, Model> {
-    if overrides.noise.is_empty() && overrides.plant.is_empty() && overrides.estimator.is_none() {
-        return Cow::Borrowed(model);
-    }
-    let mut changed = model.clone();
-    if let Some(simulation) = &mut changed.simulation {
-        let outputs: Vec<&str> = model.y.iter().map(|output| output.value.as_str()).collect();
-        for (name, deviation) in each(&overrides.noise, &outputs, "an output", |value| value >= 0.0, problems) {
-            simulation.noise.retain(|entry| entry.name.value != *name);
-            if deviation.to_f64() > 0.0 {
-                simulation.noise.push(Entry { name: placed(name.clone()), value: placed(deviation) });
-            }
-        }
-        let parameters: Vec<&str> = model.parameters.iter().map(|entry| entry.name.value.as_str()).collect();
-        for (name, factor) in each(&overrides.plant, &parameters, "a parameter", |value| value > 0.0, problems) {
-            multiply(simulation, name, &factor);
-        }
-    }
-    if let Some(estimator) = overrides.estimator {
-        let of_file = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
-        let step = overrides.step.or(of_file.map(|step| step.value.to_f64()));
-        changed.observer = with_estimator(&model.observer, estimator, step);
-    }
-    Cow::Owned(changed)
-}
-
-/// The entries of a call whose names are among these, with numbers as a file would have them.
-fn each<'o>(
-    entries: &'o BTreeMap<String, f64>,
-    names: &[&str],
-    what: &str,
-    admitted: fn(f64) -> bool,
-    problems: &mut Diagnostics,
-) -> Vec<(&'o String, Decimal)> {
-    let mut found = Vec::new();
-    for (name, value) in entries {
-        if !names.contains(&name.as_str()) {
-            let message = format!("`{name}`, which the call sets, is not {what} of the model");
-            let diagnostic = Diagnostic::error(Code::UnknownName, Span::NOWHERE, message);
-            problems.push(match nearest(name, names.iter().copied()) {
-                Some(near) => diagnostic.suggest(Some(near)),
-                None => diagnostic.help(format!("choose one of {}", listed(names.iter().copied()))),
-            });
-            continue;
-        }
-        match Decimal::parse(&format!("{value:e}"), Span::NOWHERE).ok().filter(|_| admitted(*value)) {
-            Some(number) => found.push((name, number)),
-            None => problems.push(
-                Diagnostic::error(Code::NumberOutOfRange, Span::NOWHERE, format!("`{name}` of the call is {value}"))
-                    .help("give a number above zero"),
-            ),
-        }
-    }
-    found
+/// The model with the estimator of the call.
+pub(super) fn changed<'a>(model: &'a Model, overrides: &Overrides) -> Cow<'a, Model> {
+    let Some(estimator) = overrides.estimator else { return Cow::Borrowed(model) };
+    let of_file = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
+    let step = overrides.step.or(of_file.map(|step| step.value.to_f64()));
+    Cow::Owned(Model { observer: with_estimator(&model.observer, estimator, step), ..model.clone() })
 }
 
 fn placed<T>(value: T) -> Spanned<T> {
     Spanned { value, span: Span::NOWHERE }
-}
-
-/// Multiplies the true value of a parameter.
-fn multiply(simulation: &mut Simulation, name: &str, factor: &Decimal) {
-    let formula = |term| Formula { span: Span::NOWHERE, term };
-    let times = |value: Formula| {
-        let factor = formula(Term::Number(factor.clone()));
-        formula(Term::Binary(Operator::Multiply, Box::new(factor), Box::new(value)))
-    };
-    if let Some(entry) = simulation.plant.iter_mut().find(|entry| entry.name.value == name) {
-        for piece in &mut entry.value {
-            piece.formula = times(piece.formula.clone());
-        }
-        return;
-    }
-    let piece = Piece { from: placed(Decimal::zero()), formula: times(formula(Term::Name(name.to_owned()))) };
-    simulation.plant.push(Entry { name: placed(name.to_owned()), value: vec![piece] });
 }
 
 /// The section with another estimator, for samples `step` seconds apart.

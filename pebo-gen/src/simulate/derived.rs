@@ -11,16 +11,18 @@ use std::marker::PhantomData;
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
     Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Limits, Model, Observer, Rebase, Regression, Sides,
-    Within,
+    Uncertain, Within,
 };
 
 use crate::plant::settings::PATIENCE;
 use crate::program::{Interpreter, Program};
+use crate::tuning::Prediction;
 
 use super::excitation::Said;
 use super::observer::Design;
-use super::settings::{self, Operator};
+use super::settings::{self, Covariance, Estimator, Operator};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
+use super::uncertainty::{Interval, Told, Uncertainty};
 use super::watched::Watched;
 use super::window::Passage;
 
@@ -330,8 +332,10 @@ struct Padded<X: Known<N>, K: Kind, const N: usize> {
     rows: Option<[usize; N]>,
     /// The recovered states, and the rows of the regression.
     sizes: (usize, usize),
-    /// Whether the covariance is that of sensors.
+    /// Whether errors are predicted from what is known of the sensors.
     is_certain: bool,
+    /// By how much the estimates err, where the noise of a sample is elsewhere than in its row too.
+    uncertainty: Option<Uncertainty<N>>,
 }
 
 impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
@@ -357,9 +361,57 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
             restarts: 0,
             rows: whole.then_some(rows),
             sizes: (design.recovered.len(), design.equations),
-            is_certain: matches!(settings.operator, Operator::Sampled(_)),
+            is_certain: matches!(settings.prediction, Some(Prediction::Covariance | Prediction::Noise(_))),
+            uncertainty: told(design, whole).map(|told| Uncertainty::new(&told)),
         })
     }
+
+    /// The estimate of z as the extension has it.
+    fn coordinates_now(&self) -> SVector<f64, N> {
+        self.observer.extension().coordinates(&self.observer.theta())
+    }
+
+    /// A step of the observer, which may lack outputs that have these rows.
+    fn step(&mut self, y: &[f64], parted: Option<[usize; N]>, u: &[f64], dt: f64) -> Result<SVector<f64, N>, Fault> {
+        match parted {
+            Some(rows) => self.observer.step_partly(pad(y), &rows, pad(u), dt),
+            None => self.observer.step(pad(y), pad(u), dt),
+        }
+    }
+
+    /// Follows a step with what its sample errs by.
+    fn follow(&mut self, before: Option<(SVector<f64, N>, SVector<f64, N>)>, y: &[f64], u: &[f64], dt: f64) {
+        let (Some(uncertainty), Some(after)) = (&mut self.uncertainty, self.observer.terms()) else { return };
+        let (model, u) = (self.observer.model(), pad(u));
+        let Some((before, z)) = before else { return uncertainty.begin(model, after, &u) };
+        let (_, map) = self.observer.extension().parts();
+        let taken = self.observer.estimator().covariance_root(0.0).is_some_and(|root| {
+            let missing: Vec<bool> = y.iter().map(|output| output.is_nan()).collect();
+            let interval = Interval { before: &before, after, u: &u, dt, z };
+            uncertainty.take(model, &interval, &(map * root), &missing).is_ok()
+        });
+        if !taken {
+            uncertainty.reset();
+        }
+    }
+}
+
+/// What is told of the noise of a design, where that of a sample is elsewhere than in its row too.
+fn told(design: &Design, whole: bool) -> Option<Told> {
+    let settings = &design.settings;
+    let (Some(Prediction::Noise(noise)), Operator::Sampled(weights), Estimator::LeastSquares(Covariance { start, .. })) =
+        (&settings.prediction, &settings.operator, &settings.estimator)
+    else {
+        return None;
+    };
+    Some(Told {
+        sensors: noise.sensors.clone(),
+        weights: weights.clone(),
+        start: start.clone(),
+        drift: noise.drift.clone(),
+        rows: if settings.output { design.equations } else { 0 },
+        measured: if whole { design.rows.clone() } else { Vec::new() },
+    })
 }
 
 /// The limits of a run, as the runtime has them.
@@ -394,6 +446,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
                 Err(Fault::Gap) => {
                     self.observer.restart(self.chi_0, &SVector::zeros())?;
                     self.restarts += 1;
+                    self.uncertainty.iter_mut().for_each(Uncertainty::reset);
                 }
                 Err(Fault::OutputRange { index }) if y[index].is_nan() => {}
                 checked => checked?,
@@ -403,9 +456,13 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         if let (Some(gate), None) = (&mut self.gate, parted) {
             gate.admit(&self.observer.innovation(pad(y), pad(u), dt)?)?;
         }
-        let estimate = match parted {
-            Some(rows) => self.observer.step_partly(pad(y), &rows, pad(u), dt)?,
-            None => self.observer.step(pad(y), pad(u), dt)?,
+        let estimate = if self.uncertainty.is_some() {
+            let before = self.observer.terms().map(|before| (*before, self.coordinates_now()));
+            let estimate = self.step(y, parted, u, dt)?;
+            self.follow(before, y, u, dt);
+            estimate
+        } else {
+            self.step(y, parted, u, dt)?
         };
         hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
         Ok(())
@@ -416,13 +473,27 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
     }
 
     fn standard_errors(&self) -> Option<Vec<f64>> {
-        let errors = self.is_certain.then(|| self.observer.standard_error())??;
+        let errors = match &self.uncertainty {
+            Some(uncertainty) => {
+                let at = (&self.coordinates_now(), self.observer.terms()?);
+                uncertainty.of(at, |z, y| self.observer.model().recover(z, y))?
+            }
+            None => self.is_certain.then(|| self.observer.standard_error())??,
+        };
         Some(errors.as_slice()[..self.sizes.0].to_vec())
     }
 
     fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64> {
         let innovation = self.is_certain.then(|| self.observer.innovation(pad(y), pad(u), dt).ok())??;
-        Some(innovation.normalised_square / super::timing::real(u64::try_from(self.sizes.1).ok()?))
+        let square = match (&self.uncertainty, self.observer.terms()) {
+            (Some(uncertainty), Some(before)) => {
+                let (after, u) = (&pad(y), &pad(u));
+                let interval = Interval { before, after, u, dt, z: self.coordinates_now() };
+                uncertainty.surprise(self.observer.model(), &interval, &innovation.value, self.sizes.1)?
+            }
+            _ => innovation.normalised_square,
+        };
+        Some(square / super::timing::real(u64::try_from(self.sizes.1).ok()?))
     }
 
     fn restarts(&self) -> u64 {

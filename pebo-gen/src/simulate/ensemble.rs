@@ -67,6 +67,8 @@ pub struct Spread {
     pub rms: Quantiles,
     /// The largest magnitude of its error from then on.
     pub worst: Quantiles,
+    /// The root mean square that the observer's numbers come to, from then on; absent where they are not known.
+    pub expected: Quantiles,
 }
 
 /// What half of the runs, and nine tenths of them, do not exceed.
@@ -155,7 +157,7 @@ struct Pool {
     estimates: usize,
     /// Of each estimate, span and run.
     peaks: Vec<Vec<Vec<f64>>>,
-    summaries: Vec<Vec<[f64; 3]>>,
+    summaries: Vec<Vec<[f64; 4]>>,
     first: Option<Summary>,
     unsettled: (u64, Option<Summary>),
     stopped: u64,
@@ -192,7 +194,8 @@ impl Pool {
         }
         for (all, rated) in self.summaries.iter_mut().zip(&summary.estimates) {
             let score = rated.score;
-            all.push([score.settled.unwrap_or(f64::INFINITY), score.rms, score.worst]);
+            let expected = rated.expected.unwrap_or(f64::INFINITY);
+            all.push([score.settled.unwrap_or(f64::INFINITY), score.rms, score.worst, expected]);
         }
         if !summary.unsettled().is_empty() {
             self.unsettled.0 += 1;
@@ -205,7 +208,7 @@ impl Pool {
         self.stopped += 1;
         self.failure.get_or_insert(failure);
         self.peaks.iter_mut().flatten().for_each(|all| all.push(f64::INFINITY));
-        self.summaries.iter_mut().for_each(|all| all.push([f64::INFINITY; 3]));
+        self.summaries.iter_mut().for_each(|all| all.push([f64::INFINITY; 4]));
     }
 
     fn finish(self, seed: u64, runs: u64, scenario: &Scenario) -> Result<(Ensemble, Summary), Failure> {
@@ -216,7 +219,7 @@ impl Pool {
             let sorted = spans.into_iter().map(|mut all| quantiles(&mut all, [0.1, 0.5, 0.9]));
             self.spans.ends.iter().copied().zip(sorted).collect()
         };
-        let spread = |(estimate, all): (Estimate, &Vec<[f64; 3]>)| {
+        let spread = |(estimate, all): (Estimate, &Vec<[f64; 4]>)| {
             let of = |place: usize| {
                 let mut column: Vec<f64> = all.iter().map(|row| row[place]).collect();
                 let [median, ninety] =
@@ -224,7 +227,7 @@ impl Pool {
                 Quantiles { median, ninety }
             };
             let unsettled = all.iter().fold(0, |count, row| count + u64::from(!row[0].is_finite()));
-            Spread { estimate, settled: of(0), unsettled, rms: of(1), worst: of(2) }
+            Spread { estimate, settled: of(0), unsettled, rms: of(1), worst: of(2), expected: of(3) }
         };
         let estimates = scenario.judged.iter().map(|judged| judged.estimate.clone());
         let ensemble = Ensemble {
@@ -257,9 +260,13 @@ impl Ensemble {
         let name = |what: &str| [format!("{what}, median"), "90 %".to_owned()];
         let [settled, rms, worst] = ["settled to 1 %", "rms then", "worst then"].map(name);
         let heading = ["error of".to_owned()].into_iter().chain([settled, rms, worst].into_iter().flatten());
-        let mut rows: Vec<[String; 8]> = Vec::new();
-        rows.extend(heading.chain(["unsettled".to_owned()]).collect::<Vec<_>>().try_into());
-        for Spread { estimate, settled, unsettled, rms, worst } in &self.estimates {
+        // A column that nobody has anything in is none.
+        let is_known = self.estimates.iter().any(|spread| spread.expected.median.is_some());
+        let known = |text: String| if is_known { text } else { String::new() };
+        let mut rows: Vec<[String; 9]> = Vec::new();
+        let last = ["unsettled".to_owned(), known("expected".to_owned())];
+        rows.extend(heading.chain(last).collect::<Vec<_>>().try_into());
+        for Spread { estimate, settled, unsettled, rms, worst, expected } in &self.estimates {
             let time = |t: Option<f64>| t.map_or_else(|| "no".to_owned(), |t| format!("{} s", short(t)));
             let size = |error: Option<f64>| error.map_or_else(|| "-".to_owned(), short);
             rows.push([
@@ -271,6 +278,7 @@ impl Ensemble {
                 size(worst.median),
                 size(worst.ninety),
                 format!("{unsettled}/{}", self.runs),
+                known(size(expected.median)),
             ]);
         }
         let mut text = table(&rows);

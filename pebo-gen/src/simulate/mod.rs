@@ -48,6 +48,7 @@ mod summary;
 mod timing;
 mod trace;
 mod truth;
+mod uncertainty;
 mod unit;
 mod watched;
 mod window;

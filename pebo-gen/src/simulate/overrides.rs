@@ -1,10 +1,8 @@
 //! What a call sets instead of the file.
 
-use std::collections::BTreeMap;
-
 use crate::model::Estimator;
 
-/// Settings of a call, which go before those of the file.
+/// How a call runs a scenario. What a file has a key for is set by that: [`Source::set`](crate::source::Source::set).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// Whose estimates the control law sees: `observer`, `truth`, or a baseline.
@@ -17,10 +15,6 @@ pub struct Overrides {
     pub step: Option<f64>,
     /// The time between rows of the table in seconds; a thousandth of the duration if absent.
     pub every: Option<f64>,
-    /// The standard deviations of outputs' samples, in their units; 0 for none.
-    pub noise: BTreeMap<String, f64>,
-    /// The true values of parameters, as multiples of what they are without this.
-    pub plant: BTreeMap<String, f64>,
     /// How wrong the extension is at the start, as a multiple of how wrong it is without this: 0 where it begins at phi,
     /// so that the observer knows the state. Bounds of the unknowns hold all the same.
     pub initial_error: Option<f64>,

@@ -27,6 +27,20 @@ pub(super) struct Panel {
 }
 
 impl Panel {
+    /// Signals that stand on one axis: on a linear one, those of one unit. A flow in cubic metres per second is flat at zero
+    /// beside a temperature in kelvin.
+    pub(super) fn groups<C>(plant: &Plant, scale: Scale, curves: Vec<C>, symbol: impl Fn(&C) -> Symbol) -> Vec<Vec<C>> {
+        let mut groups: Vec<(Option<&String>, Vec<C>)> = Vec::new();
+        for curve in curves {
+            let unit = Some(symbol(&curve)).filter(|_| scale == Scale::Linear).and_then(|s| plant.units.get(&s));
+            match groups.iter_mut().find(|(known, _)| *known == unit) {
+                Some((_, group)) => group.push(curve),
+                None => groups.push((unit, vec![curve])),
+            }
+        }
+        groups.into_iter().map(|(_, group)| group).collect()
+    }
+
     /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
     pub(super) fn of_signals(plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label)>) -> Self {
         let unit_of = |symbol: &Symbol| plant.units.get(symbol).map(String::as_str);
@@ -95,7 +109,8 @@ impl Pass<'_> {
         }
     }
 
-    /// Errors on a logarithmic axis, which alone shows those of all units and sizes; outputs; inputs.
+    /// Errors on a logarithmic axis, which alone shows those of all units and sizes; outputs and inputs, of each unit on an
+    /// axis of their own.
     fn usual(&mut self, errors: &[Expr]) {
         let plant = self.names.plant;
         let arena = &plant.arena;
@@ -105,19 +120,19 @@ impl Pass<'_> {
         let named = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), arena.of_symbol(symbol));
         let measured = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), self.names.measured(symbol));
         let outputs = plant.y.iter().map(|output| measured(output.symbol)).collect();
-        let inputs: Vec<_> = plant.u.iter().map(|input| named(*input)).collect();
+        let inputs = plant.u.iter().map(|input| named(*input)).collect();
         self.signals("Estimation errors", Scale::Log, errors);
         self.signals("Outputs", Scale::Linear, outputs);
-        if !inputs.is_empty() {
-            self.signals("Inputs", Scale::Linear, inputs);
-        }
+        self.signals("Inputs", Scale::Linear, inputs);
     }
 
     fn signals(&mut self, title: &str, scale: Scale, curves: Vec<(Symbol, Label, Expr)>) {
-        let (labels, values): (Vec<_>, Vec<Expr>) =
-            curves.into_iter().map(|(symbol, label, value)| ((symbol, label), value)).unzip();
-        let panel = Panel::of_signals(self.names.plant, title, scale, labels);
-        self.add((title, panel.unit, scale), panel.curves.into_iter().zip(values).collect());
+        for curves in Panel::groups(self.names.plant, scale, curves, |(symbol, ..)| *symbol) {
+            let (labels, values): (Vec<_>, Vec<Expr>) =
+                curves.into_iter().map(|(symbol, label, value)| ((symbol, label), value)).unzip();
+            let panel = Panel::of_signals(self.names.plant, title, scale, labels);
+            self.add((title, panel.unit, scale), panel.curves.into_iter().zip(values).collect());
+        }
     }
 
     /// The unit that the model gives a signal.

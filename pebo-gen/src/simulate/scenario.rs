@@ -12,6 +12,8 @@ use crate::model::{Model, Simulation};
 use crate::plant::Plant;
 use crate::program::{Interpreter, Program};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
+use crate::tuning::start as start_of_extension;
+use pebo_runtime::Fault;
 
 use super::advice::{Origin, advise};
 use super::changed::{changed, told};
@@ -78,6 +80,8 @@ pub struct Scenario {
     pub(super) columns: Vec<String>,
     /// The names of the table's values.
     pub(super) names: Vec<String>,
+    /// What to do where the left inverse has no value at the start of the extension.
+    restart: String,
     span: Span,
 }
 
@@ -105,7 +109,7 @@ impl Scenario {
     ) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
         let mut problems = Diagnostics::new();
-        let model = &*changed(model, overrides, &mut problems);
+        let model = &*changed(model, overrides);
         let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
         let names = Names { model, simulation, plant };
         let scenario = Resolution { names, problems: &mut problems }.scenario(derivation, overrides);
@@ -135,7 +139,26 @@ impl Scenario {
             Failure::Stopped { .. } => Code::LimitReached,
             _ => Code::SimulationFailed,
         };
-        Diagnostic::error(code, self.span, failure.to_string()).help(failure.help())
+        let help = match failure {
+            Failure::Refused { at, fault: Fault::Estimate } if *at <= 0.0 => &self.restart,
+            _ => failure.help(),
+        };
+        Diagnostic::error(code, self.span, failure.to_string()).help(help)
+    }
+}
+
+/// What to do where the left inverse has no value at the start of the extension: the start that is chosen where nobody says
+/// one, if there is any.
+fn restart(names: &Names, derivation: &Derivation) -> String {
+    let plant = names.plant;
+    let phi: Vec<String> = plant.phi.iter().map(|phi| plant.arena.print(phi.expr)).collect();
+    let whose = format!("phi = [{}] of a state that the plant can have", phi.join(", "));
+    match start_of_extension(names.model, plant, derivation) {
+        Some(z) => {
+            let z: Vec<String> = z.iter().map(|value| value.to_f64().to_string()).collect();
+            format!("choose another start for the extension, as `observer: {{extension: [{}]}}`: {whose}", z.join(", "))
+        }
+        None => format!("say where the extension starts, as `observer: {{extension: [..]}}` with {whose}"),
     }
 }
 
@@ -233,6 +256,7 @@ impl Resolution<'_> {
             signals,
             columns,
             layout,
+            restart: restart(&names, derivation),
             span,
         })
     }

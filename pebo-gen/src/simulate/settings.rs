@@ -7,7 +7,7 @@ use crate::cas::rational::Rational;
 use crate::model::{self, Decimal, Observer};
 use crate::plant::settings;
 use crate::source::{Code, Diagnostic, Diagnostics};
-use crate::tuning::{Known, Tuned};
+use crate::tuning::{Known, Prediction, Tuned, start};
 
 use super::asked::Asked;
 use super::sizes::{LONGEST, MOST_MIXED};
@@ -38,6 +38,8 @@ pub(super) struct Settings {
     pub(super) limits: Option<Limits>,
     /// What the settings were derived from, if the author did not choose them.
     pub(super) known: Option<Known>,
+    /// How the errors of the estimates are predicted, where the numbers are known.
+    pub(super) prediction: Option<Prediction>,
 }
 
 /// What the regression goes through.
@@ -90,6 +92,8 @@ impl Settings {
         if mixes && unknowns > MOST_MIXED {
             return None;
         }
+        let begun = if written.extension.is_empty() { start(asked.model, asked.plant, derivation) } else { None };
+        let begun = begun.map(|z| z.iter().map(Rational::to_f64).collect());
         Some(Self {
             operator: match resolved.operator {
                 settings::Operator::Filter(alpha) => Operator::Filter(alpha),
@@ -106,10 +110,11 @@ impl Settings {
             },
             bounds: bounds([resolved.lower, resolved.upper], unknowns),
             within: bounds(resolved.within, states),
-            chi_0: resolved.chi_0,
+            chi_0: begun.unwrap_or(resolved.chi_0),
             gate: None,
             limits: Limits::of(asked.model, read),
             known: None,
+            prediction: None,
         })
     }
 
@@ -164,6 +169,7 @@ impl Settings {
             gate: settings.gate.as_ref().map(Rational::to_f64),
             limits: Limits::of(asked.model, |number| Some(number.to_f64())),
             known: tuned.known,
+            prediction: Some(tuned.prediction),
         })
     }
 }

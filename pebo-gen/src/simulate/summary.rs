@@ -3,8 +3,6 @@
 //! In: the scores of the estimates, what the data were good for, and the samples that were lost. Out: the same together,
 //! and as a table in text. Knows nothing of where samples are from.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
 use super::excitation::Excitation;
@@ -92,6 +90,15 @@ impl Summary {
 
     /// A table of the estimates, and a line each for excitation, faults and lost samples.
     pub fn text(&self) -> String {
+        let mut text = if self.estimates.is_empty() { String::new() } else { table(&self.rows()) };
+        for line in self.lines() {
+            text.extend([line.as_str(), "\n"]);
+        }
+        text
+    }
+
+    /// The table of the estimates with its headings; a column that nobody has anything in is empty.
+    pub(crate) fn rows(&self) -> Vec<[String; 7]> {
         let headings =
             ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then", "expected"];
         let mut rows = vec![headings.map(str::to_owned)];
@@ -111,11 +118,13 @@ impl Summary {
                 row[6].clear();
             }
         }
-        let mut text = if self.estimates.is_empty() { String::new() } else { table(&rows) };
-        let mut line = |name: &str, what: &str| {
-            let written = writeln!(text, "{name}: {what}");
-            debug_assert!(written.is_ok(), "a string takes everything");
-        };
+        rows
+    }
+
+    /// What there is to say beside the table.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        let mut line = |name: &str, what: &str| lines.push(format!("{name}: {what}"));
         match &self.excitation {
             Excitation::NotYet { weakest } => line("excitation", &format!("not yet, `{weakest}` is not determined")),
             Excitation::Converged { since } => line("excitation", &format!("enough from t = {} s on", short(*since))),
@@ -125,6 +134,9 @@ impl Summary {
         }
         if let Some(surprise) = self.surprise {
             line("innovation", &format!("normalised square {} on average, where 1 is expected", short(surprise)));
+        }
+        if let Some(reason) = self.known.as_ref().and_then(|known| known.unpredicted.as_ref()) {
+            line("expected", &format!("no standard error is predicted: {reason}"));
         }
         if self.parted > 0 {
             line("in part", &format!("{} of {} samples lack an output", self.parted, self.samples));
@@ -150,7 +162,7 @@ impl Summary {
                 line(&format!("  {what}"), &(values + if *assumed { " (assumed)" } else { "" }));
             }
         }
-        text
+        lines
     }
 }
 

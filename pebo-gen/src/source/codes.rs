@@ -93,7 +93,8 @@ codes! {
     // YAML.
 
     EmptyFile "empty-file" "a model file has no content"
-        "The file is empty, or holds only comments. A model is a map with at least the keys model, x, y, f_x and f_y."
+        "The file is empty, or holds only comments. A model is a map with at least the keys model, x, y and f_x, \
+         and f_y or g_y for an output."
     YamlSyntax "yaml-syntax" "the text is not YAML"
         "The YAML parser stopped here. Frequent causes: a tab in the indentation; a missing space after a colon; a \
          formula that begins with a character that means something to YAML (* & ! { [ % @ ` | >) and needs quotes; a \
@@ -113,8 +114,8 @@ codes! {
     UnknownKey "unknown-key" "a key that model files do not have"
         "The help lists the keys that are valid in this place. Keys are written exactly so: case matters."
     MissingKey "missing-key" "a required key is absent"
-        "A model needs model, x, y and f_x; some of the nested maps have required keys of their own, and phi_left \
-         needs phi."
+        "A model needs model, x, y and f_x, and for a search for phi the rate of an output under f_y, its value under g_y, \
+         or an identity; some of the nested maps have required keys of their own, and phi_left needs phi."
     WrongShape "wrong-shape" "a value has the wrong shape"
         "A key expects a name, a number, a formula, a list or a map, and found another of these."
     WrongChoice "wrong-choice" "a word that is none of the choices"
@@ -265,9 +266,9 @@ codes! {
          it can be solved for one of its names: the name occurs to the first or second power, or in one power \
          alone, with a factor that is never zero."
     TransformNotFound "transform-not-found" "no transform was found"
-        "The model has no phi, and the search found none whose claims are all proved. The message says what was tried, and \
-         the notes what came nearest: a transform of some states, or one that a further assumption would make \
-         acceptable. `pebo-gen solve MODEL` lists the candidates. Measure another signal, assume the signs of what is \
+        "The model has no phi, and the search found none whose claims are all proved. The notes say what came nearest and \
+         why it was refused: a transform of some states, or one that would be accepted with the signs of states assumed. \
+         `pebo-gen solve MODEL` lists the candidates and what was tried. Measure another signal, assume the signs of what is \
          positive, or write a phi of your own."
         => "Section 2.2, Assumption 1"
     CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
@@ -325,7 +326,7 @@ codes! {
 
     SimulationMissing "simulation-missing" "a model that says nothing about simulation"
         "To simulate, the model file needs a section `simulation` with duration, step, the states at the start and a \
-         control law for each input, and a section `observer` with the estimator's gains and the filter."
+         control law for each input. A section `observer` is not needed: without it, its numbers are assumed."
     SimulationIncomplete "simulation-incomplete" "a simulation lacks something that it needs"
         "Every parameter needs a value, every state and output a start and a rate, every input a control law, every \
          unmeasured signal w its values over time under signals, and the observer its gains and its filter where some of them \

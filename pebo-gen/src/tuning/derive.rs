@@ -15,10 +15,14 @@ use crate::plant::Plant;
 use crate::plant::settings::{Covariance, Estimator, Frame, Operator, Settings};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
+use super::digits::rounded;
 use super::kind::Kind;
 use super::magnitude::Deviations;
 use super::point::Point;
+#[cfg(feature = "simulate")]
+use super::prediction::{Noise, Prediction};
 use super::spread::Slopes;
+use super::start::beginning;
 #[cfg(feature = "simulate")]
 use super::told::Known;
 use super::tuned::Tuned;
@@ -43,9 +47,7 @@ pub(super) fn derive(
         problems.push(idle_hold(plant, hold.span));
         return None;
     }
-    let states = derivation.left_inverse.result.as_ref()?.x.len();
-    let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
-    let frame = Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)?;
+    let frame = frame(model, plant, derivation, problems)?;
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
     let formulas = Formulas::of(plant, derivation)?;
@@ -58,26 +60,15 @@ pub(super) fn derive(
         }
         return None;
     }
-    let start = match frame.chi_0 {
+    let start = match frame.chi_0.clone() {
         Some(written) => written,
-        None => somewhere(&said, plant, derivation)?,
+        None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
     let point = completed(&said, plant, &formulas, &start)?;
     let deviations = Deviations::of(model, plant, &said, period)?;
 
-    let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
-    let at_start = formulas.phi.wide_variances(&point, &x_and_y)?;
-    let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
-    let mut noise = formulas.phi.variances(&point, &drifts)?;
-    let heard = |slopes: &Slopes, into: &mut [f64]| -> Option<()> {
-        let variances = slopes.variances(&point, &deviations.sensors)?;
-        into.iter_mut().zip(variances).for_each(|(q, variance)| *q += variance * period.unwrap_or_default());
-        Some(())
-    };
-    heard(&formulas.flow, &mut noise)?;
-    let covariance =
-        frame.covariance.as_ref().map_or(at_start, |written| written.iter().map(Rational::to_f64).collect());
-    let noise = frame.process_noise.as_ref().map_or(noise, |written| written.iter().map(Rational::to_f64).collect());
+    let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
+    let Coordinates { covariance, mut drift, noise } = coordinates;
     #[cfg(feature = "simulate")]
     let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
@@ -85,8 +76,9 @@ pub(super) fn derive(
     let mut chi_0 = start;
     let (operator, covariance, noise) = match kind {
         Kind::Output => {
-            let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
-            heard(&formulas.rates, &mut of_rows)?;
+            let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
+            drift.splice(0..0, of_rows.iter().copied());
+            let of_rows = heard(&formulas.rates, &point, &deviations, period, of_rows)?;
             // The first sample is where the outputs begin.
             let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
@@ -109,12 +101,7 @@ pub(super) fn derive(
     };
     let exact = exact(&operator, &covariance, &noise);
     let Some((operator, start, process_noise)) = exact else {
-        let span = asked.map_or(model.name.span, |(_, span)| span);
-        let message = "the numbers that are derived of these are out of range";
-        problems.push(
-            Diagnostic::error(Code::NumberOutOfRange, span, message)
-                .help("choose standard deviations, and units, in which numbers are nearer to 1"),
-        );
+        problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
         return None;
     };
     let settings = Settings {
@@ -135,11 +122,81 @@ pub(super) fn derive(
         gate: frame.gate,
         limits: None,
     };
+    #[cfg(feature = "simulate")]
+    let prediction = {
+        let is_heard = is_heard(plant, derivation, &formulas, kind);
+        Prediction::of(kind, is_heard, can_rebase, Noise { sensors: deviations.sensors, drift })
+    };
     Some(Tuned {
         settings,
         #[cfg(feature = "simulate")]
-        known: Some(known),
+        known: Some(known.predicted(&prediction)),
+        #[cfg(feature = "simulate")]
+        prediction,
     })
+}
+
+/// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
+/// the left inverse.
+#[cfg(feature = "simulate")]
+fn is_heard(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: Kind) -> bool {
+    let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
+    let y = plant.y.iter().map(|output| output.symbol).collect();
+    let left_inverse = derivation.left_inverse.result.as_ref();
+    let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
+    recovered || depends(&formulas.flow) || (kind == Kind::Output && depends(&formulas.rates))
+}
+
+/// Variances of the coordinates.
+struct Coordinates {
+    /// At the start.
+    covariance: Vec<f64>,
+    /// Of what they drift by in a second.
+    drift: Vec<f64>,
+    /// The same with what the sensors add, where outputs drive the cascade.
+    noise: Vec<f64>,
+}
+
+impl Coordinates {
+    fn of(
+        formulas: &Formulas,
+        point: &Point,
+        deviations: &Deviations,
+        frame: &Frame<Rational>,
+        period: Option<f64>,
+    ) -> Option<Self> {
+        let all = |written: &Vec<Rational>| written.iter().map(Rational::to_f64).collect::<Vec<_>>();
+        let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
+        let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
+        let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
+        let drift = formulas.phi.variances(point, &drifts)?;
+        let noise = heard(&formulas.flow, point, deviations, period, drift.clone())?;
+        let written = frame.process_noise.as_ref().map(all);
+        Some(Self {
+            covariance: frame.covariance.as_ref().map_or(at_start, all),
+            drift: written.clone().unwrap_or(drift),
+            noise: written.unwrap_or(noise),
+        })
+    }
+}
+
+/// Variances with what the noise of samples adds to rates, a sample for a period.
+fn heard(
+    rates: &Slopes,
+    point: &Point,
+    deviations: &Deviations,
+    period: Option<f64>,
+    variances: Vec<f64>,
+) -> Option<Vec<f64>> {
+    let added = rates.variances(point, &deviations.sensors)?;
+    Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
+}
+
+/// What the section says beside its standard deviations.
+fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Frame<Rational>> {
+    let states = derivation.left_inverse.result.as_ref()?.x.len();
+    let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+    Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
 }
 
 /// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
@@ -211,30 +268,15 @@ fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagno
     Diagnostic::error(Code::SimulationIncomplete, span, message).help(help)
 }
 
+fn out_of_range(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::NumberOutOfRange, span, "the numbers that are derived of these are out of range")
+        .help("choose standard deviations, and units, in which numbers are nearer to 1")
+}
+
 fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
     let message = format!("the filter of `{}` depends on the period of its samples", plant.name);
     Diagnostic::error(Code::SimulationIncomplete, span, message)
         .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
-}
-
-/// The extension at the start: zeros, unless `phi_left` has no value there, as a flux of 0 has no position. Then phi of
-/// states that are zero.
-fn somewhere(said: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
-    let zeros = vec![Rational::from(0); plant.phi.len()];
-    let inverse = derivation.left_inverse.result.as_ref()?;
-    let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
-    let is_inside = |z: &[f64]| {
-        let values = said.with(&plant.z, z).values(&states);
-        values.is_none_or(|values| values.iter().all(|value| value.is_finite()))
-    };
-    if is_inside(&vec![0.0; zeros.len()]) {
-        return Some(zeros);
-    }
-    let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
-    let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
-    let z = said.with(&x, &vec![0.0; x.len()]).values(&phi).filter(|z| is_inside(z));
-    let start = z.and_then(|z| z.iter().map(|value| rounded(*value)).collect::<Option<Vec<_>>>());
-    Some(start.unwrap_or(zeros))
 }
 
 /// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
@@ -382,13 +424,4 @@ fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<
     let least = if largest > 0.0 { CERTAIN * largest } else { CERTAIN };
     let covariance: Vec<f64> = covariance.iter().map(|variance| variance.max(least)).collect();
     Some((operator, all(&covariance)?, all(noise)?))
-}
-
-/// A number in four digits, if it is one with which can be computed.
-fn rounded(value: f64) -> Option<Rational> {
-    const RANGE: std::ops::Range<f64> = 1e-100..1e100;
-    if value == 0.0 {
-        return Some(Rational::from(0));
-    }
-    RANGE.contains(&value.abs()).then(|| Rational::from_decimal(&format!("{value:.3e}")).ok())?
 }

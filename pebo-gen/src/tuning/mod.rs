@@ -13,10 +13,14 @@
 //! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
 
 mod derive;
+mod digits;
 mod kind;
 mod magnitude;
 mod point;
+#[cfg(feature = "simulate")]
+mod prediction;
 mod spread;
+mod start;
 #[cfg(feature = "simulate")]
 mod told;
 mod tuned;
@@ -31,10 +35,13 @@ use crate::plant::settings::{Limits, cannot_rebase};
 use crate::plant::{Plant, Settings};
 use crate::source::Diagnostics;
 
+pub(crate) use start::start;
 pub(crate) use tuned::Tuned;
 
 #[cfg(feature = "simulate")]
 pub(crate) use derive::BANDWIDTH;
+#[cfg(feature = "simulate")]
+pub(crate) use prediction::Prediction;
 #[cfg(feature = "simulate")]
 pub use told::{Known, Numbers, Value};
 
@@ -59,10 +66,14 @@ impl Tuned {
         if model.observer.has_gains() {
             let sizes = (regression.eta.len(), plant.phi.len(), inverse.x.len());
             let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
+            let begun = Some(()).filter(|()| model.observer.extension.is_empty());
+            let chi_0 = begun.and_then(|()| start(model, plant, derivation)).unwrap_or(settings.chi_0);
             return Some(Self {
-                settings: Settings { limits, ..settings },
+                settings: Settings { chi_0, limits, ..settings },
                 #[cfg(feature = "simulate")]
                 known: None,
+                #[cfg(feature = "simulate")]
+                prediction: Prediction::None("gains do not say what sensors err by"),
             });
         }
         let mut tuned = derive::derive(model, plant, derivation, period, problems)?;

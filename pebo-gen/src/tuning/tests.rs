@@ -144,3 +144,39 @@ phi: [a]
     // The identity lets the output drive the cascade, `z' = -q`.
     assert!(close(&noise, &[0.01]), "{noise:?}");
 }
+
+const EXCHANGER: &str = "
+model: exchanger
+parameters: {V: 1, rc: 4}
+x: [Th, U]
+y: [Tc]
+u: [qh, qc, Thi, Tci]
+assume: [U > 0, V > 0, rc > 0]
+f_x: {Th: qh/V*(Thi - Th) - U/(rc*V)*(Th - Tc), U: 0}
+f_y: {Tc: qc/V*(Tci - Tc) + U/(rc*V)*(Th - Tc)}
+phi: [U, U*(Th + Tc)]
+";
+
+#[test]
+fn an_extension_starts_where_the_left_inverse_has_a_value() {
+    // Th = z2/z1 - Tc has no value at zero, and phi of a state that is zero is zero.
+    let start = |rest: &str| {
+        let (settings, problems) = tuned(&format!("{EXCHANGER}{rest}"));
+        let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+        settings.chi_0.iter().map(Rational::to_f64).collect::<Vec<_>>()
+    };
+    let gains = "observer: {gain: 1, filter: 1}\n";
+    let scenario =
+        "simulation: {step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 0.5, qc: 0.4, Thi: 60, Tci: 15}}";
+    // Half of where the plant starts: U = 1.5, Th = 25.
+    assert_eq!(start(&format!("{gains}{scenario}")), [1.5, 67.5]);
+    // The same for known numbers, in whose extension the output stands first.
+    assert_eq!(start(scenario), [0.0, 1.5, 67.5]);
+    // Where nothing is said, a state of the domain at a distance of 1; what the author writes is what it is.
+    assert_eq!(start(gains), [1.0, 2.0]);
+    assert_eq!(start("observer: {gain: 1, filter: 1, extension: [0, 0]}\n"), [0.0, 0.0]);
+    // Half of it is not in this domain, twice is: U = 6.
+    let far = EXCHANGER.replace("assume: [", "assume: [Th > 40, ");
+    let (settings, _) = tuned(&format!("{far}{gains}{scenario}"));
+    assert_eq!(settings.unwrap().chi_0[0], Rational::from(6));
+}

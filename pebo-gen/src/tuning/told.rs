@@ -7,6 +7,7 @@ use crate::plant::Plant;
 
 use super::kind::Kind;
 use super::magnitude::Deviations;
+use super::prediction::Prediction;
 
 /// What is known of sensors, start and disturbances, with what was derived of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -15,6 +16,8 @@ pub struct Known {
     pub observer: String,
     /// Each kind of number with its values.
     pub numbers: Vec<Numbers>,
+    /// Why no standard errors are predicted; none where they are.
+    pub unpredicted: Option<String>,
 }
 
 /// Numbers of one kind.
@@ -89,6 +92,16 @@ impl Known {
                 numbers("covariance", false, coordinates(covariance)),
                 numbers("process noise", false, coordinates(noise)),
             ],
+            unpredicted: None,
         }
+    }
+
+    /// The same with the reason for which nothing is predicted, if there is one.
+    pub(super) fn predicted(self, prediction: &Prediction) -> Self {
+        let unpredicted = match prediction {
+            Prediction::None(reason) => Some((*reason).to_owned()),
+            Prediction::Covariance | Prediction::Noise(_) => None,
+        };
+        Self { unpredicted, ..self }
     }
 }

@@ -4,6 +4,8 @@ use crate::cas::rational::Rational;
 use crate::plant::Settings;
 
 #[cfg(feature = "simulate")]
+use super::prediction::Prediction;
+#[cfg(feature = "simulate")]
 use super::told::Known;
 
 /// Settings, and what they were derived from where they were.
@@ -14,4 +16,7 @@ pub(crate) struct Tuned {
     /// What they were derived from; none where the author chose them.
     #[cfg(feature = "simulate")]
     pub known: Option<Known>,
+    /// How the errors of the estimates are predicted.
+    #[cfg(feature = "simulate")]
+    pub prediction: Prediction,
 }

@@ -130,7 +130,7 @@ fn an_input_under_signals_is_sent_to_the_control_law() {
     let source = with("simulation: {duration: 1, step: 1e-3, initial: {p: 1}, signals: {v: 1}}");
     let refused = answer(&source, &Ask::new());
     assert_eq!((refused.standing, refused.diagnostics.len()), (Standing::Malformed, 1));
-    assert!(refused.diagnostics[0].help.as_deref().is_some_and(|help| help.contains("under `control`")));
+    assert!(refused.diagnostics[0].help.as_deref().is_some_and(|help| help.contains("`control: {v: v_t}`")));
 }
 
 /// What a page or an editor reads: places in bytes, labels, notes, and no more than was asked for.
@@ -245,4 +245,30 @@ fn a_model_that_is_no_model_is_called_as_its_file() {
     let output = program(&["check", "--format", "json", &Path::new("no").join("file.yaml").display().to_string()]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stdout).starts_with(r#"{"schema":1,"model":"file","verdict":"rejected""#));
+}
+
+#[test]
+fn what_is_set_of_a_loop_changes_nothing_that_was_derived() {
+    let text = include_str!("../../../models/cuk.yaml");
+    let read = |settings: &[&str]| {
+        Source::new("cuk.yaml", text).and_then(|source| source.set(settings)).expect("small settings")
+    };
+    let derived = pebo_gen::derive(&read(&[])).expect("a model");
+    let model = |settings: &[&str]| pebo_gen::model::Model::parse(&read(settings)).expect("settings that can be");
+    for (settings, holds) in [
+        (&["simulation.noise.v2=0.1", "simulation.plant.L1=1.1*L1", "observer.filter=2"][..], true),
+        (&[], true),
+        (&["L1=2e-3"], false),
+        (&["assume=[0 < d < 1]"], false),
+    ] {
+        assert_eq!(derived.holds_of(&model(settings)), holds, "{settings:?}");
+    }
+    // Run with another section, it is what the file would do that said so.
+    let settings = ["simulation.noise.v2=0.1", "simulation.duration=1e-3", "simulation.plant.L1=1.1*L1"];
+    let anew = pebo_gen::derive(&read(&settings)).expect("a model");
+    let mut again = pebo_gen::derive(&read(&[])).expect("a model");
+    again.model = model(&settings);
+    let [anew, again] = [anew, again]
+        .map(|derived| derived.scenario(&Overrides::default()).expect("a loop").run().expect("it runs").csv());
+    assert_eq!(anew, again);
 }

@@ -502,6 +502,17 @@ fn a_limit_may_stand_before_the_command() {
 }
 
 #[test]
+fn a_misspelt_command_is_no_model() {
+    for arguments in [&["simulat", CUK][..], &["reprot"][..]] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let said = text(&output.stderr);
+        let command = if arguments.len() == 2 { "did you mean `simulate`?" } else { "did you mean `report`?" };
+        assert!(said.contains(command) && !said.contains("folder"), "{said}");
+    }
+}
+
+#[test]
 fn a_limit_is_a_positive_number_of_seconds() {
     for limit in ["0", "-1", "NaN", "ten", ""] {
         let output = run(&["check", CUK, &format!("--limit={limit}")]);

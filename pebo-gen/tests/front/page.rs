@@ -137,3 +137,45 @@ fn a_huge_formula_leaves_the_page_small() {
     assert_well_formed(&page);
     assert!(page.contains("too long for a page") && page.len() < 5_000_000, "{}", page.len());
 }
+
+/// A page without its figure says why, at the place of the figure and where the call is answered.
+#[test]
+fn a_loop_that_fails_is_not_passed_over() {
+    let model = format!(
+        "model: m\n{PLANT}f_x: {{p: v}}\nf_y: {{q: p}}\nsimulation: {{duration: 1, step: 0.1, initial: {{p: 0, q: 0}}, \
+         control: {{v: 1/(1 - 2*t)}}}}\n"
+    );
+    let answer = asked(&model);
+    assert_eq!(answer.standing, Standing::Refused, "{:#?}", answer.diagnostics);
+    let page = answer.page.expect("it is accepted");
+    assert_well_formed(&page);
+    assert!(
+        page.contains("<section id=\"run\">") && page.contains("href=\"#run\"") && !page.contains("<figure>"),
+        "{page}"
+    );
+    let told = answer.diagnostics.iter().flat_map(|found| &found.notes);
+    assert!(told.into_iter().any(|note| note.contains("the page is written without")), "{:#?}", answer.diagnostics);
+}
+
+/// The numbers of the closed loop are those of the terminal.
+#[test]
+fn a_page_has_the_table_of_the_run() {
+    let model = format!(
+        "model: m\n{PLANT}f_x: {{p: v}}\nf_y: {{q: p}}\nsimulation: {{duration: 1, step: 0.01, initial: {{p: 1, q: 0}}, \
+         control: {{v: 0}}}}\n"
+    );
+    let page = page(&model);
+    let table = page.split("Errors of the estimates").nth(1).expect("a table");
+    assert!(table.contains("settled to 1 %") && table.contains("<li>excitation: "), "{table}");
+    assert!(!page.contains("e0<"), "numbers as of programs");
+}
+
+/// What the observer integrates, and how the unknown enters, depends on the cascade.
+#[test]
+fn the_idea_is_that_of_the_cascade() {
+    let [plain, general] =
+        ["v", "v - p"].map(|rate| page(&format!("model: m\n{PLANT}f_x: {{p: {rate}}}\nf_y: {{q: p}}\nphi: [p]\n")));
+    let idea = |page: &str| page.split("<section id=\"plant\">").next().expect("a part").to_owned();
+    assert!(idea(&plain).contains("<mi>χ</mi>") && !idea(&plain).contains("<mi>Ψ</mi>"));
+    assert!(idea(&general).contains("<mi>Ψ</mi>") && !idea(&general).contains("<mi>χ</mi>"));
+}

@@ -166,6 +166,19 @@ const CASES: &[Case] = &[
                 f_x: {i: (v - R*i - e*w)*k, R: 0, k: 0, e: 0}\nf_y: {w: e*i/J}",
         truth: Truth::Found,
     },
+    Case {
+        from: "a fuel cell by its Nernst voltage: partial pressures of hydrogen and oxygen",
+        lines: "parameters: {E: 1.2, a: 0.0215, k: 1, m: 0.5, t: 3, s: 6}\nx: [p, o]\ny: [V]\nu: [I, q, r]\n\
+                assume: [p > 0, o > 0]\nf_x: {p: (q - k*p - I)/t, o: (r - m*o - I/2)/s}\n\
+                identities: [exp(2*(V - E)/a) - p^2*o]",
+        truth: Truth::Found,
+    },
+    Case {
+        from: "a tank (Torricelli 1644) with an unknown outlet",
+        lines: "parameters: [A, g]\nx: [a]\ny: [h]\nu: [q]\nassume: [A > 0, g > 0, h > 0]\nf_x: {a: 0}\n\
+                f_y: {h: (q - a*sqrt(2*g*h))/A}",
+        truth: Truth::Pebo,
+    },
 ];
 
 /// The class of the transform that was found, every claim being proved.

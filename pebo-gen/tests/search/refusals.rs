@@ -159,3 +159,40 @@ fn nobody_is_told_to_choose_a_phi_where_there_is_none() {
     );
     assert_eq!(answered(&format!("model: m\n{lines}\n")).standing, Standing::Accepted);
 }
+
+/// The nearest candidate and its obstacle come first, no transform is told twice in another order, and the states are
+/// underlined, of which none was found.
+#[test]
+fn a_model_without_a_transform_is_refused_in_a_few_notes() {
+    let text = format!("model: m\nx: [a, b]\ny: [q]\nu: [v]\nf_x: {{a: v - 2*a, b: 3*b}}\nf_y: {{q: a + sin(b)*q}}\n");
+    let source = Source::new("m.yaml", text.as_str()).expect("a text");
+    let answer = answer(&source, &Ask::new());
+    let found = &answer.diagnostics[0];
+    assert_eq!((found.code, source.slice(found.primary.span)), (Code::TransformNotFound, "a, b"));
+    assert!(found.notes.len() <= 5 && !found.notes.iter().any(|note| note.starts_with("tried:")), "{:#?}", found.notes);
+    assert!(found.notes.last().is_some_and(|note| note.contains("`pebo-gen solve` shows what was tried")));
+    let sorted = |note: &String| {
+        let inner =
+            note.split_once("phi = [").and_then(|(_, rest)| rest.split_once(']')).map(|(inner, _)| inner.to_owned());
+        inner.map(|inner| {
+            let mut parts: Vec<String> = inner.split(", ").map(str::to_owned).collect();
+            parts.sort_unstable();
+            parts
+        })
+    };
+    let told: Vec<Vec<String>> = found.notes.iter().filter_map(sorted).collect();
+    assert!(told.len() < 2 || told[0] != told[1], "{told:#?}");
+}
+
+/// What is proved of transforms affine in x says nothing of others.
+#[test]
+fn none_says_what_it_leaves_open() {
+    let said = |lines: &str| {
+        let text = format!("model: m\n{lines}\n");
+        solve(&Source::new("m.yaml", text.as_str()).expect("a text"), None, &Ask::new()).summary
+    };
+    let open = "not excluded: a phi that is not affine in x, with a generalised cascade";
+    assert!(said(ARM).contains(open), "{}", said(ARM));
+    let asked = said(&format!("class: pebo\n{ARM}"));
+    assert!(!asked.contains(open), "{asked}");
+}

@@ -17,17 +17,17 @@ export class Loop {
     this.#run = run;
   }
 
-  /** The settings that differ from the file. */
-  get set() {
+  /** What is asked of the loop beside what the file says: settings as of `--set`, and how it is run. */
+  get call() {
     const values = this.#values;
-    const set = {};
-    if (values.initial !== undefined && values.initial !== 1) set.initial_error = values.initial;
-    if (values.noise) set.noise = Object.fromEntries(this.#knobs.noise.map(([name]) => [name, values.noise * (this.sizes?.[name] ?? 1)]));
-    if (values.mismatch && values.parameter) set.plant = { [values.parameter]: 1 + values.mismatch };
-    if (values.step !== undefined && values.step !== 0) set.step = this.#knobs.step * 2 ** values.step;
-    if (values.estimator && values.estimator !== this.#knobs.estimator) set.estimator = values.estimator;
-    if (values.seed && values.seed !== SEED) set.seed = values.seed;
-    return set;
+    const [set, how] = [[], {}];
+    if (values.noise) for (const [name] of this.#knobs.noise) set.push(`simulation.noise.${name}=${values.noise * (this.sizes?.[name] ?? 1)}`);
+    if (values.mismatch && values.parameter) set.push(`simulation.plant.${values.parameter}=${1 + values.mismatch}*${values.parameter}`);
+    if (values.step) set.push(`simulation.step=${this.#knobs.step * 2 ** values.step}`);
+    if (values.initial !== undefined && values.initial !== 1) how.initial_error = values.initial;
+    if (values.estimator && values.estimator !== this.#knobs.estimator) how.estimator = values.estimator;
+    if (values.seed && values.seed !== SEED) how.seed = values.seed;
+    return { set, how };
   }
 
   /** The outputs, each with the noise of the file. */

@@ -121,8 +121,7 @@ function sizes(csv, names) {
 }
 
 async function run(mine) {
-  const set = loop.set;
-  const answer = await ask({ what: "simulate", text: last.text, set, csv: true }, "Running the closed loop.");
+  const answer = await ask({ what: "simulate", text: last.text, ...loop.call, csv: true }, "Running the closed loop.");
   if (mine !== turn) return;
   if (answer.csv) {
     table = answer.csv;

@@ -15,6 +15,7 @@ use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::poly::Poly;
 use crate::cas::tidy::shortest;
+use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
@@ -98,7 +99,18 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
     if parts <= MOST_PARTS && plant.u.len() <= MOST_INPUTS {
         let stack = held.as_ref().map_or(&[][..], |shown| shown.stack.as_slice());
         for (place, restriction) in question.candidates(by_itself == Some(true), stack) {
-            note(place, &question.shown(&restriction));
+            let shown = question.shown(&restriction);
+            let is_seen = shown.as_ref().is_ok_and(|shown| shown.hidden.is_empty());
+            // What the other inputs show by their variation they do not show as constants.
+            if let (true, Some(true), Place::Value(input, value)) = (is_seen, by_itself, &place) {
+                note(Place::Steady(*input, *value), &question.steady(*input, *value));
+            }
+            note(place, &shown);
+        }
+        if by_itself == Some(true) {
+            for (parameter, value) in question.coincidences(stack, &constants) {
+                note(Place::Steady(parameter, value), &question.steady(parameter, value));
+            }
         }
         if by_itself == Some(true) {
             blind.extend(question.doubtful(&blind, symbols, stack));
@@ -171,6 +183,28 @@ impl Question<'_> {
         Ok(Shown { stack, hidden })
     }
 
+    /// What is shown where all inputs are constant, and an input or parameter has a value.
+    fn steady(&self, symbol: Symbol, value: Expr) -> Result<Shown, Obstacle> {
+        let held = self.plant.u.iter().copied().filter(|input| *input != symbol).collect();
+        self.shown(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
+    }
+
+    /// Values of parameters at which rows that have full rank with constant inputs lose it, but for what is a condition.
+    fn coincidences(&self, stack: &[Vec<Expr>], conditions: &[Expr]) -> Vec<(Symbol, Expr)> {
+        let arena = &self.plant.arena;
+        if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
+            return Vec::new();
+        }
+        let volume = Volume::of(arena, self.domain, stack);
+        let places = volume.and_then(|volume| volume.places(self.plant, self.domain)).unwrap_or_default();
+        let open = places.constants.into_iter().filter(|formula| !conditions.contains(formula));
+        let value = |formula: Expr| {
+            let mut parameters = arena.symbols_of(&[formula]).into_iter();
+            parameters.find_map(|parameter| Some((parameter, solved(arena, formula, parameter)?)))
+        };
+        open.filter_map(value).collect()
+    }
+
     /// Motions that are worth a look.
     fn candidates(&self, by_itself: bool, stack: &[Vec<Expr>]) -> Vec<(Place, Restriction)> {
         let inputs = &self.plant.u;
@@ -210,14 +244,21 @@ impl Question<'_> {
             let unshown = || Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() };
             let symbols_there = arena.symbols_of(&[zero]);
             if !symbols_there.is_subset(&known) {
-                // What several signals make zero is passed in a moment: that it stays so asks an input for each derivative.
-                if symbols_there.difference(&constants).count() > 1 {
-                    continue;
-                }
                 let held = plant.u.iter().copied().collect();
-                let moves = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new())
-                    .is_ok_and(|flow| domain.implies(arena, flow.rate(arena, zero), Relation::NonZero));
-                found.extend((!moves).then(unshown));
+                let rate = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new())
+                    .map(|flow| flow.rate(arena, zero));
+                let stays = match rate {
+                    // What several signals make zero is passed in a moment, unless its rate vanishes there with it.
+                    Ok(rate) if symbols_there.difference(&constants).count() > 1 => {
+                        symbols_there.iter().any(|symbol| {
+                            let there = solved(arena, zero, *symbol).map(|value| BTreeMap::from([(*symbol, value)]));
+                            there.is_some_and(|there| decide(arena, arena.substitute(rate, &there), domain).is_zero())
+                        })
+                    }
+                    Ok(rate) => !domain.implies(arena, rate, Relation::NonZero),
+                    Err(_) => symbols_there.difference(&constants).count() == 1,
+                };
+                found.extend(stays.then(unshown));
                 continue;
             }
             let Some((input, value)) = plant.u.iter().find_map(|input| Some((*input, solved(arena, zero, *input)?)))
@@ -427,6 +468,16 @@ impl Blind {
                 format!("{} is constant", names.join(", "))
             }
             Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+            Place::Steady(symbol, value) => {
+                let others = match (plant.u.contains(symbol), plant.u.len()) {
+                    (true, 0 | 1) | (false, 0) => "",
+                    (true, 2) => "the other input is constant and ",
+                    (true, _) => "the other inputs are constant and ",
+                    (false, 1) => "the input is constant and ",
+                    (false, _) => "the inputs are constant and ",
+                };
+                format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
+            }
             Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
             Place::Part(sides) => {
                 let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", arena.print(*expr), side.sign());
@@ -511,6 +562,24 @@ mod tests {
                 "while `w = 0`, only `z1` is identified"
             ]
         );
+    }
+
+    #[test]
+    fn what_constant_inputs_hide_at_a_value_of_one_or_of_a_parameter_is_listed() {
+        let wind = "x: [a, k]\ny: [p, q]\nu: [v, r]\nassume: [v > 0]\nf_x: {a: 0, k: 0}\n\
+                    f_y: {p: k*v*cos(q) + a, q: r}\nphi: [a, k]";
+        let lines = of(wind);
+        assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+        assert_eq!(lines[2], "while the other input is constant and `r = 0`, only `z1 + v*z2*cos(q)` is identified");
+        let sum = "parameters: [k, m]\nassume: [k > 0, m > 0, v > 0, w > 0]\nx: [a, b]\ny: [r]\nu: [v, w]\n\
+                   f_x: {a: -k*a, b: -m*b}\nf_y: {r: v*a + w*b}\nphi: [a, b]";
+        let lines = of(sum);
+        assert!(lines[0].ends_with("even at rest, but for these motions"), "{lines:?}");
+        assert!(lines[1].starts_with("while the inputs are constant and `k = m`, only"), "{lines:?}");
+        // q = v stays, while r moves.
+        let pursuit = "x: [p, s]\ny: [r, q]\nu: [v]\nf_x: {p: -v*p, s: -q*s}\nf_y: {r: p + s, q: q - v}\nphi: [p, s]";
+        let lines = of(pursuit);
+        assert!(lines.iter().any(|line| line.contains("q - v = 0") || line.contains("v - q = 0")), "{lines:?}");
     }
 
     #[test]

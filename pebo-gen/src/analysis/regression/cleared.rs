@@ -65,7 +65,14 @@ pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -
             }
         }
     };
-    plant.identities.iter().flat_map(|identity| of(identity.expr)).collect()
+    let mut found: Vec<Expr> = Vec::new();
+    for equation in plant.identities.iter().flat_map(|identity| of(identity.expr)) {
+        // A bearing under `g_y` and the same written as an identity.
+        if !found.contains(&equation) && !found.contains(&arena.neg(equation)) {
+            found.push(equation);
+        }
+    }
+    found
 }
 
 /// Where an identity tells a state, the components of the transform that are functions of it, each less its value.

@@ -103,7 +103,13 @@ fn under_lambda(
     let xi: Vec<Expr> = plant.xi.iter().map(|s| arena.of_symbol(*s)).collect();
     let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
     let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
+    let mut told: Vec<&affine::Row> = Vec::new();
     for row in rows.iter().filter_map(|row| row.as_ref().ok()) {
+        let opposite: affine::Row = row.iter().map(|entry| arena.neg(*entry)).collect();
+        if told.iter().any(|known| *known == row || **known == opposite) {
+            continue;
+        }
+        told.push(row);
         // known + factors (xi + Psi theta) = 0
         phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
         let column = |column: usize| {

@@ -24,7 +24,9 @@ impl Field<'_> {
         self.count(fraction);
         let (above, num) = primitive(&fraction.num);
         let (below, den) = primitive(&fraction.den);
-        let (den, sines) = self.sines(den);
+        let (num, mut sines) = self.sines(num, 1);
+        let (den, below_sines) = self.sines(den, -1);
+        sines.extend(below_sines);
         let coefficient = Rational::new(above, below).unwrap_or(Rational::ZERO);
         let powers =
             |poly: &Poly, exponent| self.powers(poly, exponent).unwrap_or_else(|| self.factors(poly, exponent));
@@ -105,11 +107,11 @@ impl Field<'_> {
         }))
     }
 
-    /// A divisor without its factors `cos(q)^2 - 1`, and these as what they are, `-sin(q)^2`: no digits are lost where
-    /// they are small, and what one sine too many came from cancels.
-    fn sines(&self, mut divisor: Poly) -> (Poly, Vec<(Expr, Rational)>) {
+    /// A polynomial without its factors `cos(q)^2 - 1`, and these, to a common power, as what they are, `-sin(q)^2`: no
+    /// digits are lost where they are small, and of a divisor what one sine too many came from cancels.
+    fn sines(&self, mut poly: Poly, sign: i64) -> (Poly, Vec<(Expr, Rational)>) {
         let mut found = Vec::new();
-        for variable in divisor.variables().to_vec() {
+        for variable in poly.variables().to_vec() {
             let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) else {
                 continue;
             };
@@ -117,15 +119,15 @@ impl Field<'_> {
             let Ok(square) = Poly::from_terms(square) else {
                 continue;
             };
-            while divisor.degree(variable) > 1
-                && let Ok(Some(rest)) = divisor.div_exact(&square, self.limit())
+            while poly.degree(variable) > 1
+                && let Ok(Some(rest)) = poly.div_exact(&square, self.limit())
             {
-                divisor = rest;
+                poly = rest;
                 found.push((self.arena.number(-1), Rational::ONE));
-                found.push((self.arena.call(Function::Sin, &arguments), Rational::from(-2)));
+                found.push((self.arena.call(Function::Sin, &arguments), Rational::from(2 * sign)));
             }
         }
-        (divisor, found)
+        (poly, found)
     }
 
     /// The square-free factors with their multiplicities, to a common power; none where that is no shorter, or takes

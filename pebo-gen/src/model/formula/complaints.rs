@@ -1,8 +1,8 @@
 //! What the parser says about a text that is no formula.
 
-use super::DEPTH_LIMIT;
 use super::lexer::{Kind, Token};
 use super::parser::Parser;
+use super::{DEPTH_LIMIT, foreign};
 use crate::cas::Function;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 
@@ -51,6 +51,9 @@ impl Parser<'_> {
             Kind::Number | Kind::Name | Kind::Open => {
                 let (left, right) = (self.lexer.text(self.last), self.lexer.text(self.next));
                 let span = self.lexer.span(self.last).to(self.lexer.span(self.next));
+                if let Some(help) = foreign::operator(right) {
+                    return self.unexpected(&format!("{} is no operator of formulas", quoted(right))).help(help);
+                }
                 let message = "an operator is missing between two factors".to_owned();
                 Diagnostic::error(Code::ImplicitMultiplication, span, message)
                     .help(format!("write `{left}*{right}` for a product"))
@@ -85,10 +88,16 @@ pub(super) fn argument_count(function: Function, found: usize, span: Span) -> Di
         .help(format!("write `{name}({})`", if wanted == 1 { "a" } else { "a, b" }))
 }
 
-/// A call of something that is no function.
-pub(super) fn unknown_function(name: &str, span: Span) -> Diagnostic {
+/// A call of something that is no function; `argument` is what stands behind the parenthesis.
+pub(super) fn unknown_function(name: &str, span: Span, argument: &str) -> Diagnostic {
     let message = format!("{} is not a function", quoted(name));
     let diagnostic = Diagnostic::error(Code::UnknownFunction, span, message);
+    let timed = argument.trim_start().strip_prefix('t').is_some_and(|rest| {
+        rest.trim_start().starts_with([')', '-', '+', ',']) && !rest.starts_with(|c: char| c.is_ascii_alphanumeric())
+    });
+    if let Some(help) = foreign::call(name, timed) {
+        return diagnostic.help(help);
+    }
     match nearest(name, Function::names()) {
         Some(near) => diagnostic.suggest(Some(near)),
         None => diagnostic.help(format!("write `{name}*(` for a product")),

@@ -34,9 +34,7 @@ impl Decimal {
     pub fn parse(text: &str, span: Span) -> Result<Self, Diagnostic> {
         let Some((mantissa, exponent)) = split(text) else {
             let message = format!("{} is not a number", quoted(text));
-            return Err(
-                Diagnostic::error(Code::MalformedNumber, span, message).help("write a decimal, as 12, 0.5 or 22e-6")
-            );
+            return Err(Diagnostic::error(Code::MalformedNumber, span, message).help(mended(text)));
         };
         let refuse = |what: &str, help: &str| {
             let message = format!("{} has {what}", quoted(text));
@@ -87,6 +85,51 @@ impl TryFrom<String> for Decimal {
 
     fn try_from(text: String) -> Result<Self, String> {
         Self::parse(&text, Span::default()).map_err(|diagnostic| diagnostic.message.into())
+    }
+}
+
+/// Units that numbers are written with, and the powers of ten of the prefixes before them.
+const UNITS: [&str; 21] = [
+    "H", "F", "A", "V", "W", "s", "m", "Ohm", "ohm", "Ω", "Hz", "N", "Nm", "J", "Pa", "C", "Wb", "K", "S", "rad", "Ah",
+];
+const PREFIXES: [(&str, i32); 10] =
+    [("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("k", 3), ("K", 3), ("M", 6), ("G", 9)];
+
+/// Longer texts are not written again.
+const SHORT: usize = 40;
+
+/// What to write instead of a text that is no number.
+fn mended(text: &str) -> String {
+    const HELP: &str = "write a decimal, as 12, 0.5 or 22e-6";
+    let text = text.trim();
+    if text.len() > SHORT {
+        return HELP.to_owned();
+    }
+    let point = text.replacen(',', ".", 1);
+    if point != text && split(&point).is_some() {
+        return format!("a decimal has a point: write `{point}`");
+    }
+    let end = text.rfind(|c: char| c.is_ascii_digit() || c == '.').map_or(0, |at| at + 1);
+    let (number, unit) = (&text[..end], text[end..].trim());
+    if unit.is_empty() || split(number).is_none() {
+        return HELP.to_owned();
+    }
+    if unit == "%" {
+        return format!("write a share of 1, as `0.5` for 50 %: `{number}e-2`");
+    }
+    let scaled = PREFIXES.iter().find_map(|(prefix, power)| {
+        let rest = unit.strip_prefix(prefix)?.trim();
+        (rest.is_empty() || UNITS.contains(&rest)).then_some(power)
+    });
+    let prefixed = scaled.filter(|_| !number.contains(['e', 'E'])).map(|power| format!("{number}e{power}"));
+    match (UNITS.contains(&unit), prefixed) {
+        (false, Some(number)) => format!("write `{number}`: a number has no unit and no prefix"),
+        (true, None) => format!("write `{number}`: a number has no unit, which belongs under `units`"),
+        // As of `5m`, metres or a thousandth.
+        (true, Some(other)) => {
+            format!("write `{number}`, or `{other}` if that is meant: a number has no unit and no prefix")
+        }
+        (false, None) => format!("{HELP}; a number has no unit, which belongs under `units`"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! A formula's text, cut into tokens.
 
-use super::{Places, Relation};
+use super::{Places, Relation, foreign};
 use crate::source::{Code, Diagnostic, Span};
 
 /// What a token is.
@@ -84,13 +84,18 @@ impl<'a> Lexer<'a> {
         Ok(Token { kind, start, end: self.at })
     }
 
+    /// What is not read yet.
+    pub(super) fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
     /// A character that no formula has.
     fn stranger(&self, start: usize) -> Diagnostic {
         let character = self.text[start..].chars().next().unwrap_or_default();
         let span = self.places.span(start, start + character.len_utf8());
         let message = format!("formulas cannot contain the character `{}`", character.escape_debug());
         let diagnostic = Diagnostic::error(Code::UnexpectedCharacter, span, message);
-        match substitute(character) {
+        match foreign::character(&self.text[..start], &self.text[start..]).or_else(|| substitute(character)) {
             Some(help) => diagnostic.help(help),
             None => diagnostic.help("formulas have names, numbers, + - * / ^ and parentheses"),
         }

@@ -22,6 +22,7 @@ mod bounds;
 mod complaints;
 mod decimal;
 mod display;
+mod foreign;
 mod lexer;
 mod parser;
 mod places;

@@ -160,7 +160,7 @@ impl<'a> Parser<'a> {
         }
         match Function::named(name) {
             Some(function) => self.call(function, span),
-            None => Err(complaints::unknown_function(name, span)),
+            None => Err(complaints::unknown_function(name, span, self.lexer.rest())),
         }
     }
 

@@ -126,7 +126,8 @@ fn independent_mistakes_are_all_found() {
         .replace("*v2 + v4", "v2")
         .replace("i1:", "i2:");
     let codes: Vec<Code> = parse(&text).expect_err("it is wrong").iter().map(|found| found.code).collect();
-    let expected = [UnknownKey, MalformedNumber, MissingEntry, DuplicateName, UnknownEntry];
+    // That `f_x` misses an entry for i1 is told where i2 is.
+    let expected = [UnknownKey, MalformedNumber, DuplicateName, UnknownEntry];
     assert_eq!(codes, expected);
 }
 
@@ -140,9 +141,79 @@ fn help_names_the_nearest() {
     assert_eq!(help("phi:", "observer: {estimator: lest-squares}\nphi:"), "did you mean `least-squares`?");
     assert_eq!(help("f_y: {v2", "f_y: {v22"), "did you mean `v2`?");
     assert_eq!(help("x: [i1", "x: [λ"), "spell it out: `lambda`");
-    let course = "write it under `simulation`: of a signal in `signals`, of a parameter or a constant state in `plant`";
+    let course = "write a number: the values of a signal over time stand in `signals`, those of a parameter or of a constant state in `plant`";
     assert_eq!(help("phi:", "simulation: {initial: {i1: {0: 0, 0.1: 1}}}\nphi:"), course);
-    assert_eq!(help("[i1, i3]\ny", "i1\ny"), "write for example `x: [i1, i3]`");
+    assert_eq!(help("[i1, i3]\ny", "i1\ny"), "write `x: [i1]`");
     let unknown = super::super::unknown_name("v_2", crate::source::Span::default(), ["v2", "d"]);
     assert_eq!(unknown.help.as_deref(), Some("did you mean `v2`?"));
+}
+
+/// A drive in the words of its author, with one text replaced: the only diagnostic's code and help.
+fn of_drive(from: &str, to: &str) -> (Code, String) {
+    const DRIVE: &str = "model: drive\nparameters: {R: 1, L: 5e-3, K: 0.1, J: 1e-3}\nx: [i, load]\ny: [omega]\nu: [v]\n\
+                         f_x: {i: (v - R*i - K*omega)/L, load: 0}\nf_y: {omega: (K*i - load)/J}\n";
+    assert!(DRIVE.contains(from), "{from}");
+    let found = parse(&DRIVE.replacen(from, to, 1)).expect_err(to);
+    assert_eq!(found.len(), 1, "{to}: {found:#?}");
+    (found[0].code, found[0].help.as_deref().unwrap_or_default().to_owned())
+}
+
+#[test]
+fn a_help_is_the_cure() {
+    let cases = [
+        // States and outputs.
+        ("[i, load]", "[i, load, omega]", DuplicateName, "remove `omega` from `x`"),
+        ("x: [i, load]", "x: [i]", UnknownEntry, "declare it, as `x: [i, load]`"),
+        ("load: 0}", "load: 0, omega: (K*i - load)/J}", UnknownEntry, "its rate stands under `f_y`"),
+        ("f_y: {", "f_y: {load: 0, ", UnknownEntry, "its rate stands under `f_x`"),
+        ("load: 0}", "load: 0, R: 0}", UnknownEntry, "remove it here"),
+        ("{i: (", "{di: (", UnknownEntry, "write `i: ..`: what stands under `f_x` is a rate already"),
+        ("{i: (", "{i': (", UnknownEntry, "write `i: ..`"),
+        ("{i: (", "{di/dt: (", UnknownEntry, "write `i: ..`"),
+        (", load: 0}", "}", MissingEntry, "its rate under `f_x`, 0 if it is constant"),
+        ("f_y: {omega: (K*i - load)/J}\n", "", MissingKey, "`f_y: {omega: ..}`, or its value, as `g_y: {omega: ..}`"),
+        ("y: [omega]", "y: omega", WrongShape, "write `y: [omega]`"),
+        ("x: [i, load]", "x: {i: A, load: Nm}", WrongShape, "write `x: [i, load]`"),
+        // Keys.
+        ("parameters:", "params:", UnknownKey, "did you mean `parameters`?"),
+        ("u: [v]", "inputs: [v]", UnknownKey, "did you mean `u`?"),
+        ("u: [v]\n", "u: [v]\nobserver: {noise: {omega: 1}}\n", UnknownKey, "did you mean `sensors`?"),
+        ("u: [v]\n", "u: [v]\nduration: 1\n", UnknownKey, "write it under `simulation`"),
+        ("model: drive", "model: DC drive 24V", InvalidName, "write `DC_drive_24V`"),
+        // Numbers.
+        ("L: 5e-3", "L: 5mH", MalformedNumber, "write `5e-3`"),
+        ("L: 5e-3", "L: 100k", MalformedNumber, "write `100e3`"),
+        ("L: 5e-3", "L: 5 V", MalformedNumber, "write `5`"),
+        ("L: 5e-3", "L: 5m", MalformedNumber, "write `5`, or `5e-3` if that is meant"),
+        ("L: 5e-3", "L: \"0,005\"", MalformedNumber, "write `0.005`"),
+        ("L: 5e-3", "L: 0,005", InvalidName, "as `0.005`"),
+        ("L: 5e-3", "L: 5 %", MalformedNumber, "`5e-2`"),
+        // Formulas.
+        ("u: [v]\n", "u: [v]\nassume: [v > 0 and v < 24]\n", UnexpectedToken, "a chain, as `0 < v < 24`"),
+        ("u: [v]\n", "u: [v]\nassume: [v > 0 && v < 24]\n", UnexpectedCharacter, "a chain, as `0 < v < 24`"),
+        ("{i: (v -", "{i: (v(t - R) -", UnknownFunction, "a delayed input is an input of its own"),
+        ("- load)", "- interp(load))", UnknownFunction, "formulas have no tables"),
+        ("- load)", "- if(load > 0))", UnknownFunction, "use max, min, sat, sign or abs"),
+        ("- load)", "- load*|omega|)", UnexpectedCharacter, "the absolute value is `abs(omega)`"),
+        ("- load)", "- log10(load))", UnknownFunction, "`log(a)/log(10)`"),
+        ("load: 0", "load: {0: 1, 1: 2}", WrongShape, "fit a function to a table"),
+    ];
+    for (from, to, code, cure) in cases {
+        let (found, help) = of_drive(from, to);
+        assert_eq!(found, code, "{to}: {help}");
+        assert!(help.contains(cure), "{to}: {help}");
+    }
+}
+
+/// What a help says is taken up: then there is nothing left to say.
+#[test]
+fn the_course_of_an_input_has_a_name_of_its_own() {
+    let with = |simulation: &str| parse(&format!("{CUK}simulation: {{{simulation}}}\n"));
+    let both = "`signals: {d_t: {0: 0, 0.1: 1}}` and `control: {d: d_t}`";
+    let found = with("control: {d: {0: 0, 1: 0.5}}").expect_err("it is a map");
+    assert!(found.len() == 1 && found[0].help.as_deref().is_some_and(|help| help.contains(both)), "{found:#?}");
+    let found = with("signals: {d: {0: 0, 1: 0.5}}").expect_err("it is an input");
+    let help = found[0].help.as_deref().unwrap_or_default();
+    assert!(help.contains("`signals: {d_t: ..}` and `control: {d: d_t}`"), "{help}");
+    with("signals: {d_t: {0: 0, 0.1: 1}}, control: {d: d_t}").expect("it is what the help says");
 }

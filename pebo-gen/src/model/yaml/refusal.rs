@@ -45,7 +45,7 @@ pub(super) fn syntax(error: &ScanError, start: usize) -> Diagnostic {
 /// The text has no values.
 pub(super) fn empty() -> Diagnostic {
     Diagnostic::error(Code::EmptyFile, Span::default(), "the model file is empty")
-        .help("write at least the keys model, x, y, f_x and f_y")
+        .help("write at least the keys model, x, y and f_x, and f_y or g_y for an output")
 }
 
 /// The text has too many values.

@@ -96,6 +96,46 @@ const OFFSETS: Shape = Shape::Map(&Shape::Number);
 const FORMULAS: Shape = Shape::List(&Shape::Formula);
 const RATES: Shape = Shape::Map(&Shape::Formula);
 
+/// What other tools and textbooks call a key, beside its name here.
+pub(super) const OTHERS: &[(&str, &str)] = &[
+    ("params", "parameters"),
+    ("param", "parameters"),
+    ("constants", "parameters"),
+    ("p", "parameters"),
+    ("state", "x"),
+    ("states", "x"),
+    ("output", "y"),
+    ("outputs", "y"),
+    ("measured", "y"),
+    ("measurements", "y"),
+    ("input", "u"),
+    ("inputs", "u"),
+    ("controls", "u"),
+    ("disturbances", "w"),
+    ("name", "model"),
+    ("description", "title"),
+    ("assumptions", "assume"),
+    ("constraints", "assume"),
+    ("definitions", "define"),
+    ("where", "define"),
+    ("dynamics", "f_x"),
+    ("equations", "f_x"),
+    ("dx", "f_x"),
+    ("f", "f_x"),
+    ("dy", "f_y"),
+    ("g", "g_y"),
+    ("h", "g_y"),
+    ("transform", "phi"),
+    ("z", "phi"),
+    ("noise", "sensors"),
+    ("measurement_noise", "sensors"),
+    ("process_noise", "disturbance"),
+    ("dt", "step"),
+    ("x0", "initial"),
+    ("tend", "duration"),
+    ("t_end", "duration"),
+];
+
 /// The file.
 pub(super) const MODEL: &[Key] = &[
     required(
@@ -307,13 +347,13 @@ const OBSERVER: &[Key] = &[
         "form",
         Shape::Choice(Form::NAMES),
         "form: output",
-        "What the regressand of a regression of rates is: rate, through a filter or window, or output, the outputs themselves; if left out, output unless gains are written",
+        "rate: the regression of the rates of the outputs, through a filter or a window; output: the same integrated, which needs no filter; if left out, output, or rate where gains are written",
     ),
     optional(
         "estimator",
         Shape::Choice(Estimator::NAMES),
         "estimator: gradient",
-        "The estimator; gradient if left out",
+        "The estimator; if left out beside gains, gradient",
     ),
     optional(
         "gain",
@@ -401,7 +441,7 @@ const OBSERVER: &[Key] = &[
         "extension",
         NUMBERS,
         "extension: [0, 0]",
-        "The dynamic extension at the start: one number for each component; zeros if left out",
+        "The dynamic extension at the start: one number for each component; if left out, zeros, or phi of a state that the plant can have where phi_left has no value at zero",
     ),
 ];
 

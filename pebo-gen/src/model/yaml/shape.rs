@@ -11,14 +11,14 @@
 use serde_yaml::{Mapping, Value};
 
 use super::refusal;
-use super::schema::{Key, MODEL, Role, Shape};
+use super::schema::{Key, MODEL, OTHERS, Role, Shape};
 use super::tree::{self, Content, Node};
 use crate::model::formula::Decimal;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
 /// Fits the whole file to the schema; nothing if it is no map.
-pub(super) fn fit(root: &Node, diagnostics: &mut Diagnostics) -> Option<Value> {
-    let mut fitter = Fitter { diagnostics, example: "model: cuk" };
+pub(super) fn fit<'a>(root: &'a Node, diagnostics: &'a mut Diagnostics) -> Option<Value> {
+    let mut fitter = Fitter { diagnostics, key: "model", example: "model: cuk", entry: None };
     match &root.content {
         Content::Map(entries) => {
             // The line that names the model is where something is missing from the model.
@@ -36,12 +36,15 @@ pub(super) fn fit(root: &Node, diagnostics: &mut Diagnostics) -> Option<Value> {
 
 struct Fitter<'a> {
     diagnostics: &'a mut Diagnostics,
-    /// How the key at hand is written.
+    /// The key at hand, and how it is written.
+    key: &'static str,
     example: &'static str,
+    /// The name in the map at hand.
+    entry: Option<&'a str>,
 }
 
-impl Fitter<'_> {
-    fn fit(&mut self, node: &Node, shape: &'static Shape) -> Option<Value> {
+impl<'a> Fitter<'a> {
+    fn fit(&mut self, node: &'a Node, shape: &'static Shape) -> Option<Value> {
         match (shape, &node.content) {
             (Shape::Text | Shape::Formula, Content::Scalar(text)) => Some(spanned(text, node.span)),
             (Shape::Number, Content::Scalar(text)) => self.number(text, node.span),
@@ -54,9 +57,10 @@ impl Fitter<'_> {
             (Shape::AllOrEach, Content::Map(_)) => {
                 Some(fields([("each", self.fit(node, &Shape::Map(&Shape::Number))?)]))
             }
-            (Shape::Map(shape), Content::Map(entries)) => Some(sequence(
-                entries.iter().map(|(key, node)| Some(entry(&key.text, key.span, self.fit(node, shape)?))),
-            )),
+            (Shape::Map(shape), Content::Map(entries)) => Some(sequence(entries.iter().map(|(key, node)| {
+                self.entry = Some(&key.text);
+                Some(entry(&key.text, key.span, self.fit(node, shape)?))
+            }))),
             (Shape::Kinds(keys, other), Content::Map(entries)) => {
                 let shape = |name: &str| keys.iter().find(|key| key.name == name).map_or(*other, |key| &key.shape);
                 let entries = entries.iter();
@@ -90,7 +94,7 @@ impl Fitter<'_> {
     }
 
     /// A list of formulas, or a list of rows; all rows of one length.
-    fn matrix(&mut self, node: &Node, items: &[Node]) -> Option<Value> {
+    fn matrix(&mut self, node: &'a Node, items: &'a [Node]) -> Option<Value> {
         if items.is_empty() || items.iter().any(is_empty) {
             self.diagnostics.push(
                 Diagnostic::error(Code::EmptyList, node.span, "a matrix has at least one entry")
@@ -98,7 +102,7 @@ impl Fitter<'_> {
             );
             return None;
         }
-        let formulas = |this: &mut Self, items: &[Node]| {
+        let formulas = |this: &mut Self, items: &'a [Node]| {
             sequence(items.iter().map(|item| this.fit(item, &Shape::Formula)).collect::<Vec<_>>())
         };
         if !items.iter().any(|item| matches!(item.content, Content::List(_))) {
@@ -124,7 +128,7 @@ impl Fitter<'_> {
     }
 
     /// A parameter in a plain list of names.
-    fn parameter(&mut self, node: &Node) -> Option<Value> {
+    fn parameter(&mut self, node: &'a Node) -> Option<Value> {
         match &node.content {
             Content::Scalar(name) => Some(entry(name, node.span, Value::Null)),
             _ => self.refuse(node, &Shape::Text),
@@ -151,7 +155,7 @@ impl Fitter<'_> {
     }
 
     /// A map with known keys; `place` is where something is missing if it is.
-    fn record(&mut self, entries: &[(tree::Key, Node)], keys: &'static [Key], place: Span) -> Value {
+    fn record(&mut self, entries: &'a [(tree::Key, Node)], keys: &'static [Key], place: Span) -> Value {
         let mut fields = Mapping::new();
         let class = entries.iter().map(|(name, _)| name).find(|name| {
             let key = keys.iter().find(|key| key.name == name.text);
@@ -162,7 +166,7 @@ impl Fitter<'_> {
                 self.diagnostics.push_with(|| unknown_key(&name.text, name.span, keys));
                 continue;
             };
-            self.example = key.example;
+            (self.key, self.example, self.entry) = (key.name, key.example, None);
             if let Some(class) = class.filter(|class| key.excludes(name, class)) {
                 self.diagnostics.push(in_class(name, class));
             } else if key.role.is_filled() && is_empty(node) {
@@ -205,16 +209,47 @@ impl Fitter<'_> {
             Content::Broken => return stand_in,
         };
         let message = format!("expected {}, found {found}", describe(shape));
-        let diagnostic = Diagnostic::error(Code::WrongShape, node.span, message);
-        self.diagnostics.push(if stand_in.is_some() && is_course(node) {
-            diagnostic.note("a map from start times to formulas would be a value that changes over time").help(
-                "write it under `simulation`: of a signal in `signals`, of a parameter or a constant state in `plant`",
-            )
+        let help = if stand_in.is_some() && is_course(node) {
+            course(self.key, self.entry)
         } else {
-            diagnostic.help(format!("write for example `{}`", self.example))
-        });
+            let written = matches!(shape, Shape::List(_)).then(|| as_list(self.key, node)).flatten();
+            format!("write {}", written.unwrap_or_else(|| format!("for example `{}`", self.example)))
+        };
+        self.diagnostics.push(Diagnostic::error(Code::WrongShape, node.span, message).help(help));
         stand_in
     }
+}
+
+/// What to write in the place of a map from numbers to values, which is a course in time or a table.
+fn course(key: &str, entry: Option<&str>) -> String {
+    match (key, entry) {
+        ("control", Some(input)) => format!(
+            "give the course a name of its own and set the input to it: `signals: {{{input}_t: {{0: 0, 0.1: 1}}}}` and \
+             `control: {{{input}: {input}_t}}`"
+        ),
+        ("initial", _) => "write a number: the values of a signal over time stand in `signals`, those of a parameter or of a \
+                           constant state in `plant`"
+            .to_owned(),
+        _ => "formulas have no tables: fit a function to a table, as a polynomial, and write that; what changes over time is an \
+              input, whose course stands in `signals` of the section `simulation`"
+            .to_owned(),
+    }
+}
+
+/// The longest text that is written again in a message.
+const SHORT: usize = 60;
+
+/// A value as the list that its author meant; none if that is not known.
+fn as_list(key: &str, node: &Node) -> Option<String> {
+    let list = match &node.content {
+        Content::Scalar(text) if text.contains('(') && text.contains(',') => format!("\"{text}\""),
+        Content::Scalar(text) => text.clone(),
+        Content::Map(entries) => entries.iter().map(|(key, _)| key.text.as_str()).collect::<Vec<_>>().join(", "),
+        Content::Null | Content::List(_) | Content::Broken => return None,
+    };
+    let is_line =
+        !list.is_empty() && list.len() <= SHORT && list.chars().all(|c| !c.is_control() && !"[]{}\\`".contains(c));
+    is_line.then(|| format!("`{key}: [{list}]`"))
 }
 
 /// Whether the keys are numbers, as start times are.
@@ -257,9 +292,36 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     let valid = format!("valid keys here are {}", listed(names()));
     let message = format!("unknown key {}", quoted(name));
     let diagnostic = Diagnostic::error(Code::UnknownKey, span, message);
-    match nearest(name, names()) {
-        Some(near) => diagnostic.suggest(Some(near)).note(valid),
+    let other =
+        OTHERS.iter().find(|(other, key)| name.eq_ignore_ascii_case(other) && names().any(|known| known == *key));
+    if let Some(near) = other.map(|(_, key)| *key).or_else(|| nearest(name, names())) {
+        return diagnostic.suggest(Some(near)).note(valid);
+    }
+    if let Some(help) = of_class(name, keys) {
+        return diagnostic.help(help).note(valid);
+    }
+    // A key of a section stands one level too high, or in another section.
+    let section = MODEL.iter().find(|section| match &section.shape {
+        Shape::Record(inner) => section.role != Role::Class && inner.iter().any(|key| key.name == name),
+        _ => false,
+    });
+    match section {
+        Some(section) => diagnostic.help(format!("write it under `{}`", section.name)).note(valid),
         None => diagnostic.help(valid),
+    }
+}
+
+/// What to write instead of a matrix that a class does not have.
+fn of_class(name: &str, keys: &'static [Key]) -> Option<&'static str> {
+    let has = |key: &str| keys.iter().any(|known| known.name == key);
+    match name {
+        "A" | "B" | "C" if has("A11") => Some(
+            "the matrices are those of x' = A11 x + A12 y + B1 u, y' = A21 x + A22 y + B2 u; for y = C x write f_x and g_y",
+        ),
+        "D" | "R" | "B" | "friction" | "damping" if has("M") && has("G") => {
+            Some("a mechanical plant has no friction: with friction, write f_x and f_y")
+        }
+        _ => None,
     }
 }
 

@@ -1,5 +1,5 @@
 //! The parts of the figure of a replay: a panel for each estimate, beside the state where that was measured; errors;
-//! residuals where no state was; outputs; inputs.
+//! residuals where no state was; outputs; inputs. On a linear axis all signals have one unit.
 
 use crate::cas::Symbol;
 use crate::model::Scale;
@@ -67,13 +67,12 @@ impl Panels {
     }
 
     fn add(&mut self, plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label, From)>) {
-        if curves.is_empty() {
-            return;
+        for curves in Panel::groups(plant, scale, curves, |(symbol, ..)| *symbol) {
+            let (labels, sources): (Vec<_>, Vec<From>) =
+                curves.into_iter().map(|(symbol, label, from)| ((symbol, label), from)).unzip();
+            self.panels.push(Panel::of_signals(plant, title, scale, labels));
+            self.sources.extend(sources);
         }
-        let (labels, sources): (Vec<_>, Vec<From>) =
-            curves.into_iter().map(|(symbol, label, from)| ((symbol, label), from)).unzip();
-        self.panels.push(Panel::of_signals(plant, title, scale, labels));
-        self.sources.extend(sources);
     }
 
     pub(super) fn panels(&self) -> &[Panel] {

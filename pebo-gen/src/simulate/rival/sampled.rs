@@ -100,11 +100,12 @@ fn kalman(
     let mut sensors = Vec::new();
     for output in names.plant.y.iter().map(|output| arena.name(output.symbol)) {
         let of_noise = || Some(sensor::deviation(names.simulation, &output)).filter(|deviation| *deviation > 0.0);
-        let deviation = number(&written.sensors, &output).or_else(of_noise);
+        let of_observer = || number(&names.model.observer.sensors, &output);
+        let deviation = number(&written.sensors, &output).or_else(of_noise).or_else(of_observer);
         if deviation.is_none() {
             let message = format!("`{name}` needs the standard deviation of `{output}`");
             problems.push(Diagnostic::error(Code::SimulationIncomplete, span, message).help(format!(
-                "add `sensors: {{{output}: 0.1}}` to it, or `noise: {{{output}: 0.1}}` to the simulation"
+                "add `sensors: {{{output}: 0.1}}` to it or to `observer`, or `noise: {{{output}: 0.1}}` to the simulation"
             )));
         }
         sensors.push(deviation?);

@@ -84,6 +84,11 @@ fn units_stand_with_the_axis_or_beside_the_curves() {
     };
     assert!(drawn("{q: m}").contains("Outputs in m"));
     assert!(!drawn("{v: m/s}").contains("Outputs in"));
+    // Signals of two units are not drawn on one linear axis.
+    let text = with(SPRING, "model: spring\nx: [v]", "model: spring\nunits: {a: m^3/s, b: K}\nu: [a, b]\nx: [v]");
+    let text = with(&text, "q: 1}", "q: 1}, control: {a: 1e-4, b: 300}");
+    let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+    assert_eq!(svg.matches(">Inputs in ").count(), 2, "{svg}");
     // The model's own panels without their units: those of the curves, unless one has none.
     let text = super::CUK.replace(", unit: A", "").replace(", unit: V", "");
     let svg = figure(&resolve(&text, &Overrides { duration: Some(1e-3), ..Overrides::default() }).unwrap());

@@ -1,36 +1,9 @@
-//! What a call sets: the same as in a file, and what a file cannot say.
-
-use std::collections::BTreeMap;
+//! What a call says that a file cannot.
 
 use crate::model::Estimator;
 use crate::simulate::Overrides;
-use crate::source::Code;
 
-use super::{CUK, CUK_CASE_2, SPRING, resolve, run, with};
-
-fn of(name: &str, value: f64) -> BTreeMap<String, f64> {
-    BTreeMap::from([(name.to_owned(), value)])
-}
-
-#[test]
-fn noise_of_the_call_is_that_of_a_file() {
-    let written = with(SPRING, "initial: {v: 0, q: 1}", "initial: {v: 0, q: 1}, noise: {q: 0.01}");
-    let called = Overrides { noise: of("q", 0.01), ..Overrides::default() };
-    assert_eq!(run(SPRING, &called).csv(), run(&written, &Overrides::default()).csv());
-    let silent = Overrides { noise: of("q", 0.0), ..Overrides::default() };
-    assert_eq!(run(&written, &silent).csv(), run(SPRING, &Overrides::default()).csv());
-}
-
-#[test]
-fn true_parameters_of_the_call_multiply_those_of_the_file() {
-    let section = "initial: {v: 0, q: 1}";
-    let called = Overrides { plant: of("k", 1.5), ..Overrides::default() };
-    let written = with(SPRING, section, &format!("{section}, plant: {{k: 1.5*k}}"));
-    assert_eq!(run(SPRING, &called).csv(), run(&written, &Overrides::default()).csv());
-    let stepping = with(SPRING, section, &format!("{section}, plant: {{k: {{0: k, 5: 2*k}}}}"));
-    let both = with(SPRING, section, &format!("{section}, plant: {{k: {{0: 1.5*k, 5: 1.5*(2*k)}}}}"));
-    assert_eq!(run(&stepping, &called).csv(), run(&both, &Overrides::default()).csv());
-}
+use super::{CUK, CUK_CASE_2, SPRING, resolve, run};
 
 #[test]
 fn the_error_at_the_start_is_that_share_of_the_files() {
@@ -88,20 +61,5 @@ fn every_estimator_can_be_tried_on_every_section() {
         let called = Overrides { estimator: Some(to), duration: Some(1e-3), ..Overrides::default() };
         let usual = Overrides { duration: Some(1e-3), ..Overrides::default() };
         assert_eq!(run(&text(from), &called).csv(), run(&text(other), &usual).csv());
-    }
-}
-
-#[test]
-fn what_the_call_cannot_set_is_told() {
-    let cases = [
-        (Overrides { noise: of("w", 1.0), ..Overrides::default() }, Code::UnknownName),
-        (Overrides { noise: of("q", -1.0), ..Overrides::default() }, Code::NumberOutOfRange),
-        (Overrides { noise: of("q", f64::NAN), ..Overrides::default() }, Code::NumberOutOfRange),
-        (Overrides { plant: of("k", 0.0), ..Overrides::default() }, Code::NumberOutOfRange),
-        (Overrides { plant: of("q", 1.0), ..Overrides::default() }, Code::UnknownName),
-    ];
-    for (called, code) in cases {
-        let found = resolve(SPRING, &called).unwrap_err();
-        assert_eq!(found.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>(), [code], "{called:?}");
     }
 }

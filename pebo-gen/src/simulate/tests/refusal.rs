@@ -160,3 +160,29 @@ fn a_run_that_cannot_go_on_says_where_and_when() {
     let Failure::Stuck { at, .. } = failure(&resolve(&text, &Overrides::default()).unwrap()) else { panic!() };
     assert!(at > 0.1 && at < 1.0, "{at}");
 }
+
+#[test]
+fn a_start_without_a_left_inverse_is_refused_with_one_that_has_it() {
+    let exchanger = "
+model: exchanger
+parameters: {V: 1, rc: 4}
+x: [Th, U]
+y: [Tc]
+u: [qh, qc, Thi, Tci]
+assume: [U > 0, V > 0, rc > 0]
+f_x: {Th: qh/V*(Thi - Th) - U/(rc*V)*(Th - Tc), U: 0}
+f_y: {Tc: qc/V*(Tci - Tc) + U/(rc*V)*(Th - Tc)}
+phi: [U, U*(Th + Tc)]
+observer: {extension: [0, 0]}
+simulation: {duration: 1, step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 1, qc: 1, Thi: 60, Tci: 15}}
+";
+    let scenario = resolve(exchanger, &Overrides::default()).unwrap();
+    let failure = scenario.run().unwrap_err();
+    let help = scenario.explain(&failure).help.unwrap();
+    assert!(help.contains("`observer: {extension: [1.5, 67.5]}`") && help.contains("phi = [U, "), "{help}");
+    let mended = with(exchanger, "extension: [0, 0]", "extension: [1.5, 67.5]");
+    assert!(resolve(&mended, &Overrides::default()).unwrap().run().is_ok());
+    assert!(
+        resolve(&with(exchanger, "observer: {extension: [0, 0]}\n", ""), &Overrides::default()).unwrap().run().is_ok()
+    );
+}

@@ -151,6 +151,19 @@ fn a_plant_that_is_not_affine_is_linearised() {
 }
 
 #[test]
+fn a_baseline_without_sensors_has_those_of_the_observer() {
+    let of = |observer: &str, baseline: &str| {
+        let text = with(SPRING, "{gain: 50, filter: 5}", observer);
+        let initial = "initial: {v: 0, q: 1}";
+        every_sample(&with(&text, initial, &format!("{initial}, baselines: {{kalman: {baseline}}}")))
+    };
+    let known = "{sensors: {q: 0.02}, start: {v: 1}}";
+    let [without, same, other] = ["", ", sensors: {q: 0.02}", ", sensors: {q: 0.5}"]
+        .map(|sensors| of(known, &format!("{{initial: {{v: 1}}{sensors}}}")).csv());
+    assert!(without == same && without != other);
+}
+
+#[test]
 fn what_a_baseline_lacks_is_said() {
     let spring = |baseline: &str| {
         with(SPRING, "initial: {v: 0, q: 1}", &format!("initial: {{v: 0, q: 1}}, baselines: {{{baseline}}}"))

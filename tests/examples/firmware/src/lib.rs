@@ -54,8 +54,9 @@ impl Task {
         let y = SVector::from([v2, v4]);
         let estimate = match self.limits.check(&y, &u, time) {
             Err(Fault::Gap) => {
-                let eta = self.observer.eta();
-                self.observer.restart(SVector::zeros(), &eta)?;
+                // From the last estimate of z, of which nothing is unknown then.
+                let z = self.observer.extension().coordinates(&self.observer.theta());
+                self.observer.restart(z, &SVector::zeros())?;
                 self.observer.step(y, u, time)?
             }
             checked => checked.and_then(|()| self.observer.step(y, u, time))?,

@@ -1,0 +1,59 @@
+//! What other languages have and formulas have not, with what to write in its place.
+
+/// What to write instead of a word that other languages have between operands.
+pub(super) fn operator(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "and" => AND,
+        "or" => "what holds only sometimes is no assumption: write what holds wherever the plant operates",
+        "if" | "else" | "then" => BRANCHES,
+        "mod" => "formulas have no remainder; a state known up to a period stands under `angles`",
+        _ => return None,
+    })
+}
+
+/// What to write in the place of two comparisons in one.
+const AND: &str = "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
+
+/// What to write in the place of branches.
+const BRANCHES: &str = "formulas have no branches: use max, min, sat, sign or abs";
+
+/// What to write instead of a call that other languages have; the argument begins with time if it is `timed`.
+pub(super) fn call(name: &str, timed: bool) -> Option<String> {
+    Some(match name.to_ascii_lowercase().as_str() {
+        "if" | "ifelse" | "iif" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
+        "interp" | "interp1" | "interp1d" | "interpolate" | "lookup" | "table" | "lut" | "spline" | "pchip" => {
+            "formulas have no tables: fit a function to the table, as a polynomial, and write that".to_owned()
+        }
+        "der" | "diff" | "deriv" | "derivative" | "ddt" => {
+            "formulas have no derivatives: write the formula of the derivative in its place".to_owned()
+        }
+        "int" | "integral" | "integrate" => {
+            "formulas have no integrals: make the integral a state, whose rate stands under `f_x`".to_owned()
+        }
+        "delay" => DELAY.to_owned(),
+        "pow" => "write `a^b` for the power".to_owned(),
+        "heaviside" => format!("write `(1 + sign(a))/2` for `{name}(a)`"),
+        "log10" => "write `log(a)/log(10)`: `log` is the natural logarithm".to_owned(),
+        "log2" => "write `log(a)/log(2)`: `log` is the natural logarithm".to_owned(),
+        _ if timed => format!("write `{name}` for its value now; {DELAY}"),
+        _ => return None,
+    })
+}
+
+/// What to write in the place of a delayed signal.
+const DELAY: &str =
+    "formulas have no delayed signals: a delayed input is an input of its own, with its own name under `u`";
+
+/// What to write instead of an operator of other languages, which `rest` begins with.
+pub(super) fn character(before: &str, rest: &str) -> Option<String> {
+    Some(match rest.chars().next()? {
+        '&' => AND.to_owned(),
+        '?' | ':' => BRANCHES.to_owned(),
+        '%' => "write a share of 1, as `0.5` for 50 %".to_owned(),
+        '|' if !before.contains('|') => {
+            let inner = rest[1..].split('|').next().filter(|inner| !inner.is_empty() && inner.len() + 1 < rest.len());
+            format!("the absolute value is `abs({})`", inner.unwrap_or("a"))
+        }
+        _ => return None,
+    })
+}
