@@ -96,6 +96,7 @@ pub use nalgebra;
 #[cfg(feature = "serde")]
 mod array;
 mod decay;
+mod double;
 mod drift;
 mod eigenvalue;
 pub mod estimator;

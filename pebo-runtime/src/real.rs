@@ -1,11 +1,11 @@
 //! The scalar: `f32` or `f64`, with the functions that a formula may use.
 //!
 //! Emitted code is written for one concrete scalar and calls `Real::sin(x)`, which needs neither `std` nor any other
-//! import. Those of `f32` that have a version of their own are named in the last lines.
+//! import. Those that are our own are named in the last lines.
 
 use nalgebra::{ComplexField, RealField};
 
-use crate::single;
+use crate::{double, single};
 
 /// A real scalar: `f32` or `f64`.
 ///
@@ -135,7 +135,7 @@ macro_rules! real {
 
 real!(
     f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh, acosh, atanh, exp, exp_m1, ln, sqrt, abs;
-    atan2 = RealField::atan2, sin_cos = ComplexField::sin_cos
+    atan2 = double::atan2, sin_cos = ComplexField::sin_cos
 );
 real!(
     f32: tan, asin, acos, sinh, cosh, tanh, asinh, acosh, atanh, exp_m1, ln, sqrt, abs;

@@ -4,7 +4,8 @@
 
 Each model is emitted for `f64` into one crate under cargo's target directory, built with optimisation for x86-64. Counted
 are a function that is not inlined and returns all four values, with the terms of its sample, and a step of the observer
-with a gradient estimator and a filter, as the difference of runs of 13 and 3 steps. Needs valgrind.
+with a gradient estimator and a filter, as the difference of runs of 13 and 3 steps. Needs valgrind. PEBO_GEN names a
+build of the generator; left out, one is made.
 """
 
 import os
@@ -16,6 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 CRATE = TARGET / "instructions"
+GENERATOR = [os.environ["PEBO_GEN"]] if "PEBO_GEN" in os.environ else ["cargo", "run", "--release", "--quiet", "-p", "pebo-gen", "--"]
 
 MANIFEST = """\
 [package]
@@ -94,8 +96,7 @@ def emit(models):
     for model in models:
         name = Path(model).stem
         code = CRATE / "src" / f"{name}.rs"
-        run("cargo", "run", "--release", "--quiet", "-p", "pebo-gen", "--", model, "-o", str(code),
-            cwd=ROOT, stderr=subprocess.DEVNULL)
+        run(*GENERATOR, model, "-o", str(code), cwd=ROOT, stderr=subprocess.DEVNULL)
         type_name = re.search(r"impl Model<.*> for (\w+)", code.read_text())[1]
         source.append(MODULE.format(name=name, type_name=type_name))
         names.append(name)

@@ -8,6 +8,7 @@
 
 mod core;
 mod exact;
+mod moved;
 mod own;
 mod places;
 mod rounded;
@@ -25,7 +26,8 @@ use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Program, Staged};
-use exact::{BITS, MOST, exact};
+use exact::{MOST, exact};
+use moved::BITS;
 use own::Own;
 use places::{Place, places};
 use rounded::{round, run};
@@ -112,43 +114,84 @@ impl Loss {
     }
 }
 
-/// Measures the functions that run with every sample.
-pub(super) fn measure(plant: &Plant, derivation: &Derivation, definitions: &Definitions, staged: &Staged) -> Accuracy {
-    let arena = &plant.arena;
-    let groups = definitions.groups();
-    let measured = |group: &Group| group.name != VELOCITY && group.name != "theta";
-    let exprs: Vec<Expr> = groups.iter().filter(|group| measured(group)).flat_map(values).collect();
-    let size = arena.postorder(&exprs).len().max(1);
-    let mut places = places(plant, derivation);
-    places.truncate((MOST_VALUES / size).max(4));
-    let functions = groups.iter().filter(|group| measured(group));
-    let mut losses: Vec<Loss> = functions
-        .map(|group| Loss { function: group.name, single: Worst::default(), double: Worst::default() })
-        .collect();
-    let places: Vec<Place> = places.iter().filter_map(|place| extended(plant, definitions, place)).collect();
-    let own = OnceCell::new();
-    let is_own = |value: Expr, place: &Place, scalar: Scalar, units: f64| {
-        own.get_or_init(|| Own::of(plant, definitions, &places)).has(value, place, scalar, units)
-    };
-    for place in &places {
-        for scalar in [Scalar::F32, Scalar::F64] {
-            let there = &in_all_digits(scalar, place);
-            let computed = computed(plant, definitions, staged, scalar, there);
-            for (group, found) in groups.iter().zip(computed).filter(|(group, _)| measured(group)) {
-                let values = values(group);
-                let Some(loss) = losses.iter_mut().find(|loss| loss.function == group.name) else { continue };
-                let worst = loss.worst_mut(scalar);
-                for (&value, units) in values.iter().zip(exact(arena, &values, there).units(&found, scalar)) {
-                    // A loss that the author does not have is not to hide behind a larger one that he has.
-                    let as_written = units > MOST && is_own(value, there, scalar, units);
-                    if (units > MOST && !as_written, units) > (worst.is_refused(), worst.units) {
-                        *worst = Worst { units, place: told(arena, &values, place), as_written };
+/// Where the functions of a plant are measured.
+pub(super) struct Ground<'a> {
+    plant: &'a Plant,
+    places: Vec<Place>,
+}
+
+impl<'a> Ground<'a> {
+    /// Places of the plant's domain.
+    pub(super) fn of(plant: &'a Plant, derivation: &Derivation) -> Self {
+        Self { plant, places: places(plant, derivation) }
+    }
+
+    /// The functions that lose digits somewhere in this scalar, the author's losses among them.
+    pub(super) fn losing(&self, definitions: &Definitions, staged: &Staged, scalar: Scalar) -> Vec<&'static str> {
+        let groups = definitions.groups();
+        let mut losing: Vec<&'static str> = Vec::new();
+        for place in self.places(definitions, &groups) {
+            let there = in_all_digits(scalar, &place);
+            let computed = computed(self.plant, definitions, staged, scalar, &there);
+            for (group, found) in groups.iter().zip(computed).filter(|(group, _)| is_measured(group)) {
+                let is_new = !losing.contains(&group.name);
+                if is_new
+                    && exact(&self.plant.arena, &values(group), &there).units(&found, scalar).iter().any(|u| *u > MOST)
+                {
+                    losing.push(group.name);
+                }
+            }
+        }
+        losing
+    }
+
+    /// Measures the functions that run with every sample.
+    pub(super) fn measure(&self, definitions: &Definitions, staged: &Staged) -> Accuracy {
+        let Self { plant, .. } = *self;
+        let groups = definitions.groups();
+        let places = self.places(definitions, &groups);
+        let functions = groups.iter().filter(|group| is_measured(group));
+        let mut losses: Vec<Loss> = functions
+            .map(|group| Loss { function: group.name, single: Worst::default(), double: Worst::default() })
+            .collect();
+        let own = OnceCell::new();
+        let is_own = |value: Expr, place: &Place, scalar: Scalar, units: f64| {
+            own.get_or_init(|| Own::of(plant, definitions, &places)).has(value, place, scalar, units)
+        };
+        for place in &places {
+            for scalar in [Scalar::F32, Scalar::F64] {
+                let there = &in_all_digits(scalar, place);
+                let computed = computed(plant, definitions, staged, scalar, there);
+                for (group, found) in groups.iter().zip(computed).filter(|(group, _)| is_measured(group)) {
+                    let values = values(group);
+                    let Some(loss) = losses.iter_mut().find(|loss| loss.function == group.name) else { continue };
+                    let worst = loss.worst_mut(scalar);
+                    for (&value, units) in values.iter().zip(exact(&plant.arena, &values, there).units(&found, scalar))
+                    {
+                        // A loss that the author does not have is not to hide behind a larger one that he has.
+                        let as_written = units > MOST && is_own(value, there, scalar, units);
+                        if (units > MOST && !as_written, units) > (worst.is_refused(), worst.units) {
+                            *worst = Worst { units, place: told(&plant.arena, &values, place), as_written };
+                        }
                     }
                 }
             }
         }
+        Accuracy { places: places.len(), losses }
     }
-    Accuracy { places: places.len(), losses }
+
+    /// The places with values of all arguments; the fewer, the longer the formulas are.
+    fn places(&self, definitions: &Definitions, groups: &[Group]) -> Vec<Place> {
+        let exprs: Vec<Expr> = groups.iter().filter(|group| is_measured(group)).flat_map(values).collect();
+        let size = self.plant.arena.postorder(&exprs).len().max(1);
+        let places = self.places.iter().take((MOST_VALUES / size).max(4));
+        places.filter_map(|place| extended(self.plant, definitions, place)).collect()
+    }
+}
+
+/// Whether a function runs with every sample.
+fn is_measured(group: &Group) -> bool {
+    group.name != VELOCITY && group.name != "theta"
 }
 
 /// The formulas of a group.

@@ -1,10 +1,11 @@
 //! Of equal forms of the functions, the cheapest that keeps its digits.
 //!
 //! In: the definitions as derived. Out: the definitions that are emitted, their programs, and the accuracy measured of
-//! these. What was derived comes first. Only for a function that loses digits that way, also where its author's formulas
-//! do, other ways to write it are tried; the first that keeps them is taken. If none does, it stays as it was derived.
+//! these; of the others only which functions lose digits. What was derived comes first. Only for a function that loses
+//! digits that way, also where its author's formulas do, other ways to write it are tried; the first that keeps them is
+//! taken. If none does, it stays as it was derived.
 
-use super::accuracy::{self, Accuracy};
+use super::accuracy::{Accuracy, Ground};
 use super::definition::{Definitions, GROUPS};
 use super::literal::Scalar;
 use super::tasks;
@@ -25,18 +26,14 @@ const SHARE: u64 = 2;
 pub(super) struct Choice<'a> {
     pub(super) definitions: Definitions<'a>,
     pub(super) staged: Staged,
-    pub(super) accuracy: Accuracy,
+    /// The functions that lose digits.
+    losing: Vec<&'static str>,
 }
 
 impl Choice<'_> {
-    /// The functions that lose digits.
-    fn losing(&self, scalar: Scalar) -> Vec<&'static str> {
-        self.accuracy.of(scalar).filter(|(_, worst)| worst.is_loss()).map(|(function, _)| function).collect()
-    }
-
     /// This, or the other if fewer functions lose digits in it.
-    fn or_better(self, other: Self, scalar: Scalar) -> Self {
-        if other.losing(scalar).len() < self.losing(scalar).len() { other } else { self }
+    fn or_better(self, other: Self) -> Self {
+        if other.losing.len() < self.losing.len() { other } else { self }
     }
 }
 
@@ -50,23 +47,24 @@ pub(super) fn choose<'a>(
     (parameters, scalar): (&[Symbol], Scalar),
     definitions: &Definitions<'a>,
     is_zero: impl Fn(&Arena, Expr) -> bool,
-) -> Result<Choice<'a>, Undeclared> {
+) -> Result<(Choice<'a>, Accuracy), Undeclared> {
     let arena = &plant.arena;
+    let ground = Ground::of(plant, derivation);
     let of = |definitions: &Definitions<'a>, staged: Staged| {
-        let accuracy = accuracy::measure(plant, derivation, definitions, &staged);
-        Choice { definitions: definitions.clone(), staged, accuracy }
+        let losing = ground.losing(definitions, &staged, scalar);
+        Choice { definitions: definitions.clone(), staged, losing }
     };
     let measured = |definitions: &Definitions<'a>| -> Result<Choice<'a>, Undeclared> {
         let (cheaper, other) = tasks::staged(arena, parameters, definitions, &is_zero)?;
         let cheaper = of(definitions, cheaper);
-        let Some(other) = other.filter(|_| !cheaper.losing(scalar).is_empty()) else { return Ok(cheaper) };
-        Ok(cheaper.or_better(of(definitions, other), scalar))
+        let Some(other) = other.filter(|_| !cheaper.losing.is_empty()) else { return Ok(cheaper) };
+        Ok(cheaper.or_better(of(definitions, other)))
     };
     let mut choice = measured(definitions)?;
-    if arena.budget().is_exhausted() {
-        return Ok(choice);
-    }
-    for function in choice.losing(scalar) {
+    for function in choice.losing.clone() {
+        if arena.budget().is_exhausted() {
+            break;
+        }
         let before = choice.definitions.clone();
         let better = arena.budget().share(SHARE, || -> Result<Option<Choice<'a>>, Undeclared> {
             for other in rewritten(plant, derivation, &before, function, &is_zero) {
@@ -75,17 +73,18 @@ pub(super) fn choose<'a>(
                 if arena.budget().is_exhausted() {
                     break;
                 }
-                if !other.losing(scalar).contains(&function) {
+                if !other.losing.contains(&function) {
                     return Ok(Some(other));
                 }
             }
             Ok(None)
         })?;
         if let Some(better) = better {
-            choice = choice.or_better(better, scalar);
+            choice = choice.or_better(better);
         }
     }
-    Ok(choice)
+    let accuracy = ground.measure(&choice.definitions, &choice.staged);
+    Ok((choice, accuracy))
 }
 
 /// The definitions with what a function computes written in other ways.

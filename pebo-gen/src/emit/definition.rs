@@ -6,10 +6,12 @@ use Argument::{Eta, Extension, U, Y, Z};
 
 use std::collections::BTreeMap;
 
+use rustc_hash::FxHashMap;
+
 use super::error::EmitError;
 use super::fundamental::constant_entries;
 use crate::analysis::{Class, Derivation, LeftInverse, Outcome, Regression, RegressionKind};
-use crate::cas::{Expr, Symbol};
+use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::plant::Plant;
 
 /// An argument of a function of `Model`.
@@ -173,7 +175,7 @@ impl<'a> Definitions<'a> {
             functions.push(vector(VELOCITY, "NY", mechanical.velocities.clone()));
         }
         for entry in functions.iter_mut().flat_map(|function| &mut function.rows).flatten() {
-            *entry = arena.substitute(*entry, &known);
+            *entry = without_magnitudes(arena, arena.substitute(*entry, &known));
         }
         Ok(Self {
             functions,
@@ -229,6 +231,30 @@ impl<'a> Definitions<'a> {
             Size { name: "NE", value: self.regression.eta_symbols.len() },
         ]
     }
+}
+
+/// The expression with `abs(a)^2` as `a^2`, and so for every even power.
+fn without_magnitudes(arena: &Arena, expr: Expr) -> Expr {
+    let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+    for part in arena.postorder(&[expr]) {
+        let rebuilt = arena.rebuild(part, &known);
+        let rebuilt = match arena.node(rebuilt) {
+            Node::Product(product) => {
+                let factors = product.factors.iter().map(|(base, exponent)| match arena.node(*base) {
+                    Node::Call(Function::Abs, inner)
+                        if exponent.is_integer() && exponent.numerator().trailing_zeros() > 0 =>
+                    {
+                        (inner[0], exponent.clone())
+                    }
+                    _ => (*base, exponent.clone()),
+                });
+                arena.multiply(&product.coefficient, factors)
+            }
+            _ => rebuilt,
+        };
+        known.insert(part, rebuilt);
+    }
+    known[&expr]
 }
 
 /// The columns of a square table of rows.

@@ -3,6 +3,7 @@
 //! In: plant, derivation and programs. Out: lines of documentation. No date, no path: the same model
 //! gives the same text.
 
+use super::abbreviation::Abbreviations;
 use super::accuracy;
 use super::definition::{Argument, Definitions, Group, VELOCITY};
 use super::module::Module;
@@ -15,7 +16,7 @@ use crate::program::{Cost, Staged};
 
 /// The documentation of the module.
 pub(super) fn module(module: &Module<'_>) -> Vec<String> {
-    let &Module { plant, derivation, definitions, staged, scalar, rebase, .. } = module;
+    let &Module { plant, derivation, definitions, staged, scalar, rebase, abbreviations, .. } = module;
     let mut lines = Vec::new();
     let title = plant.title.as_deref().unwrap_or(&plant.name);
     lines.push(sentence(title));
@@ -32,8 +33,14 @@ pub(super) fn module(module: &Module<'_>) -> Vec<String> {
         ),
         "Edit the model, not this file, and generate again.".to_owned(),
     ]);
-    lines.extend(equations(plant));
-    lines.extend(observer(plant, definitions));
+    let parts = abbreviations.lines(&plant.arena);
+    if !parts.is_empty() {
+        lines.extend(section("Parts of the formulas"));
+        lines.push("The formulas below, and those of the fields, name these:".to_owned());
+        lines.extend(text(parts));
+    }
+    lines.extend(equations(plant, abbreviations));
+    lines.extend(observer(plant, definitions, abbreviations));
     lines.extend(fundamental(derivation, rebase));
     lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
@@ -47,7 +54,19 @@ pub(super) fn module(module: &Module<'_>) -> Vec<String> {
 /// The longest line of the module's documentation behind `//! `.
 const MODULE: usize = 96;
 
-fn equations(plant: &Plant) -> Vec<String> {
+/// All formulas that the documentation shows.
+pub(super) fn formulas(plant: &Plant, definitions: &Definitions, staged: &Staged) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let constants = staged.constants.iter().copied().collect();
+    let states = plant.x.iter().map(|state| state.rate.expr);
+    let outputs = plant.y.iter().flat_map(|output| [output.rate.as_ref(), output.value.as_ref()]).flatten();
+    let entries = definitions.functions.iter().flat_map(|definition| definition.rows.concat());
+    let terms = staged.terms.iter().map(|term| arena.substitute(term.1, &constants));
+    let all = states.chain(outputs.map(|output| output.expr)).chain(plant.transform()).chain(entries);
+    all.chain(definitions.regression.eta.iter().copied()).chain(terms).collect()
+}
+
+fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = section("Plant");
     let groups: [(&str, Vec<Symbol>); 4] = [
@@ -64,16 +83,15 @@ fn equations(plant: &Plant) -> Vec<String> {
     let outputs = plant.y.iter().map(|o| (o.symbol, o.rate.as_ref().map(|rate| rate.expr)));
     let rates = states
         .chain(outputs)
-        .filter_map(|(symbol, rate)| Some(format!("{}' = {}", arena.name(symbol), arena.print(rate?))));
-    let values = plant
-        .y
-        .iter()
-        .filter_map(|output| Some(format!("{} = {}", arena.name(output.symbol), arena.print(output.value?.expr))));
+        .filter_map(|(symbol, rate)| Some(format!("{}' = {}", arena.name(symbol), abbreviations.print(arena, rate?))));
+    let values = plant.y.iter().filter_map(|output| {
+        Some(format!("{} = {}", arena.name(output.symbol), abbreviations.print(arena, output.value?.expr)))
+    });
     lines.extend(text(rates.chain(values).collect()));
     lines
 }
 
-fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
+fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviations) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = section("Observer");
     let linear = definitions.regression.theta.iter().copied().eq(definitions
@@ -85,7 +103,7 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     lines.push("The transform `z = phi(x, y)`:".to_owned());
     let mut formulas: Vec<String> = Vec::new();
     for (z, phi) in plant.z.iter().zip(&plant.phi) {
-        formulas.push(format!("{} = {}", arena.name(*z), arena.print(phi.expr)));
+        formulas.push(format!("{} = {}", arena.name(*z), abbreviations.print(arena, phi.expr)));
     }
     lines.extend(text(formulas));
     lines.extend([
@@ -121,7 +139,7 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
     laws.push("x = phi_left(z, y)".to_owned());
     if !linear {
         for (eta, value) in definitions.regression.eta_symbols.iter().zip(&definitions.regression.eta) {
-            laws.push(format!("{} = {}", arena.name(*eta), arena.print(*value)));
+            laws.push(format!("{} = {}", arena.name(*eta), abbreviations.print(arena, *value)));
         }
     }
     lines.extend(text(laws));
@@ -131,12 +149,12 @@ fn observer(plant: &Plant, definitions: &Definitions) -> Vec<String> {
         match definition.name {
             "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
             "theta" if linear => {}
-            "theta" => blocks.extend(named(arena, &plant.theta, &definition.rows)),
+            "theta" => blocks.extend(named((arena, abbreviations), &plant.theta, &definition.rows)),
             "phi_left" => {
                 let states: Vec<Symbol> = definitions.left_inverse.x.iter().map(|state| state.0).collect();
-                blocks.extend(named(arena, &states, &definition.rows));
+                blocks.extend(named((arena, abbreviations), &states, &definition.rows));
             }
-            name => blocks.extend(bracketed(arena, name, &definition.rows)),
+            name => blocks.extend(bracketed((arena, abbreviations), name, &definition.rows)),
         }
     }
     lines.extend(text(blocks));
@@ -348,15 +366,18 @@ fn vector(arena: &Arena, symbols: impl Iterator<Item = Symbol>) -> String {
     if let [only] = names.as_slice() { only.clone() } else { format!("({})", names.join(", ")) }
 }
 
-fn named(arena: &Arena, names: &[Symbol], rows: &[Vec<Expr>]) -> Vec<String> {
+/// What prints a formula.
+type Print<'a> = (&'a Arena, &'a Abbreviations);
+
+fn named((arena, abbreviations): Print, names: &[Symbol], rows: &[Vec<Expr>]) -> Vec<String> {
     let entries = names.iter().zip(rows.iter().flatten());
-    entries.map(|(name, entry)| format!("{} = {}", arena.name(*name), arena.print(*entry))).collect()
+    entries.map(|(name, entry)| format!("{} = {}", arena.name(*name), abbreviations.print(arena, *entry))).collect()
 }
 
 /// A matrix with its columns aligned; entry by entry, where a row of it would be longer than a line.
-fn bracketed(arena: &Arena, name: &str, rows: &[Vec<Expr>]) -> Vec<String> {
+fn bracketed((arena, abbreviations): Print, name: &str, rows: &[Vec<Expr>]) -> Vec<String> {
     let entries: Vec<Vec<String>> =
-        rows.iter().map(|row| row.iter().map(|&entry| arena.print(entry)).collect()).collect();
+        rows.iter().map(|row| row.iter().map(|&entry| abbreviations.print(arena, entry)).collect()).collect();
     let columns = entries.first().map_or(0, Vec::len);
     let width = |column: usize| entries.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();

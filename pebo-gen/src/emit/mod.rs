@@ -8,6 +8,7 @@
 //! that depends on `pebo_runtime` alone. Holds after: the tokens were interpreted again, and each
 //! function's value is, by the caller's zero test, what was derived.
 
+mod abbreviation;
 mod accuracy;
 mod block;
 mod check;
@@ -48,6 +49,7 @@ use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr};
 use crate::plant::{Plant, Settings};
 use crate::program::{Cost, Undeclared, lower};
+use abbreviation::Abbreviations;
 use choice::Choice;
 use definition::Definitions;
 use module::Module;
@@ -89,9 +91,9 @@ pub fn emit(
     let definitions = Definitions::of(plant, derivation)?;
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
-    let choice =
+    let (choice, accuracy) =
         choice::choose(plant, derivation, (&parameters, scalar), &definitions, &is_zero).map_err(undeclared)?;
-    let Choice { definitions, staged, accuracy } = choice;
+    let Choice { definitions, staged, .. } = choice;
     if arena.budget().is_exhausted() {
         // What could not be enclosed was not measured.
         return Err(EmitError::LimitReached);
@@ -112,6 +114,7 @@ pub fn emit(
     let rebase = derivation.can_rebase(plant);
     let definitions = &definitions;
     let (staged, asked_of) = (&staged, &asked);
+    let abbreviations = Abbreviations::of(arena, &document::formulas(plant, definitions, staged));
     let module = Module {
         plant,
         derivation,
@@ -123,6 +126,7 @@ pub fn emit(
         scalar,
         rebase,
         accuracy: &accuracy,
+        abbreviations: &abbreviations,
     };
     let tokens = module.tokens()?;
     read_back::confirm(plant, definitions, (&asked, settings), scalar, &tokens, is_zero)?;

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
+use super::abbreviation::Abbreviations;
 use super::accuracy::Accuracy;
 use super::definition::{Argument, Definitions, VELOCITY};
 use super::describe::describe;
@@ -43,6 +44,8 @@ pub(super) struct Module<'a> {
     pub(super) rebase: bool,
     /// How many digits the functions keep.
     pub(super) accuracy: &'a Accuracy,
+    /// Names for parts of the formulas in the documentation.
+    pub(super) abbreviations: &'a Abbreviations,
 }
 
 /// The names of the module.

@@ -37,7 +37,11 @@ impl Module<'_> {
         let outputs = self.definitions.symbols(Argument::Y);
         let kept = self.kept().into_iter().map(|output| arena.name(outputs[output]));
         let constants = self.staged.constants.iter().copied().collect();
-        let formulas = self.staged.terms.iter().map(|term| arena.print(arena.substitute(term.1, &constants)));
+        let formulas = self
+            .staged
+            .terms
+            .iter()
+            .map(|term| self.abbreviations.defined(arena, arena.substitute(term.1, &constants)));
         let docs = kept.chain(formulas).map(|formula| doc(&format!("`{formula}`.")));
         let names = self.fields(scope).into_iter().map(|name| ident(&name));
         Some(quote! {

@@ -2,12 +2,13 @@
 //!
 //! In: expressions. Out: equal expressions that need no more multiplications. A factor that the most
 //! summands share goes first; powers and denominators count as factors. No denominator appears that
-//! was not there.
+//! was not there. Numbers are arranged by [`super::numbers`].
 
 use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
+use super::numbers::Numbers;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node};
 
@@ -18,8 +19,15 @@ struct Term {
     factors: Vec<(Expr, Rational)>,
 }
 
-/// Takes common factors out of every sum, as far as `may_leave` lets a base go.
-pub(super) fn factor(arena: &Arena, exprs: &[Expr], may_leave: impl Fn(Expr) -> bool) -> Vec<Expr> {
+/// Takes common factors out of every sum, as far as `may_leave` lets a base go. A number beside a base that `is_stored`
+/// costs nothing.
+pub(super) fn factor(
+    arena: &Arena,
+    exprs: &[Expr],
+    may_leave: impl Fn(Expr) -> bool,
+    is_stored: impl Fn(Expr) -> bool,
+) -> Vec<Expr> {
+    let numbers = Numbers { arena, is_stored };
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
     for expr in arena.postorder(exprs) {
         let factored = match arena.node(expr) {
@@ -27,11 +35,11 @@ pub(super) fn factor(arena: &Arena, exprs: &[Expr], may_leave: impl Fn(Expr) -> 
             Node::Sum(sum) => {
                 let operands = sum.terms.iter().map(|(term, c)| (known[term], c.clone()));
                 let sum = arena.combine(&sum.constant, operands);
-                factor_sum(arena, sum, &may_leave)
+                numbers.arranged(factor_sum(arena, sum, &may_leave, &numbers))
             }
             Node::Product(product) => {
                 let factors = product.factors.iter().map(|(base, e)| (known[base], e.clone()));
-                arena.multiply(&product.coefficient, factors)
+                numbers.arranged(arena.multiply(&product.coefficient, factors))
             }
             Node::Call(function, arguments) => {
                 let arguments: Vec<Expr> = arguments.iter().map(|a| known[a]).collect();
@@ -43,7 +51,12 @@ pub(super) fn factor(arena: &Arena, exprs: &[Expr], may_leave: impl Fn(Expr) -> 
     exprs.iter().map(|expr| known[expr]).collect()
 }
 
-fn factor_sum(arena: &Arena, expr: Expr, may_leave: &impl Fn(Expr) -> bool) -> Expr {
+fn factor_sum<S: Fn(Expr) -> bool>(
+    arena: &Arena,
+    expr: Expr,
+    may_leave: &impl Fn(Expr) -> bool,
+    numbers: &Numbers<'_, S>,
+) -> Expr {
     let Node::Sum(sum) = arena.node(expr) else {
         return expr;
     };
@@ -71,8 +84,9 @@ fn factor_sum(arena: &Arena, expr: Expr, may_leave: &impl Fn(Expr) -> bool) -> E
         });
         let inner = arena.combine(&Rational::ZERO, quotients);
         let (sign, inner) = oriented(arena, inner);
-        let inner = factor_sum(arena, inner, may_leave);
-        done.push((arena.multiply(&Rational::ONE, [(base, exponent), (inner, Rational::ONE)]), sign));
+        let inner = factor_sum(arena, inner, may_leave, numbers);
+        let product = arena.multiply(&Rational::ONE, [(base, exponent), (inner, Rational::ONE)]);
+        done.push((numbers.arranged(product), sign));
     }
     done.extend(open.into_iter().map(|term| (arena.multiply(&Rational::ONE, term.factors), term.coefficient)));
     arena.combine(&sum.constant, done)

@@ -12,6 +12,7 @@ mod cost;
 mod factor;
 mod interpret;
 mod lower;
+mod numbers;
 mod product;
 mod sharing;
 mod signs;

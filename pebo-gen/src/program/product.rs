@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::lower::{Lowering, Signed};
+use super::numbers::is_short;
 use super::sharing::denominators;
 use super::straight::{Operand, Operation};
 use crate::cas::rational::Rational;
@@ -197,27 +198,4 @@ pub(super) fn is_half(fraction: &Rational) -> bool {
 
 fn is_odd(integer: &Rational) -> bool {
     integer.numerator().trailing_zeros() == 0
-}
-
-/// Whether the number has an exact decimal: its denominator has no prime factor but 2 and 5.
-fn is_short(value: &Rational) -> bool {
-    let mut denominator = value.denominator();
-    for prime in [2, 5] {
-        while let Some(quotient) = denominator.div_exact(&prime.into()) {
-            denominator = quotient;
-        }
-    }
-    denominator.is_one()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_has_a_finite_decimal_is_short() {
-        let short = |n: i64, d: i64| is_short(&Rational::new(n, d).unwrap());
-        assert!(short(3, 1) && short(1, 8) && short(7, 25) && short(1, 40));
-        assert!(!short(1, 3) && !short(1, 30));
-    }
 }

@@ -70,7 +70,7 @@ pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[
     let inputs = [stored.as_slice(), sampled].concat();
     let same = same(arena, &inputs, &terms)?;
     terms.retain(|term| !same.contains_key(&term.0));
-    let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true);
+    let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true, is_constant(arena, &constants));
     let varying = merged(arena, varying, &mut terms, &mut constants);
 
     let used = arena.symbols_of(&varying);
@@ -106,7 +106,8 @@ fn merged(
     /// What leaves a sum may leave the next one too.
     const ROUNDS: usize = 4;
     let formulas = terms.iter().map(|term| term.1);
-    let mut all = factor(arena, &formulas.chain(varying).collect::<Vec<Expr>>(), |_| true);
+    let mut all =
+        factor(arena, &formulas.chain(varying).collect::<Vec<Expr>>(), |_| true, is_constant(arena, constants));
     for _ in 0..ROUNDS {
         let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
         let (split, found) = split(arena, &all, &stored, ("$", stored.len()), |expr| arena.as_symbol(expr).is_none());
@@ -115,13 +116,19 @@ fn merged(
         }
         let values: BTreeMap<Symbol, Expr> = constants.iter().copied().collect();
         constants.extend(found.into_iter().map(|(symbol, value)| (symbol, arena.substitute(value, &values))));
-        all = factor(arena, &split, |_| true);
+        all = factor(arena, &split, |_| true, is_constant(arena, constants));
     }
     let varying = all.split_off(terms.len());
     for (term, formula) in terms.iter_mut().zip(all) {
         term.1 = formula;
     }
     varying
+}
+
+/// Whether an expression is one of the constants.
+fn is_constant(arena: &Arena, constants: &[(Symbol, Expr)]) -> impl Fn(Expr) -> bool {
+    let stored: FxHashSet<Expr> = constants.iter().map(|constant| arena.of_symbol(constant.0)).collect();
+    move |expr| stored.contains(&expr)
 }
 
 /// Terms that are computed as another before them, or as its opposite, and what they are then: two shapes of a formula
@@ -165,7 +172,7 @@ fn split(
     // Factors that vary leave first: what they leave behind may be a sum of the given symbols.
     let factored = {
         let fixed = fixed(arena, roots, &symbols);
-        factor(arena, roots, |base| !fixed.contains(&base))
+        factor(arena, roots, |base| !fixed.contains(&base), |base| fixed.contains(&base))
     };
     let fixed = fixed(arena, &factored, &symbols);
     let mut split = Split { arena, fixed, prefix, first, worth, found: Vec::new(), symbols: FxHashMap::default() };

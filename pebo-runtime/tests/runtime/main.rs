@@ -4,6 +4,7 @@ mod converter;
 mod noise;
 mod random;
 
+mod double;
 mod drem;
 mod drift;
 mod efficiency;

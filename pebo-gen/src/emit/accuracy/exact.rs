@@ -5,7 +5,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rustc_hash::FxHashMap;
+
 use super::super::literal::Scalar;
+use super::moved::{BITS, MOVE, Moves};
 use super::places::Place;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
@@ -14,52 +17,71 @@ use crate::cas::{Arena, Expr, Symbol};
 /// More units are a loss that no author expects.
 pub(super) const MOST: f64 = 100.0;
 
-/// Bits of the enclosures: those of `f64`, and as many to be lost.
-pub(super) const BITS: u32 = 128;
-
 /// Exact values at a place, and how much they move when all that they depend on is rounded.
 pub(super) struct Exact {
     values: Vec<Option<(Interval, f64)>>,
 }
 
-/// The relative move of the arguments by which their effect is found.
-const MOVE: f64 = 1.0 / 1_073_741_824.0;
-
+/// The values of expressions; where they do not all exist, of each by itself.
 pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
-    let symbols: Vec<Symbol> = arena.symbols_of(exprs).into_iter().collect();
-    let at = |moved: Option<Symbol>| {
-        let entry = |symbol: &Symbol| {
-            // In full: value (1 + part) has more digits than a number of f64.
-            let value = Rational::from_f64_exact(place.get(symbol).copied().unwrap_or(1.0))?;
-            let part = Rational::from_f64_exact(if moved == Some(*symbol) { MOVE } else { 0.0 })?;
-            let moved = &value + &(&value * &part);
-            Some((*symbol, Interval::from_rational(&moved, Precision::new(BITS))?))
+    let values = at_once(arena, exprs, place).unwrap_or_else(|| {
+        let alone = exprs.iter().map(|&expr| at_once(arena, &[expr], place)?.pop().flatten());
+        alone.collect()
+    });
+    Exact { values }
+}
+
+/// The same in one pass, none if one of them has no value.
+fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Vec<Option<(Interval, f64)>>> {
+    let still = at(arena, exprs, place, None)?;
+    let parts = arena.postorder(exprs);
+    let values = arena.enclose_over(&parts, &still, Precision::new(BITS))?;
+    let known: FxHashMap<Expr, &Interval> = parts.iter().copied().zip(&values).collect();
+    let moves = Moves::of(arena, &still, &parts, &values);
+    let effects: Vec<Option<f64>> = exprs.iter().map(|expr| moves.effect(*expr)).collect();
+    let unknown: Vec<Expr> =
+        exprs.iter().zip(&effects).filter(|(_, effect)| effect.is_none()).map(|(e, _)| *e).collect();
+    let still: Option<Vec<Interval>> = unknown.iter().map(|expr| Some((*known.get(expr)?).clone())).collect();
+    let mut others = by_differences(arena, &unknown, &still?, place).into_iter();
+    let values = exprs
+        .iter()
+        .zip(effects)
+        .map(|(expr, effect)| Some(((*known.get(expr)?).clone(), effect.or_else(|| others.next())?)));
+    Some(values.collect())
+}
+
+/// The effects of the arguments one at a time: together the effects of some would cancel, as those of b and c in a*b - c
+/// where that is small.
+fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], place: &Place) -> Vec<f64> {
+    let mut effects = vec![0.0; exprs.len()];
+    for symbol in arena.symbols_of(exprs) {
+        let moving: BTreeSet<Symbol> = [symbol].into();
+        let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moving)).collect();
+        let there = |indices: &[usize]| {
+            let exprs: Vec<Expr> = indices.iter().map(|index| exprs[*index]).collect();
+            arena.enclose_over(&exprs, &at(arena, &exprs, place, Some(symbol))?, Precision::new(BITS))
         };
-        symbols.iter().map(entry).collect::<Option<BTreeMap<_, _>>>()
-    };
-    let values = |exprs: &[Expr], moved| -> Vec<Option<Interval>> {
-        let Some(exact) = at(moved) else { return vec![None; exprs.len()] };
-        match arena.enclose_over(exprs, &exact, Precision::new(BITS)) {
+        let moved: Vec<Option<Interval>> = match there(&reached) {
             Some(values) => values.into_iter().map(Some).collect(),
-            None => {
-                exprs.iter().map(|&expr| arena.enclose_over(&[expr], &exact, Precision::new(BITS))?.pop()).collect()
-            }
-        }
-    };
-    let still = values(exprs, None);
-    // One at a time: together the effects of some would cancel, as those of b and c in a*b - c where that is small.
-    let mut conditions = vec![0.0; exprs.len()];
-    for symbol in &symbols {
-        let moved: BTreeSet<Symbol> = [*symbol].into();
-        let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moved)).collect();
-        let there: Vec<Expr> = reached.iter().map(|index| exprs[*index]).collect();
-        for (index, value) in reached.iter().zip(values(&there, Some(*symbol))) {
-            let difference = still[*index].as_ref().and_then(|still| value?.sub(still, Precision::new(BITS)));
-            let size = difference.map_or(0.0, |difference| magnitude(&difference));
-            conditions[*index] += size / MOVE;
+            None => reached.iter().map(|index| there(&[*index])?.pop()).collect(),
+        };
+        for (index, moved) in reached.iter().zip(moved) {
+            let difference = moved.and_then(|moved| moved.sub(&still[*index], Precision::new(BITS)));
+            effects[*index] += difference.map_or(0.0, |difference| magnitude(&difference) / MOVE);
         }
     }
-    Exact { values: still.into_iter().zip(conditions).map(|(value, condition)| Some((value?, condition))).collect() }
+    effects
+}
+
+/// What expressions depend on, at a place; one of them may be moved.
+fn at(arena: &Arena, exprs: &[Expr], place: &Place, moved: Option<Symbol>) -> Option<BTreeMap<Symbol, Interval>> {
+    let entry = |symbol: Symbol| {
+        // In full: value (1 + part) has more digits than a number of f64.
+        let value = Rational::from_f64_exact(place.get(&symbol).copied().unwrap_or(1.0))?;
+        let part = Rational::from_f64_exact(if moved == Some(symbol) { MOVE } else { 0.0 })?;
+        Some((symbol, Interval::from_rational(&(&value + &(&value * &part)), Precision::new(BITS))?))
+    };
+    arena.symbols_of(exprs).into_iter().map(entry).collect()
 }
 
 impl Exact {
@@ -100,4 +122,58 @@ impl Exact {
 
 fn magnitude(value: &Interval) -> f64 {
     value.hi().abs().max(value.lo().abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Function;
+
+    const PLACE: [f64; 3] = [0.3, 1.7, -0.6];
+
+    fn both(arena: &Arena, expr: Expr, place: [f64; 3]) -> (Option<f64>, f64) {
+        let place: Place = ["a", "b", "c"].map(|name| arena.symbol(name)).into_iter().zip(place).collect();
+        let still = at(arena, &[expr], &place, None).unwrap();
+        let parts = arena.postorder(&[expr]);
+        let values = arena.enclose_over(&parts, &still, Precision::new(BITS)).unwrap();
+        let effect = Moves::of(arena, &still, &parts, &values).effect(expr);
+        (effect, by_differences(arena, &[expr], &values[parts.len() - 1..], &place)[0])
+    }
+
+    #[test]
+    fn effects_to_first_order_are_those_of_small_moves() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let root = arena.sqrt(arena.add(arena.mul(a, a), arena.mul(b, b)));
+        for expr in [
+            arena.div(arena.mul(call(Function::Sin, &[a]), b), c),
+            arena.sub(root, c),
+            arena.mul(call(Function::Atan2, &[a, b]), call(Function::Exp, &[c])),
+            arena.sub(call(Function::Abs, &[arena.sub(a, b)]), call(Function::Max, &[a, c])),
+            arena.power(arena.mul(a, b), &Rational::new(-5, 2).unwrap()),
+            // Differences of two large products.
+            arena.sub(arena.mul(a, arena.add(b, c)), arena.mul(a, b)),
+        ] {
+            let (effect, difference) = both(&arena, expr, PLACE);
+            // What the value bends over a move of 1e-9.
+            let close = effect.is_some_and(|effect| (effect - difference).abs() <= 1e-6 * difference);
+            assert!(close, "{}: {effect:?}, {difference}", arena.print(expr));
+        }
+    }
+
+    #[test]
+    fn no_effect_is_told_where_it_is_not_of_first_order() {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let square = |e| arena.mul(e, e);
+        let difference = arena.sub(a, b);
+        // Zero everywhere; a kink; a root that begins.
+        let mixed = arena.scale(arena.mul(a, b), &Rational::from(2));
+        let zero = arena.sub(square(arena.add(a, b)), arena.sum([square(a), square(b), mixed]));
+        let kink = arena.call(Function::Abs, &[difference]);
+        for (expr, place) in [(zero, PLACE), (kink, [0.3, 0.3, 1.0]), (arena.sqrt(difference), [0.3, 0.3, 1.0])] {
+            assert_eq!(both(&arena, expr, place).0, None, "{}", arena.print(expr));
+        }
+    }
 }

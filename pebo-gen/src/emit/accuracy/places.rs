@@ -25,8 +25,9 @@ const SPREAD: usize = 12;
 /// All points.
 const MOST: usize = 48;
 
-/// How far beside a limit a value is taken, in parts of it.
-const BESIDE: [f64; 2] = [1.0 / 128.0, 1.0 / 16384.0];
+/// How far beside a limit a value is taken, in parts of it: no powers of two, with which sums and squares would be exact in
+/// `f32` and hide what is lost.
+const BESIDE: [f64; 2] = [1.0 / 129.0, 1.0 / 16389.0];
 
 /// The places, the spread ones first.
 pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
@@ -53,7 +54,8 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
             places.push(place);
         }
     };
-    for &symbol in &signals {
+    let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+    for &symbol in signals.iter().chain(&states) {
         for limit in inside.limits(arena, symbol, &base) {
             let size = if limit == 0.0 { 1.0 } else { limit.abs() };
             for part in BESIDE {
@@ -62,7 +64,7 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
             }
         }
     }
-    for &symbol in signals.iter().chain(plant.x.iter().map(|state| &state.symbol)) {
+    for &symbol in signals.iter().chain(&states) {
         for value in [0.0, 1.0, -1.0] {
             beside(symbol, value);
         }

@@ -113,3 +113,18 @@ fn a_form_that_keeps_the_digits_is_found() {
         }
     }
 }
+
+#[test]
+fn a_left_inverse_that_loses_digits_beside_a_limit_of_its_state_is_written_another_way() {
+    // The author's own: z1 = 3 i1 + i1^2 for i1 > 0.
+    let phi_left = &[("i1", "(Real::sqrt(4.0*z1 + 9.0) - 3.0)/2.0"), ("i3", "z2")];
+    let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "i1"];
+    let (plant, derivation) = Sketch { assume, phi: &["3.0*i1 + i1*i1", "i3"], phi_left, ..CUK }.build();
+    for scalar in Scalar::ALL {
+        let emitted = emit(&plant, &derivation, None, scalar, vanishes).unwrap();
+        let (_, worst) = emitted.accuracy.of(scalar).find(|(function, _)| *function == "recover").unwrap();
+        // Five operations, a rounding each.
+        assert!(worst.units < 8.0, "{worst:?}");
+        assert!(emitted.text.contains("+ 9.0) + 3.0)"), "{}", emitted.text);
+    }
+}
