@@ -6,7 +6,7 @@ extern crate std;
 pub mod servo;
 
 use pebo_runtime::nalgebra::SVector;
-use pebo_runtime::{Fault, Filter, Gap, Gradient, Hold, Limits};
+use pebo_runtime::{Extension, Fault, Filter, Gap, Gradient, Hold, Limits};
 
 /// The converter that is observed.
 #[pebo_macros::pebo_model("models/cuk.yaml", scalar = f32)]
