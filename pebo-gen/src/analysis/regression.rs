@@ -8,6 +8,7 @@
 mod cancelling;
 mod cleared;
 mod differentiated;
+mod equation;
 mod functions;
 mod implicit;
 mod linear;

@@ -13,7 +13,8 @@
 
 use std::collections::BTreeSet;
 
-use super::together::{Equation, joined};
+use super::equation::{Equation, velocity};
+use super::together::joined;
 use super::{cleared, relations};
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::cas::domain::Domain;
@@ -131,12 +132,4 @@ fn without_constant(plant: &Plant, domain: &Domain, expr: Expr) -> Expr {
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
     let is_constant = arena.symbols_of(&[constant]).is_subset(&constants);
     if is_constant && point_of(arena, constant, domain).is_some() { arena.sub(expr, constant) } else { expr }
-}
-
-/// The rate of a component of the transform: `Lambda z + h`.
-pub(super) fn velocity(plant: &Plant, cascade: &Cascade, component: usize) -> Expr {
-    let arena = &plant.arena;
-    let own = cascade.lambda.iter().flat_map(|lambda| lambda[component].iter().zip(&plant.z));
-    let own = arena.sum(own.map(|(factor, z)| arena.mul(*factor, arena.of_symbol(*z))));
-    arena.add(own, cascade.h[component])
 }

@@ -12,8 +12,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::differentiated::velocity;
-use super::together::Equation;
+use super::equation::{Equation, velocity};
 use crate::analysis::design::Cascade;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};

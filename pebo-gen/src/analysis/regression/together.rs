@@ -17,14 +17,9 @@ use crate::plant::matrix::dot;
 use crate::source::Diagnostic;
 
 use super::cancelling::{Combination, combinations, moved_freely, outputs_but};
+use super::equation::Equation;
 use super::functions::over_parameterised;
 use super::linear::decompose;
-
-/// `d/dt primitive = rate`, the rate as a function of z, y and u, the primitive of y and perhaps z.
-pub(super) struct Equation {
-    pub(super) primitive: Expr,
-    pub(super) rate: Expr,
-}
 
 /// Regressions with more of what a plant's equations say, and whether that is all.
 pub(in crate::analysis) struct Together {

@@ -12,8 +12,9 @@ use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use crate::source::Diagnostic;
 
+use super::equation::Equation;
 use super::standing::from_identities;
-use super::together::{Equation, joined, of_regression};
+use super::together::{joined, of_regression};
 
 /// The regression with values in place of the rates that follow from them.
 pub(in crate::analysis) fn by_values(
