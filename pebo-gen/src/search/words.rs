@@ -199,7 +199,7 @@ impl Search {
     }
 
     /// What a search that found none leaves open, where it does.
-    pub(crate) fn open(&self) -> Option<&'static str> {
+    pub fn open(&self) -> Option<&'static str> {
         let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
         (self.verdict == Found::None && excluded).then_some(
             "not excluded: a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",

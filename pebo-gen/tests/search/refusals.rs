@@ -164,8 +164,8 @@ fn nobody_is_told_to_choose_a_phi_where_there_is_none() {
 /// underlined, of which none was found.
 #[test]
 fn a_model_without_a_transform_is_refused_in_a_few_notes() {
-    let text = format!("model: m\nx: [a, b]\ny: [q]\nu: [v]\nf_x: {{a: v - 2*a, b: 3*b}}\nf_y: {{q: a + sin(b)*q}}\n");
-    let source = Source::new("m.yaml", text.as_str()).expect("a text");
+    let text = "model: m\nx: [a, b]\ny: [q]\nu: [v]\nf_x: {a: v - 2*a, b: 3*b}\nf_y: {q: a + sin(b)*q}\n";
+    let source = Source::new("m.yaml", text).expect("a text");
     let answer = answer(&source, &Ask::new());
     let found = &answer.diagnostics[0];
     assert_eq!((found.code, source.slice(found.primary.span)), (Code::TransformNotFound, "a, b"));
