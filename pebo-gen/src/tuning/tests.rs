@@ -150,10 +150,10 @@ model: exchanger
 parameters: {V: 1, rc: 4}
 x: [Th, U]
 y: [Tc]
-u: [qh, qc, Thi, Tci]
+u: [qh, qc, Thin, Tcin]
 assume: [U > 0, V > 0, rc > 0]
-f_x: {Th: qh/V*(Thi - Th) - U/(rc*V)*(Th - Tc), U: 0}
-f_y: {Tc: qc/V*(Tci - Tc) + U/(rc*V)*(Th - Tc)}
+f_x: {Th: qh/V*(Thin - Th) - U/(rc*V)*(Th - Tc), U: 0}
+f_y: {Tc: qc/V*(Tcin - Tc) + U/(rc*V)*(Th - Tc)}
 phi: [U, U*(Th + Tc)]
 ";
 
@@ -167,7 +167,7 @@ fn an_extension_starts_where_the_left_inverse_has_a_value() {
     };
     let gains = "observer: {gain: 1, filter: 1}\n";
     let scenario =
-        "simulation: {step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 0.5, qc: 0.4, Thi: 60, Tci: 15}}";
+        "simulation: {step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 0.5, qc: 0.4, Thin: 60, Tcin: 15}}";
     // Half of where the plant starts: U = 1.5, Th = 25.
     assert_eq!(start(&format!("{gains}{scenario}")), [1.5, 67.5]);
     // The same for known numbers, in whose extension the output stands first.

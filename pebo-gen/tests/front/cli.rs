@@ -503,11 +503,11 @@ fn a_limit_may_stand_before_the_command() {
 
 #[test]
 fn a_misspelt_command_is_no_model() {
-    for arguments in [&["simulat", CUK][..], &["reprot"][..]] {
+    for arguments in [&["simulat", CUK][..], &["solv"][..]] {
         let output = run(arguments);
         assert_eq!(output.status.code(), Some(2));
         let said = text(&output.stderr);
-        let command = if arguments.len() == 2 { "did you mean `simulate`?" } else { "did you mean `report`?" };
+        let command = if arguments.len() == 2 { "did you mean `simulate`?" } else { "did you mean `solve`?" };
         assert!(said.contains(command) && !said.contains("folder"), "{said}");
     }
 }

@@ -20,7 +20,7 @@ const BRANCHES: &str = "formulas have no branches: use max, min, sat, sign or ab
 /// What to write instead of a call that other languages have; the argument begins with time if it is `timed`.
 pub(super) fn call(name: &str, timed: bool) -> Option<String> {
     Some(match name.to_ascii_lowercase().as_str() {
-        "if" | "ifelse" | "iif" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
+        "if" | "ifelse" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
         "interp" | "interp1" | "interp1d" | "interpolate" | "lookup" | "table" | "lut" | "spline" | "pchip" => {
             "formulas have no tables: fit a function to the table, as a polynomial, and write that".to_owned()
         }

@@ -168,13 +168,13 @@ model: exchanger
 parameters: {V: 1, rc: 4}
 x: [Th, U]
 y: [Tc]
-u: [qh, qc, Thi, Tci]
+u: [qh, qc, Thin, Tcin]
 assume: [U > 0, V > 0, rc > 0]
-f_x: {Th: qh/V*(Thi - Th) - U/(rc*V)*(Th - Tc), U: 0}
-f_y: {Tc: qc/V*(Tci - Tc) + U/(rc*V)*(Th - Tc)}
+f_x: {Th: qh/V*(Thin - Th) - U/(rc*V)*(Th - Tc), U: 0}
+f_y: {Tc: qc/V*(Tcin - Tc) + U/(rc*V)*(Th - Tc)}
 phi: [U, U*(Th + Tc)]
 observer: {extension: [0, 0]}
-simulation: {duration: 1, step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 1, qc: 1, Thi: 60, Tci: 15}}
+simulation: {duration: 1, step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 1, qc: 1, Thin: 60, Tcin: 15}}
 ";
     let scenario = resolve(exchanger, &Overrides::default()).unwrap();
     let failure = scenario.run().unwrap_err();
