@@ -90,6 +90,12 @@ pub(super) const RELATIONS: &[Row] = &[
          phi: [p, s]",
         Accepted("implicit linear instant"),
     ),
+    (
+        "the heading of a trailer, by a relation under the derivative, beside a rate that tells nothing",
+        "x: [p]\ny: [a, b, h]\nu: [v, w]\nangles: {p: 2*pi}\nf_x: {p: v*sin(h - p)}\n\
+         f_y: {a: v*cos(h - p)*cos(p), b: v*cos(h - p)*sin(p), h: v*w}\nphi: [cos(p) + a, sin(p) + b]",
+        Accepted("implicit linear excitation"),
+    ),
     // An output's value tells more than the rate that follows from it.
     (
         "an inclination that is measured, beside a position",

@@ -179,7 +179,7 @@ pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regre
 }
 
 /// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside those
-/// whose rates are affine in z. Others are left unused; none where that is all of them.
+/// whose rates are affine in z. Others are left unused; none where no rate has such a denominator.
 pub(super) fn under_derivative(
     plant: &Plant,
     domain: &Domain,
@@ -192,14 +192,16 @@ pub(super) fn under_derivative(
     if rates.iter().any(|(_, rate)| plant.arena.depends_on(*rate, &hidden)) {
         return None;
     }
-    let equation = |&(output, rate): &(usize, Expr)| match affine(plant, domain, rate) {
-        Some(_) => Some(Equation { primitive: plant.arena.of_symbol(plant.y[output].symbol), rate }),
-        None => implicit::equation(plant, domain, cascade, (output, rate)).ok()?,
-    };
-    let equations: Vec<Equation> = rates.iter().filter_map(equation).collect();
+    let (straight, bent): (Vec<_>, Vec<_>) =
+        rates.iter().copied().partition(|(_, rate)| affine(plant, domain, *rate).is_some());
+    let with_unknown = |rate| implicit::equation(plant, domain, cascade, rate).ok()?;
+    let mut equations: Vec<Equation> = bent.into_iter().filter_map(with_unknown).collect();
     if equations.is_empty() {
         return None;
     }
+    let plain =
+        |(output, rate): (usize, Expr)| Equation { primitive: plant.arena.of_symbol(plant.y[output].symbol), rate };
+    equations.extend(straight.into_iter().map(plain));
     joined(plant, domain, cascade, Some(left_inverse), &equations, found)
 }
 
