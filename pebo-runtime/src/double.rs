@@ -3,8 +3,9 @@
 //! The usual function divides to find the quotient of the coordinates and again to reduce it. Here the angle between
 //! the point and the nearest of five directions comes from the coordinates at once, by the tangent of a difference:
 //! `tan(a - b) = (tan a - tan b)/(1 + tan a tan b)`. A polynomial of least maximal error (Remez) with relative error
-//! 5e-18 follows; its coefficients were computed for this purpose. The error is at most 1.3 units in the last place, as
-//! that of `libm`'s function, measured against 40 digits at 60000 points.
+//! 5e-18 follows; its coefficients were computed for this purpose. An emulation of both at 60000 points, against 40
+//! digits, had errors up to 1.21 units in the last place, and 1.24 of `libm`'s function; the tests of this crate hold it
+//! to 2 units of the standard library's.
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
