@@ -261,3 +261,22 @@ fn without_magnitudes(arena: &Arena, expr: Expr) -> Expr {
 fn columns(rows: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
     (0..rows.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_powers_need_no_magnitude() {
+        let arena = Arena::new();
+        let [q, r] = ["q", "r"].map(|name| arena.variable(name));
+        let magnitude = arena.call(Function::Abs, &[q]);
+        let power = |exponent: i64| arena.power(magnitude, &exponent.into());
+        let cases = [(power(2), "q^2"), (power(-4), "1/q^4"), (power(3), "abs(q)^3"), (magnitude, "abs(q)")];
+        for (written, expected) in cases {
+            assert_eq!(arena.print(without_magnitudes(&arena, written)), expected);
+        }
+        let inside = arena.sqrt(arena.add(r, arena.div(power(2), arena.power(q, &4.into()))));
+        assert_eq!(arena.print(without_magnitudes(&arena, inside)), "sqrt(r + 1/q^2)");
+    }
+}

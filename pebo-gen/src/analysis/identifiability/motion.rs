@@ -111,8 +111,6 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             for (parameter, value) in question.coincidences(stack, &constants) {
                 note(Place::Steady(parameter, value), &question.steady(parameter, value));
             }
-        }
-        if by_itself == Some(true) {
             blind.extend(question.doubtful(&blind, symbols, stack));
         }
     }
