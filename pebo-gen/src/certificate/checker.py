@@ -6,6 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 import sympy as sp
+from mpmath.libmp import NoConvergence
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Formulas: the grammar of a model file is that of Python but for `^`, and its numbers are exact.
@@ -265,11 +266,24 @@ class Points:
             alone = identity.subs({other: value for other, value in point.items() if other != symbol})
             if not alone.is_polynomial(symbol):
                 return False
-            roots = [sp.re(root) for root in sp.Poly(alone, symbol).nroots(n=60, maxsteps=200) if abs(sp.im(root)) < 1e-40]
-            if not roots:
+            root = self.root(sp.Poly(alone, symbol))
+            if root is None:
                 return False
-            point[symbol] = roots[-1]
+            point[symbol] = root
         return all(abs(sp.N(identity.subs(point), 50)) < sp.Float("1e-35") for identity in self.plant.identities)
+
+    @staticmethod
+    def root(polynomial):
+        """The largest real root to sixty digits; none if there is none, or if SymPy's iteration does not find them."""
+        if polynomial.degree() == 1:
+            slope, rest = polynomial.all_coeffs()
+            return sp.N(-rest / slope, 60)
+        try:
+            roots = polynomial.nroots(n=60, maxsteps=200)
+        except NoConvergence:
+            return None
+        real = [sp.re(root) for root in roots if abs(sp.im(root)) < 1e-40]
+        return real[-1] if real else None
 
     @staticmethod
     def holds(left, relation, right, point):
@@ -430,7 +444,7 @@ class Certificate:
         for _ in range(12):
             points = [self.points.point(stacked.free_symbols) for _ in range(6 if kind == "parts" else 1)]
             if None in points:
-                break
+                return self.say(f"identifiability: {kind}", "undecided", ": no point was met at which the assumptions hold")
             values = sp.Matrix.vstack(*(stacked.subs(point).evalf(DIGITS) for point in points))
             if all(value.is_number and value.is_finite for value in values):
                 # Columns and then rows of the length one: an unknown may enter with a factor such as exp(-8750/T).

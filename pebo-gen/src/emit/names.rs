@@ -7,7 +7,8 @@
 //! 2. what no Rust name may contain becomes `_`, and `_` neither leads, trails nor repeats;
 //! 3. more than [`LONGEST`] characters are cut off;
 //! 4. a keyword, and a name that the emitted code uses itself (`y`, `self`), gets a trailing `_`: `type_`;
-//! 5. a name that is taken gets the first free number from 2: `v` and `V` are `v` and `v_2`.
+//! 5. a name that is taken gets the first free number from 2; of names that differ in case alone, the one that is written as
+//!    Rust writes it stays as it is: `TL` and `tl` are `tl_2` and `tl`, whichever comes first.
 
 use std::collections::BTreeSet;
 
@@ -137,6 +138,17 @@ impl Names {
         if self.taken.insert(first.clone()) { first } else { self.first_free(&format!("{base}_"), 2) }
     }
 
+    /// A name for each of the wanted ones, in their order.
+    pub(super) fn claim_all(&mut self, wanted: &[String]) -> Vec<String> {
+        let mut claimed = vec![String::new(); wanted.len()];
+        let (alike, changed): (Vec<usize>, Vec<usize>) =
+            (0..wanted.len()).partition(|&index| snake(&wanted[index]) == wanted[index]);
+        for index in alike.into_iter().chain(changed) {
+            claimed[index] = self.claim(&wanted[index]);
+        }
+        claimed
+    }
+
     /// The stem with the first free number.
     pub(super) fn number(&mut self, stem: &str) -> String {
         self.first_free(stem, 1)
@@ -224,6 +236,18 @@ mod tests {
         let claimed = ["v", "V", "type", "Type", "gen", "y", "self", "fn", "v_2"];
         let claimed = claimed.map(|name| names.claim(name));
         assert_eq!(claimed, ["v", "v_2", "type_", "type_2", "gen_", "y_", "self_", "fn_", "v_2_2"]);
+    }
+
+    #[test]
+    fn of_names_that_differ_in_case_alone_the_one_in_snake_case_stays() {
+        let claimed = |wanted: &[&str]| {
+            let wanted: Vec<String> = wanted.iter().copied().map(String::from).collect();
+            Names::default().claim_all(&wanted)
+        };
+        assert_eq!(claimed(&["TL", "tl"]), ["tl_2", "tl"]);
+        assert_eq!(claimed(&["tl", "TL", "Tl"]), ["tl", "tl_2", "tl_3"]);
+        assert_eq!(claimed(&["V", "I"]), ["v", "i"]);
+        assert_eq!(claimed(&["V", "v_2", "v"]), ["v_3", "v_2", "v"]);
     }
 
     #[test]

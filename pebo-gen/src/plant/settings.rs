@@ -68,7 +68,7 @@ impl<N> Limits<N> {
 }
 
 /// Outliers in a row that a gate refuses.
-pub const PATIENCE: u32 = 20;
+pub(crate) const PATIENCE: u32 = 20;
 
 /// What the regression goes through.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,7 +23,7 @@ pub struct Cost {
 
 impl Cost {
     /// The cost of one run.
-    pub fn of(program: &Program) -> Self {
+    pub(crate) fn of(program: &Program) -> Self {
         let mut cost = Self::default();
         for (index, operation) in program.operations.iter().enumerate() {
             // Sine and cosine of an angle are one call.

@@ -67,6 +67,7 @@ fn expansion(text: &mut String, plant: &Plant) {
     let mut lines: Vec<String> = expansion.origin.iter().map(|(name, formula)| format!("{name} = {formula}")).collect();
     lines.extend(expansion.rates.iter().map(|(name, rate)| format!("{name}' = {rate}")));
     lines.extend(expansion.phi.iter().enumerate().map(|(i, phi)| format!("z{} = {phi}", i + 1)));
+    lines.extend(expansion.momentum.iter().map(|(name, state)| format!("momentum of {name}: {state}")));
     lines.extend(expansion.velocity.iter().map(|(name, formula)| format!("velocity of {name}: {formula}")));
     let line = format!("  {:<26}{}", expansion.class, lines.join(&format!("\n{INDENT}")));
     text.extend([line.trim_end(), "\n"]);
