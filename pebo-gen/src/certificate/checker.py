@@ -178,8 +178,8 @@ def electromechanical(plant, parts):
 # Zero: proved by polynomials, refuted by a point.
 
 
-def polynomial(expr):
-    """The numerator of an expression as a polynomial in its kernels, with the relations among these, innermost first."""
+def polynomials(exprs):
+    """Expressions as quotients of polynomials in kernels that they share, with the relations among these, innermost first."""
     known, relations = {}, []
 
     def kernel(e):
@@ -208,24 +208,27 @@ def polynomial(expr):
             return sine if isinstance(e, sp.sin) else cosine
         return kernel(e)
 
-    expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
-    expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
-    expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
-    return convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))), relations
+    converted = []
+    for expr in exprs:
+        expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
+        expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
+        expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
+        converted.append(convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))))
+    return converted, relations
 
 
 def is_zero(expr, identities=()):
     """Whether the expression is shown to vanish, where the identities do."""
     if expr == 0 or sp.expand(expr) == 0:
         return True
-    converted, relations = polynomial(expr)
+    (converted, *vanishing), relations = polynomials([expr, *identities])
     numerator = sp.numer(sp.together(converted))
     for symbol, degree, value in reversed(relations):
         above, below = sp.fraction(sp.together(value))
         numerator = sp.prem(sp.expand(numerator), below * symbol**degree - above, symbol)
     numerator = sp.expand(numerator)
     if numerator != 0 and identities:
-        ideal = [sp.numer(sp.together(polynomial(identity)[0])) for identity in identities]
+        ideal = [sp.numer(sp.together(identity)) for identity in vanishing]
         numerator = sp.reduced(numerator, ideal)[1]
     return numerator == 0 or (not identities and sp.simplify(expr) == 0)
 

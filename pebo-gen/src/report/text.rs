@@ -27,7 +27,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
         let mut lines = notes::identifiability(plant, derivation);
-        lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
+        lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, derivation, gram)));
         lines
     });
     if !conditions.is_empty() {
@@ -47,7 +47,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
 const MOST_CHARACTERS: usize = 300;
 
 /// `Phi_1' Phi_1` with its determinant.
-fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
+fn excitation(plant: &Plant, derivation: &Derivation, gram: &Gram) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = Vec::new();
     let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
@@ -57,7 +57,7 @@ fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
         lines.push(format!("Phi_1^T Phi_1 = [{rows}], with the transpose Phi_1^T"));
     }
     lines.push(format!("det(Phi_1^T Phi_1) = {determinant}"));
-    lines.extend(notes::positive(gram).map(str::to_owned));
+    lines.extend(notes::positive(derivation, gram).map(str::to_owned));
     lines
 }
 

@@ -94,7 +94,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
                 .doubtful_at_rest(&shown.stack)
                 .into_iter()
                 .filter(|zero| !known.contains(zero))
-                .map(|zero| Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() }),
+                .map(|zero| Blind { place: Place::UnshownAtRest(zero), seen: Vec::new(), hidden: Vec::new() }),
         );
     }
     (Motion { by_itself, at_rest, blind }, constants)

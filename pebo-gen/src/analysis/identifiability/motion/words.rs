@@ -20,6 +20,9 @@ impl Motion {
             (Some(true), true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
+            (Some(true), true) if self.blind.iter().all(|blind| matches!(blind.place, Place::UnshownAtRest(_))) => {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
+            }
             (Some(true), true) => {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
             }
@@ -64,6 +67,7 @@ impl Blind {
                 format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
             }
             Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
+            Place::UnshownAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
             Place::Part(sides) => {
                 let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", arena.print(*expr), side.sign());
                 sides.iter().map(side).collect::<Vec<_>>().join(" and ")
@@ -73,7 +77,7 @@ impl Blind {
 
     fn line(&self, plant: &Plant) -> String {
         let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
-        if matches!(self.place, Place::Unshown(_)) {
+        if matches!(self.place, Place::Unshown(_) | Place::UnshownAtRest(_)) {
             return format!("while {}, it was not decided what is identified", self.worded(plant));
         }
         let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
