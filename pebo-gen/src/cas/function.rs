@@ -41,6 +41,7 @@ pub enum Value {
 
 /// What there is to know of one function.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Row {
     /// The function.
     pub function: Function,

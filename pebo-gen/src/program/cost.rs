@@ -8,6 +8,7 @@ use crate::cas::Function;
 
 /// The number of operations of each kind.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[non_exhaustive]
 pub struct Cost {
     /// Additions, subtractions and negations.
     pub sums: usize,

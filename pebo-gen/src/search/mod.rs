@@ -55,6 +55,19 @@ use question::Question;
 pub(crate) use words::settles;
 
 /// Searches for a transform of the plant, of one class of cascade or of any.
+///
+/// ```
+/// use pebo_gen::model::Model;
+/// use pebo_gen::plant::Plant;
+/// use pebo_gen::search::{Found, solve};
+/// use pebo_gen::source::Source;
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\n";
+/// let model = Model::parse(&Source::new("m.yaml", text).expect("a short text")).expect("a model");
+/// let search = solve(&Plant::resolve(&model).expect("a plant"), None);
+/// assert_eq!(search.verdict, Found::Found);
+/// assert_eq!(search.candidates[0].formulas(), ["p"]);
+/// ```
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let question = Question::of(plant);

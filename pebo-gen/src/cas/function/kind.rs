@@ -2,6 +2,7 @@
 
 /// A function of the expression language.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+#[non_exhaustive]
 pub enum Function {
     /// Sine of an angle in radians.
     Sin,
