@@ -19,6 +19,7 @@ use formulas::{
     recip, shares, square, strictly_within_one, within_one,
 };
 
+pub use formulas::Asks;
 pub use kind::Function;
 
 /// What happens to the value when the argument changes sign.
@@ -79,9 +80,6 @@ pub struct Row {
 
 /// A value at rational arguments, where there is one.
 pub type Exact = fn(&[Rational]) -> Option<Rational>;
-
-/// Comparisons with zero.
-pub type Asks = Vec<(Expr, Relation)>;
 
 impl Row {
     /// The name as it is typeset, upright: that of the LaTeX command.

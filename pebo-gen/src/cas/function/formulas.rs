@@ -6,7 +6,10 @@ use crate::cas::expr::Expr;
 use crate::cas::facts::Relation;
 use crate::cas::rational::{Rational, half};
 
-use super::{Asks, Function};
+use super::kind::Function;
+
+/// Comparisons with zero.
+pub type Asks = Vec<(Expr, Relation)>;
 
 /// `a^2`
 pub(super) fn square(arena: &Arena, a: Expr) -> Expr {
