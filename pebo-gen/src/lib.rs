@@ -22,7 +22,7 @@ pub mod model;
 #[cfg(feature = "yaml")]
 mod page;
 pub mod plant;
-pub mod program;
+mod program;
 pub mod report;
 pub mod search;
 #[cfg(feature = "simulate")]

@@ -5,7 +5,7 @@
     check.py --screenshots FOLDER PAGE.html .. writes pictures of them instead
 
 Each page is shown 360 and 1400 pixels wide, light and dark, with all that folds unfolded: nothing may leave the page but
-inside a box that scrolls, figures are not cut, formulas have a size, no name in them is broken over lines, their parts do
+inside a box that scrolls, figures are not cut and their letters have a size, formulas have a size, no name in them is broken over lines, their parts do
 not overlap, fractions are fractions, headings are in order, links lead somewhere, figures have names, text has contrast
 (measure.js). Before, it must be well-formed XML, and HTML without a parse error for html5lib, if that is installed.
 """

@@ -6,6 +6,9 @@ const SCHEMES = ["light", "dark"];
 // WCAG 2.2, 1.4.3: the least contrast of text with what is behind it.
 const CONTRAST = 4.5;
 
+// Of the letters in a figure but for indices, in pixels: below it, they have to be guessed on a telephone.
+const SMALLEST = 11;
+
 const PAPER = document.createElement("canvas").getContext("2d");
 
 function channels(colour) {
@@ -79,8 +82,13 @@ function wrong(frame, scheme) {
     }
   }
   for (const drawing of page.querySelectorAll("figure svg")) {
-    const { right } = drawing.getBoundingClientRect();
-    if (right > width) found.push(`a figure ends at ${right}, and is cut`);
+    const box = drawing.getBoundingClientRect();
+    if (!drawing.closest(".wide") && box.right > width) found.push(`a figure ends at ${box.right}, and is cut`);
+    const scale = box.width / drawing.viewBox.baseVal.width;
+    for (const label of drawing.querySelectorAll("text")) {
+      const size = parseFloat(view.getComputedStyle(label).fontSize) * scale;
+      if (!(size >= SMALLEST)) found.push(`letters of ${size} pixels in a figure: ${label.textContent.slice(0, 60)}`);
+    }
   }
   for (const fraction of page.querySelectorAll("mfrac")) {
     const [above, below] = [...fraction.children].map((part) => part.getBoundingClientRect());

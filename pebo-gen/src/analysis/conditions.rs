@@ -10,7 +10,7 @@ use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
-use crate::cas::{Arena, Expr, Node, Symbol};
+use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::plant::Plant;
 
 use crate::analysis::design::{Cascade, LeftInverse, Regression};
@@ -42,18 +42,24 @@ impl Conditions {
         conditions
     }
 
-    /// Lists what the domain does not show: of what must not vanish, each factor.
+    /// Lists what the domain does not show: of what must not vanish, each factor. Of what is never negative, as a magnitude
+    /// or a square, it is asked only that it does not vanish.
     pub(super) fn list(&mut self, arena: &Arena, ask: Ask) {
-        let parts = match ask.1 {
+        let only_zero = ask.1 == Relation::Positive && self.known.implies(arena, ask.0, Relation::NonNegative);
+        let relation = if only_zero { Relation::NonZero } else { ask.1 };
+        let parts = match relation {
             Relation::NonZero => factors(arena, &self.known, ask.0),
             _ => vec![(ask.0, ask.0)],
         };
         for (key, part) in parts {
-            let known = self.listed.iter().any(|(other, (_, relation))| *other == key && *relation == ask.1);
-            if !known && !arena.holds_of_number((part, ask.1)) && !self.known.implies(arena, part, ask.1) {
-                self.listed.push((key, (part, ask.1)));
-                self.known.facts.assume(part, ask.1);
+            let known = self.listed.iter().any(|(other, (_, listed))| *other == key && *listed == relation);
+            if !known && !arena.holds_of_number((part, relation)) && !self.known.implies(arena, part, relation) {
+                self.listed.push((key, (part, relation)));
+                self.known.facts.assume(part, relation);
             }
+        }
+        if only_zero {
+            self.known.facts.assume(ask.0, ask.1);
         }
     }
 
@@ -122,7 +128,16 @@ fn factors(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<(Expr, Expr)> {
         Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
         _ => vec![expr],
     };
-    written.into_iter().flat_map(|base| split(arena, domain, base).unwrap_or_else(|_| vec![(base, base)])).collect()
+    let written = written.into_iter().map(|base| inside(arena, base));
+    written.flat_map(|base| split(arena, domain, base).unwrap_or_else(|_| vec![(base, base)])).collect()
+}
+
+/// What vanishes where the expression does: the argument of a magnitude.
+fn inside(arena: &Arena, expr: Expr) -> Expr {
+    match arena.node(expr) {
+        Node::Call(Function::Abs, arguments) => inside(arena, arguments[0]),
+        _ => expr,
+    }
 }
 
 /// The factors of a sum; itself, as it is written, where it has but one.
@@ -131,11 +146,50 @@ fn split(arena: &Arena, domain: &Domain, expr: Expr) -> Result<Vec<(Expr, Expr)>
     let fraction = field.fraction(expr)?;
     let mut parts = Vec::new();
     for factor in fraction.numerator().distinct_factors(field.limit())? {
-        parts.push(field.show(&field.of_polynomial(&factor)?));
+        parts.push(inside(arena, field.show(&field.of_polynomial(&factor)?)));
     }
     Ok(match parts.as_slice() {
         [] => vec![(expr, expr)],
         [only] => vec![(*only, expr)],
         _ => parts.into_iter().map(|part| (part, part)).collect(),
     })
+}
+
+#[cfg(all(test, feature = "yaml"))]
+mod tests {
+    use crate::analysis::{Derivation, Outcome};
+    use crate::model::Model;
+    use crate::plant::Plant;
+    use crate::source::Source;
+
+    /// What is listed for an output with this rate.
+    fn listed(rate: &str) -> Vec<String> {
+        let text = format!(
+            "model: m\nparameters: [c]\nx: [a]\ny: [v]\nu: [i, k]\nf_x: {{a: i}}\nf_y: {{v: {rate}}}\nphi: [a]\n"
+        );
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let derivation = Derivation::derive(&plant);
+        assert_eq!(derivation.outcome, Outcome::Accepted, "{rate}");
+        derivation
+            .conditions
+            .iter()
+            .map(|(e, relation)| format!("{} {}", plant.arena.print(*e), relation.sign()))
+            .collect()
+    }
+
+    #[test]
+    fn a_condition_is_listed_once_in_its_plainest_form() {
+        for (rate, expected) in [
+            ("a + log(abs(i)) + 1/i", &["i != 0"][..]),
+            ("a + 1/abs(i) + 1/i", &["i != 0"]),
+            ("a + log(i^2) + log(abs(i))", &["i != 0"]),
+            ("a + log(i) + 1/abs(i)", &["i > 0"]),
+            ("a + log(i^2*abs(k))", &["i != 0", "k != 0"]),
+            // Never zero, or never negative.
+            ("a + log(i^2 + 1) + 1/(abs(i) + 2) + sqrt(abs(i*k))", &[]),
+            ("a + log(i^2 + k^2)", &["i^2 + k^2 != 0"]),
+        ] {
+            assert_eq!(listed(rate), expected, "{rate}");
+        }
+    }
 }

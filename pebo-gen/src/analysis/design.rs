@@ -254,6 +254,8 @@ pub enum Place {
     Steady(Symbol, Expr),
     /// This stays zero, where rows with all their derivatives may be of a lower rank: what is seen then was not decided.
     Unshown(Expr),
+    /// The plant rests and this stays zero: likewise.
+    UnshownAtRest(Expr),
     /// These keep their signs: the regressor bends where one changes.
     Part(Vec<(Expr, Side)>),
 }

@@ -14,6 +14,21 @@ type Watch = dyn Fn(Stage) -> ControlFlow<()>;
 
 /// What to do with a model beside checking it, and what that may take: nothing and the usual budget, unless it says
 /// otherwise.
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use pebo_gen::emit::Scalar;
+/// use pebo_gen::source::Source;
+/// use pebo_gen::{Ask, Standing, answer};
+///
+/// // The code too, in single precision, with two seconds for the proofs; a caller that stops it gets no verdict.
+/// let ask = Ask::new().emit(Scalar::F32).limit(2.0).watch(|_| ControlFlow::Continue(()));
+/// let text = "model: m\nx: [p]\ny: [q]\nf_x: {p: 0}\nf_y: {q: p}\n";
+/// let answer = answer(&Source::new("m.yaml", text).expect("a short text"), &ask);
+/// assert_eq!(answer.standing, Standing::Accepted);
+/// assert!(answer.emitted.is_some());
+/// ```
 #[derive(Clone)]
 pub struct Ask {
     pub(super) name: Option<String>,

@@ -50,6 +50,20 @@ use crate::simulate::replay::Replayed;
 use crate::source::{Diagnostic, Source};
 
 /// All there is to say of a model. Fields are only ever added.
+///
+/// It serialises, which is what a page or an editor gets:
+///
+/// ```
+/// use pebo_gen::source::Source;
+/// use pebo_gen::{Ask, answer};
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nf_x: {p: s}\nf_y: {q: p}\n";
+/// let answer = answer(&Source::new("m.yaml", text).expect("a short text"), &Ask::new());
+/// let value = serde_json::to_value(answer).expect("it serialises");
+/// assert_eq!(value["standing"], "malformed");
+/// let place = &value["diagnostics"][0]["primary"]["span"];
+/// assert_eq!(&text[place["start"].as_u64().unwrap() as usize..place["end"].as_u64().unwrap() as usize], "s");
+/// ```
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Answer {

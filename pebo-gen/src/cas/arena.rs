@@ -1,9 +1,6 @@
 //! The expression graph: every expression once.
 //!
 //! In: nodes. Out: handles. After a node is entered, an equal node yields the same handle.
-//!
-//! One thing with `expr`, `function` and `facts`: a node may apply a function, and the table of functions builds derivatives
-//! and conditions, which are expressions again.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;

@@ -19,7 +19,7 @@ const MOST_BOXES: usize = 256;
 const PRECISION: Precision = Precision::new(64);
 
 /// A closed range for each symbol.
-pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
+pub(crate) type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 impl Domain {
     /// Whether the expression is positive (true) or negative (false) throughout the domain.
@@ -36,7 +36,7 @@ impl Domain {
 
 /// Whether the expression is positive (true) or negative (false) on the whole box, seen by dividing it
 /// into no more than so many boxes.
-pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
+pub(crate) fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
     // Most expressions that have no sign show it at a corner, where they are zero or have another one.
     let mut corners = corners(&whole).into_iter().map(|corner| sign(arena, expr, &corner));
     let first = corners.next()??;

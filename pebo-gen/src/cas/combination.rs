@@ -22,7 +22,7 @@ use super::poly::{Monomial, Poly};
 use super::tidy::{shorter, shortest};
 
 /// Solves for the coefficients of `target` over `basis`; none if the comparison has no solution.
-pub fn combine(
+pub(crate) fn combine(
     field: &Field<'_>,
     target: Expr,
     basis: &[Expr],
@@ -46,7 +46,7 @@ pub fn combine(
 /// The combinations, with coefficients free of x, in which the symbols to cancel no longer occur; a basis of them.
 ///
 /// The symbols to cancel are among x. If the kernels are independent there are no others.
-pub fn cancelling(
+pub(crate) fn cancelling(
     field: &Field<'_>,
     exprs: &[Expr],
     x: &BTreeSet<Symbol>,
@@ -99,7 +99,7 @@ pub(crate) fn equations(
 
 /// As [`combine`], of the domain: coefficients as expressions, with which the combination holds everywhere, else on the
 /// manifold of the domain.
-pub fn combine_on(
+pub(crate) fn combine_on(
     arena: &Arena,
     domain: &Domain,
     target: Expr,

@@ -26,7 +26,7 @@ const PRECISIONS: [u32; 2] = [64, 256];
 
 /// Points that agree in all but x, with the target's value at each.
 #[derive(Clone, Debug)]
-pub struct Contrast {
+pub(crate) struct Contrast {
     /// The points.
     pub points: Vec<Point>,
     /// Enclosures of the target.
@@ -34,7 +34,7 @@ pub struct Contrast {
 }
 
 /// Looks for points of the domain which show that the target is no combination of the basis with coefficients free of x.
-pub fn contrast(
+pub(crate) fn contrast(
     arena: &Arena,
     target: Expr,
     basis: &[Expr],

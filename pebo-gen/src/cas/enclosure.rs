@@ -14,7 +14,7 @@ use super::interval::{Interval, Precision};
 use super::rational::Rational;
 
 /// Values of symbols: constants, most of them rational; on a manifold some are roots.
-pub type Point = BTreeMap<Symbol, Expr>;
+pub(crate) type Point = BTreeMap<Symbol, Expr>;
 
 /// Working precisions that are tried in turn, in bits.
 const PRECISIONS: [u32; 4] = [64, 128, 256, 512];

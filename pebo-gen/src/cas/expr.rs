@@ -26,6 +26,7 @@ impl Symbol {
 
 /// What an expression is. Cloning is cheap: the operand lists are shared.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
 pub enum Node {
     /// An exact rational number.
     Number(Rational),

@@ -5,58 +5,22 @@
 //! has the rows of division and powers) and the tests all read this table; a new function is a variant, a row, and
 //! its cases in [`super::field`].
 
+mod formulas;
+mod kind;
+
 use super::arena::Arena;
 use super::expr::Expr;
 use super::facts::Relation;
 use super::interval::{Interval, Precision};
-use super::rational::{Rational, half};
+use super::rational::Rational;
 
-/// A function of the expression language.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub enum Function {
-    /// Sine of an angle in radians.
-    Sin,
-    /// Cosine of an angle in radians.
-    Cos,
-    /// Tangent of an angle in radians.
-    Tan,
-    /// Inverse sine on [-1, 1].
-    Asin,
-    /// Inverse cosine on [-1, 1].
-    Acos,
-    /// Inverse tangent.
-    Atan,
-    /// Angle of the point (second argument, first argument), in (-pi, pi].
-    Atan2,
-    /// Hyperbolic sine.
-    Sinh,
-    /// Hyperbolic cosine.
-    Cosh,
-    /// Hyperbolic tangent.
-    Tanh,
-    /// Inverse hyperbolic sine.
-    Asinh,
-    /// Inverse hyperbolic cosine, not negative.
-    Acosh,
-    /// Inverse hyperbolic tangent.
-    Atanh,
-    /// Exponential.
-    Exp,
-    /// Natural logarithm.
-    Log,
-    /// Positive square root; kept as a power in the graph.
-    Sqrt,
-    /// Absolute value.
-    Abs,
-    /// 1 of a positive argument, -1 of a negative one.
-    Sign,
-    /// The smaller of two.
-    Min,
-    /// The larger of two.
-    Max,
-    /// Saturation at -1 and 1.
-    Sat,
-}
+use formulas::{
+    above_one, acosh, apart, atanh, beyond, distance, edges, half_of, hypotenuse, inverse_circle, leg, nothing, radius,
+    recip, shares, square, strictly_within_one, within_one,
+};
+
+pub use formulas::Asks;
+pub use kind::Function;
 
 /// What happens to the value when the argument changes sign.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -78,6 +42,7 @@ pub enum Value {
 
 /// What there is to know of one function.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Row {
     /// The function.
     pub function: Function,
@@ -116,9 +81,6 @@ pub struct Row {
 /// A value at rational arguments, where there is one.
 pub type Exact = fn(&[Rational]) -> Option<Rational>;
 
-/// Comparisons with zero.
-pub type Asks = Vec<(Expr, Relation)>;
-
 impl Row {
     /// The name as it is typeset, upright: that of the LaTeX command.
     pub fn typeset(&self) -> &'static str {
@@ -152,99 +114,6 @@ impl Function {
     pub fn table() -> &'static [Row] {
         &TABLE
     }
-}
-
-/// `a^2`
-fn square(arena: &Arena, a: Expr) -> Expr {
-    arena.power(a, &Rational::from(2))
-}
-
-/// `1/a`
-fn recip(arena: &Arena, a: Expr) -> Expr {
-    arena.power(a, &Rational::from(-1))
-}
-
-/// `1 - a^2`
-fn beyond(arena: &Arena, a: Expr) -> Expr {
-    arena.sub(arena.one(), square(arena, a))
-}
-
-/// `1/sqrt(1 - a^2)`
-fn inverse_circle(arena: &Arena, a: Expr) -> Expr {
-    recip(arena, arena.sqrt(beyond(arena, a)))
-}
-
-/// Near 1 the standard library's loses the digits that `a - 1` has.
-fn acosh(a: f64) -> f64 {
-    let above = a - 1.0;
-    (above + (above * (a + 1.0)).sqrt()).ln_1p()
-}
-
-/// Near -1 the standard library's loses the digits that `1 + a` has.
-fn atanh(a: f64) -> f64 {
-    let size = a.abs();
-    (0.5 * (2.0 * size / (1.0 - size)).ln_1p()).copysign(a)
-}
-
-/// `sqrt(a^2 + 1)`
-fn hypotenuse(arena: &Arena, a: Expr) -> Expr {
-    arena.sqrt(arena.add(square(arena, a), arena.one()))
-}
-
-/// `sqrt(a^2 - 1)`
-fn leg(arena: &Arena, a: Expr) -> Expr {
-    arena.sqrt(arena.neg(beyond(arena, a)))
-}
-
-/// `a - 1`
-fn above_one(arena: &Arena, a: Expr) -> Expr {
-    arena.sub(a, arena.one())
-}
-
-/// `a^2 + b^2`
-fn radius(arena: &Arena, a: &[Expr]) -> Expr {
-    arena.add(square(arena, a[0]), square(arena, a[1]))
-}
-
-/// Of a function that has a value everywhere.
-fn nothing(_: &Arena, _: &[Expr]) -> Asks {
-    Vec::new()
-}
-
-/// Of an inverse sine or cosine: an argument within [-1, 1].
-fn within_one(arena: &Arena, a: &[Expr]) -> Asks {
-    vec![(beyond(arena, a[0]), Relation::NonNegative)]
-}
-
-/// Of their derivatives, and of an inverse hyperbolic tangent: an argument strictly within.
-fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Asks {
-    vec![(beyond(arena, a[0]), Relation::Positive)]
-}
-
-/// Of the larger and the smaller of two: that they differ.
-fn apart(arena: &Arena, a: &[Expr]) -> Asks {
-    vec![(arena.sub(a[0], a[1]), Relation::NonZero)]
-}
-
-/// `|a - b|`
-fn distance(arena: &Arena, a: &[Expr]) -> Expr {
-    arena.call(Function::Abs, &[arena.sub(a[0], a[1])])
-}
-
-/// `a + 1` and `a - 1`
-fn edges(arena: &Arena, a: Expr) -> [Expr; 2] {
-    [arena.add(a, arena.one()), arena.sub(a, arena.one())]
-}
-
-/// `a/2`
-fn half_of(arena: &Arena, a: Expr) -> Expr {
-    arena.scale(a, &half())
-}
-
-/// One for the argument that is taken and zero for the other, where the first is taken if `lead` is positive.
-fn shares(arena: &Arena, lead: Expr) -> Vec<Expr> {
-    let sign = arena.call(Function::Sign, &[lead]);
-    vec![half_of(arena, arena.add(arena.one(), sign)), half_of(arena, arena.sub(arena.one(), sign))]
 }
 
 static TABLE: [Row; 21] = [

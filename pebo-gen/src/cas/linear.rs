@@ -13,7 +13,7 @@ use super::rational_matrix::{self, Reduced};
 
 /// What elimination leaves: pivot columns and reduced rows.
 #[derive(Debug)]
-pub struct Echelon {
+pub(crate) struct Echelon {
     /// Rows in reduced form, each with its pivot column, where it is one.
     rows: Vec<(usize, Vec<Fraction>)>,
     columns: usize,
@@ -24,7 +24,7 @@ impl Echelon {
     ///
     /// The result's rows span the same space as the given ones, apart from rows that are zero on the
     /// first columns, which come back separately.
-    pub fn of(
+    pub(crate) fn of(
         field: &Field<'_>,
         rows: Vec<Vec<Fraction>>,
         columns: usize,
@@ -64,17 +64,17 @@ impl Echelon {
     }
 
     /// The number of pivots.
-    pub fn rank(&self) -> usize {
+    pub(crate) fn rank(&self) -> usize {
         self.rows.len()
     }
 
     /// The rows with their pivot columns, ascending.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &[Fraction])> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, &[Fraction])> {
         self.rows.iter().map(|(column, row)| (*column, row.as_slice()))
     }
 
     /// A basis of the vectors that every row annihilates.
-    pub fn null_space(&self) -> Vec<Vec<Fraction>> {
+    pub(crate) fn null_space(&self) -> Vec<Vec<Fraction>> {
         let is_pivot = |column: usize| self.rows.iter().any(|(pivot, _)| *pivot == column);
         (0..self.columns)
             .filter(|column| !is_pivot(*column))
@@ -132,13 +132,17 @@ pub(super) fn numbers_of(rows: &[Vec<Fraction>]) -> Option<Vec<Vec<Rational>>> {
 
 /// Solves `matrix * unknowns = right` for rows `[matrix | right]` with the right side in the last
 /// column; none where there is no solution, zero for unknowns that are free.
-pub fn solve(field: &Field<'_>, rows: Vec<Vec<Fraction>>, unknowns: usize) -> Result<Option<Vec<Fraction>>, Obstacle> {
+pub(crate) fn solve(
+    field: &Field<'_>,
+    rows: Vec<Vec<Fraction>>,
+    unknowns: usize,
+) -> Result<Option<Vec<Fraction>>, Obstacle> {
     Ok(solve_each(field, rows, unknowns)?.into_iter().next().flatten())
 }
 
 /// As [`solve`] for several right sides, which are the columns behind those of the matrix: one elimination serves
 /// them all.
-pub fn solve_each(
+pub(crate) fn solve_each(
     field: &Field<'_>,
     rows: Vec<Vec<Fraction>>,
     unknowns: usize,

@@ -13,7 +13,7 @@ use super::rational::Rational;
 use super::{Arena, Expr, Node, Product};
 
 /// The expression with known negative denominators turned round, in sums term by term.
-pub fn oriented(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+pub(crate) fn oriented(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     Orientation::new(arena, domain).of(expr)
 }
 

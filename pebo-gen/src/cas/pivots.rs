@@ -9,7 +9,7 @@ use super::interval::{Interval, Precision};
 /// entry is too large to be represented.
 ///
 /// A row more or less than these proves nothing: an enclosure that contains zero may enclose another number.
-pub fn pivots(rows: Vec<Vec<Interval>>, columns: usize, precision: Precision) -> Option<Vec<usize>> {
+pub(crate) fn pivots(rows: Vec<Vec<Interval>>, columns: usize, precision: Precision) -> Option<Vec<usize>> {
     let mut rest: Vec<(usize, Vec<Interval>)> = rows.into_iter().enumerate().collect();
     let mut chosen = Vec::new();
     for column in 0..columns {

@@ -6,6 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 import sympy as sp
+from mpmath.libmp import NoConvergence
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Formulas: the grammar of a model file is that of Python but for `^`, and its numbers are exact.
@@ -177,8 +178,8 @@ def electromechanical(plant, parts):
 # Zero: proved by polynomials, refuted by a point.
 
 
-def polynomial(expr):
-    """The numerator of an expression as a polynomial in its kernels, with the relations among these, innermost first."""
+def polynomials(exprs):
+    """Expressions as quotients of polynomials in kernels that they share, with the relations among these, innermost first."""
     known, relations = {}, []
 
     def kernel(e):
@@ -207,24 +208,27 @@ def polynomial(expr):
             return sine if isinstance(e, sp.sin) else cosine
         return kernel(e)
 
-    expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
-    expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
-    expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
-    return convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))), relations
+    converted = []
+    for expr in exprs:
+        expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
+        expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
+        expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
+        converted.append(convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))))
+    return converted, relations
 
 
 def is_zero(expr, identities=()):
     """Whether the expression is shown to vanish, where the identities do."""
     if expr == 0 or sp.expand(expr) == 0:
         return True
-    converted, relations = polynomial(expr)
+    (converted, *vanishing), relations = polynomials([expr, *identities])
     numerator = sp.numer(sp.together(converted))
     for symbol, degree, value in reversed(relations):
         above, below = sp.fraction(sp.together(value))
         numerator = sp.prem(sp.expand(numerator), below * symbol**degree - above, symbol)
     numerator = sp.expand(numerator)
     if numerator != 0 and identities:
-        ideal = [sp.numer(sp.together(polynomial(identity)[0])) for identity in identities]
+        ideal = [sp.numer(sp.together(identity)) for identity in vanishing]
         numerator = sp.reduced(numerator, ideal)[1]
     return numerator == 0 or (not identities and sp.simplify(expr) == 0)
 
@@ -265,11 +269,24 @@ class Points:
             alone = identity.subs({other: value for other, value in point.items() if other != symbol})
             if not alone.is_polynomial(symbol):
                 return False
-            roots = [sp.re(root) for root in sp.Poly(alone, symbol).nroots(n=60, maxsteps=200) if abs(sp.im(root)) < 1e-40]
-            if not roots:
+            root = self.root(sp.Poly(alone, symbol))
+            if root is None:
                 return False
-            point[symbol] = roots[-1]
+            point[symbol] = root
         return all(abs(sp.N(identity.subs(point), 50)) < sp.Float("1e-35") for identity in self.plant.identities)
+
+    @staticmethod
+    def root(polynomial):
+        """The largest real root to sixty digits; none if there is none, or if SymPy's iteration does not find them."""
+        if polynomial.degree() == 1:
+            slope, rest = polynomial.all_coeffs()
+            return sp.N(-rest / slope, 60)
+        try:
+            roots = polynomial.nroots(n=60, maxsteps=200)
+        except NoConvergence:
+            return None
+        real = [sp.re(root) for root in roots if abs(sp.im(root)) < 1e-40]
+        return real[-1] if real else None
 
     @staticmethod
     def holds(left, relation, right, point):
@@ -430,7 +447,7 @@ class Certificate:
         for _ in range(12):
             points = [self.points.point(stacked.free_symbols) for _ in range(6 if kind == "parts" else 1)]
             if None in points:
-                break
+                return self.say(f"identifiability: {kind}", "undecided", ": no point was met at which the assumptions hold")
             values = sp.Matrix.vstack(*(stacked.subs(point).evalf(DIGITS) for point in points))
             if all(value.is_number and value.is_finite for value in values):
                 # Columns and then rows of the length one: an unknown may enter with a factor such as exp(-8750/T).

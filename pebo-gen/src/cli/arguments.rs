@@ -94,7 +94,7 @@ pub(super) enum Command {
     Completions(CompletionsOptions),
     /// Print the manual page
     Man,
-    /// Print the JSON schema of `check --format json`, or of model files
+    /// Print the JSON schema of `check --format json`, of `solve --format json`, or of model files
     Schema(SchemaOptions),
     /// Search for the transform phi, whether or not the model has one
     Solve(SolveOptions),
@@ -122,6 +122,8 @@ pub(super) struct SchemaOptions {
 pub(super) enum SchemaName {
     /// The verdicts of `check --format json`
     Check,
+    /// The transforms of `solve --format json`
+    Solve,
     /// Model files, for editors
     Model,
 }

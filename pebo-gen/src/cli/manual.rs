@@ -22,7 +22,8 @@ pub(super) fn page() -> Standing {
 
 pub(super) fn schema(options: &SchemaOptions) -> Standing {
     match options.of {
-        SchemaName::Check => standard::print(pebo_gen::report::SCHEMA.as_bytes()),
+        SchemaName::Check => standard::print(pebo_gen::report::CHECK_SCHEMA.as_bytes()),
+        SchemaName::Solve => standard::print(pebo_gen::report::SOLVE_SCHEMA.as_bytes()),
         SchemaName::Model => standard::print(pebo_gen::model::json_schema().as_bytes()),
     }
 }

@@ -42,13 +42,15 @@ pub use accuracy::{Accuracy, Loss, Worst};
 pub use error::EmitError;
 pub use literal::Scalar;
 
+pub use crate::program::Cost;
+
 use proc_macro2::TokenStream;
 
 use crate::analysis::Derivation;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr};
 use crate::plant::{Plant, Settings};
-use crate::program::{Cost, Undeclared, lower};
+use crate::program::{Undeclared, lower};
 use abbreviation::Abbreviations;
 use choice::Choice;
 use definition::Definitions;

@@ -153,8 +153,9 @@ impl Module<'_> {
         let parameters = self.plant.parameters.iter().map(|parameter| parameter.symbol);
         let arguments = [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta];
         let arguments = arguments.into_iter().flat_map(|argument| self.definitions.symbols(argument));
-        let mut locals: BTreeMap<Symbol, String> =
-            parameters.chain(arguments).map(|symbol| (symbol, names.claim(&arena.name(symbol)))).collect();
+        let symbols: Vec<Symbol> = parameters.chain(arguments).collect();
+        let written: Vec<String> = symbols.iter().map(|symbol| arena.name(*symbol)).collect();
+        let mut locals: BTreeMap<Symbol, String> = symbols.into_iter().zip(names.claim_all(&written)).collect();
         let names_before_terms = names.clone();
         let constants: BTreeMap<Symbol, Expr> = self.staged.constants.iter().copied().collect();
         for &(term, formula) in &self.staged.terms {

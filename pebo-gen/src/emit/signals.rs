@@ -60,8 +60,8 @@ impl Module<'_> {
                 }
             };
         }
-        let mut taken = Names::default();
-        let names: Vec<String> = symbols.iter().map(|symbol| taken.claim(&self.plant.arena.name(*symbol))).collect();
+        let written: Vec<String> = symbols.iter().map(|symbol| self.plant.arena.name(*symbol)).collect();
+        let names = Names::default().claim_all(&written);
         let docs = symbols.iter().map(|symbol| doc(&format!("{}.", document::quantity(self.plant, *symbol))));
         let (summary, alike, similar) =
             (doc(summary), permission::for_fields(name, &names), permission::for_names(&names));

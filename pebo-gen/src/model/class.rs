@@ -11,6 +11,7 @@ use crate::source::Span;
 
 /// A class with its formulas.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Class {
     /// A linear, time-invariant plant.
     Lti(Lti<Formula>),
@@ -38,6 +39,7 @@ pub struct Matrix<F> {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Lti<F> {
     /// From x to its rate.
     pub a11: Option<Matrix<F>>,
@@ -63,6 +65,7 @@ pub struct Lti<F> {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Mechanical<F> {
     /// The inertia matrix in the positions.
     pub m: Option<Matrix<F>>,
@@ -80,6 +83,7 @@ pub struct Mechanical<F> {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(bound(deserialize = "F: Deserialize<'de>")))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Electromechanical<F> {
     /// The number of coils, to be held against the rest.
     pub coils: Option<Spanned<Decimal>>,

@@ -44,6 +44,11 @@ use crate::source::{Diagnostic, Diagnostics, Source};
 /// The JSON schema of model files (draft 2020-12), for editors that complete and check them: keys and the shapes of their
 /// values, from the table by which [`Model::parse`] reads. What else makes a model, as names and formulas, only the
 /// reader says.
+///
+/// ```
+/// let schema: serde_json::Value = serde_json::from_str(&pebo_gen::model::json_schema()).expect("JSON");
+/// assert!(schema["properties"]["f_x"]["description"].as_str().is_some_and(|about| about.contains("derivative")));
+/// ```
 #[cfg(feature = "yaml")]
 #[must_use]
 pub fn json_schema() -> String {

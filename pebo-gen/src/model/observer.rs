@@ -11,6 +11,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Observer {
     /// What the regressand is made of; chosen for the settings that there are if absent.
     pub form: Option<Spanned<Form>>,
@@ -64,6 +65,7 @@ pub struct Observer {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Bounds {
     /// From below.
     pub lower: Vec<Spanned<Decimal>>,
@@ -86,6 +88,7 @@ pub enum Hold {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Form {
     /// The rates of the outputs, through a filter or window.
     Rate,
@@ -102,6 +105,7 @@ impl Form {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Estimator {
     /// The paper's.
     #[default]

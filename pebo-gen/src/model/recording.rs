@@ -6,6 +6,7 @@ use crate::source::Span;
 
 /// Formulas over the columns of a recording and the parameters. A signal that has none is the column of its own name.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Recording {
     /// When a row was recorded, in seconds; excludes the next.
     pub t: Option<Entry<Formula>>,

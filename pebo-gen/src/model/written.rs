@@ -17,6 +17,7 @@ use super::spanned::{Entry, Spanned};
 ///
 /// A list that the file leaves out is empty.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Model {
     /// Identifier: the emitted module's name.
     pub name: Spanned<String>,
@@ -71,6 +72,7 @@ pub struct Model {
 
 /// A closed loop to simulate.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Simulation {
     /// How long, in seconds.
     pub duration: Option<Spanned<Decimal>>,
@@ -146,6 +148,7 @@ pub struct Piece {
 
 /// An observer to compare with.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Baseline {
     /// Given by its equations, under any name but those of the others.
     Equations(Equations),
@@ -174,6 +177,7 @@ impl Baseline {
 /// A Kalman filter of the states and outputs, fed the same samples; standard deviations of what is not named are those
 /// that the keys of the file say.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Kalman {
     /// Whether it is the extended one, of the plant as linearised at its estimate.
     pub extended: bool,
@@ -189,6 +193,7 @@ pub struct Kalman {
 
 /// Luenberger's observer of the states and outputs: the error has these poles while the inputs rest.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Luenberger {
     /// The poles of continuous time, in 1/s: one for each state and each output that has a rate.
     pub poles: Vec<Spanned<Decimal>>,
@@ -198,6 +203,7 @@ pub struct Luenberger {
 
 /// An observer given by its equations.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Equations {
     /// Its states with their rates; `hat(x)` is its own estimate.
     pub state: Vec<Entry<Formula>>,
@@ -209,6 +215,7 @@ pub struct Equations {
 
 /// A part of the figure: curves over time on one axis.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Panel {
     /// Its heading.
     pub title: Spanned<String>,
@@ -236,6 +243,7 @@ pub enum Scale {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum CascadeClass {
     /// z' = h: the extension is an integrator, z = chi + theta.
     Pebo,

@@ -1,6 +1,6 @@
 //! Claim 4: the unknowns are told apart, where they are not, and what excitation it takes.
 
-use crate::analysis::{Class, Excitation, Gram, Motion, Verdict};
+use crate::analysis::{Class, Derivation, Excitation, Gram, Motion, Verdict};
 use crate::report::notes;
 
 use super::formula::{Setter, Steps};
@@ -36,7 +36,7 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
             html.display(&setter.column(direction));
         }
         if let Some(gram) = &result.gram {
-            determinant(html, setter, gram);
+            determinant(html, setter, derivation, gram);
         }
     });
 }
@@ -47,7 +47,7 @@ fn at_rest(motion: &Motion) -> bool {
 }
 
 /// `Phi_1' Phi_1`, whose determinant vanishes where the unknowns are not seen.
-fn determinant(html: &mut Html, setter: &Setter<'_>, gram: &Gram) {
+fn determinant(html: &mut Html, setter: &Setter<'_>, derivation: &Derivation, gram: &Gram) {
     html.paragraph(
         "How strongly they are seen is the Gram matrix of the regressor; where its determinant is zero they are not:",
     );
@@ -57,5 +57,5 @@ fn determinant(html: &mut Html, setter: &Setter<'_>, gram: &Gram) {
     let determinant = format!("<mi>det</mi><mrow><mo>(</mo>{product}<mo>)</mo></mrow>");
     steps.add(&determinant, &setter.expr(gram.determinant), "");
     html.display(&steps.finish());
-    html.list(&notes::positive(gram).into_iter().collect::<Vec<_>>());
+    html.list(&notes::positive(derivation, gram).into_iter().collect::<Vec<_>>());
 }

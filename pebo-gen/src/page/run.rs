@@ -22,7 +22,7 @@ fn done(html: &mut Html, run: &Loop<'_>) {
          estimate less the truth.",
     );
     html.block("figure", &[], |html| {
-        html.markup(run.figure);
+        html.block("div", &[("class", "wide")], |html| html.markup(run.figure));
         html.line("figcaption", &[], |html| {
             html.text(&format!("The closed loop over {} s, sample by sample.", run.end));
         });

@@ -174,6 +174,6 @@ impl Matrix {
 }
 
 /// The sum of the products of the entries.
-pub fn dot(arena: &Arena, left: &[Expr], right: &[Expr]) -> Expr {
+pub(crate) fn dot(arena: &Arena, left: &[Expr], right: &[Expr]) -> Expr {
     arena.dot(left, right)
 }

@@ -12,14 +12,14 @@ pub mod class;
 mod conditions;
 mod contradiction;
 mod formula;
-pub mod matrix;
+pub(crate) mod matrix;
 mod own;
 mod period;
 #[allow(clippy::module_inception)]
 mod plant;
 mod resolve;
 mod scope;
-pub mod settings;
+pub(crate) mod settings;
 mod terms;
 mod values;
 

@@ -21,6 +21,7 @@ use super::own::Own;
 
 /// A plant, resolved, with its candidate transform if there is one.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Plant {
     /// The identifier of the model.
     pub name: String,
@@ -83,6 +84,7 @@ pub struct Plant {
 
 /// Where a transform is from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum TransformOrigin {
     /// The author gave it, or nobody has yet.
     Given,
@@ -105,6 +107,7 @@ impl TransformOrigin {
 
 /// A constant of the plant.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Parameter {
     /// Its symbol.
     pub symbol: Symbol,
@@ -116,6 +119,7 @@ pub struct Parameter {
 
 /// An unmeasured state.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct State {
     /// Its symbol.
     pub symbol: Symbol,
@@ -125,6 +129,7 @@ pub struct State {
 
 /// A measured output.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Output {
     /// Its symbol.
     pub symbol: Symbol,
@@ -155,6 +160,7 @@ pub struct Formula {
 
 /// One inequality of the assumed domain: `expr > 0`, `>= 0` or `!= 0`.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Assumption {
     /// What is compared with zero.
     pub expr: Expr,

@@ -7,6 +7,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Settings with which an observer can be built.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings<N> {
     /// What the regression goes through.
     pub operator: Operator<N>,
@@ -37,6 +38,7 @@ pub struct Settings<N> {
 
 /// What samples may be.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Limits<N> {
     /// The least and the greatest sample of each output that has limits; empty where none has.
     pub outputs: Vec<Option<[N; 2]>>,
@@ -68,10 +70,11 @@ impl<N> Limits<N> {
 }
 
 /// Outliers in a row that a gate refuses.
-pub const PATIENCE: u32 = 20;
+pub(crate) const PATIENCE: u32 = 20;
 
 /// What the regression goes through.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Operator<N> {
     /// A filter of this bandwidth, in rad/s.
     Filter(N),
@@ -83,6 +86,7 @@ pub enum Operator<N> {
 
 /// An estimator of the runtime library.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Estimator<N> {
     /// The gradient of this gain.
     Gradient(Vec<N>),
@@ -127,6 +131,7 @@ pub struct Covariance<N> {
 
 /// The regressor extension of DREM.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Extension<N> {
     /// Kreisselmeier's.
     Kreisselmeier {

@@ -16,8 +16,19 @@ pub(super) fn confine(arena: &Arena, outputs: &[Output], allowed: &BTreeSet<Symb
     for output in outputs {
         let Some(value) = output.value else { continue };
         let others: BTreeSet<Symbol> = allowed.iter().copied().filter(|symbol| *symbol != output.symbol).collect();
-        let place = format!("the value of {}", arena.name(output.symbol));
-        problems.keep(confined(arena, value.expr, value.span, &others, &place));
+        let name = arena.name(output.symbol);
+        let place = format!("the value of {name}");
+        let confined = confined(arena, value.expr, value.span, &others, &place);
+        // A rate often holds the output that it is of; a value of that kind would be an equation for the output.
+        let of_itself = arena.symbols_of(&[value.expr]).contains(&output.symbol);
+        problems.keep(confined.map_err(|refusal| {
+            if !of_itself {
+                return refusal;
+            }
+            refusal.help(format!(
+                "`g_y` takes the value of `{name}` in the other signals; if this is its time derivative, write it under `f_y`"
+            ))
+        }));
     }
 }
 
@@ -95,6 +106,8 @@ mod tests {
             assert!(
                 refused[0].message.starts_with("the value of p cannot depend on") && refused[0].message.ends_with(name)
             );
+            let asks_for_f_y = refused[0].help.as_ref().is_some_and(|help| help.ends_with("write it under `f_y`"));
+            assert_eq!(asks_for_f_y, name == "`p`", "{lines}");
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::cas::Function;
 
 /// The number of operations of each kind.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[non_exhaustive]
 pub struct Cost {
     /// Additions, subtractions and negations.
     pub sums: usize,
@@ -23,7 +24,7 @@ pub struct Cost {
 
 impl Cost {
     /// The cost of one run.
-    pub fn of(program: &Program) -> Self {
+    pub(crate) fn of(program: &Program) -> Self {
         let mut cost = Self::default();
         for (index, operation) in program.operations.iter().enumerate() {
             // Sine and cosine of an angle are one call.

@@ -9,7 +9,7 @@ use crate::cas::function::Value;
 
 /// Runs one program at `f64`, as often as asked.
 #[derive(Clone, Debug)]
-pub struct Interpreter {
+pub(crate) struct Interpreter {
     values: Vec<f64>,
     /// The number of inputs.
     inputs: usize,
@@ -36,7 +36,7 @@ enum Instruction {
 
 impl Interpreter {
     /// An interpreter for this program.
-    pub fn new(program: &Program) -> Self {
+    pub(crate) fn new(program: &Program) -> Self {
         let read: Vec<usize> = (0..program.inputs.len()).filter(|input| program.reads(*input)).collect();
         let (constant, first) = (read.len(), read.len() + program.constants.len());
         let place = |operand| match operand {
@@ -70,7 +70,7 @@ impl Interpreter {
     ///
     /// # Panics
     /// Panics unless there are as many inputs and outputs as the program has.
-    pub fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
+    pub(crate) fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
         assert_eq!(inputs.len(), self.inputs, "number of inputs");
         assert_eq!(outputs.len(), self.outputs.len(), "number of outputs");
         for (index, value) in self.evaluate(|input| inputs[input]).enumerate() {
@@ -79,7 +79,7 @@ impl Interpreter {
     }
 
     /// The outputs in their order, for inputs that are asked for by their positions where they are read.
-    pub fn evaluate(&mut self, input: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
+    pub(crate) fn evaluate(&mut self, input: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let values = self.values.as_mut_slice();
         for (place, &read) in self.read.iter().enumerate() {
             values[place] = input(read);

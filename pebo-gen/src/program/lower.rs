@@ -20,7 +20,7 @@ use crate::cas::{Arena, Expr, Function, Node, Product, Sum, Symbol};
 
 /// An output depends on a symbol that is not an input.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Undeclared(pub Symbol);
+pub(crate) struct Undeclared(pub Symbol);
 
 impl fmt::Display for Undeclared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -34,7 +34,7 @@ impl std::error::Error for Undeclared {}
 ///
 /// # Errors
 /// [`Undeclared`] if an output depends on a symbol that is not an input.
-pub fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> Result<Program, Undeclared> {
+pub(crate) fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> Result<Program, Undeclared> {
     lower_with(arena, inputs, &[], outputs)
 }
 

@@ -23,7 +23,7 @@ mod straight;
 mod tests;
 
 pub use cost::Cost;
-pub use interpret::Interpreter;
-pub use lower::{Undeclared, lower};
-pub use stage::{Staged, Task, stage};
-pub use straight::{Constant, Operand, Operation, Program};
+pub(crate) use interpret::Interpreter;
+pub(crate) use lower::{Undeclared, lower};
+pub(crate) use stage::{Staged, Task, stage};
+pub(crate) use straight::{Constant, Operand, Operation, Program};

@@ -20,7 +20,7 @@ use crate::cas::{Arena, Expr, Node, Symbol};
 
 /// A function to be computed: its arguments and its outputs.
 #[derive(Clone, Debug)]
-pub struct Task {
+pub(crate) struct Task {
     /// The symbols that change from call to call, besides the sampled ones.
     pub arguments: Vec<Symbol>,
     /// Values that the outputs name by symbols: each is computed once, as it is written.
@@ -33,7 +33,7 @@ pub struct Task {
 
 /// Functions that share constants and terms.
 #[derive(Clone, Debug)]
-pub struct Staged {
+pub(crate) struct Staged {
     /// The constants: each a formula in the parameters, the output of `setup` at the same position.
     pub constants: Vec<(Symbol, Expr)>,
     /// From the parameters to the constants.
@@ -50,7 +50,12 @@ pub struct Staged {
 ///
 /// # Errors
 /// [`Undeclared`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
-pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[Task]) -> Result<Staged, Undeclared> {
+pub(crate) fn stage(
+    arena: &Arena,
+    parameters: &[Symbol],
+    sampled: &[Symbol],
+    tasks: &[Task],
+) -> Result<Staged, Undeclared> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
     let (mut varying, mut constants) = split(arena, &roots, parameters, ("$", 0), |_| true);

@@ -8,7 +8,7 @@ use crate::cas::{Function, Symbol};
 
 /// Where a value comes from.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub enum Operand {
+pub(crate) enum Operand {
     /// The input at this position.
     Input(usize),
     /// The constant at this position.
@@ -19,7 +19,7 @@ pub enum Operand {
 
 /// A number that the program contains.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
-pub enum Constant {
+pub(crate) enum Constant {
     /// An exact rational.
     Number(Rational),
     /// The circle constant.
@@ -28,7 +28,7 @@ pub enum Constant {
 
 impl Constant {
     /// The nearest `f64`.
-    pub fn to_f64(&self) -> f64 {
+    pub(crate) fn to_f64(&self) -> f64 {
         match self {
             Self::Number(value) => value.to_f64(),
             Self::Pi => std::f64::consts::PI,
@@ -38,7 +38,7 @@ impl Constant {
 
 /// One operation on values that are known by then.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Operation {
+pub(crate) enum Operation {
     /// `-a`
     Neg(Operand),
     /// `a + b`
@@ -61,7 +61,7 @@ pub enum Operation {
 
 impl Operation {
     /// What the operation uses, in order.
-    pub fn operands(self) -> impl Iterator<Item = Operand> {
+    pub(crate) fn operands(self) -> impl Iterator<Item = Operand> {
         let (first, second) = match self {
             Self::Neg(a) | Self::ExpM1(a) | Self::Unary(_, a) => (a, None),
             Self::Add(a, b)
@@ -75,7 +75,7 @@ impl Operation {
     }
 
     /// The cosine that goes with a sine, and the other way round: both come from one call.
-    pub fn companion(self) -> Option<Self> {
+    pub(crate) fn companion(self) -> Option<Self> {
         match self {
             Self::Unary(Function::Sin, angle) => Some(Self::Unary(Function::Cos, angle)),
             Self::Unary(Function::Cos, angle) => Some(Self::Unary(Function::Sin, angle)),
@@ -101,7 +101,7 @@ impl Operation {
 
 /// Straight-line code for a tuple of outputs.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Program {
+pub(crate) struct Program {
     /// The symbols whose values are given, in the order in which they are given.
     pub inputs: Vec<Symbol>,
     /// The numbers that the operations use.
@@ -114,7 +114,7 @@ pub struct Program {
 
 impl Program {
     /// How often each operation's result is used, outputs included.
-    pub fn uses(&self) -> Vec<usize> {
+    pub(crate) fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.operations.len()];
         let operands = self.operations.iter().flat_map(|operation| operation.operands());
         for operand in operands.chain(self.outputs.iter().copied()) {
@@ -126,7 +126,7 @@ impl Program {
     }
 
     /// Whether the value of the input matters.
-    pub fn reads(&self, input: usize) -> bool {
+    pub(crate) fn reads(&self, input: usize) -> bool {
         let operands = self.operations.iter().flat_map(|operation| operation.operands());
         operands.chain(self.outputs.iter().copied()).any(|operand| operand == Operand::Input(input))
     }

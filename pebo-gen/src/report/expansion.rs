@@ -14,6 +14,8 @@ pub(super) struct Expansion {
     pub(super) rates: Vec<(String, String)>,
     /// The components of the transform.
     pub(super) phi: Vec<String>,
+    /// Positions with the states that are their momenta, for a mechanical plant: its states are no velocities.
+    pub(super) momentum: Vec<(String, String)>,
     /// Positions with their velocities in z, for a mechanical plant.
     pub(super) velocity: Vec<(String, String)>,
 }
@@ -32,7 +34,11 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
         let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
         format!("[{}]", rows.iter().map(row).collect::<Vec<_>>().join(", "))
     };
-    let mut velocity = Vec::new();
+    let (mut momentum, mut velocity) = (Vec::new(), Vec::new());
+    if let Class::Mechanical(mechanical) = class {
+        let momenta = mechanical.q.iter().zip(&plant.x);
+        momentum.extend(momenta.map(|(q, state)| (arena.name(*q), arena.name(state.symbol))));
+    }
     let origin = match class {
         Class::Linear(linear) => vec![("T1", matrix(linear.t1.rows())), ("T2", matrix(linear.t2.rows()))],
         Class::Mechanical(mechanical) => match &mechanical.in_velocities {
@@ -54,7 +60,7 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
         }
     };
     let phi = plant.phi.iter().map(|f| arena.print(f.expr)).collect();
-    Some(Expansion { class: class.name(), origin, rates, phi, velocity })
+    Some(Expansion { class: class.name(), origin, rates, phi, momentum, velocity })
 }
 
 /// The rates of a mechanical plant whose inverse of M nobody would read.

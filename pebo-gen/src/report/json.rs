@@ -13,7 +13,7 @@ use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Diagnostic, Located, Source};
 
-/// The object of one model, which [`SCHEMA`](super::SCHEMA) describes.
+/// The object of one model, which [`CHECK_SCHEMA`](super::CHECK_SCHEMA) describes.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Report {
@@ -47,6 +47,8 @@ struct ExpansionReport {
     origin: IndexMap<&'static str, String>,
     rates: IndexMap<String, String>,
     phi: Vec<String>,
+    /// Positions with the states that are their momenta.
+    momentum: IndexMap<String, String>,
     velocity: IndexMap<String, String>,
 }
 
@@ -185,6 +187,7 @@ impl Report {
                 origin: expansion.origin.into_iter().collect(),
                 rates: expansion.rates.into_iter().collect(),
                 phi: expansion.phi,
+                momentum: expansion.momentum.into_iter().collect(),
                 velocity: expansion.velocity.into_iter().collect(),
             }),
             phi: (!plant.phi.is_empty())

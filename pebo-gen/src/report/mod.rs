@@ -22,8 +22,13 @@ pub use json::Report;
 pub use search::{SearchReport, search_summary};
 pub use text::summary;
 
-/// The JSON schema of a `Report`.
-pub const SCHEMA: &str = include_str!("check.schema.json");
+/// The JSON schema of a [`Report`].
+#[cfg(feature = "yaml")]
+pub const CHECK_SCHEMA: &str = include_str!("check.schema.json");
+
+/// The JSON schema of a [`SearchReport`].
+#[cfg(feature = "yaml")]
+pub const SOLVE_SCHEMA: &str = include_str!("solve.schema.json");
 
 #[cfg(feature = "yaml")]
 fn printed(arena: &Arena, exprs: &[Expr]) -> Vec<String> {

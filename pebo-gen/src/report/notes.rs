@@ -74,7 +74,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     }];
     if !result.singular_where.is_empty() {
         let places = listed(result.singular_where.iter().map(String::as_str));
-        lines.push(format!("except where {places}: do not operate the plant there for long"));
+        lines.push(format!("except where {places}: while the plant stays there, not all estimates improve"));
     }
     if result.kind == Excitation::Instant && !result.everywhere_else {
         lines.push("this holds at almost every point; the points where the rank drops were not all found".to_owned());
@@ -84,9 +84,14 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
 }
 
 /// Of the determinant of `Phi_1' Phi_1`: that it is positive, and what shows it.
-pub(crate) fn positive(gram: &Gram) -> Option<&'static str> {
+pub(crate) fn positive(derivation: &Derivation, gram: &Gram) -> Option<&'static str> {
     gram.positive.map(|positive| match positive {
-        Positive::Assumed => "the determinant is positive wherever the assumptions hold: every input excites",
+        Positive::Assumed if derivation.conditions.is_empty() => {
+            "the determinant is positive wherever the assumptions hold: every input excites"
+        }
+        Positive::Assumed => {
+            "the determinant is positive wherever the assumptions and conditions hold: every input excites"
+        }
         Positive::Divided => {
             "the determinant is positive throughout the assumed box at the given parameter values: every input excites"
         }

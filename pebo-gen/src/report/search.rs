@@ -10,7 +10,7 @@ use crate::search::words::assumed;
 use crate::search::{Bound, Candidate, Search};
 use crate::source::{Diagnostic, Located, Source};
 
-/// The object of one search.
+/// The object of one search, which [`SOLVE_SCHEMA`](super::SOLVE_SCHEMA) describes.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct SearchReport {

@@ -27,7 +27,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
         let mut lines = notes::identifiability(plant, derivation);
-        lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, gram)));
+        lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, derivation, gram)));
         lines
     });
     if !conditions.is_empty() {
@@ -47,7 +47,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
 const MOST_CHARACTERS: usize = 300;
 
 /// `Phi_1' Phi_1` with its determinant.
-fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
+fn excitation(plant: &Plant, derivation: &Derivation, gram: &Gram) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = Vec::new();
     let row = |row: &Vec<Expr>| format!("[{}]", row.iter().map(|e| arena.print(*e)).collect::<Vec<_>>().join(", "));
@@ -57,7 +57,7 @@ fn excitation(plant: &Plant, gram: &Gram) -> Vec<String> {
         lines.push(format!("Phi_1^T Phi_1 = [{rows}], with the transpose Phi_1^T"));
     }
     lines.push(format!("det(Phi_1^T Phi_1) = {determinant}"));
-    lines.extend(notes::positive(gram).map(str::to_owned));
+    lines.extend(notes::positive(derivation, gram).map(str::to_owned));
     lines
 }
 
@@ -67,6 +67,7 @@ fn expansion(text: &mut String, plant: &Plant) {
     let mut lines: Vec<String> = expansion.origin.iter().map(|(name, formula)| format!("{name} = {formula}")).collect();
     lines.extend(expansion.rates.iter().map(|(name, rate)| format!("{name}' = {rate}")));
     lines.extend(expansion.phi.iter().enumerate().map(|(i, phi)| format!("z{} = {phi}", i + 1)));
+    lines.extend(expansion.momentum.iter().map(|(name, state)| format!("momentum of {name}: {state}")));
     lines.extend(expansion.velocity.iter().map(|(name, formula)| format!("velocity of {name}: {formula}")));
     let line = format!("  {:<26}{}", expansion.class, lines.join(&format!("\n{INDENT}")));
     text.extend([line.trim_end(), "\n"]);

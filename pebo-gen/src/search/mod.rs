@@ -26,6 +26,7 @@ mod found;
 mod frame;
 mod functions;
 mod largest;
+mod parts;
 mod quadrature;
 mod question;
 mod sample;
@@ -55,6 +56,19 @@ use question::Question;
 pub(crate) use words::settles;
 
 /// Searches for a transform of the plant, of one class of cascade or of any.
+///
+/// ```
+/// use pebo_gen::model::Model;
+/// use pebo_gen::plant::Plant;
+/// use pebo_gen::search::{Found, solve};
+/// use pebo_gen::source::Source;
+///
+/// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\n";
+/// let model = Model::parse(&Source::new("m.yaml", text).expect("a short text")).expect("a model");
+/// let search = solve(&Plant::resolve(&model).expect("a plant"), None);
+/// assert_eq!(search.verdict, Found::Found);
+/// assert_eq!(search.candidates[0].formulas(), ["p"]);
+/// ```
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let question = Question::of(plant);
@@ -318,6 +332,11 @@ impl Hunt<'_> {
     /// A transform by way of one that there is if the unknown constants are measured.
     fn with_constants(&mut self) {
         let question = self.question;
+        let by_parts = parts::by_parts(question, &constants::constants(question)).map(Option::unwrap_or_default);
+        self.judge(Form::Closure(Start::Parts), 0, by_parts);
+        if self.is_over() {
+            return;
+        }
         let Some(measured) = constants::measured(question) else { return };
         let search = question.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
         let proved = |candidate: &&Candidate| {

@@ -99,6 +99,16 @@ pub struct Located {
     pub column: usize,
     /// What to do, or null.
     pub help: Option<Box<str>>,
+    /// The range of bytes of the primary place; none where there is no place.
+    pub span: Option<Span>,
+    /// What stands beside the primary place; may be empty.
+    pub label: Box<str>,
+    /// Other places that matter, with what stands beside them.
+    pub labels: Vec<Label>,
+    /// Facts that explain it.
+    pub notes: Vec<String>,
+    /// What to write at the primary place, where that is all there is to do.
+    pub replacement: Option<String>,
 }
 
 impl Located {
@@ -113,6 +123,11 @@ impl Located {
             line: position.line,
             column: position.column,
             help: diagnostic.help.clone(),
+            span: Some(diagnostic.primary.span).filter(|span| *span != Span::NOWHERE),
+            label: diagnostic.primary.text.clone(),
+            labels: diagnostic.secondary.clone(),
+            notes: diagnostic.notes.clone(),
+            replacement: diagnostic.replacement().map(str::to_owned),
         }
     }
 }

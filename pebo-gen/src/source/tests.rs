@@ -89,11 +89,16 @@ fn every_place_can_be_pictured() {
 #[test]
 fn json_has_the_documented_fields() {
     let source = source("a\nbé: c\n");
-    let diagnostic = Diagnostic::error(Code::UnknownKey, Span::new(7, 8), "unknown key");
-    let json = serde_json::to_string(&Located::new(&diagnostic, &source)).expect("it serialises");
+    let json =
+        |diagnostic: Diagnostic| serde_json::to_string(&Located::new(&diagnostic, &source)).expect("it serialises");
     assert_eq!(
-        json,
-        r#"{"code":"unknown-key","severity":"error","message":"unknown key","line":2,"column":5,"help":null}"#
+        json(Diagnostic::error(Code::UnknownKey, Span::new(7, 8), "unknown key").suggest(Some("d"))),
+        r#"{"code":"unknown-key","severity":"error","message":"unknown key","line":2,"column":5,"help":"did you mean `d`?","span":{"start":7,"end":8},"label":"","labels":[],"notes":[],"replacement":"d"}"#
+    );
+    let nowhere = Diagnostic::warning(Code::UnknownKey, Span::NOWHERE, "no").label("here").note("a fact");
+    assert_eq!(
+        json(nowhere.also(Span::new(0, 1), "and here")),
+        r#"{"code":"unknown-key","severity":"warning","message":"no","line":1,"column":1,"help":null,"span":null,"label":"here","labels":[{"span":{"start":0,"end":1},"text":"and here"}],"notes":["a fact"],"replacement":null}"#
     );
 }
 

@@ -11,6 +11,7 @@ use super::prediction::Prediction;
 
 /// What is known of sensors, start and disturbances, with what was derived of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Known {
     /// What the observer is, in words.
     pub observer: String,
@@ -22,6 +23,7 @@ pub struct Known {
 
 /// Numbers of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Numbers {
     /// What they are.
     pub what: String,
@@ -33,6 +35,7 @@ pub struct Numbers {
 
 /// The value of a name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Value {
     /// Of what.
     pub name: String,

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use pebo_gen::model::{Model, json_schema};
-use pebo_gen::report::SCHEMA;
+use pebo_gen::report::{CHECK_SCHEMA, SOLVE_SCHEMA};
 use pebo_gen::source::{Code, Source};
-use pebo_gen::{Ask, answer};
+use pebo_gen::{Ask, answer, solve};
 use serde_json::Value;
 
 /// What stands against a value; for the words of JSON schema that ours use.
@@ -94,7 +94,11 @@ fn departures(value: &Value, schema: &Value, at: &str, found: &mut Vec<String>) 
 }
 
 fn check(line: &str) -> Vec<String> {
-    let (value, schema) = (serde_json::from_str(line).expect("JSON"), serde_json::from_str(SCHEMA).expect("JSON"));
+    against(CHECK_SCHEMA, line)
+}
+
+fn against(schema: &str, line: &str) -> Vec<String> {
+    let (value, schema) = (serde_json::from_str(line).expect("JSON"), serde_json::from_str(schema).expect("JSON"));
     let mut found = Vec::new();
     departures(&value, &schema, "", &mut found);
     found
@@ -131,6 +135,35 @@ fn refused_and_malformed_models_too() {
     assert_eq!(check(&line), [""; 0]);
     let source = Source::new("model", "model: [").expect("a text");
     assert_eq!(check(&self::line(&source)), [""; 0]);
+}
+
+/// A search that finds a transform, one that proves that there is none, one that would find one with other assumptions, and
+/// none at all.
+#[test]
+fn searches_give_what_the_schema_says() {
+    let plant = |rates: &str| format!("model: m\nx: [a]\ny: [b]\nu: [v]\n{rates}\n");
+    let cases = [
+        (plant("f_x: {a: v - sin(b)}\nf_y: {b: a}"), r#""verdict":"found""#),
+        (plant("f_x: {a: sin(a) + v*a^2}\nf_y: {b: a}"), r#""bound":{"#),
+        ("model: [".to_owned(), r#""span":{"#),
+    ];
+    for (text, part) in cases {
+        let line = solve(&Source::new("m", text.as_str()).expect("a text"), None, &Ask::new()).report.line();
+        assert!(line.contains(part), "{part} in {line}");
+        assert_eq!(against(SOLVE_SCHEMA, &line), [""; 0], "{text}");
+        assert!(!against(SOLVE_SCHEMA, &line.replacen("\"tried\"", "\"tries\"", 1)).is_empty());
+    }
+}
+
+/// Both objects have the same diagnostics.
+#[test]
+fn diagnostics_are_described_alike() {
+    let diagnostics = |schema: &str| {
+        let schema: Value = serde_json::from_str(schema).expect("JSON");
+        schema["properties"]["diagnostics"].clone()
+    };
+    assert!(diagnostics(CHECK_SCHEMA)["items"]["properties"]["span"].is_object());
+    assert_eq!(diagnostics(CHECK_SCHEMA), diagnostics(SOLVE_SCHEMA));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::analysis::design::{Class, Derivation, Regression, RegressionKind, Ver
 
 /// The components of the extension that a constant bias makes run away.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Drift {
     /// Components with a rate that is free of the extension and was not shown to be zero.
     pub integrators: Vec<Symbol>,

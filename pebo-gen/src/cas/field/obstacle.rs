@@ -6,6 +6,7 @@ use crate::cas::poly::TooLarge;
 
 /// Why a question stays open.
 #[derive(Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// The polynomials grow past the work limit.
     TooLarge,

@@ -26,6 +26,7 @@ use super::{Class, Expansion, Names, Place, Proposal, Stop, singular, unresolved
 
 /// Coils that move one mass.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Electromechanical {
     /// Inductances.
     pub inductance: Matrix,

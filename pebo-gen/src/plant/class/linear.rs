@@ -20,6 +20,7 @@ use crate::plant::plant::{Assumption, Formula, Output, State};
 
 /// A linear plant.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Linear {
     /// How the unmeasured states act on themselves.
     pub a11: Matrix,

@@ -28,6 +28,7 @@ use super::{Class, Expansion, Names, Place, Proposal, Stop, singular, unresolved
 
 /// A mechanical plant.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Mechanical {
     /// The positions.
     pub q: Vec<Symbol>,
@@ -53,6 +54,7 @@ pub struct Mechanical {
 
 /// Formulas in symbols for the velocities.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct InVelocities {
     /// The symbols, one for each position.
     pub velocities: Vec<Expr>,

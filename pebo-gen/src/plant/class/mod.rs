@@ -31,6 +31,7 @@ pub use mechanical::{InVelocities, Mechanical, change_along};
 
 /// What is known of a plant that was written by class.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Class {
     /// `lti`
     Linear(Linear),
@@ -59,6 +60,7 @@ impl Class {
 
 /// What a class proposes, unproved.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Proposal {
     /// States in z and y.
     pub phi_left: Vec<(Symbol, Expr)>,

@@ -152,6 +152,7 @@ pub enum Unreadable {
 
 /// A cell that should be another.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Malformed {
     /// The line, from 1.
     pub line: u64,

@@ -1,0 +1,132 @@
+//! Plants, and what is said of the motions on which unknowns stay hidden.
+
+use crate::analysis::{Derivation, Outcome};
+use crate::model::Model;
+use crate::plant::Plant;
+use crate::source::Source;
+
+/// What is said of a plant's motions, and the conditions on its parameters.
+fn of(lines: &str) -> Vec<String> {
+    let text = format!("model: m\n{lines}\n");
+    let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+    let derivation = Derivation::derive(&plant);
+    assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}");
+    let result = derivation.identifiability.result.as_ref().expect("proved");
+    let mut lines = result.motion.as_ref().expect("over time").lines(&plant);
+    lines.extend(result.constants.iter().map(|e| format!("{} != 0", plant.arena.print(*e))));
+    lines
+}
+
+#[test]
+fn inputs_that_are_equal_or_constant_may_hide_unknowns() {
+    let phases = "parameters: [r]\nx: [a, b]\ny: [v]\nu: [d, e]\nf_x: {a: -r*a - d*v, b: -r*b - e*v}\n\
+                  f_y: {v: d*a + e*b}\nphi: [a, b]\nassume: [r > 0";
+    let anywhere = format!("{phases}]");
+    let expected = [
+        "the unknowns are identified under excitation: keep the inputs varying",
+        "while all inputs are constant, only `z1 + e*z2/d` is identified",
+        "while `d = e`, only `z1 + z2` is identified",
+        "while `d = 0`, only `z2` is identified",
+        "while `e = 0`, only `z1` is identified",
+    ];
+    assert_eq!(of(&anywhere), expected);
+    // Assumptions exclude the rest.
+    assert_eq!(of(&format!("{phases}, d > 0, e > d]")), expected[..2]);
+}
+
+#[test]
+fn different_time_constants_tell_unknowns_apart() {
+    let cells = "parameters: [r, s]\nassume: [r > 0, s > 0]\nx: [a, b]\ny: [v]\nu: [i]\n\
+                 f_x: {a: i - r*a, b: i - s*b}\nf_y: {v: a + b}\nphi: [a, b]";
+    assert_eq!(of(cells), ["the unknowns are identified without excitation by the inputs, even at rest", "r - s != 0"]);
+}
+
+#[test]
+fn a_plant_that_moves_may_need_no_input() {
+    let square = "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]";
+    let lines = of(square);
+    assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+    assert!(lines[1].starts_with("while the plant rests, only `"), "{lines:?}");
+    assert!(lines[2].starts_with("while `u = 0`, only `"), "{lines:?}");
+    assert_eq!(lines.len(), 3);
+    let turned = "x: [q]\ny: [s]\nu: [v]\nf_x: {q: v}\ng_y: {s: sin(q)}\nphi: [sin(q), cos(q)]\nangles: {q: 2*pi}";
+    let lines = of(turned);
+    assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+    assert_eq!(lines[1], "while the plant rests, only `z1` is identified");
+    let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
+    assert_eq!(
+        of(frame),
+        [
+            "the unknowns are identified without excitation by the inputs, even at rest, but for these motions",
+            "while `w = 0`, only `z1` is identified"
+        ]
+    );
+}
+
+#[test]
+fn what_constant_inputs_hide_at_a_value_of_one_or_of_a_parameter_is_listed() {
+    let wind = "x: [a, k]\ny: [p, q]\nu: [v, r]\nassume: [v > 0]\nf_x: {a: 0, k: 0}\n\
+                f_y: {p: k*v*cos(q) + a, q: r}\nphi: [a, k]";
+    let lines = of(wind);
+    assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+    assert_eq!(lines[2], "while the other input is constant and `r = 0`, only `z1 + v*z2*cos(q)` is identified");
+    let sum = "parameters: [k, m]\nassume: [k > 0, m > 0, v > 0, w > 0]\nx: [a, b]\ny: [r]\nu: [v, w]\n\
+               f_x: {a: -k*a, b: -m*b}\nf_y: {r: v*a + w*b}\nphi: [a, b]";
+    let lines = of(sum);
+    assert!(lines[0].ends_with("even at rest, but for these motions"), "{lines:?}");
+    assert!(lines[1].starts_with("while the inputs are constant and `k = m`, only"), "{lines:?}");
+    // q = v stays, while r moves.
+    let pursuit = "x: [p, s]\ny: [r, q]\nu: [v]\nf_x: {p: -v*p, s: -q*s}\nf_y: {r: p + s, q: q - v}\nphi: [p, s]";
+    let lines = of(pursuit);
+    assert!(lines.iter().any(|line| line.contains("q - v = 0") || line.contains("v - q = 0")), "{lines:?}");
+}
+
+#[test]
+fn inputs_at_which_rows_with_their_derivatives_lose_rank_are_listed() {
+    let but = "the unknowns are identified without excitation by the inputs, even at rest, but for these motions";
+    let cells = |rates: &str| format!("parameters: {{k: 2}}\nx: [a, b]\ny: [r]\nu: [v, w]\n{rates}\nphi: [a, b]");
+    let told = |rates: &str| of(&cells(&format!("{rates}\nf_y: {{r: a + b}}")));
+    assert_eq!(told("f_x: {a: v*a, b: w*b}"), [but, "while `v = w`, only `z1 + z2` is identified"]);
+    assert_eq!(told("f_x: {a: -k*v*a, b: -k*b}"), [but, "while `v = 1`, only `z1 + z2` is identified"]);
+    assert_eq!(
+        told("f_x: {a: -(1 + v^2)*a, b: -(2 + v)*b}"),
+        [but, "while `v*(v - 1) - 1 = 0`, it was not decided what is identified"]
+    );
+    let turned = "x: [a, b]\ny: [q, r]\nu: [v]\nf_x: {a: q*a, b: -q*b}\nf_y: {q: v, r: a + b}\nphi: [a, b]";
+    assert_eq!(of(turned), [but, "while `q = 0`, it was not decided what is identified"]);
+}
+
+/// A heat exchanger with an unknown area: without a difference of temperatures it transfers nothing, for ever at rest.
+#[test]
+fn what_several_signals_hide_at_rest_is_listed() {
+    let exchanger = "x: [T, k]\ny: [S]\nu: [v, w]\nassume: [k > 0]\nf_x: {T: v - T - k*(T - S), k: 0}\n\
+                     f_y: {S: w - S + k*(T - S)}\nphi: [k, k*(T + S)]";
+    let lines = of(exchanger);
+    assert!(lines[0].ends_with("almost wherever the plant rests"), "{lines:?}");
+    assert!(lines[1].starts_with("while the plant rests and `"), "{lines:?}");
+    assert!(lines[1].ends_with("= 0`, it was not decided what is identified"), "{lines:?}");
+    assert_eq!(lines.len(), 2, "{lines:?}");
+}
+
+/// No motion is passed over in silence: what is said of all motions was seen to hold on all.
+#[test]
+fn motions_that_several_signals_keep_to_are_listed_or_not_spoken_of() {
+    let almost = "the unknowns are identified on almost every motion, also with constant inputs";
+    // A limit cycle, on which q^2 + w^2 stays 1.
+    let cycle = "x: [p, s]\ny: [q, w, r]\nf_x: {p: 0, s: 0}\nphi: [p, s]\n\
+                 f_y: {q: w + q*(1 - q^2 - w^2), w: -q + w*(1 - q^2 - w^2), r: p + s*(q^2 + w^2)}";
+    let lines = of(cycle);
+    assert!(lines.iter().any(|line| line.starts_with("while `") && line.contains("= 0`, it was not")), "{lines:?}");
+    // Two axes, of which one may hold still.
+    let axes = "x: [a, g, b, k]\ny: [q, v, r, w]\nu: [m, n]\nf_x: {a: 0, g: 0, b: 0, k: 0}\n\
+                f_y: {q: v, v: m - a*v - g*cos(q), r: w, w: n - b*w - k*cos(r)}\nphi: [a, g, b, k]";
+    assert_eq!(of(axes)[0], almost);
+}
+
+/// Competing species at the concentration at which both grow alike.
+#[test]
+fn outputs_at_which_the_plant_rests_unseen_are_listed() {
+    let species = "x: [p, s]\ny: [q, r]\nu: [v]\nf_x: {p: -q*p, s: -s}\nf_y: {q: v - q, r: p + q*s}\nphi: [p, s]";
+    let lines = of(species);
+    assert!(lines.len() > 1 && lines[1..].iter().any(|line| line.contains("q")), "{lines:?}");
+}

@@ -1,0 +1,97 @@
+//! What has to move, and where the regression is blind, in sentences.
+
+use crate::analysis::design::{Blind, Motion, Place};
+use crate::cas::Expr;
+use crate::cas::parts::Side;
+use crate::plant::Plant;
+
+impl Motion {
+    /// Whether there are parts of the domain in which not all unknowns are seen.
+    pub fn is_divided(&self) -> bool {
+        self.blind.iter().any(|blind| matches!(blind.place, Place::Part(_)))
+    }
+
+    /// What has to move, in a line, and where the regression is blind, in a line each.
+    pub fn lines(&self, plant: &Plant) -> Vec<String> {
+        let first = match (self.by_itself, self.at_rest, self.everywhere) {
+            _ if self.is_divided() => {
+                "the unknowns are identified on almost every motion that does not stay where one of these holds"
+            }
+            (Some(true), true, true) if self.blind.is_empty() => {
+                "the unknowns are identified without excitation by the inputs, even at rest"
+            }
+            (Some(true), true, true)
+                if self.blind.iter().all(|blind| matches!(blind.place, Place::UnshownAtRest(_))) =>
+            {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
+            }
+            (Some(true), true, true) => {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
+            }
+            (Some(true), true, false) => {
+                "the unknowns are identified without excitation by the inputs on almost every motion, and almost wherever \
+                 the plant rests"
+            }
+            (Some(true), false, true) => "the unknowns are identified while the plant moves, also with constant inputs",
+            (Some(true), false, false) => {
+                "the unknowns are identified on almost every motion, also with constant inputs"
+            }
+            (Some(false), ..) => "the unknowns are identified under excitation: keep the inputs varying",
+            (None, ..) => {
+                "the unknowns are identified on almost every motion; it was not decided whether the inputs have to vary"
+            }
+        };
+        let blind = self.blind.iter().map(|blind| blind.line(plant));
+        let parameters = (!self.parameters && !plant.parameters.is_empty())
+            .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
+        std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
+    }
+}
+
+impl Blind {
+    /// The motion.
+    pub fn place(&self, plant: &Plant) -> String {
+        self.worded(plant).replace('`', "")
+    }
+
+    /// The motion, with formulas as code.
+    fn worded(&self, plant: &Plant) -> String {
+        let arena = &plant.arena;
+        match &self.place {
+            Place::Rest => "the plant rests".to_owned(),
+            Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.u.len() => {
+                "all inputs are constant".to_owned()
+            }
+            Place::Constant(inputs) => {
+                let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", arena.name(*input))).collect();
+                format!("{} is constant", names.join(", "))
+            }
+            Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+            Place::Steady(symbol, value) => {
+                let others = match (plant.u.contains(symbol), plant.u.len()) {
+                    (true, 0 | 1) | (false, 0) => "",
+                    (true, 2) => "the other input is constant and ",
+                    (true, _) => "the other inputs are constant and ",
+                    (false, 1) => "the input is constant and ",
+                    (false, _) => "the inputs are constant and ",
+                };
+                format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
+            }
+            Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
+            Place::UnshownAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
+            Place::Part(sides) => {
+                let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", arena.print(*expr), side.sign());
+                sides.iter().map(side).collect::<Vec<_>>().join(" and ")
+            }
+        }
+    }
+
+    fn line(&self, plant: &Plant) -> String {
+        let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        if matches!(self.place, Place::Unshown(_) | Place::UnshownAtRest(_)) {
+            return format!("while {}, it was not decided what is identified", self.worded(plant));
+        }
+        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
+        format!("while {}, {seen} is identified", self.worded(plant))
+    }
+}
