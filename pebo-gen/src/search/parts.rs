@@ -21,7 +21,7 @@ use super::question::Question;
 const MOST: usize = 12;
 
 /// Steps by parts, and rounds over all rates, after which they are taken not to end.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 500;
 const MOST_ROUNDS: usize = 12;
 
 /// A function of x in a rate, and the component that begins with it.
@@ -95,19 +95,23 @@ impl ByParts<'_, '_> {
         let mut rest = rate;
         loop {
             let Some(terms) = self.terms(rest)? else { return Ok(None) };
-            let Some(term) = terms.into_iter().find(|term| !self.is_constant(term.product)) else {
+            let open: Vec<Term> = terms.into_iter().filter(|term| !self.is_constant(term.product)).collect();
+            if open.is_empty() {
                 return Ok(Some(rest));
-            };
+            }
             self.steps += 1;
-            if self.steps > MOST_STEPS * MOST {
+            if self.steps > MOST_STEPS {
                 return Ok(None);
             }
-            if let Some(component) = self.components.iter().find(|component| component.lead == term.product) {
+            // Components first: what they leave may cancel what would go by parts.
+            let component = |term: &Term| self.components.iter().find(|component| component.lead == term.product);
+            if let Some((term, component)) = open.iter().find_map(|term| Some((term, component(term)?))) {
                 rest = arena.sub(rest, arena.mul(term.coefficient, component.function));
                 continue;
             }
+            let term = &open[0];
             if let Some(index) = owner
-                && let Some(part) = self.part(&term)?
+                && let Some(part) = self.part(term)?
             {
                 let moved = arena.sub(self.components[index].function, part);
                 self.components[index].function = moved;
@@ -210,7 +214,7 @@ impl ByParts<'_, '_> {
         Ok(found)
     }
 
-    /// The formula without what it holds of the parameters as a factor.
+    /// The formula without what it holds of the parameters as a factor, and with a first term that is not subtracted.
     fn without_numbers(&self, formula: Expr) -> Result<Expr, Obstacle> {
         let (arena, question) = (self.question.arena, self.question);
         let field = Field::over(arena, &question.domain.facts, &[formula])?;
@@ -222,6 +226,8 @@ impl ByParts<'_, '_> {
         for (_, coefficient) in rest {
             common = common.gcd(coefficient, field.limit())?;
         }
-        Ok(arena.div(formula, field.show(&field.of_polynomial(&common)?)))
+        let bare = arena.div(formula, field.show(&field.of_polynomial(&common)?));
+        let is_subtracted = field.fraction(bare)?.numerator().leading_coefficient().is_negative();
+        Ok(if is_subtracted { arena.neg(bare) } else { bare })
     }
 }
