@@ -476,7 +476,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         let errors = match &self.uncertainty {
             Some(uncertainty) => {
                 let at = (&self.coordinates_now(), self.observer.terms()?);
-                uncertainty.of(at, |z, y| self.observer.model().recover(z, y))?
+                uncertainty.of(at, |z, y| self.observer.model().recover_unbounded(z, y))?
             }
             None => self.is_certain.then(|| self.observer.standard_error())??,
         };

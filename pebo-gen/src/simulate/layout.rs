@@ -11,11 +11,13 @@ use crate::plant::Plant;
 use crate::program::{Program, lower};
 use crate::source::{Code, Diagnostic, Span};
 
+use super::switching::{Switched, Switches};
+
 /// The position of time.
 pub(super) const TIME: usize = 0;
 
 /// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
-/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show.
+/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show; signs in the rates.
 #[derive(Debug)]
 pub(super) struct Layout {
     /// The symbols in the order of the table.
@@ -34,6 +36,8 @@ pub(super) struct Layout {
     pub(super) signals: Range<usize>,
     /// The last sample of each output that arrived; empty where sensors are perfect.
     pub(super) shown: Range<usize>,
+    /// What stands for signs in the rates, and for the rates of signals that these depend on.
+    pub(super) switches: Range<usize>,
 }
 
 impl Layout {
@@ -61,7 +65,33 @@ impl Layout {
         let signals = add(signals.chain(courses).collect());
         let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
         let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
-        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals, shown }
+        let switches = symbols.len()..symbols.len();
+        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals, shown, switches }
+    }
+
+    /// The same with the signs in the rates of the state, which are taken out of these.
+    pub(super) fn with_switches(mut self, arena: &Arena, rates: &mut [Expr]) -> (Self, Switches) {
+        let signals = &self.symbols[self.signals.clone()];
+        let switches = Switches::take(arena, rates, &self.symbols[self.state.clone()], signals);
+        self.symbols.extend(&switches.symbols);
+        self.switches.end = self.symbols.len();
+        (self, switches)
+    }
+
+    /// Switches as programs on this table; none where there are none.
+    pub(super) fn switched(&self, arena: &Arena, switches: &Switches, span: Span) -> Result<Option<Switched>, Diagnostic> {
+        if switches.levels.is_empty() {
+            return Ok(None);
+        }
+        let first = self.switches.start;
+        let place = |symbol: &Symbol| self.symbols.iter().position(|known| known == symbol);
+        let rates = first + switches.levels.len()..self.switches.end;
+        Ok(Some(Switched {
+            levels: self.program(arena, &switches.levels, span)?,
+            slopes: self.program(arena, &switches.slopes, span)?,
+            places: first..rates.start,
+            moving: switches.signals.iter().filter_map(place).zip(rates).collect(),
+        }))
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.

@@ -33,6 +33,9 @@ where
     /// `phi_left`, which is taken over one standard error of the unknown to either side, the smaller change counting: an
     /// angle may come round on the other.
     ///
+    /// It is that of the last sample, whose covariance it has: what the unknown drifts by since then is not counted. Of an
+    /// estimate that [`Within`](crate::Within) moves to a bound it is that of the estimate before.
+    ///
     /// None before the first sample, and where `phi_left` has no value one standard error away.
     ///
     /// Cost: `2 NE` left inverses.
@@ -41,7 +44,7 @@ where
         let eta = self.state.estimator.estimate();
         let root = self.state.estimator.covariance_root(nalgebra::zero())?;
         let at = |eta: SVector<M::Scalar, NE>| {
-            self.model.recover(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
+            self.model.recover_unbounded(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
         };
         let estimate = at(eta);
         let mut squares = SVector::<M::Scalar, NX>::zeros();
