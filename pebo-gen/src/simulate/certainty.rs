@@ -70,10 +70,9 @@ impl<'a> Following<'a> {
 
     /// Looks at the standard errors of an instant, where they are known.
     pub(super) fn look(&mut self, t: f64, errors: Option<&[f64]>) {
-        let share = |wanted: &&Wanted| Some((*wanted, *errors?.get(wanted.estimate)?));
         let over = |(wanted, error): &(&Wanted, f64)| error / wanted.error;
-        let all = self.wanted.iter();
-        self.weakest = all.filter_map(|wanted| share(&wanted)).max_by(|a, b| over(a).total_cmp(&over(b)));
+        let known = self.wanted.iter().filter_map(|wanted| Some((wanted, *errors?.get(wanted.estimate)?)));
+        self.weakest = known.max_by(|a, b| over(a).total_cmp(&over(b)));
         let Some(most) = self.weakest.as_ref().map(over) else { return };
         self.known = match self.known {
             State::NotYet | State::Lost(_) if most <= 1.0 => State::Converged(t),

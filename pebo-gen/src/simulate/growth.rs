@@ -43,7 +43,7 @@ impl Growth {
         let grown = |(place, value): (usize, &f64)| {
             // Of what has been zero so far nobody knows its size: one of its unit.
             let before = if self.earlier[place] > 0.0 { self.earlier[place] } else { 1.0 };
-            let last = if value.is_nan() { self.so_far[place] } else { value.abs() };
+            let last = if value.is_finite() { value.abs() } else { self.so_far[place] };
             (place, last, last / before)
         };
         let all = state.iter().enumerate().map(grown);

@@ -11,7 +11,7 @@ use crate::plant::Plant;
 use crate::program::{Program, lower};
 use crate::source::{Code, Diagnostic, Span};
 
-use super::switching::{Switched, Switches};
+use super::switching::Switches;
 
 /// The position of time.
 pub(super) const TIME: usize = 0;
@@ -76,22 +76,6 @@ impl Layout {
         self.symbols.extend(&switches.symbols);
         self.switches.end = self.symbols.len();
         (self, switches)
-    }
-
-    /// Switches as programs on this table; none where there are none.
-    pub(super) fn switched(&self, arena: &Arena, switches: &Switches, span: Span) -> Result<Option<Switched>, Diagnostic> {
-        if switches.levels.is_empty() {
-            return Ok(None);
-        }
-        let first = self.switches.start;
-        let place = |symbol: &Symbol| self.symbols.iter().position(|known| known == symbol);
-        let rates = first + switches.levels.len()..self.switches.end;
-        Ok(Some(Switched {
-            levels: self.program(arena, &switches.levels, span)?,
-            slopes: self.program(arena, &switches.slopes, span)?,
-            places: first..rates.start,
-            moving: switches.signals.iter().filter_map(place).zip(rates).collect(),
-        }))
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.

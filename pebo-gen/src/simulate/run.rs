@@ -77,7 +77,7 @@ impl Scenario {
             show(sample, Shown { table, errors });
             if sample % stride == 0 || sample == samples {
                 watch.look(table[TIME], &machine.stepping.observer.said());
-                let predicted = machine.stepping.observer.standard_errors();
+                let predicted = machine.stepping.standard_errors();
                 certain.look(table[TIME], predicted.as_deref());
                 expected.add(table[TIME], predicted);
             }

@@ -223,7 +223,7 @@ impl Resolution<'_> {
 
         let layout = Layout::new(plant, simulation, &design.recovered);
         let (layout, switches) = layout.with_switches(arena, &mut rates);
-        let switches = problems.keep(layout.switched(arena, &switches, span));
+        let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > flow::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());
             problems.push(

@@ -16,6 +16,9 @@ use rustc_hash::FxHashMap;
 
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::program::{Interpreter, Program};
+use crate::source::{Diagnostic, Span};
+
+use super::layout::program;
 
 /// Rounds in which switches that slide together are found: each is solved for with the others as they are.
 const ROUNDS: usize = 200;
@@ -68,6 +71,23 @@ impl Switches {
         }
         found.slopes = found.levels.iter().map(|level| arena.directional(*level, &along)).collect();
         found
+    }
+
+    /// The same as programs on a table of these symbols, at whose end stand those that were put in; none where there are no
+    /// switches.
+    pub(super) fn programs(&self, arena: &Arena, table: &[Symbol], span: Span) -> Result<Option<Switched>, Diagnostic> {
+        if self.levels.is_empty() {
+            return Ok(None);
+        }
+        let first = table.len() - self.symbols.len();
+        let rates = first + self.levels.len()..table.len();
+        let place = |symbol: &Symbol| table.iter().position(|known| known == symbol);
+        Ok(Some(Switched {
+            levels: program(arena, table, &self.levels, span)?,
+            slopes: program(arena, table, &self.slopes, span)?,
+            places: first..rates.start,
+            moving: self.signals.iter().filter_map(place).zip(rates).collect(),
+        }))
     }
 }
 

@@ -249,7 +249,7 @@ impl<'a, 'w> Machine<'a, 'w> {
     /// Looks at what the data determine.
     fn look(&mut self) {
         self.watch.look(self.last, &self.stepping.observer.said());
-        let predicted = self.stepping.observer.standard_errors();
+        let predicted = self.stepping.standard_errors();
         self.certain.look(self.last, predicted.as_deref());
         self.expected.add(self.last, predicted);
     }
