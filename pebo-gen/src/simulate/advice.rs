@@ -66,7 +66,9 @@ pub(super) fn advise(
     } else if let Some(rated) = unsettled.iter().find(|rated| rated.outside) {
         let state = &rated.estimate.state;
         diagnostic
-            .note(format!("`{state}` itself is beyond the bounds of `within` in this run, and its estimate is kept within them"))
+            .note(format!(
+                "`{state}` itself is beyond the bounds of `within` in this run, and its estimate is kept within them"
+            ))
             .help(format!("widen the bounds of `{state}` under `within`, or start the plant within them"))
     } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
         diagnostic
@@ -168,7 +170,9 @@ fn follow(state: &str, (estimator, known): (&Estimator, bool)) -> String {
         Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } => "raise `gain`".to_owned(),
         Estimator::Drem { .. } => "raise `gain` and `forgetting`".to_owned(),
     };
-    format!("{setting}, so that the observer follows where `{state}` moves; what moves all the time it follows with a lag")
+    format!(
+        "{setting}, so that the observer follows where `{state}` moves; what moves all the time it follows with a lag"
+    )
 }
 
 /// What helps against the first of the things in which a plant and its sensors differ from the model; observers of known

@@ -211,7 +211,8 @@ impl<'a> Machine<'a> {
         }
         let arrives = self.measure(sample);
         let state = self.scenario.layout.state.clone();
-        self.admit(state.clone()).map_err(|failure| self.diverged(&self.table[state.clone()], to).unwrap_or(failure))?;
+        self.admit(state.clone())
+            .map_err(|failure| self.diverged(&self.table[state.clone()], to).unwrap_or(failure))?;
         self.growth.add(&self.table[state]);
         if !self.followers.is_empty() {
             let mut y = self.measured.values.clone();

@@ -135,7 +135,11 @@ impl Scenario {
 
     /// What there is to say of a run that did not converge: why, and what mends it.
     pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
-        advise(summary, (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moved.as_deref())), self.span)
+        advise(
+            summary,
+            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moved.as_deref())),
+            self.span,
+        )
     }
 
     /// A failure of a run as a diagnostic at the section that was run.
@@ -147,7 +151,9 @@ impl Scenario {
         let help = match failure {
             Failure::Refused { at, fault: Fault::Estimate } if *at <= 0.0 => self.restart.clone(),
             Failure::NotFinite { name, .. } if self.inputs().any(|input| input == name) => {
-                format!("the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients")
+                format!(
+                    "the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients"
+                )
             }
             _ => failure.help().to_owned(),
         };

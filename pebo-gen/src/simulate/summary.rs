@@ -152,9 +152,14 @@ impl Summary {
             Some(Certainty::NotYet { error: None, .. }) => {
                 line("certainty", "not known, as no standard error is predicted");
             }
-            Some(Certainty::Converged { since }) => line("certainty", &format!("as wanted from t = {} s on", short(*since))),
+            Some(Certainty::Converged { since }) => {
+                line("certainty", &format!("as wanted from t = {} s on", short(*since)))
+            }
             Some(Certainty::Lost { since, weakest }) => {
-                line("certainty", &format!("lost at t = {} s, `{weakest}` is no longer known as wanted", short(*since)));
+                line(
+                    "certainty",
+                    &format!("lost at t = {} s, `{weakest}` is no longer known as wanted", short(*since)),
+                );
             }
         }
         if let Some(surprise) = self.surprise {

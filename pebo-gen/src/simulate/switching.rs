@@ -238,7 +238,9 @@ impl Switching {
         self.levels.run(table, &mut self.at);
         for _ in 0..ROUNDS {
             let mut change: f64 = 0.0;
-            for switch in (0..self.modes.len()).filter(|switch| self.modes[*switch] == Mode::Sliding).collect::<Vec<_>>() {
+            for switch in
+                (0..self.modes.len()).filter(|switch| self.modes[*switch] == Mode::Sliding).collect::<Vec<_>>()
+            {
                 let (below, above) = self.sides(switch, table);
                 let place = self.places.start + switch;
                 let value = (below + above) / (below - above);

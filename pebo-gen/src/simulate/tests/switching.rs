@@ -143,7 +143,8 @@ fn a_plant_that_sticks_is_simulated() {
     let held: Vec<usize> = (0..omega.len()).filter(|row| omega[*row].abs() < 1e-9).collect();
     // It rests for some tenths of a second, and while it does the torque is below what moves it.
     assert!(held.len() > 200, "{}", held.len());
-    let rests = |row: &usize| row + 1 == omega.len() || omega[row + 1].abs() >= 1e-9 || (torque[*row] + 0.5).abs() <= 2.0;
+    let rests =
+        |row: &usize| row + 1 == omega.len() || omega[row + 1].abs() >= 1e-9 || (torque[*row] + 0.5).abs() <= 2.0;
     assert!(held.iter().all(rests));
 }
 
