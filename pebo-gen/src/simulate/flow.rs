@@ -41,8 +41,13 @@ const SHORTEST: f64 = 1e-12;
 /// The largest state that is integrated.
 pub(super) const LARGEST: usize = 64;
 
-/// Changes of signs between two samples before the plant counts as one that has no solution.
-const MOST_SWITCHES: u64 = 10_000;
+/// Changes of signs between two samples that are followed one by one. Where there are more the signs change ever faster, as
+/// those of a mass that a relay and friction bring to rest; from then on they are looked at [`LOOKS`] times a period.
+const MOST_SWITCHES: u64 = 100;
+
+/// How often between two samples signs may change that change without end: a level then moves by no more than it does in so
+/// small a part of the period.
+const LOOKS: f64 = 1000.0;
 
 /// How far to either side a signal is looked at for its rate, as a part of the interval: of a formula whose third derivative
 /// is one over the interval cubed, the rate errs by 2e-9 of itself.
@@ -162,13 +167,17 @@ impl Flow {
         let length = to - from;
         let (mut at, mut reached, mut most) = (0.0, Vec::new(), self.left.min(MOST_STEPS));
         let left = most;
-        for _ in 0..MOST_SWITCHES {
+        let mut switches = 0;
+        while length - at > SHORTEST * length {
             let rest = length - at;
-            if rest <= SHORTEST * length {
-                self.left -= left - most;
-                return Ok(());
-            }
             self.rates.0.get_mut().begin(from + at, state, &reached);
+            if switches == MOST_SWITCHES {
+                let part = rest.min(length / LOOKS);
+                most -= self.solver.solve(&self.rates, state, part, most, None)?;
+                at += part;
+                continue;
+            }
+            switches += 1;
             // The last step before a sign changes, and the one after it.
             let (mut before, mut after) = ((0.0, state.to_vec()), None);
             let rates = &self.rates;
@@ -202,8 +211,12 @@ impl Flow {
             reached = self.rates.0.get_mut().reached(late, &end).unwrap_or_default();
             state.copy_from_slice(&end);
             at += start + late;
+            if switches == MOST_SWITCHES {
+                reached.clear();
+            }
         }
-        Err(Stuck { steps: left - most, at: from + at, state: state.to_vec() })
+        self.left -= left - most;
+        Ok(())
     }
 }
 

@@ -242,6 +242,10 @@ impl Switching {
                 (0..self.modes.len()).filter(|switch| self.modes[*switch] == Mode::Sliding).collect::<Vec<_>>()
             {
                 let (below, above) = self.sides(switch, table);
+                // What no longer acts on its level keeps its value until all is decided anew.
+                if below <= above {
+                    continue;
+                }
                 let place = self.places.start + switch;
                 let value = (below + above) / (below - above);
                 change = change.max((value - table[place]).abs());

@@ -116,6 +116,21 @@ fn a_relay_swings_in_parabolas() {
 }
 
 #[test]
+fn signs_that_change_ever_faster_end_at_rest() {
+    // a'' = -sign(a) - sign(a')/2 from 1: 2 s to zero, 2/3 s to -1/3, and so on from a third: (2 + 2/3)/(1 - sqrt(1/3)) s,
+    // which is 6.31 s, for all of it.
+    let rates = |arena: &Arena, a: &[Expr], _: Expr| {
+        let friction = arena.div(sign(arena, a[1]), arena.number(2));
+        vec![a[1], arena.neg(arena.add(sign(arena, a[0]), friction))]
+    };
+    let found = states(&[1.0, 0.0], rates, "0");
+    // a' moves by 1.5 a second, and a sign may be wrong for a thousandth of a tenth of one.
+    for state in &found[65..] {
+        assert!(state[0].abs() < 1e-6 && state[1].abs() < 3e-4, "{state:?}");
+    }
+}
+
+#[test]
 fn a_sign_of_a_signal_changes_between_samples() {
     // a' = sign(cos(t)), which changes at odd multiples of pi/2.
     let found = states(&[0.0], |arena, _, s| vec![sign(arena, s)], "cos(t)");
