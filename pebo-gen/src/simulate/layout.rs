@@ -11,8 +11,6 @@ use crate::plant::Plant;
 use crate::program::{Program, lower};
 use crate::source::{Code, Diagnostic, Span};
 
-use super::switching::Switches;
-
 /// The position of time.
 pub(super) const TIME: usize = 0;
 
@@ -20,7 +18,7 @@ pub(super) const TIME: usize = 0;
 /// estimates; the baselines' estimates; signals and courses; what imperfect sensors show; signs in the rates.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// The symbols in the order of the table.
+    /// The symbols in the order of the table; behind those of the ranges, signs in the rates.
     pub(super) symbols: Vec<Symbol>,
     /// x, y and the baselines' states together.
     pub(super) state: Range<usize>,
@@ -36,8 +34,6 @@ pub(super) struct Layout {
     pub(super) signals: Range<usize>,
     /// The last sample of each output that arrived; empty where sensors are perfect.
     pub(super) shown: Range<usize>,
-    /// What stands for signs in the rates, and for the rates of signals that these depend on.
-    pub(super) switches: Range<usize>,
 }
 
 impl Layout {
@@ -65,17 +61,7 @@ impl Layout {
         let signals = add(signals.chain(courses).collect());
         let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
         let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
-        let switches = symbols.len()..symbols.len();
-        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals, shown, switches }
-    }
-
-    /// The same with the signs in the rates of the state, which are taken out of these.
-    pub(super) fn with_switches(mut self, arena: &Arena, rates: &mut [Expr]) -> (Self, Switches) {
-        let signals = &self.symbols[self.signals.clone()];
-        let switches = Switches::take(arena, rates, &self.symbols[self.state.clone()], signals);
-        self.symbols.extend(&switches.symbols);
-        self.switches.end = self.symbols.len();
-        (self, switches)
+        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals, shown }
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.

@@ -29,7 +29,7 @@ use super::scope::{Estimates, Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
 use super::summary::{Estimate, Summary};
-use super::switching::Switched;
+use super::switching::{Switched, Switches};
 use super::timing::Timing;
 use super::trace::Trace;
 use super::truth::Truth;
@@ -228,7 +228,7 @@ impl Resolution<'_> {
         let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
 
         let layout = Layout::new(plant, simulation, &design.recovered);
-        let (layout, switches) = layout.with_switches(arena, &mut rates);
+        let (layout, switches) = Switches::of(arena, layout, &mut rates);
         let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > flow::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());

@@ -18,7 +18,7 @@ use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::program::{Interpreter, Program};
 use crate::source::{Diagnostic, Span};
 
-use super::layout::program;
+use super::layout::{Layout, program};
 
 /// Rounds in which switches that slide together are found: each is solved for with the others as they are.
 const ROUNDS: usize = 200;
@@ -43,6 +43,14 @@ pub(super) struct Switches {
 }
 
 impl Switches {
+    /// The signs in the rates of a run's state, which are taken out of them and stand at the end of its table.
+    pub(super) fn of(arena: &Arena, layout: Layout, rates: &mut [Expr]) -> (Layout, Self) {
+        let (state, signals) = (&layout.symbols[layout.state.clone()], &layout.symbols[layout.signals.clone()]);
+        let switches = Self::take(arena, rates, state, signals);
+        let symbols = layout.symbols.iter().chain(&switches.symbols).copied().collect();
+        (Layout { symbols, ..layout }, switches)
+    }
+
     /// Takes the signs out of the rates of a state; of what is held from sample to sample a sign is a number, and stays.
     pub(super) fn take(arena: &Arena, rates: &mut [Expr], state: &[Symbol], signals: &[Symbol]) -> Self {
         let moving: BTreeSet<Symbol> = state.iter().chain(signals).copied().collect();
