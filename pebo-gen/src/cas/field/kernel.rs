@@ -1,5 +1,6 @@
 //! The table of kernels: what polynomials take as variables, with the relations among them.
 
+pub(super) mod absolute;
 pub(super) mod argument;
 mod cyclotomic;
 mod elements;

@@ -59,6 +59,7 @@ pub use sign::Signs;
 
 use coprime::CoprimeBase;
 use kernel::Kernels;
+use kernel::absolute::absolute_angles;
 use kernel::argument::{Atoms, Units};
 use kernel::inverse::{InverseAngle, domain_of};
 use kernel::radical::ProductRoot;
@@ -149,9 +150,14 @@ impl<'a> Field<'a> {
             known_signs: Known::default(),
             round: Round::default(),
         };
+        // On a manifold, symbols are combinations of others: what is independent of the rest is found as it comes.
+        let absolute = if steps.is_empty() { absolute_angles(arena, roots) } else { Vec::new() };
         for _ in 0..MOST_ROUNDS {
             if arena.budget().is_exhausted() {
                 return Err(Obstacle::OutOfBudget);
+            }
+            for angle in &absolute {
+                field.take_for_atom(Family::Angle, *angle)?;
             }
             for root in roots {
                 field.fraction(*root)?;

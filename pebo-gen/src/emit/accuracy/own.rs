@@ -85,11 +85,11 @@ impl<'a> Own<'a> {
         if formulas.iter().any(Vec::is_empty) {
             return false;
         }
-        let lost = |formulas: &Vec<Expr>| {
-            let places = (0..=BESIDE).map(|step| beside(scalar, place, step));
-            places.flat_map(|place| self.units(formulas, &place, scalar)).fold(0.0, f64::max)
+        let lose_as_much = |formulas: &Vec<Expr>| {
+            let mut places = (0..=BESIDE).map(|step| beside(scalar, place, step));
+            places.any(|place| self.units(formulas, &place, scalar).iter().any(|lost| LIKE * lost >= units))
         };
-        formulas.iter().any(|formulas| LIKE * lost(formulas) >= units) || self.is_small(value, place, units)
+        formulas.iter().any(lose_as_much) || self.is_small(value, place, units)
     }
 
     /// The most units that the author's formulas lose together with those of their sums that the value holds.

@@ -96,6 +96,13 @@ impl Field<'_> {
         Ok(total.into_iter().filter(|(_, factor)| !factor.is_zero()).collect())
     }
 
+    /// Takes an argument for an atom as it is, before others are split into atoms; independent of those taken before.
+    pub(in crate::cas::field) fn take_for_atom(&self, family: Family, argument: Expr) -> Result<(), Obstacle> {
+        let (key, bare, _) = self.undivided(&self.fraction(argument)?)?;
+        self.round.atoms.borrow_mut().entry(family).or_default().push((key, bare));
+        Ok(())
+    }
+
     /// The terms of the quotient and of the remainder of numerator by denominator.
     fn pieces(&self, argument: &Fraction) -> Result<Vec<Fraction>, Obstacle> {
         let mut pieces = Vec::new();
