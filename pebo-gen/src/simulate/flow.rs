@@ -344,7 +344,9 @@ impl<const N: usize> ODE<f64, [f64; N]> for Equation {
         if inner.switching.is_some() {
             inner.place(t, state);
             let Rates { table, switching, .. } = &mut *inner;
-            switching.iter_mut().for_each(|switching| switching.hold(table));
+            if let Some(switching) = switching {
+                switching.hold(table);
+            }
         }
         let Rates { table, state: place, origin, signals, formulas, .. } = &mut *inner;
         let now = *origin + t;

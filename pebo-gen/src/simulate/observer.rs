@@ -155,18 +155,15 @@ fn wanted(asked: &Asked, inverse: &LeftInverse, problems: &mut Diagnostics) -> V
     let mut found = Vec::new();
     for entry in &asked.model.observer.wanted {
         let state = &entry.name.value;
-        match inverse.x.iter().position(|(recovered, _)| arena.name(*recovered) == *state) {
-            Some(estimate) => {
-                found.push(Wanted { estimate, state: state.clone(), error: entry.value.value.to_f64() });
-            }
-            None => {
-                let message = format!("`wanted` names `{state}`, which this observer does not recover");
-                problems.push(
-                    Diagnostic::error(Code::SettingConflict, entry.name.span, message)
-                        .help("remove it, or add its formula to `phi_left`"),
-                );
-            }
-        }
+        let Some(estimate) = inverse.x.iter().position(|(recovered, _)| arena.name(*recovered) == *state) else {
+            let message = format!("`wanted` names `{state}`, which this observer does not recover");
+            problems.push(
+                Diagnostic::error(Code::SettingConflict, entry.name.span, message)
+                    .help("remove it, or add its formula to `phi_left`"),
+            );
+            continue;
+        };
+        found.push(Wanted { estimate, state: state.clone(), error: entry.value.value.to_f64() });
     }
     found
 }

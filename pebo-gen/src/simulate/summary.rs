@@ -153,7 +153,7 @@ impl Summary {
                 line("certainty", "not known, as no standard error is predicted");
             }
             Some(Certainty::Converged { since }) => {
-                line("certainty", &format!("as wanted from t = {} s on", short(*since)))
+                line("certainty", &format!("as wanted from t = {} s on", short(*since)));
             }
             Some(Certainty::Lost { since, weakest }) => {
                 line(

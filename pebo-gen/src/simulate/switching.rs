@@ -68,7 +68,9 @@ impl Switches {
         if found.levels.is_empty() {
             return found;
         }
-        rates.iter_mut().for_each(|rate| *rate = arena.replace(*rate, &values));
+        for rate in rates.iter_mut() {
+            *rate = arena.replace(*rate, &values);
+        }
         let mut along: BTreeMap<Symbol, Expr> = state.iter().copied().zip(rates.iter().copied()).collect();
         let read = arena.symbols_of(&found.levels);
         for signal in signals.iter().filter(|signal| read.contains(signal)) {
