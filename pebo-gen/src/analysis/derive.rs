@@ -219,7 +219,8 @@ fn regressed(
     };
     let given = forms::preferred(plant, domain, claims, (regression, identifiability), found, before);
     let given = by_values(plant, domain, claims, given, found, before);
-    let mut given = from_identities(plant, domain, claims, given, found);
+    let given = from_identities(plant, domain, claims, given, found);
+    let mut given = without_others(plant, domain, claims, given, found, before);
     if let Some(result) = &given.0.result
         && matches!(given.1.verdict, Verdict::Refuted | Verdict::Undecided)
         && !plant.arena.budget().is_exhausted()
@@ -251,6 +252,28 @@ fn by_values(
         }
         _ => given,
     }
+}
+
+/// Where a rate has no usable form, those that are affine in phi may do: else the given.
+fn without_others(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let is_given = given.0.verdict == Verdict::Proved || plant.relation_form.is_some();
+    if is_given || plant.arena.budget().is_exhausted() {
+        return given;
+    }
+    let mut said = Vec::new();
+    let others = regression::of_affine_rates(plant, domain, cascade, inverse);
+    let both = others.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
+    let Some(both) = both else { return given };
+    found.truncate(before);
+    found.extend(said);
+    both
 }
 
 /// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.

@@ -220,8 +220,12 @@ pub struct Motion {
     pub by_itself: Option<bool>,
     /// Whether nothing has to: with outputs that are constant too it is full.
     pub at_rest: bool,
-    /// Motions on which it is not full. There may be others.
+    /// Motions on which it is not full.
     pub blind: Vec<Blind>,
+    /// Whether there are no others, of those with constant inputs.
+    pub everywhere: bool,
+    /// Whether the combinations of the parameters were worked out at which the rank is full on no motion.
+    pub parameters: bool,
 }
 
 /// Motions on which the regression does not show all unknowns: proved.

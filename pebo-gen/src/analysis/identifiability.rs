@@ -38,12 +38,9 @@ pub(super) fn prove(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Identifiability> {
-    let rates = plant.rates().into_values().chain(cascade.h.iter().copied());
-    let formulas = Formulas {
-        regressor: regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect(),
-        rates: rates.chain(cascade.lambda.iter().flatten().flatten().copied()).collect(),
-        identities: plant.identities.iter().map(|identity| identity.expr).collect(),
-    };
+    let regressor: Vec<Expr> = regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect();
+    let identities: Vec<Expr> = plant.identities.iter().map(|identity| identity.expr).collect();
+    let formulas = Formulas { rates: moving(plant, cascade, &regressor, &identities), regressor, identities };
     let hidden = plant.hidden();
     let sees_states = depends_on_states(plant, &formulas, cascade);
     let concerns = |equation| sees_states || !plant.arena.depends_on(equation, &hidden);
@@ -56,6 +53,26 @@ pub(super) fn prove(
     };
     divided::decide(plant, domain, regression, &formulas, found, on)
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
+}
+
+/// The rates that the regressor's derivatives hold; all, where they hold inputs, which may have to be what the rates leave
+/// them.
+fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Expr]) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let mut rates = plant.rates();
+    let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };
+    rates.extend(extension.iter().copied().zip(cascade.h.iter().copied()));
+    let lambda: Vec<Expr> = cascade.lambda.iter().flatten().flatten().copied().collect();
+    let held = [regressor, identities, &lambda].concat();
+    let mut reached = arena.symbols_of(&held);
+    let mut open: Vec<Symbol> = reached.iter().copied().collect();
+    while let Some(rate) = open.pop().map(|symbol| rates.get(&symbol)) {
+        let symbols = rate.map(|rate| arena.symbols_of(&[*rate])).unwrap_or_default();
+        open.extend(symbols.into_iter().filter(|symbol| reached.insert(*symbol)));
+    }
+    let needs_all = plant.u.iter().any(|input| reached.contains(input));
+    let own = rates.into_iter().filter(|(symbol, _)| needs_all || reached.contains(symbol)).map(|(_, rate)| rate);
+    own.chain(lambda).collect()
 }
 
 /// Whether the regressor or a derivative of it along the plant depends on the unmeasured states: through the rates of outputs

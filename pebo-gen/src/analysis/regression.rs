@@ -33,7 +33,9 @@ use cancelling::combinations;
 pub(super) use differentiated::{differentiated, no_such_form};
 use functions::over_parameterised;
 use linear::{decompose, linear};
-use refusal::{hidden_by_signals, nonlinear, not_recovered, not_sought, refuted, undecided};
+use refusal::{
+    OtherForm, hidden_by_signals, nonlinear, not_in_other_forms, not_recovered, not_sought, refuted, undecided,
+};
 pub(super) use standing::from_identities;
 use standing::from_relations;
 pub(super) use together::together;
@@ -51,6 +53,42 @@ fn unbent(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     }
     let field = Field::over(arena, &domain.facts, &[rate]);
     field.and_then(|field| Ok(field.show(&field.fraction(rate)?))).unwrap_or(rate)
+}
+
+/// A form in which the unknowns of a rate that is not affine may be linear all the same, if not all such forms were tried.
+fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> Option<OtherForm> {
+    let arena = &plant.arena;
+    let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
+    let below = implicit::factor(plant, domain, rate).ok().flatten();
+    if let Some(below) = below.filter(|below| arena.depends_on(*below, &unknown)) {
+        let both = [below, arena.mul(below, rate)];
+        if !matches!(separation::separate(plant, domain, &both), Ok(None)) {
+            return Some(OtherForm::Multiplied);
+        }
+    }
+    // A component without a rate of its own is a constant, and so is each of its functions.
+    let rests = |index: usize| cascade.lambda.is_none() && arena.is_zero(cascade.h[index]);
+    let curved = |z: Symbol| arena.depends_on(arena.derivative(rate, z), &BTreeSet::from([z]));
+    plant
+        .z
+        .iter()
+        .enumerate()
+        .find(|(index, z)| rests(*index) && curved(**z))
+        .map(|(index, _)| OtherForm::Function(index))
+}
+
+/// The regression of the rates that are affine in phi, where there are others too; none if no rate is.
+pub(super) fn of_affine_rates(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: Option<&LeftInverse>,
+) -> Option<Claim<Regression>> {
+    let rates = plant.y.iter().enumerate().filter_map(|(index, output)| Some((index, output.rate?.expr)));
+    let row = |(index, rate)| Some((index, decompose(plant, domain, index, rate).ok()??));
+    let (outputs, rows): (Vec<usize>, Vec<_>) = rates.filter_map(row).unzip();
+    let regression = || linear(plant, domain, cascade, left_inverse, outputs, &rows);
+    (!rows.is_empty()).then(|| Claim { verdict: Verdict::Proved, result: Some(regression()) })
 }
 
 /// Proves or refutes the regression.
@@ -101,10 +139,12 @@ pub(super) fn prove(
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
     let mut unsought = false;
     let mut unrecovered = None;
+    let mut in_z: BTreeMap<usize, Expr> = BTreeMap::new();
     if let Some(left_inverse) = left_inverse {
         let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
         let of_z = |rate: Expr| plant.arena.substitute(unbent(plant, domain, rate), &inverse);
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| of_z(*rate)).collect();
+        in_z = rows.iter().map(|row| row.0).zip(rates.iter().copied()).collect();
         match separation::separate(plant, domain, &rates) {
             Ok(Some(_)) if cascade.lambda.is_some() => unsought = true,
             Ok(Some(separated)) => {
@@ -146,7 +186,11 @@ pub(super) fn prove(
         }
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
-        if let Some(shown) = bend {
+        let form = in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate));
+        if let (Some(shown), Some(form)) = (&bend, form) {
+            verdict = Verdict::Undecided;
+            found.push(not_in_other_forms(plant, index, span, shown, form));
+        } else if let Some(shown) = bend {
             let bends = |term| nonlinear(plant, domain, term, left_inverse).is_some();
             let places = blame::summands(plant, index, bends);
             found.push(refuted(plant, index, &places, &shown, NO_SEPARATION));

@@ -39,9 +39,16 @@ impl Arena {
         (base, Relation::Positive)
     }
 
-    /// What a division asks of what stands below.
-    pub fn asked_by_division(&self, below: Expr) -> (Expr, Relation) {
-        (below, Relation::NonZero)
+    /// What a division asks of what stands below: of a root that its radicand is not zero, which takes more to see of the
+    /// root.
+    pub fn asked_by_division(&self, below: Expr) -> Asks {
+        let Node::Product(product) = self.node(below) else { return vec![(below, Relation::NonZero)] };
+        let roots = product.factors.iter().filter(|(_, exponent)| !exponent.is_integer());
+        let mut asks: Asks = roots.map(|(base, _)| (*base, Relation::Positive)).collect();
+        if asks.len() < product.factors.len() {
+            asks.push((below, Relation::NonZero));
+        }
+        asks
     }
 
     /// What a function asks of its arguments.
@@ -146,6 +153,23 @@ mod tests {
         }
         assert_eq!(asked(|arena, a, b| arena.div(b, a), Want::Value), ["a != 0"]);
         assert_eq!(asked(Arena::raise, Want::Value), ["a > 0"]);
+    }
+
+    #[test]
+    fn a_division_by_a_root_asks_of_the_radicand() {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let cases: [(Expr, Shown); 4] = [
+            (a, &["a != 0"]),
+            (arena.mul(a, b), &["a*b != 0"]),
+            (arena.sqrt(a), &["a > 0"]),
+            (arena.mul(arena.sqrt(a), b), &["a > 0", "sqrt(a)*b != 0"]),
+        ];
+        for (below, expected) in cases {
+            let asks = arena.asked_by_division(below);
+            let shown = asks.iter().map(|(part, relation)| format!("{} {}", arena.print(*part), relation.sign()));
+            assert_eq!(shown.collect::<Vec<_>>(), expected);
+        }
     }
 
     #[test]

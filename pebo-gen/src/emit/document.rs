@@ -62,7 +62,8 @@ pub(super) fn formulas(plant: &Plant, definitions: &Definitions, staged: &Staged
     let outputs = plant.y.iter().flat_map(|output| [output.rate.as_ref(), output.value.as_ref()]).flatten();
     let entries = definitions.functions.iter().flat_map(|definition| definition.rows.concat());
     let terms = staged.terms.iter().map(|term| arena.substitute(term.1, &constants));
-    let all = states.chain(outputs.map(|output| output.expr)).chain(plant.transform()).chain(entries);
+    let all = states.chain(outputs.map(|output| output.expr)).chain(plant.transform()).chain(identities(plant));
+    let all = all.chain(entries);
     all.chain(definitions.regression.eta.iter().copied()).chain(terms).collect()
 }
 
@@ -87,8 +88,19 @@ fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
     let values = plant.y.iter().filter_map(|output| {
         Some(format!("{} = {}", arena.name(output.symbol), abbreviations.print(arena, output.value?.expr)))
     });
-    lines.extend(text(rates.chain(values).collect()));
+    let identities = identities(plant).map(|identity| format!("0 = {}", abbreviations.print(arena, identity)));
+    lines.extend(text(rates.chain(values).chain(identities).collect()));
     lines
+}
+
+/// What is zero by physics, but for the outputs that are given by their value.
+fn identities(plant: &Plant) -> impl Iterator<Item = Expr> {
+    let arena = &plant.arena;
+    let of_output = |identity: &Expr| {
+        let differs = |value: Expr, symbol| arena.sub(arena.of_symbol(symbol), value) == *identity;
+        plant.y.iter().any(|output| output.value.is_some_and(|value| differs(value.expr, output.symbol)))
+    };
+    plant.identities.iter().map(|identity| identity.expr).filter(move |identity| !of_output(identity))
 }
 
 fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviations) -> Vec<String> {

@@ -26,7 +26,7 @@ pub(super) fn collect(
     };
     match &formula.term {
         Term::Binary(Operator::Divide, _, below) => {
-            ask(below, vec![arena.asked_by_division(lower(arena, scope, below)?)]);
+            ask(below, arena.asked_by_division(lower(arena, scope, below)?));
         }
         Term::Binary(Operator::Power, base, exponent) => {
             let (value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);

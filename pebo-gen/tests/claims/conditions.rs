@@ -51,13 +51,15 @@ fn points_without_a_value_refute_nothing() {
     assert_eq!(conditions, ["x NonNegative"]);
 }
 
-/// A root can vanish: what is divided by it stays a condition.
+/// A root can vanish: what is divided by it stays a condition, and with it there is a value wherever it holds.
 #[test]
 fn a_root_below_a_fraction_bar_is_a_condition() {
     let plant = derived("x: [p]\ny: [r]\nu: [u]\nassume: [r >= 0]\nf_x: {p: u/sqrt(r)}\nf_y: {r: p}\nphi: [p]");
     let conditions: Vec<String> =
         plant.derivation.conditions.iter().map(|(e, r)| format!("{} {r:?}", plant.plant.arena.print(*e))).collect();
-    assert_eq!(conditions, ["r NonZero"]);
+    assert_eq!(conditions, ["r Positive"]);
+    let free = derived("x: [p]\ny: [r]\nu: [u]\nf_x: {p: u/sqrt(r)}\nf_y: {r: p/sqrt(r)}\nphi: [p]");
+    assert_eq!(free.derivation.outcome, Outcome::Accepted, "nothing is assumed of the radicand");
 }
 
 /// Where the claims hold: what is listed, for plants whose formulas have no value, or no derivative, somewhere.

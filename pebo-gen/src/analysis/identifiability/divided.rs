@@ -140,6 +140,7 @@ fn on_parts(
     let mut blind = Vec::new();
     let mut rows = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
+    let mut parameters = true;
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     for part in &parts {
         let mut told = Vec::new();
@@ -156,9 +157,12 @@ fn on_parts(
             }
         }
         rows.extend(decided.rows);
-        for constant in decided.claim.result.into_iter().flat_map(|result| result.constants) {
-            if !constants.contains(&constant) {
-                constants.push(constant);
+        if let Some(result) = decided.claim.result {
+            parameters &= result.motion.is_none_or(|motion| motion.parameters);
+            for constant in result.constants {
+                if !constants.contains(&constant) {
+                    constants.push(constant);
+                }
             }
         }
     }
@@ -176,7 +180,7 @@ fn on_parts(
             return Err(Obstacle::NoWitness);
         }
     }
-    let motion = Motion { by_itself: None, at_rest: false, blind };
+    let motion = Motion { by_itself: None, at_rest: false, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,
         result: Some(Identifiability {

@@ -35,6 +35,9 @@ const MOST_INPUTS: usize = 6;
 /// Values of inputs that are tried.
 const MOST_VALUES: usize = 8;
 
+/// Beyond `MOST_OF_DETERMINANT`, the part of the budget that the conditions on parameters may take.
+const FOR_PARAMETERS: u64 = 8;
+
 /// What has to move, and combinations of the parameters that must not vanish for the rank to be full.
 pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: &Regression) -> (Motion, Vec<Expr>) {
     let arena = &plant.arena;
@@ -62,13 +65,22 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
         Some(true) => note(Place::Rest, &rest),
         Some(false) | None => note(Place::Constant(plant.u.clone()), &held),
     }
-    let constants = match [&rest, &held].into_iter().flatten().find(|shown| shown.hidden.is_empty()) {
-        Some(shown) if arena.postorder(&shown.stack.concat()).len() <= MOST_OF_DETERMINANT => {
-            question.constants(&shown.stack)
+    let free;
+    let shown = match [&rest, &held].into_iter().flatten().find(|shown| shown.hidden.is_empty()) {
+        Some(shown) => Some(shown),
+        None => {
+            free = question.shown(&Restriction::default());
+            free.as_ref().ok()
         }
-        _ => Vec::new(),
     };
+    let special = shown.and_then(|shown| {
+        let few = arena.postorder(&shown.stack.concat()).len() <= MOST_OF_DETERMINANT;
+        let worked_out = || question.constants(&shown.stack).ok();
+        if few { worked_out() } else { arena.budget().share(FOR_PARAMETERS, worked_out) }
+    });
+    let (constants, parameters) = (special.clone().unwrap_or_default(), special.is_some());
     let parts = held.as_ref().map_or(usize::MAX, |shown| arena.postorder(&shown.stack.concat()).len());
+    let mut everywhere = false;
     if parts <= MOST_PARTS && plant.u.len() <= MOST_INPUTS {
         let stack = held.as_ref().map_or(&[][..], |shown| shown.stack.as_slice());
         for (place, restriction) in question.candidates(by_itself == Some(true), stack) {
@@ -84,20 +96,23 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             for (parameter, value) in question.coincidences(stack, &constants) {
                 note(Place::Steady(parameter, value), &question.steady(parameter, value));
             }
-            blind.extend(question.doubtful(&blind, symbols, stack));
+            let (doubtful, all) = question.doubtful(&blind, symbols, stack);
+            blind.extend(doubtful);
+            everywhere = all;
         }
     }
     if let Some(shown) = rest.as_ref().ok().filter(|_| at_rest) {
         let known: Vec<Expr> = blind.iter().filter_map(|other| unshown_zero(&other.place)).collect();
-        blind.extend(
-            question
-                .doubtful_at_rest(&shown.stack)
-                .into_iter()
-                .filter(|zero| !known.contains(zero))
-                .map(|zero| Blind { place: Place::UnshownAtRest(zero), seen: Vec::new(), hidden: Vec::new() }),
-        );
+        let (doubtful, all) = question.doubtful_at_rest(&shown.stack);
+        let others = doubtful.into_iter().filter(|zero| !known.contains(zero));
+        blind.extend(others.map(|zero| Blind {
+            place: Place::UnshownAtRest(zero),
+            seen: Vec::new(),
+            hidden: Vec::new(),
+        }));
+        everywhere &= all;
     }
-    (Motion { by_itself, at_rest, blind }, constants)
+    (Motion { by_itself, at_rest, blind, everywhere, parameters }, constants)
 }
 
 impl Question<'_> {

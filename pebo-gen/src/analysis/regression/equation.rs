@@ -5,6 +5,7 @@ use crate::cas::Expr;
 use crate::plant::Plant;
 
 /// `d/dt primitive = rate`, the rate as a function of z, y and u, the primitive of y and perhaps z.
+#[derive(Clone)]
 pub(super) struct Equation {
     pub(super) primitive: Expr,
     pub(super) rate: Expr,

@@ -174,6 +174,42 @@ pub(super) fn refuted(
            an identity under `identities`")
 }
 
+/// A form of a regression that is not affine in z.
+#[derive(Clone, Copy)]
+pub(super) enum OtherForm {
+    /// The rate times an unknown that it is divided by.
+    Multiplied,
+    /// In a function of this component, which is constant.
+    Function(usize),
+}
+
+/// A rate that is not affine in z, but may be linear in the unknowns in another form.
+pub(super) fn not_in_other_forms(plant: &Plant, index: usize, span: Span, shown: &str, form: OtherForm) -> Diagnostic {
+    let arena = &plant.arena;
+    let output = arena.name(plant.y[index].symbol);
+    let diagnostic = Diagnostic::error(
+        Code::RegressionUndecided,
+        span,
+        format!("it could not be decided whether a regression for the rate of {output} is linear in the unknowns"),
+    )
+    .label("not an affine function of phi with coefficients in y and u")
+    .note(shown);
+    match form {
+        OtherForm::Multiplied => diagnostic
+            .note(
+                "an unknown divides this rate, and the rate times it is no derivative of what is affine in phi with \
+                 polynomials of the outputs for coefficients; other factors were not tried",
+            )
+            .help("choose a phi in which this rate is affine, or measure another output"),
+        OtherForm::Function(component) => {
+            let phi = arena.print(plant.phi[component].expr);
+            diagnostic
+                .note(format!("`{phi}` is constant, and so is each of its functions"))
+                .help(format!("take the functions of `{phi}` that this rate holds as components of phi"))
+        }
+    }
+}
+
 pub(super) fn undecided(plant: &Plant, index: usize, span: Span, obstacle: &Obstacle) -> Diagnostic {
     let output = plant.y.get(index).map_or_else(String::new, |o| format!(" of {}", plant.arena.name(o.symbol)));
     Diagnostic::error(

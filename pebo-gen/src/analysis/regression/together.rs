@@ -192,16 +192,22 @@ pub(super) fn under_derivative(
     if rates.iter().any(|(_, rate)| plant.arena.depends_on(*rate, &hidden)) {
         return None;
     }
-    let (straight, bent): (Vec<_>, Vec<_>) =
-        rates.iter().copied().partition(|(_, rate)| affine(plant, domain, *rate).is_some());
-    let with_unknown = |rate| implicit::equation(plant, domain, cascade, rate).ok()?;
-    let mut equations: Vec<Equation> = bent.into_iter().filter_map(with_unknown).collect();
-    if equations.is_empty() {
+    let arena = &plant.arena;
+    let (mut straight, mut bent) = (Vec::new(), Vec::new());
+    for &(output, rate) in rates {
+        let own = || implicit::affine_equation(plant, domain, output).ok()?;
+        if affine(plant, domain, rate).is_some() {
+            straight.push(Equation { primitive: arena.of_symbol(plant.y[output].symbol), rate });
+        } else if let Some(equation) =
+            own().or_else(|| implicit::equation(plant, domain, cascade, (output, rate), rates).ok()?)
+        {
+            bent.push(equation);
+        }
+    }
+    if bent.is_empty() {
         return None;
     }
-    let plain =
-        |(output, rate): (usize, Expr)| Equation { primitive: plant.arena.of_symbol(plant.y[output].symbol), rate };
-    equations.extend(straight.into_iter().map(plain));
+    let equations = [bent, straight].concat();
     joined(plant, domain, cascade, Some(left_inverse), &equations, found)
 }
 

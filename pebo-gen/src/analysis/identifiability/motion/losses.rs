@@ -9,7 +9,6 @@ use crate::analysis::identifiability::singular::Volume;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::poly::Poly;
-use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 
 use super::question::{Question, Restriction, seen};
@@ -35,34 +34,36 @@ impl Question<'_> {
     }
 
     /// Where rows that have full rank with constant inputs lose it, but for what is listed: where an input is a function of
-    /// others, it is asked what is seen there; the rest was not decided, but for what does not stay zero.
-    pub(super) fn doubtful(&self, listed: &[Blind], symbols: &[Symbol], stack: &[Vec<Expr>]) -> Vec<Blind> {
+    /// others, it is asked what is seen there; the rest was not decided. And whether there is no other such motion: what a
+    /// motion leaves at once is none, and what several signals make zero is not listed unless it stays so.
+    pub(super) fn doubtful(&self, listed: &[Blind], symbols: &[Symbol], stack: &[Vec<Expr>]) -> (Vec<Blind>, bool) {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
+        if self.is_constant(stack) {
+            return (Vec::new(), true);
+        }
         let volume = Volume::of(arena, domain, stack);
-        let places = volume.and_then(|volume| volume.places(plant, domain)).unwrap_or_default();
+        let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
         let known: BTreeSet<Symbol> = constants.iter().chain(&plant.u).copied().collect();
+        let held = plant.u.iter().copied().collect();
+        let flow = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new());
         let mut found = Vec::new();
+        let mut all = places.all;
         for zero in places.zeros {
             let unshown = || Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() };
             let symbols_there = arena.symbols_of(&[zero]);
             if !symbols_there.is_subset(&known) {
-                let held = plant.u.iter().copied().collect();
-                let rate = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new())
-                    .map(|flow| flow.rate(arena, zero));
-                let stays = match rate {
-                    // What several signals make zero is passed in a moment, unless its rate vanishes there with it.
-                    Ok(rate) if symbols_there.difference(&constants).count() > 1 => {
-                        symbols_there.iter().any(|symbol| {
-                            let there = solved(arena, zero, *symbol).map(|value| BTreeMap::from([(*symbol, value)]));
-                            there.is_some_and(|there| decide(arena, arena.substitute(rate, &there), domain).is_zero())
-                        })
-                    }
-                    Ok(rate) => !domain.implies(arena, rate, Relation::NonZero),
-                    Err(_) => symbols_there.difference(&constants).count() == 1,
-                };
-                found.extend(stays.then(unshown));
+                let alone = symbols_there.difference(&constants).count() == 1;
+                let rate = flow.as_ref().ok().map(|flow| flow.rate(arena, zero));
+                if rate.is_some_and(|rate| self.leaves(zero, rate)) {
+                    continue;
+                }
+                if alone || rate.is_some_and(|rate| self.stays(zero, rate)) {
+                    found.push(unshown());
+                } else {
+                    all = false;
+                }
                 continue;
             }
             let Some((input, value)) = plant.u.iter().find_map(|input| Some((*input, solved(arena, zero, *input)?)))
@@ -90,25 +91,60 @@ impl Question<'_> {
                 Err(_) => found.push(unshown()),
             }
         }
-        found
+        (found, all)
     }
 
-    /// What makes rows that have full rank at rest lose it: what several signals make zero stays so there.
-    pub(super) fn doubtful_at_rest(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
+    /// Whether the rows are the same on all motions.
+    pub(super) fn is_constant(&self, stack: &[Vec<Expr>]) -> bool {
+        let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
+        self.plant.arena.symbols_of(&stack.concat()).is_subset(&constants)
+    }
+
+    /// Whether what is zero moves on at once, wherever it is.
+    pub(super) fn leaves(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
+        let there = |symbol: Symbol| {
+            let equal = BTreeMap::from([(symbol, solved(arena, zero, symbol)?)]);
+            let is_one = domain.implies(arena, arena.derivative(zero, symbol), Relation::NonZero);
+            let domain = domain.restricted(arena, &equal).filter(|_| is_one)?;
+            Some(domain.implies(arena, arena.substitute(rate, &equal), Relation::NonZero))
+        };
+        domain.implies(arena, rate, Relation::NonZero)
+            || arena.symbols_of(&[zero]).into_iter().find_map(there).unwrap_or(false)
+    }
+
+    /// Whether what is zero stays so: it divides its rate.
+    pub(super) fn stays(&self, zero: Expr, rate: Expr) -> bool {
+        let &Self { plant, domain, .. } = self;
+        let divides = || -> Result<bool, Obstacle> {
+            let field = Field::on(&plant.arena, domain, &[zero, rate])?;
+            let (zero, rate) = (field.fraction(zero)?, field.fraction(rate)?);
+            Ok(rate.numerator().div_exact(zero.numerator(), field.limit())?.is_some())
+        };
+        divides().unwrap_or(false)
+    }
+
+    /// What makes rows that have full rank at rest lose it, as all that is zero stays so there; and whether nothing else
+    /// does.
+    pub(super) fn doubtful_at_rest(&self, stack: &[Vec<Expr>]) -> (Vec<Expr>, bool) {
+        let &Self { plant, domain, .. } = self;
+        let arena = &plant.arena;
+        if self.is_constant(stack) {
+            return (Vec::new(), true);
+        }
         if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let volume = Volume::of(arena, domain, stack);
-        let places = volume.and_then(|volume| volume.places(plant, domain)).unwrap_or_default();
+        let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
         // What is of inputs alone is looked at on all motions.
-        let of_several = |zero: &Expr| {
-            let signals: BTreeSet<Symbol> = arena.symbols_of(&[*zero]).difference(&constants).copied().collect();
-            signals.len() > 1 && signals.iter().any(|signal| !plant.u.contains(signal))
+        let of_outputs = |zero: &Expr| {
+            let symbols = arena.symbols_of(&[*zero]);
+            symbols.difference(&constants).any(|signal| !plant.u.contains(signal))
         };
-        places.zeros.into_iter().filter(of_several).collect()
+        (places.zeros.into_iter().filter(of_outputs).collect(), places.all)
     }
 
     /// Values of inputs at which an entry vanishes.
@@ -140,10 +176,13 @@ impl Question<'_> {
     }
 
     /// Combinations of the parameters at which rows that have full rank on some motions lose it on all.
-    pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
+    pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Result<Vec<Expr>, Obstacle> {
         let arena = &self.plant.arena;
-        let volume = Volume::of(arena, self.domain, stack);
-        let places = volume.and_then(|volume| volume.places(self.plant, self.domain)).unwrap_or_default();
+        let own: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
+        if arena.symbols_of(&stack.concat()).is_disjoint(&own) {
+            return Ok(Vec::new());
+        }
+        let places = Volume::of(arena, self.domain, stack)?.places(self.plant, self.domain)?;
         // Not where other motions show them all the same.
         let lost = |formula: &Expr| {
             let solved = arena
@@ -153,7 +192,7 @@ impl Question<'_> {
             let there = solved.map(|solved| Restriction { equal: BTreeMap::from([solved]), ..Restriction::default() });
             there.is_none_or(|there| self.shown(&there).map_or(true, |shown| !shown.hidden.is_empty()))
         };
-        places.constants.into_iter().filter(lost).collect()
+        Ok(places.constants.into_iter().filter(lost).collect())
     }
 }
 

@@ -13,27 +13,33 @@ impl Motion {
 
     /// What has to move, in a line, and where the regression is blind, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
-        let first = match (self.by_itself, self.at_rest) {
+        let first = match (self.by_itself, self.at_rest, self.everywhere) {
             _ if self.is_divided() => {
                 "the unknowns are identified on almost every motion that does not stay where one of these holds"
             }
-            (Some(true), true) if self.blind.is_empty() => {
+            (Some(true), true, true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
-            (Some(true), true) if self.blind.iter().all(|blind| matches!(blind.place, Place::UnshownAtRest(_))) => {
-                "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
-            }
-            (Some(true), true) => {
+            (Some(true), true, true) => {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
             }
-            (Some(true), false) => "the unknowns are identified while the plant moves, also with constant inputs",
-            (Some(false), _) => "the unknowns are identified under excitation: keep the inputs varying",
-            (None, _) => {
+            (Some(true), true, false) => {
+                "the unknowns are identified without excitation by the inputs on almost every motion, and almost wherever \
+                 the plant rests"
+            }
+            (Some(true), false, true) => "the unknowns are identified while the plant moves, also with constant inputs",
+            (Some(true), false, false) => {
+                "the unknowns are identified on almost every motion, also with constant inputs"
+            }
+            (Some(false), ..) => "the unknowns are identified under excitation: keep the inputs varying",
+            (None, ..) => {
                 "the unknowns are identified on almost every motion; it was not decided whether the inputs have to vary"
             }
         };
         let blind = self.blind.iter().map(|blind| blind.line(plant));
-        std::iter::once(first.to_owned()).chain(blind).collect()
+        let parameters = (!self.parameters && !plant.parameters.is_empty())
+            .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
+        std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
     }
 }
 
