@@ -95,13 +95,13 @@ impl Question<'_> {
     }
 
     /// Whether the rows are the same on all motions.
-    pub(super) fn is_constant(&self, stack: &[Vec<Expr>]) -> bool {
+    fn is_constant(&self, stack: &[Vec<Expr>]) -> bool {
         let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
         self.plant.arena.symbols_of(&stack.concat()).is_subset(&constants)
     }
 
     /// Whether what is zero moves on at once, wherever it is.
-    pub(super) fn leaves(&self, zero: Expr, rate: Expr) -> bool {
+    fn leaves(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
         let there = |symbol: Symbol| {
@@ -115,7 +115,7 @@ impl Question<'_> {
     }
 
     /// Whether what is zero stays so: it divides its rate.
-    pub(super) fn stays(&self, zero: Expr, rate: Expr) -> bool {
+    fn stays(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let divides = || -> Result<bool, Obstacle> {
             let field = Field::on(&plant.arena, domain, &[zero, rate])?;
