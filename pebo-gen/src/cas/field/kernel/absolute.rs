@@ -36,8 +36,9 @@ pub(in crate::cas::field) fn absolute_angles(arena: &Arena, roots: &[Expr]) -> V
         .filter(|(next, ..)| *next < least)
     {
         angles = stepped(&angles, i, j, sign);
-        for k in 0..n {
-            basis[j][k] += sign * basis[i][k];
+        let added = basis[i].clone();
+        for (entry, other) in basis[j].iter_mut().zip(added) {
+            *entry += sign * other;
         }
         least = next;
     }
