@@ -153,7 +153,8 @@ fn where_analytic(
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     let excited = || {
-        let (motion, constants) = motion::of(plant, domain, cascade, regression);
+        // What is to be said of motions does not use up what the other claims need.
+        let (motion, constants) = arena.budget().share(8, || motion::of(plant, domain, cascade, regression));
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
         if let Some(result) = &mut claim.result {
             result.motion = Some(motion);

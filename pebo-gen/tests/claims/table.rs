@@ -95,6 +95,12 @@ const TABLE: &[Row] = &[
         Accepted("implicit linear instant"),
     ),
     (
+        "two rates with one unknown below, of which one has the form",
+        "parameters: {F: 10}\nx: [m, k]\ny: [s, q]\nu: [d]\nassume: [s > 0, q > 0, k > 0, m > 0]\nf_x: {m: 0, k: 0}\n\
+         f_y: {s: d*(F - s) - 2*m*s*q/(k + s), q: m*s*q/(k + s) - d*q}\nphi: [m, k]",
+        Accepted("implicit linear excitation"),
+    ),
+    (
         "a function of a constant",
         "x: [x]\ny: [y]\nu: [u]\nassume: [x > 0]\nf_x: {x: 0}\nf_y: {y: u*sqrt(x)}\nphi: [x]",
         Undecided(Code::RegressionUndecided),

@@ -83,7 +83,11 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
     let mut everywhere = false;
     if parts <= MOST_PARTS && plant.u.len() <= MOST_INPUTS {
         let stack = held.as_ref().map_or(&[][..], |shown| shown.stack.as_slice());
+        let mut tried: Vec<(Symbol, Expr)> = Vec::new();
         for (place, restriction) in question.candidates(by_itself == Some(true), stack) {
+            if let Place::Value(input, value) = &place {
+                tried.push((*input, *value));
+            }
             let shown = question.shown(&restriction);
             let is_seen = shown.as_ref().is_ok_and(|shown| shown.hidden.is_empty());
             // What the other inputs show by their variation they do not show as constants.
@@ -93,6 +97,11 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             note(place, &shown);
         }
         if by_itself == Some(true) {
+            for input in plant.u.iter().filter(|input| !tried.contains(&(**input, arena.zero()))) {
+                let alone = plant.u.len() == 1;
+                let place = if alone { Place::Value } else { Place::Steady };
+                note(place(*input, arena.zero()), &question.steady(*input, arena.zero()));
+            }
             for (parameter, value) in question.coincidences(stack, &constants) {
                 note(Place::Steady(parameter, value), &question.steady(parameter, value));
             }

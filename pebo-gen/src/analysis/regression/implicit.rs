@@ -79,6 +79,11 @@ pub(super) fn equation(
     // What was divided by is gone: at z = chi + theta nothing keeps it from zero.
     let field = Field::over(arena, &domain.facts, &[right])?;
     let whole = field.show(&field.fraction(right)?);
+    // Another output may bring its own denominator with it.
+    let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
+    if self::factor(plant, domain, whole)?.is_some_and(|below| arena.depends_on(below, &unknown)) {
+        return Ok(None);
+    }
     let right = asking_less(arena, domain, shortest(arena, domain, right), &[whole]);
     // Proved of the plant itself: at z = phi(x, y), along its vector field.
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();

@@ -193,22 +193,24 @@ pub(super) fn under_derivative(
         return None;
     }
     let arena = &plant.arena;
-    let (mut straight, mut bent) = (Vec::new(), Vec::new());
+    let (mut straight, mut linear, mut others) = (Vec::new(), Vec::new(), Vec::new());
     for &(output, rate) in rates {
-        let own = || implicit::affine_equation(plant, domain, output).ok()?;
         if affine(plant, domain, rate).is_some() {
             straight.push(Equation { primitive: arena.of_symbol(plant.y[output].symbol), rate });
-        } else if let Some(equation) =
-            own().or_else(|| implicit::equation(plant, domain, cascade, (output, rate), rates).ok()?)
-        {
-            bent.push(equation);
+        } else if let Ok(Some(equation)) = implicit::affine_equation(plant, domain, output) {
+            linear.push(equation);
+        } else if let Ok(Some(equation)) = implicit::equation(plant, domain, cascade, (output, rate), rates) {
+            others.push(equation);
         }
     }
-    if bent.is_empty() {
-        return None;
-    }
-    let equations = [bent, straight].concat();
-    joined(plant, domain, cascade, Some(left_inverse), &equations, found)
+    let joined = |bent: Vec<Equation>, found: &mut Vec<Diagnostic>| {
+        if bent.is_empty() {
+            return None;
+        }
+        joined(plant, domain, cascade, Some(left_inverse), &[bent, straight.clone()].concat(), found)
+    };
+    let whole = joined([linear.clone(), others.clone()].concat(), found);
+    whole.or_else(|| if others.is_empty() { None } else { joined(linear, found) })
 }
 
 /// The regression of the equations: linear where all are affine in z, else in functions of theta.

@@ -110,6 +110,9 @@ impl Question<'_> {
             let domain = domain.restricted(arena, &equal).filter(|_| is_one)?;
             Some(domain.implies(arena, arena.substitute(rate, &equal), Relation::NonZero))
         };
+        if arena.postorder(&[rate]).len() > MOST_OF_DETERMINANT {
+            return false;
+        }
         domain.implies(arena, rate, Relation::NonZero)
             || arena.symbols_of(&[zero]).into_iter().find_map(there).unwrap_or(false)
     }
