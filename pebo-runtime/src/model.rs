@@ -88,6 +88,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// nothing.
     fn recover(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NX>;
 
+    /// The left inverse without bounds that are put on its states, as by [`Within`](crate::Within): standard errors are asked
+    /// of it, as an estimate that is moved to a bound is no better known there.
+    fn recover_unbounded(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NX> {
+        self.recover(z, terms)
+    }
+
     /// The extension at the first sample, made of the one that the observer starts with: a model whose coordinates are
     /// measured puts in what it sees. As it is, if nothing is written.
     fn begin(&self, extension: &Self::Extension, _terms: &Self::Terms) -> Self::Extension {

@@ -71,6 +71,21 @@ impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
         Ok(Self { rows: Some(rows), ..Self::new(model) })
     }
 
+    /// The outputs with those that have rows as they are expected; none where estimates are made of samples.
+    fn expected<S: Real, const NY: usize, const NW: usize>(
+        &self,
+        z: &SVector<S, NW>,
+        y: &SVector<S, NY>,
+    ) -> Option<SVector<S, NY>> {
+        let mut expected = *y;
+        for (row, &place) in self.rows.as_ref()?.iter().enumerate() {
+            if let Some(output) = expected.get_mut(place) {
+                *output = z[row];
+            }
+        }
+        Some(expected)
+    }
+
     /// The model within.
     pub fn model(&self) -> &M {
         &self.model
@@ -139,16 +154,20 @@ where
         begun
     }
 
-    fn recover(&self, z: &SVector<M::Scalar, NW>, Measured { terms, y }: &Self::Terms) -> SVector<M::Scalar, NX> {
+    fn recover(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
         let inner = SVector::from_fn(|i, _| z[NR + i]);
-        let Some(rows) = &self.rows else { return self.model.recover(&inner, terms) };
-        let mut expected = *y;
-        for (row, &place) in rows.iter().enumerate() {
-            if let Some(output) = expected.get_mut(place) {
-                *output = z[row];
-            }
+        match self.expected(z, &measured.y) {
+            Some(expected) => self.model.recover(&inner, &self.model.terms(&expected)),
+            None => self.model.recover(&inner, &measured.terms),
         }
-        self.model.recover(&inner, &self.model.terms(&expected))
+    }
+
+    fn recover_unbounded(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
+        let inner = SVector::from_fn(|i, _| z[NR + i]);
+        match self.expected(z, &measured.y) {
+            Some(expected) => self.model.recover_unbounded(&inner, &self.model.terms(&expected)),
+            None => self.model.recover_unbounded(&inner, &measured.terms),
+        }
     }
 }
 

@@ -72,6 +72,10 @@ where
         self.model.begin(extension, terms)
     }
 
+    fn recover_unbounded(&self, z: &SVector<S, NZ>, terms: &M::Terms) -> SVector<S, NX> {
+        self.model.recover_unbounded(z, terms)
+    }
+
     fn recover(&self, z: &SVector<S, NZ>, terms: &M::Terms) -> SVector<S, NX> {
         let x = self.model.recover(z, terms);
         SVector::from_fn(|i, _| match (x[i], self.lower[i], self.upper[i]) {

@@ -124,7 +124,8 @@ def errors(report):
     found = {}
     for line in lines[1:]:
         cells = [cell.strip() for cell in line.split("   ") if cell.strip()]
-        if len(cells) != 8 or "/" not in cells[7]:
+        # The last column, what is expected, is there where an observer knows its sensors.
+        if len(cells) not in (8, 9) or "/" not in cells[7]:
             break
         number = lambda cell: float(cell.split()[0]) if cell[:1].isdigit() else None
         found[cells[0].split(" in ")[0]] = (number(cells[1]), number(cells[3]), number(cells[6]))

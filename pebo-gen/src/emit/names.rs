@@ -5,15 +5,18 @@
 //!
 //! 1. lower case, with `_` where a capital follows a small letter or a digit: `L1` is `l1`, `nP` is `n_p`;
 //! 2. what no Rust name may contain becomes `_`, and `_` neither leads, trails nor repeats;
-//! 3. more than [`LONGEST`] characters are cut off;
+//! 3. more than [`LONGEST_WRITTEN`] characters are cut off;
 //! 4. a keyword, and a name that the emitted code uses itself (`y`, `self`), gets a trailing `_`: `type_`;
 //! 5. a name that is taken gets the first free number from 2; of names that differ in case alone, the one that is written as
 //!    Rust writes it stays as it is: `TL` and `tl` are `tl_2` and `tl`, whichever comes first.
 
 use std::collections::BTreeSet;
 
-/// No name is longer, so that every statement fits its line.
+/// No name that is made of formulas is longer.
 pub(super) const LONGEST: usize = 20;
+
+/// Of the author's own names no more is kept, so that a line holds one of them with what is said of it.
+const LONGEST_WRITTEN: usize = 60;
 
 /// The same for the model's type.
 const LONGEST_TYPE: usize = 40;
@@ -85,26 +88,45 @@ const RESERVED: [&str; 62] = [
     "z",
 ];
 
-/// Types that an emitted module declares or imports.
-const TYPES: [&str; 34] = [
+/// What an emitted module declares or imports, and the names of the prelude and of the trait's items that it uses.
+pub(super) const TYPES: [&str; 56] = [
     "Bounded",
     "Default",
     "Drem",
+    "Err",
+    "Extension",
     "Fault",
     "Filter",
     "FiniteTime",
     "Flow",
+    "From",
     "Fundamental",
+    "Gate",
     "Gradient",
     "Hold",
     "Integrator",
     "Kreisselmeier",
     "LeastSquares",
+    "Limits",
     "Model",
+    "NE",
+    "NO",
+    "NR",
+    "NU",
+    "NW",
+    "NX",
+    "NY",
+    "NZ",
+    "None",
     "NormalisedGradient",
     "Observer",
     "Ok",
+    "Option",
+    "OutputForm",
+    "PI",
     "Parameters",
+    "REGRESSION",
+    "ROWS",
     "Real",
     "Rebase",
     "Regression",
@@ -112,8 +134,11 @@ const TYPES: [&str; 34] = [
     "Result",
     "SMatrix",
     "SVector",
+    "SampledRegression",
+    "Scalar",
     "Self",
     "Sides",
+    "Some",
     "Terms",
     "Tuned",
     "U",
@@ -168,7 +193,7 @@ impl Names {
 
 /// The name in snake case, cut to the greatest length.
 pub(super) fn snake(name: &str) -> String {
-    cut(name, LONGEST)
+    cut(name, LONGEST_WRITTEN)
 }
 
 fn cut(name: &str, longest: usize) -> String {
@@ -224,7 +249,7 @@ mod tests {
             ("iL1", "i_l1"),
             ("E", "e"),
             ("a__b", "a_b"),
-            ("a_name_that_goes_on_and_on", "a_name_that_goes_on"),
+            ("temperature_of_winding_a", "temperature_of_winding_a"),
         ] {
             assert_eq!(snake(name), expected, "{name}");
         }
@@ -265,5 +290,6 @@ mod tests {
         assert_eq!(camel("observer"), "ObserverPlant");
         assert_eq!(camel("tuned"), "TunedPlant");
         assert_eq!(camel("PMSM"), "Pmsm");
+        assert_eq!(["gate", "from", "n_x"].map(camel), ["GatePlant", "FromPlant", "NXPlant"]);
     }
 }

@@ -40,6 +40,10 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.observer.sensors, &y, "sensors");
         pass.belong(&model.observer.start, &x, "start");
         pass.belong(&model.observer.disturbance, &both, "disturbance");
+        pass.belong(&model.observer.wanted, &x, "wanted");
+        for wanted in &model.observer.wanted {
+            pass.positive(Some(&wanted.value), "the standard error that is wanted");
+        }
         pass.patience(model);
         let sampled = Group::new(model.y.iter().chain(&model.u), "an output of y or an input of u");
         pass.belong(&model.observer.limits, &sampled, "limits");

@@ -53,6 +53,8 @@ pub struct Observer {
     pub rebase: Option<Spanned<Decimal>>,
     /// The normalised square of an innovation beyond which a sample is an outlier; none if absent.
     pub gate: Option<Spanned<Decimal>>,
+    /// The standard error that is wanted of each state.
+    pub wanted: Vec<Entry<Spanned<Decimal>>>,
     /// Between what the samples of outputs and inputs are: two numbers each.
     pub limits: Vec<Entry<Vec<Spanned<Decimal>>>>,
     /// The longest time in seconds between two accepted samples; any if absent.
@@ -289,6 +291,15 @@ impl Observer {
             diagnostics.push(
                 Diagnostic::error(Code::SettingConflict, gate.span, message)
                     .help("write `sensors`, `start` and `disturbance` in place of gains, or remove `gate`"),
+            );
+        }
+        if let Some(wanted) = self.wanted.first().filter(|_| self.has_gains()) {
+            let message = "`wanted` stands beside gains, which do not say how far an estimate errs";
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, wanted.name.span, message).help(
+                    "write `sensors`, `start` and `disturbance` in place of gains, or remove `wanted`: for gains the runtime \
+                     has a `Monitor`",
+                ),
             );
         }
         self.limits.iter().for_each(|entry| limits(entry, diagnostics));

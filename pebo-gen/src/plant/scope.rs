@@ -79,8 +79,9 @@ fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>
         Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
         // What varies with time on its own the observer has to be told at each sample: that is an input.
         None if name == "t" => diagnostic.help(
-            "declare what varies with time as an input under `u`; `control` of the simulation gives it in t, the application \
-             at each sample",
+            "the observer knows of time what it is told at each sample, and that is an input: add `time` to `u`, write `time` \
+             for `t` in this formula, and `time: t` under `control` of the simulation; the application hands it over with the \
+             other inputs. A signal that nobody knows is `w`, with its course in t under `signals`",
         ),
         None => diagnostic.help(
             "declare it: a constant under `parameters`, what is commanded or known under `u`, what is measured under `y`, what \
@@ -96,7 +97,7 @@ mod tests {
     #[test]
     fn time_in_a_plant_is_an_input() {
         let help = |name| unknown(name, Span::default(), ["v", "q"].into_iter()).help.unwrap_or_default();
-        assert!(help("t").contains("an input under `u`"), "{}", help("t"));
+        assert!(help("t").contains("add `time` to `u`"), "{}", help("t"));
         assert!(help("speed").contains("commanded or known under `u`"), "{}", help("speed"));
     }
 

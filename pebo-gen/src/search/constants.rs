@@ -40,7 +40,7 @@ pub(super) fn measured(question: &Question<'_>) -> Option<Plant> {
 }
 
 /// The states whose rate is zero.
-fn constants(question: &Question<'_>) -> BTreeSet<Symbol> {
+pub(super) fn constants(question: &Question<'_>) -> BTreeSet<Symbol> {
     let is_constant = |state: &Symbol| question.rates.get(state).is_some_and(|rate| question.arena.is_zero(*rate));
     question.x.iter().copied().filter(is_constant).collect()
 }

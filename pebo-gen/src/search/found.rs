@@ -90,4 +90,6 @@ pub enum Start {
     Identities,
     /// The outputs' rates, where unknown constants are taken for known.
     Constants,
+    /// The outputs' rates, where what unknown constants multiply is integrated by parts.
+    Parts,
 }

@@ -26,6 +26,7 @@ mod found;
 mod frame;
 mod functions;
 mod largest;
+mod parts;
 mod quadrature;
 mod question;
 mod sample;
@@ -331,6 +332,11 @@ impl Hunt<'_> {
     /// A transform by way of one that there is if the unknown constants are measured.
     fn with_constants(&mut self) {
         let question = self.question;
+        let by_parts = parts::by_parts(question, &constants::constants(question)).map(Option::unwrap_or_default);
+        self.judge(Form::Closure(Start::Parts), 0, by_parts);
+        if self.is_over() {
+            return;
+        }
         let Some(measured) = constants::measured(question) else { return };
         let search = question.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
         let proved = |candidate: &&Candidate| {

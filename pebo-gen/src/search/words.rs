@@ -50,6 +50,7 @@ impl Start {
             Self::Identities => "the functions in the identities and the states",
             Self::States => "the states",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
+            Self::Parts => "the outputs' rates, by parts where unknown constants multiply them",
         }
     }
 }

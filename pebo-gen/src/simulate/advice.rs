@@ -23,8 +23,9 @@ const FALLING: f64 = 0.9;
 /// Where the samples of a run are from.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Origin<'a> {
-    /// A simulation, with that in which its plant and sensors differ from what the model says.
-    Simulated(&'a [&'static str]),
+    /// A simulation, with that in which its plant and sensors differ from what the model says, and the first state that is
+    /// given a course, if no parameter is.
+    Simulated(&'a [&'static str], Option<&'a str>),
     Recorded,
 }
 
@@ -52,16 +53,23 @@ pub(super) fn advise(
         Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => "`gain`",
     };
     let faster = match origin {
-        Origin::Simulated(_) => format!("raise {raised}, or simulate longer"),
+        Origin::Simulated(..) => format!("raise {raised}, or simulate longer"),
         Origin::Recorded => format!("raise {raised}, or record longer"),
     };
     let (refused, trend) = (summary.faults.count(), slowest.score.trend);
-    Some(if real(refused) > REFUSED * real(summary.samples) {
+    Some(if real(refused) > REFUSED * real(summary.samples + 1) {
         let reason =
             summary.faults.iter().max_by_key(|(_, count)| *count).map(|(reason, _)| reason).unwrap_or_default();
         diagnostic
-            .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples))
+            .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples + 1))
             .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
+    } else if let Some(rated) = unsettled.iter().find(|rated| rated.outside) {
+        let state = &rated.estimate.state;
+        diagnostic
+            .note(format!(
+                "`{state}` itself is beyond the bounds of `within` in this run, and its estimate is kept within them"
+            ))
+            .help(format!("widen the bounds of `{state}` under `within`, or start the plant within them"))
     } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
         diagnostic
     } else if let Some((rated, steps, step)) = unsettled.iter().find_map(|rated| steps_away(rated)) {
@@ -92,19 +100,23 @@ pub(super) fn advise(
                 "compare parameters and offsets of sensors with those of the bench: what they err by stays in the \
                  estimate; the sensor that it is compared with counts too",
             ),
-            (Origin::Simulated(_), Some(expected)) => diagnostic
+            (Origin::Simulated(..), Some(expected)) => diagnostic
                 .note(format!(
                     "{note}, no more than the {} that the observer expects of its sensors and disturbances",
                     short(expected)
                 ))
                 .help("choose a lower `disturbance` under `observer`, which averages more samples, or a better sensor"),
-            (Origin::Simulated([]), None) => {
+            (Origin::Simulated([], _), None) => {
                 let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
                 diagnostic.note(note).help(help)
             }
-            (Origin::Simulated(departures @ [first, ..]), None) => {
+            (Origin::Simulated(departures @ [first, ..], moved), None) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
-                diagnostic.note(note).help(mend(first, summary.known.is_some()))
+                let help = match moved {
+                    Some(state) if *first == "plant" => follow(state, (estimator, summary.known.is_some())),
+                    _ => mend(first, summary.known.is_some()).to_owned(),
+                };
+                diagnostic.note(note).help(help)
             }
         }
     })
@@ -148,6 +160,19 @@ fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
             )
         }
     }
+}
+
+/// What helps an observer to follow a state that moves where the model has it constant.
+fn follow(state: &str, (estimator, known): (&Estimator, bool)) -> String {
+    let setting = match estimator {
+        _ if known => format!("raise `disturbance` of `{state}` under `observer`"),
+        Estimator::LeastSquares(_) => format!("raise `process_noise` of `{state}`, or `forgetting`"),
+        Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } => "raise `gain`".to_owned(),
+        Estimator::Drem { .. } => "raise `gain` and `forgetting`".to_owned(),
+    };
+    format!(
+        "{setting}, so that the observer follows where `{state}` moves; what moves all the time it follows with a lag"
+    )
 }
 
 /// What helps against the first of the things in which a plant and its sensors differ from the model; observers of known

@@ -35,8 +35,8 @@ pub(super) trait Estimation: fmt::Debug {
     /// Whether a sample may lack outputs.
     fn has_parts(&self) -> bool;
 
-    /// The standard errors of the estimates; nothing where they are not known.
-    fn standard_errors(&self) -> Option<Vec<f64>>;
+    /// The standard errors of the estimates, if the last sample is so many seconds old; nothing where they are not known.
+    fn standard_errors(&self, age: f64) -> Option<Vec<f64>>;
 
     /// How often it began anew after a gap that was too long.
     fn restarts(&self) -> u64;
@@ -472,13 +472,13 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         self.rows.is_some()
     }
 
-    fn standard_errors(&self) -> Option<Vec<f64>> {
+    fn standard_errors(&self, age: f64) -> Option<Vec<f64>> {
         let errors = match &self.uncertainty {
             Some(uncertainty) => {
                 let at = (&self.coordinates_now(), self.observer.terms()?);
-                uncertainty.of(at, |z, y| self.observer.model().recover(z, y))?
+                uncertainty.of(at, age, |z, y| self.observer.model().recover_unbounded(z, y))?
             }
-            None => self.is_certain.then(|| self.observer.standard_error())??,
+            None => self.is_certain.then(|| self.observer.standard_error_after(age))??,
         };
         Some(errors.as_slice()[..self.sizes.0].to_vec())
     }

@@ -7,9 +7,8 @@
 //! G' = -beta G + Phi^T Phi        1 - R^2 of component i = 1/(G_ii (G^-1)_ii)
 //! ```
 //!
-//! which is the share of what the data say of a component that the other components cannot explain. The runtime's own
-//! [`Monitor`](pebo_runtime::Monitor) says more, the standard error of each component, but of sensors whose standard
-//! deviations are known, and beside an error that is wanted in the units of the regression: a model file has neither.
+//! which is the share of what the data say of a component that the other components cannot explain. The standard error of
+//! each state beside one that is wanted says more, but of sensors whose standard deviations are known (`certainty`).
 //!
 //! Source: Belsley, Kuh, Welsch, *Regression diagnostics*, 1980, chapter 3 (variance inflation).
 

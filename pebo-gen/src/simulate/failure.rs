@@ -4,6 +4,8 @@ use std::fmt;
 
 use pebo_runtime::Fault;
 
+use super::summary::short;
+
 /// The reason for which a run stopped before its end.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -12,6 +14,15 @@ pub enum Failure {
     NotFinite {
         /// Its name.
         name: String,
+        /// When, in seconds.
+        at: f64,
+    },
+    /// A state of the plant or of a baseline runs away.
+    Diverged {
+        /// Its name.
+        name: String,
+        /// The last magnitude of it.
+        value: f64,
         /// When, in seconds.
         at: f64,
     },
@@ -41,14 +52,28 @@ impl Failure {
     pub fn help(&self) -> &'static str {
         match self {
             Self::NotFinite { .. } => {
-                "the loop is unstable or a formula left its domain: check the signs, the start and the control law, or \
-                 run it with `feedback: truth`"
+                "a formula left its domain: check the start, the control law and the signs, or run it with \
+                 `feedback: truth`"
+            }
+            Self::Diverged { .. } => {
+                "the loop is unstable: check the signs of the rates and the control law; if the run with \
+                 `--feedback truth` is stable, it is the observer in the loop that makes it so"
             }
             Self::Stuck { .. } => {
-                "the plant or a baseline is unstable, left the domain of its formulas, or is too stiff for an explicit \
-                 method"
+                "a formula of the plant or of a baseline left its domain or jumps other than by `sign`, or something in it \
+                 is much faster than the rest: leave that out, or let it be slower"
             }
-            Self::Refused { .. } => "check the gains, the domain of the observer's formulas, and the step",
+            Self::Refused { fault: Fault::Estimate, .. } => {
+                "the estimate left the domain of `phi_left`: bound the states, as `within: {lower: 0}` under `observer`, or \
+                 let it start nearer, by `extension`"
+            }
+            Self::Refused { fault: Fault::Output { .. } | Fault::Input { .. }, .. } => {
+                "a sample is no finite number: check `noise`, `bias` and the control law"
+            }
+            Self::Refused { .. } => {
+                "the observer's equations have no finite value at this sample: check the domain of its formulas at the \
+                 start and on the way, the step, and the gains if there are any"
+            }
             Self::Stopped { .. } => {
                 "allow more time, as `--limit 60`, choose a longer step, or simulate a shorter time"
             }
@@ -60,6 +85,9 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { name, at } => write!(f, "`{name}` is not a finite number at t = {at} s"),
+            Self::Diverged { name, value, at } => {
+                write!(f, "`{name}` grows without end: its magnitude is {} at t = {} s", short(*value), short(*at))
+            }
             Self::Stuck { at, steps } => {
                 write!(f, "the integration made no progress at t = {at} s in {steps} steps")
             }

@@ -1,7 +1,8 @@
 //! The plant, and the baselines that have equations, between two samples: one ordinary differential equation.
 //!
 //! Method: Dormand and Prince's explicit Runge-Kutta pair of order 5(4), from a library, started anew
-//! at each sample, where the inputs jump, and where a signal that the rates depend on jumps.
+//! at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign in the rates
+//! changes (`switching`), which is found by halving the step in which it does.
 //! Holds when: the plant is not stiff at its sampling period. The first step tried is the whole
 //! interval: a loop that is sampled well needs one step a sample.
 
@@ -16,6 +17,7 @@ use crate::program::{Interpreter, Program};
 
 use super::layout::TIME;
 use super::signal::{Course, Signal};
+use super::switching::{Switched, Switching};
 
 /// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
 const RELATIVE: f64 = 1e-10;
@@ -39,9 +41,28 @@ const SHORTEST: f64 = 1e-12;
 /// The largest state that is integrated.
 pub(super) const LARGEST: usize = 64;
 
-/// The integration came to a stand after that many steps.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stuck(pub(super) u64);
+/// Changes of signs between two samples that are followed one by one. Where there are more the signs change ever faster, as
+/// those of a mass that a relay and friction bring to rest; from then on they are looked at [`LOOKS`] times a period.
+const MOST_SWITCHES: u64 = 100;
+
+/// How often between two samples signs may change that change without end: a level then moves by no more than it does in so
+/// small a part of the period.
+const LOOKS: f64 = 1000.0;
+
+/// How far to either side a signal is looked at for its rate, as a part of the interval: of a formula whose third derivative
+/// is one over the interval cubed, the rate errs by 2e-9 of itself.
+const ASIDE: f64 = 1e-4;
+
+/// The integration came to a stand.
+#[derive(Clone, Debug)]
+pub(super) struct Stuck {
+    /// The steps that it took.
+    pub(super) steps: u64,
+    /// When, in seconds.
+    pub(super) at: f64,
+    /// The last state that it came to.
+    pub(super) state: Vec<f64>,
+}
 
 /// The differential equation of a run.
 #[derive(Debug)]
@@ -71,12 +92,24 @@ struct Rates {
     /// Signals that the rates depend on, with their positions in the table.
     signals: Vec<(usize, Course)>,
     formulas: Interpreter,
+    switching: Option<Switching>,
+    /// How far to either side of an instant signals are looked at for their rates, in seconds.
+    aside: f64,
 }
 
 impl Flow {
     /// The equation with the rates of the table's positions `state`; of the `signals`, those that it reads are followed.
-    pub(super) fn new(rates: &Program, state: Range<usize>, signals: &[(usize, &Signal)], slack: f64) -> Self {
-        let read: Vec<_> = signals.iter().filter(|(position, _)| rates.reads(*position)).collect();
+    pub(super) fn new(
+        rates: &Program,
+        switches: Option<&Switched>,
+        state: Range<usize>,
+        signals: &[(usize, &Signal)],
+        slack: f64,
+    ) -> Self {
+        let is_read = |position: usize| {
+            rates.reads(position) || switches.is_some_and(|switches| switches.moving.iter().any(|of| of.0 == position))
+        };
+        let read: Vec<_> = signals.iter().filter(|(position, _)| is_read(*position)).collect();
         let mut jumps: Vec<f64> = read.iter().flat_map(|(_, signal)| signal.jumps()).collect();
         jumps.sort_by(f64::total_cmp);
         let inner = Rates {
@@ -85,6 +118,8 @@ impl Flow {
             origin: 0.0,
             signals: read.iter().map(|(position, signal)| (*position, signal.course())).collect(),
             formulas: Interpreter::new(rates),
+            switching: switches.map(|switches| Switching::new(switches, (RELATIVE, ABSOLUTE))),
+            aside: 0.0,
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
         let solver: Box<dyn Solve> = match state.len() {
@@ -114,24 +149,130 @@ impl Flow {
         let rates = self.rates.0.get_mut();
         rates.table.copy_from_slice(table);
         rates.origin = from;
+        rates.aside = ASIDE * (to - from);
         for (_, signal) in &mut rates.signals {
             signal.select(from + self.slack);
         }
         let state = &mut table[self.state.clone()];
-        self.left -= self.solver.solve(&self.rates, state, to - from, self.left.min(MOST_STEPS))?;
+        if let Some(switching) = &mut rates.switching {
+            switching.begin(to - from);
+            return self.switch(state, from, to);
+        }
+        self.left -= self.solver.solve(&self.rates, state, to - from, self.left.min(MOST_STEPS), None)?;
+        Ok(())
+    }
+
+    /// Moves the state on from one change of a sign to the next.
+    fn switch(&mut self, state: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+        let length = to - from;
+        let (mut at, mut reached, mut most) = (0.0, Vec::new(), self.left.min(MOST_STEPS));
+        let left = most;
+        let mut switches = 0;
+        while length - at > SHORTEST * length {
+            let rest = length - at;
+            self.rates.0.get_mut().begin(from + at, state, &reached);
+            if switches == MOST_SWITCHES {
+                let part = rest.min(length / LOOKS);
+                most -= self.solver.solve(&self.rates, state, part, most, None)?;
+                at += part;
+                continue;
+            }
+            switches += 1;
+            // The last step before a sign changes, and the one after it.
+            let (mut before, mut after) = ((0.0, state.to_vec()), None);
+            let rates = &self.rates;
+            let mut watch = |t: f64, state: &[f64]| {
+                let is_reached = rates.0.borrow_mut().reached(t, state).is_some();
+                if is_reached {
+                    after = Some((t, state.to_vec()));
+                } else {
+                    before = (t, state.to_vec());
+                }
+                is_reached
+            };
+            most -= self.solver.solve(rates, state, rest, most, Some(&mut watch))?;
+            let Some((t, end)) = after else {
+                at = length;
+                continue;
+            };
+            let (start, begun) = before;
+            let (mut early, mut late, mut end) = (0.0, t - start, end);
+            self.rates.0.get_mut().origin = from + at + start;
+            while late - early > SHORTEST * length {
+                let middle = early + (late - early) / 2.0;
+                let mut halved = begun.clone();
+                most -= self.solver.solve(&self.rates, &mut halved, middle, most, None)?;
+                if self.rates.0.get_mut().reached(middle, &halved).is_some() {
+                    (late, end) = (middle, halved);
+                } else {
+                    early = middle;
+                }
+            }
+            reached = self.rates.0.get_mut().reached(late, &end).unwrap_or_default();
+            state.copy_from_slice(&end);
+            at += start + late;
+            if switches == MOST_SWITCHES {
+                reached.clear();
+            }
+        }
+        self.left -= left - most;
         Ok(())
     }
 }
 
+impl Rates {
+    /// Writes state, time and signals of an instant into the table, `t` seconds behind the origin.
+    fn place(&mut self, t: f64, state: &[f64]) {
+        let now = self.origin + t;
+        self.table[TIME] = now;
+        let (moving, aside) = (self.switching.iter().flat_map(|switching| &switching.moving), self.aside);
+        for (position, signal) in &mut self.signals {
+            self.table[*position] = signal.value(now);
+            for (_, rate) in moving.clone().filter(|(of, _)| of == position) {
+                self.table[*rate] = (signal.value(now + aside) - signal.value(now - aside)) / (2.0 * aside);
+            }
+        }
+        self.table[self.state.clone()].copy_from_slice(&state[..self.state.len()]);
+    }
+
+    /// Before an integration from this instant.
+    fn begin(&mut self, origin: f64, state: &[f64], reached: &[bool]) {
+        self.origin = origin;
+        self.place(0.0, state);
+        if let Some(switching) = &mut self.switching {
+            switching.decide(&mut self.table, reached);
+        }
+    }
+
+    /// Which switches can no longer do what they do.
+    fn reached(&mut self, t: f64, state: &[f64]) -> Option<Vec<bool>> {
+        self.place(t, state);
+        self.switching.as_mut()?.reached(&mut self.table)
+    }
+}
+
+/// Told of each step's end, in seconds since the start, with the state there; whether to end there.
+type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
+
 /// What moves a state on.
 trait Solve: fmt::Debug {
-    /// Moves the state on by `length` seconds in at most so many steps; gives their number.
-    fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck>;
+    /// Moves the state on by `length` seconds in at most so many steps, or to where it is watched to end; gives the number of
+    /// steps.
+    fn solve(
+        &mut self,
+        rates: &Equation,
+        state: &mut [f64],
+        length: f64,
+        most: u64,
+        watch: Option<&mut Watch<'_>>,
+    ) -> Result<u64, Stuck>;
 }
 
 /// The method, made once for the run: its start sets all that a step changes but the count of its steps, which nothing
 /// depends on.
-struct Solver<const N: usize>(ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>);
+struct Solver<const N: usize>(DormandPrinceOf<N>);
+
+type DormandPrinceOf<const N: usize> = ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>;
 
 impl<const N: usize> Solver<N> {
     fn new() -> Self {
@@ -146,26 +287,51 @@ impl<const N: usize> fmt::Debug for Solver<N> {
 }
 
 impl<const N: usize> Solve for Solver<N> {
-    fn solve(&mut self, rates: &Equation, state: &mut [f64], length: f64, most: u64) -> Result<u64, Stuck> {
+    fn solve(
+        &mut self,
+        rates: &Equation,
+        state: &mut [f64],
+        length: f64,
+        most: u64,
+        mut watch: Option<&mut Watch<'_>>,
+    ) -> Result<u64, Stuck> {
         let mut start = [0.0; N];
         start[..state.len()].copy_from_slice(state);
         let method = &mut self.0;
+        let origin = rates.0.borrow().origin;
+        let stuck = |method: &DormandPrinceOf<N>, steps| Stuck {
+            steps,
+            at: origin + method.t(),
+            state: method.y()[..state.len()].to_vec(),
+        };
         method.h0 = length;
         let mut steps = 0;
-        method.init(rates, 0.0, length, &start).map_err(|_| Stuck(steps))?;
+        if method.init(rates, 0.0, length, &start).is_err() {
+            return Err(Stuck { steps, at: origin, state: state.to_vec() });
+        }
         loop {
             let rest = length - method.t();
             if rest <= SHORTEST * length {
                 break;
             }
             if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
-                return Err(Stuck(steps));
+                return Err(stuck(method, steps));
             }
             if method.h() > rest {
                 method.set_h(rest);
             }
-            method.step(rates).map_err(|_| Stuck(steps))?;
+            let before = method.t();
+            if method.step(rates).is_err() {
+                return Err(stuck(method, steps));
+            }
             steps += 1;
+            // A step that was refused has moved nothing.
+            if method.t() > before
+                && let Some(watch) = &mut watch
+                && watch(method.t(), &method.y()[..state.len()])
+            {
+                break;
+            }
         }
         state.copy_from_slice(&method.y()[..state.len()]);
         Ok(steps)
@@ -175,7 +341,14 @@ impl<const N: usize> Solve for Solver<N> {
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {
     fn diff(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
         let mut inner = self.0.borrow_mut();
-        let Rates { table, state: place, origin, signals, formulas } = &mut *inner;
+        if inner.switching.is_some() {
+            inner.place(t, state);
+            let Rates { table, switching, .. } = &mut *inner;
+            if let Some(switching) = switching {
+                switching.hold(table);
+            }
+        }
+        let Rates { table, state: place, origin, signals, formulas, .. } = &mut *inner;
         let now = *origin + t;
         table[TIME] = now;
         for (position, signal) in signals {

@@ -15,10 +15,10 @@ use crate::source::{Code, Diagnostic, Span};
 pub(super) const TIME: usize = 0;
 
 /// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
-/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show.
+/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show; signs in the rates.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// The symbols in the order of the table.
+    /// The symbols in the order of the table; behind those of the ranges, signs in the rates.
     pub(super) symbols: Vec<Symbol>,
     /// x, y and the baselines' states together.
     pub(super) state: Range<usize>,

@@ -15,6 +15,7 @@
 
 mod advice;
 mod asked;
+mod certainty;
 mod changed;
 mod control;
 mod curve;
@@ -27,6 +28,7 @@ mod failure;
 mod faults;
 pub mod figure;
 mod flow;
+mod growth;
 mod label;
 mod layout;
 mod noise;
@@ -45,6 +47,7 @@ mod signal;
 mod sizes;
 mod stepping;
 mod summary;
+mod switching;
 mod timing;
 mod trace;
 mod truth;
@@ -57,6 +60,7 @@ mod window;
 mod tests;
 
 pub use crate::tuning::{Known, Numbers, Value};
+pub use certainty::Certainty;
 pub use ensemble::{Ensemble, Quantiles, Spread};
 pub use excitation::Excitation;
 pub use failure::Failure;

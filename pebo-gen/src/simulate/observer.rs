@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::analysis::{Derivation, RegressionKind};
+use crate::analysis::{Derivation, LeftInverse, RegressionKind};
 use crate::cas::{Expr, Symbol};
 use crate::program::Program;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::asked::Asked;
+use super::certainty::Wanted;
 use super::layout::program;
+use super::score::SETTLED;
 use super::settings::Settings;
 use super::sizes::LARGEST;
 
@@ -47,6 +49,8 @@ pub(super) struct Design {
     pub(super) unknown_names: Vec<String>,
     /// Regression and estimator.
     pub(super) settings: Settings,
+    /// The standard errors that are wanted.
+    pub(super) wanted: Vec<Wanted>,
 }
 
 impl Design {
@@ -107,6 +111,7 @@ impl Design {
                 .chain(regression.eta.iter().map(|unknown| arena.print(*unknown)))
                 .collect(),
             settings,
+            wanted: wanted(asked, inverse, problems),
         };
         problems.keep(design.admit_size(span))?;
         Some(design)
@@ -124,6 +129,14 @@ impl Design {
         self.unknown_names.len()
     }
 
+    /// Whether a value of a recovered state is beyond the bounds that `within` says of it, by more than settles.
+    pub(super) fn is_outside(&self, state: usize, value: f64) -> bool {
+        let [lower, upper] = &self.settings.within;
+        let slack = SETTLED * value.abs();
+        lower.get(state).is_some_and(|lower| value + slack < *lower)
+            || upper.get(state).is_some_and(|upper| value - slack > *upper)
+    }
+
     fn admit_size(&self, span: Span) -> Result<(), Diagnostic> {
         let size = self.size();
         if size <= LARGEST {
@@ -134,4 +147,23 @@ impl Design {
             "the simulator has room for {LARGEST} states, outputs, inputs or unknowns: simulate the emitted code"
         )))
     }
+}
+
+/// The standard errors that are wanted of the recovered states; of a state that is not recovered none can be had.
+fn wanted(asked: &Asked, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
+    let arena = &asked.plant.arena;
+    let mut found = Vec::new();
+    for entry in &asked.model.observer.wanted {
+        let state = &entry.name.value;
+        let Some(estimate) = inverse.x.iter().position(|(recovered, _)| arena.name(*recovered) == *state) else {
+            let message = format!("`wanted` names `{state}`, which this observer does not recover");
+            problems.push(
+                Diagnostic::error(Code::SettingConflict, entry.name.span, message)
+                    .help("remove it, or add its formula to `phi_left`"),
+            );
+            continue;
+        };
+        found.push(Wanted { estimate, state: state.clone(), error: entry.value.value.to_f64() });
+    }
+    found
 }

@@ -11,12 +11,14 @@ use std::ops::ControlFlow;
 
 use crate::program::{Interpreter, Program};
 
+use super::certainty::Following;
 use super::curve::Curve;
 use super::derived::observer;
 use super::excitation::Watch;
 use super::expected::Expected;
 use super::failure::Failure;
-use super::flow::Flow;
+use super::flow::{Flow, Stuck};
+use super::growth::Growth;
 use super::layout::TIME;
 use super::rival::Follower;
 use super::scenario::{Judged, Scenario};
@@ -55,6 +57,8 @@ impl Scenario {
         let mut errors = Formulas::new(&self.errors);
         let mut scores: Vec<Scoring> = self.judged.iter().map(|judged| Scoring::new(judged.period)).collect();
         let (mut watch, mut expected) = (Watch::default(), Expected::default());
+        let mut certain = Following::new(&self.design.wanted);
+        let mut outside = vec![false; self.judged.len()];
         let samples = self.timing.samples;
         let stride = (samples / REPORTS).max(1);
         for sample in 0..=samples {
@@ -67,10 +71,15 @@ impl Scenario {
             for ((score, judged), error) in scores.iter_mut().zip(&self.judged).zip(errors) {
                 score.add(table[TIME], *error, table[judged.truth]);
             }
+            for (place, (outside, judged)) in outside.iter_mut().zip(&self.judged).enumerate() {
+                *outside |= judged.estimate.baseline.is_none() && self.design.is_outside(place, table[judged.truth]);
+            }
             show(sample, Shown { table, errors });
             if sample % stride == 0 || sample == samples {
                 watch.look(table[TIME], &machine.stepping.observer.said());
-                expected.add(table[TIME], machine.stepping.observer.standard_errors());
+                let predicted = machine.stepping.standard_errors();
+                certain.look(table[TIME], predicted.as_deref());
+                expected.add(table[TIME], predicted);
             }
             if sample % stride == 0 && progress(real(sample) / real(samples)).is_break() {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
@@ -80,7 +89,7 @@ impl Scenario {
             let score = score.finish();
             let own = judged.estimate.baseline.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
-            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step }
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: outside[place] }
         };
         Ok(Summary {
             end: machine.table[TIME],
@@ -92,6 +101,7 @@ impl Scenario {
             parted: machine.stepping.parted(),
             restarts: machine.stepping.restarts(),
             surprise: machine.stepping.surprise(),
+            certainty: certain.certainty(),
             known: self.design.settings.known.clone(),
         })
     }
@@ -132,6 +142,7 @@ pub(super) struct Machine<'a> {
     pub(super) table: Vec<f64>,
     pub(super) stepping: Stepping,
     flow: Flow,
+    growth: Growth,
     sensing: Sensing<'a>,
     signals: Vec<Course>,
     given: Formulas,
@@ -154,10 +165,12 @@ impl<'a> Machine<'a> {
             sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
                 &scenario.rates,
+                scenario.switches.as_ref(),
                 layout.state.clone(),
                 &positions.collect::<Vec<_>>(),
                 scenario.timing.slack(),
             ),
+            growth: Growth::new(&[]),
             signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
             given: Formulas::new(&scenario.given.1),
             measured: Formulas::new(&scenario.measured),
@@ -175,6 +188,7 @@ impl<'a> Machine<'a> {
             machine.measure(0);
         }
         machine.admit(layout.state.clone())?;
+        machine.growth = Growth::new(&machine.table[layout.state.clone()]);
         let (x, y) = (&machine.table[layout.x.clone()], &machine.measured.values);
         let followers = scenario.followers.iter();
         machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
@@ -186,8 +200,9 @@ impl<'a> Machine<'a> {
     pub(super) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
         let Scenario { timing, jitter, seed, .. } = self.scenario;
         let (from, to) = (self.table[TIME], instant(timing, *jitter, *seed, sample));
-        let stuck = |stuck: super::flow::Stuck| Failure::Stuck { at: from, steps: stuck.0 };
-        self.flow.advance(&mut self.table, from, to).map_err(stuck)?;
+        if let Err(stuck) = self.flow.advance(&mut self.table, from, to) {
+            return Err(self.stuck(stuck));
+        }
         self.table[TIME] = to;
         self.read_signals();
         let given = self.given.of(&self.table);
@@ -195,7 +210,10 @@ impl<'a> Machine<'a> {
             self.table[*position] = *value;
         }
         let arrives = self.measure(sample);
-        self.admit(self.scenario.layout.state.clone())?;
+        let state = self.scenario.layout.state.clone();
+        self.admit(state.clone())
+            .map_err(|failure| self.diverged(&self.table[state.clone()], to).unwrap_or(failure))?;
+        self.growth.add(&self.table[state]);
         if !self.followers.is_empty() {
             let mut y = self.measured.values.clone();
             self.scenario.sensors.leave_out(sample, &mut y);
@@ -204,6 +222,18 @@ impl<'a> Machine<'a> {
             self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
         }
         self.estimate(sample, arrives)
+    }
+
+    /// Why the integration came to a stand.
+    fn stuck(&self, Stuck { steps, at, state }: Stuck) -> Failure {
+        self.diverged(&state, at).unwrap_or(Failure::Stuck { at, steps })
+    }
+
+    /// The state that runs away, if one does.
+    fn diverged(&self, state: &[f64], at: f64) -> Option<Failure> {
+        let (place, value) = self.growth.away(state)?;
+        let name = self.scenario.names[self.scenario.layout.state.start + place].clone();
+        Some(Failure::Diverged { name, value, at })
     }
 
     /// Sets the inputs for the interval to come.

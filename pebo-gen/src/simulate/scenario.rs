@@ -29,6 +29,7 @@ use super::scope::{Estimates, Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
 use super::summary::{Estimate, Summary};
+use super::switching::{Switched, Switches};
 use super::timing::Timing;
 use super::trace::Trace;
 use super::truth::Truth;
@@ -61,8 +62,12 @@ pub struct Scenario {
     pub(super) seed: u64,
     /// In what the plant and its sensors differ from what the model says: keys of the section.
     pub(super) departures: Vec<&'static str>,
+    /// The first state that is given a course, if no parameter is.
+    moved: Option<String>,
     /// The rates of the state.
     pub(super) rates: Program,
+    /// The signs in them, if there are any.
+    pub(super) switches: Option<Switched>,
     /// The baselines' estimates.
     pub(super) rivals: Program,
     /// Baselines that are fed samples, with where they write their estimates.
@@ -130,7 +135,11 @@ impl Scenario {
 
     /// What there is to say of a run that did not converge: why, and what mends it.
     pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
-        advise(summary, (&self.design.settings.estimator, Origin::Simulated(&self.departures)), self.span)
+        advise(
+            summary,
+            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moved.as_deref())),
+            self.span,
+        )
     }
 
     /// A failure of a run as a diagnostic at the section that was run.
@@ -140,10 +149,20 @@ impl Scenario {
             _ => Code::SimulationFailed,
         };
         let help = match failure {
-            Failure::Refused { at, fault: Fault::Estimate } if *at <= 0.0 => &self.restart,
-            _ => failure.help(),
+            Failure::Refused { at, fault: Fault::Estimate } if *at <= 0.0 => self.restart.clone(),
+            Failure::NotFinite { name, .. } if self.inputs().any(|input| input == name) => {
+                format!(
+                    "the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients"
+                )
+            }
+            _ => failure.help().to_owned(),
         };
         Diagnostic::error(code, self.span, failure.to_string()).help(help)
+    }
+
+    /// The names of the inputs.
+    fn inputs(&self) -> impl Iterator<Item = &String> {
+        self.names[self.layout.u.clone()].iter()
     }
 }
 
@@ -195,7 +214,7 @@ impl Resolution<'_> {
         let truth = Truth::resolve(&names, problems);
         let start = start(&names, &truth, &rivals, problems);
         let rates = rates(&names, &truth, &rivals, problems);
-        let (timing, mut design, rates) = (timing?, design?, rates?);
+        let (timing, mut design, mut rates) = (timing?, design?, rates?);
 
         let hats: Estimates = design
             .recovered
@@ -209,6 +228,8 @@ impl Resolution<'_> {
         let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
 
         let layout = Layout::new(plant, simulation, &design.recovered);
+        let (layout, switches) = Switches::of(arena, layout, &mut rates);
+        let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > flow::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());
             problems.push(
@@ -241,8 +262,10 @@ impl Resolution<'_> {
             sensors,
             jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
             departures: simulation.departures(),
+            moved: moved(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
+            switches: switches?,
             rivals: compile(&estimates)?,
             followers,
             control: compile(&control)?,
@@ -260,6 +283,13 @@ impl Resolution<'_> {
             span,
         })
     }
+}
+
+/// The first state that `plant` gives a course, if it names no parameter.
+fn moved(names: &Names) -> Option<String> {
+    let of_plant = || names.simulation.plant.iter().map(|entry| &entry.name.value);
+    let is_state = |name: &&String| names.model.x.iter().any(|state| state.value == **name);
+    of_plant().all(|name| is_state(&name)).then(|| of_plant().next().cloned())?
 }
 
 /// x, y and the baselines' states at the start, where the inputs are still 0.

@@ -125,6 +125,12 @@ impl Stepping {
         (self.surprise.1 > 0).then(|| self.surprise.0 / super::timing::real(self.surprise.1))
     }
 
+    /// The standard errors of the estimates, with what has passed since the last accepted sample.
+    pub(super) fn standard_errors(&self) -> Option<Vec<f64>> {
+        let age = self.gap.map_or(0.0, |mut gap| gap.take().1);
+        self.observer.standard_errors(age)
+    }
+
     /// How often the observer began anew after a gap.
     pub(super) fn restarts(&self) -> u64 {
         self.observer.restarts()

@@ -5,6 +5,7 @@
 
 use serde::Serialize;
 
+use super::certainty::Certainty;
 use super::excitation::Excitation;
 use super::faults::Faults;
 use super::score::Score;
@@ -33,6 +34,8 @@ pub struct Summary {
     /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right; none
     /// where the observer does not know its sensors.
     pub surprise: Option<f64>,
+    /// Whether estimates are known as well as `wanted`; none where nothing is wanted.
+    pub certainty: Option<Certainty>,
     /// What the settings of the model's observer were derived from; none where the author chose them.
     pub known: Option<Known>,
 }
@@ -51,6 +54,8 @@ pub struct Rated {
     pub expected: Option<f64>,
     /// What the outputs show the state up to multiples of, where it is not declared an angle; none where they show it.
     pub step: Option<f64>,
+    /// Whether the state itself was beyond the bounds that `within` says of it, where that is known.
+    pub outside: bool,
 }
 
 /// Whose estimate, and of what.
@@ -123,6 +128,8 @@ impl Summary {
 
     /// What there is to say beside the table.
     pub(crate) fn lines(&self) -> Vec<String> {
+        // The first is one of them too.
+        let all = self.samples + 1;
         let mut lines = Vec::new();
         let mut line = |name: &str, what: &str| lines.push(format!("{name}: {what}"));
         match &self.excitation {
@@ -132,6 +139,29 @@ impl Summary {
                 line("excitation", &format!("lost at t = {} s, `{weakest}` has been forgotten", short(*since)));
             }
         }
+        match &self.certainty {
+            None => {}
+            Some(Certainty::NotYet { weakest, error: Some(error), wanted }) => line(
+                "certainty",
+                &format!(
+                    "not yet, `{weakest}` is known to {} at the end, where {} is wanted",
+                    short(*error),
+                    short(*wanted)
+                ),
+            ),
+            Some(Certainty::NotYet { error: None, .. }) => {
+                line("certainty", "not known, as no standard error is predicted");
+            }
+            Some(Certainty::Converged { since }) => {
+                line("certainty", &format!("as wanted from t = {} s on", short(*since)));
+            }
+            Some(Certainty::Lost { since, weakest }) => {
+                line(
+                    "certainty",
+                    &format!("lost at t = {} s, `{weakest}` is no longer known as wanted", short(*since)),
+                );
+            }
+        }
         if let Some(surprise) = self.surprise {
             line("innovation", &format!("normalised square {} on average, where 1 is expected", short(surprise)));
         }
@@ -139,17 +169,17 @@ impl Summary {
             line("expected", &format!("no standard error is predicted: {reason}"));
         }
         if self.parted > 0 {
-            line("in part", &format!("{} of {} samples lack an output", self.parted, self.samples));
+            line("in part", &format!("{} of {all} samples lack an output", self.parted));
         }
         if self.dropped > 0 {
-            line("dropped", &format!("{} of {} samples", self.dropped, self.samples));
+            line("dropped", &format!("{} of {all} samples", self.dropped));
         }
         if self.restarts > 0 {
             let often = if self.restarts == 1 { "once".to_owned() } else { format!("{} times", self.restarts) };
             line("begun anew", &format!("{often}, after more than `gap` without a sample"));
         }
         for (reason, count) in self.faults.iter() {
-            line("refused", &format!("{count} of {} samples: {reason}", self.samples));
+            line("refused", &format!("{count} of {all} samples: {reason}"));
         }
         if let Some(known) = &self.known {
             line("observer", &known.observer);

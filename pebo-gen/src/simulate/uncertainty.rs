@@ -189,15 +189,17 @@ impl<const N: usize> Uncertainty<N> {
     }
 
     /// The standard errors of what is made of z and a sample: by what it changes with each column of a root of their
-    /// covariance, to the side where that is less, as an angle may come round on the other.
+    /// covariance, to the side where that is less, as an angle may come round on the other. The last sample is `age` seconds
+    /// old, in which z has drifted.
     pub(super) fn of(
         &self,
         (z, y): (&SVector<f64, N>, &SVector<f64, N>),
+        age: f64,
         value: impl Fn(&SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, N>,
     ) -> Option<SVector<f64, N>> {
         let middle = value(z, y);
         let mut squares = SVector::<f64, N>::zeros();
-        for (error, noise) in self.columns()? {
+        for (error, noise) in self.columns(age)? {
             let sides = [value(&(z + error), &(y + noise)) - middle, value(&(z - error), &(y - noise)) - middle];
             for (place, square) in squares.iter_mut().enumerate() {
                 let [above, below] = sides.each_ref().map(|side| side[place].abs());
@@ -209,8 +211,9 @@ impl<const N: usize> Uncertainty<N> {
     }
 
     /// The columns of a root of the covariance: by how much z and the outputs err together.
-    fn columns(&self) -> Option<Vec<(SVector<f64, N>, SVector<f64, N>)>> {
+    fn columns(&self, age: f64) -> Option<Vec<(SVector<f64, N>, SVector<f64, N>)>> {
         let Joint { errors, both, noise } = self.joint.as_ref()?;
+        let errors = errors + SMatrix::from_diagonal(&(self.drift * age));
         let at = |i: usize, j: usize| match (i.checked_sub(N), j.checked_sub(N)) {
             (None, None) => errors[(i, j)],
             (None, Some(j)) => both[(i, j)],

@@ -26,7 +26,7 @@ mod told;
 mod tuned;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::analysis::Derivation;
 use crate::cas::rational::Rational;

@@ -145,7 +145,8 @@ phi: [a]
     assert!(close(&noise, &[0.01]), "{noise:?}");
 }
 
-const EXCHANGER: &str = "
+/// A heat exchanger, whose phi has no left inverse at zero.
+pub(crate) const EXCHANGER: &str = "
 model: exchanger
 parameters: {V: 1, rc: 4}
 x: [Th, U]

@@ -303,7 +303,7 @@ fn a_run_is_summed_up() {
     let lines: Vec<&str> = said.lines().collect();
     assert!(lines[0].starts_with("error of") && lines[0].contains("settled to 1 %"), "{said}");
     assert!(lines[1].starts_with("v in m/s") && lines[2].starts_with("kalman.v in m/s"), "{said}");
-    for part in ["excitation: enough from t = ", "dropped: ", " of 2000 samples"] {
+    for part in ["excitation: enough from t = ", "dropped: ", " of 2001 samples"] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(!said.contains("not-converged"), "{said}");

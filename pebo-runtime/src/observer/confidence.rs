@@ -33,15 +33,24 @@ where
     /// `phi_left`, which is taken over one standard error of the unknown to either side, the smaller change counting: an
     /// angle may come round on the other.
     ///
+    /// It is that of the last sample: [`standard_error_after`](Self::standard_error_after) counts what comes later. Of an
+    /// estimate that [`Within`](crate::Within) moves to a bound it is that of the estimate before.
+    ///
     /// None before the first sample, and where `phi_left` has no value one standard error away.
     ///
     /// Cost: `2 NE` left inverses.
     pub fn standard_error(&self) -> Option<SVector<M::Scalar, NX>> {
+        self.standard_error_after(nalgebra::zero())
+    }
+
+    /// The same of that estimate `dt` seconds later, if no sample has been taken since: by its process noise the unknown has
+    /// drifted, and is known less well.
+    pub fn standard_error_after(&self, dt: M::Scalar) -> Option<SVector<M::Scalar, NX>> {
         let terms = self.terms.as_ref()?;
         let eta = self.state.estimator.estimate();
-        let root = self.state.estimator.covariance_root(nalgebra::zero())?;
+        let root = self.state.estimator.covariance_root(dt)?;
         let at = |eta: SVector<M::Scalar, NE>| {
-            self.model.recover(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
+            self.model.recover_unbounded(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
         };
         let estimate = at(eta);
         let mut squares = SVector::<M::Scalar, NX>::zeros();

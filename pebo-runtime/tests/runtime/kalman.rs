@@ -4,7 +4,7 @@
 use pebo_runtime::nalgebra::{Matrix2, Matrix2x4, Matrix4, SMatrix, SVector, Vector1, Vector2, Vector3, Vector4};
 use pebo_runtime::{
     Fault, Flow, Fundamental, LeastSquares, Model, Observer, OutputForm, Rebase, Regression, RegressionOperator,
-    SampledRegression, Sides,
+    SampledRegression, Sides, Within,
 };
 
 use crate::converter::{Case, CaseOne, Loop};
@@ -188,6 +188,28 @@ fn parted() -> Result<Parted, Fault> {
     let squares = squares.with_process_noise(&Vector4::new(0.0, 0.0, 1.0, 1.0))?;
     let sampled = SampledRegression::new(&Vector2::repeat(0.1))?;
     Observer::with_regression(OutputForm::new(CaseOne::<f64>::new()), squares, sampled, Vector4::zeros())?.rebasing(1)
+}
+
+#[test]
+fn a_bound_and_the_time_since_a_sample_are_in_the_standard_error() -> Result<(), Fault> {
+    let squares = LeastSquares::diagonal(&Vector4::new(0.01, 0.01, 4.0, 4.0), 0.0)?;
+    let squares = squares.with_process_noise(&Vector4::new(0.0, 0.0, 1.0, 1.0))?;
+    let bounded = Within::new(CaseOne::<f64>::new(), &Vector2::repeat(7.0), &Vector2::repeat(9.0))?;
+    let sampled = SampledRegression::<f64, 2, 4>::new(&Vector2::repeat(0.1))?;
+    let observer = Observer::with_regression(OutputForm::new(bounded), squares, sampled, Vector4::zeros())?;
+    let (mut bounded, mut free) = (observer.rebasing(1)?, parted()?);
+    for _ in 0..10 {
+        let (y, u) = (Vector2::new(10.0, -12.0), Vector1::new(0.5));
+        let estimate: Vector2<f64> = bounded.step(y, u, 1e-5)?;
+        free.step(y, u, 1e-5)?;
+        assert!(estimate.iter().all(|state| (7.0..=9.0).contains(state)), "{estimate}");
+    }
+    assert_eq!(bounded.standard_error(), free.standard_error());
+    // z is x here, and drifts by 1 per root second.
+    let [now, later] = [0.0, 0.5].map(|dt| free.standard_error_after(dt).expect("a linear left inverse"));
+    let drifted = (later.component_mul(&later) - now.component_mul(&now)).map(|square| square - 0.5);
+    assert!(drifted.amax() < 1e-9, "{drifted}");
+    Ok(())
 }
 
 #[test]

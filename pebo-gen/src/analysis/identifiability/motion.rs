@@ -6,7 +6,7 @@
 //!
 //! On each of them the same question is asked as of all motions: the rank of the rows with their derivatives. Full, it was
 //! seen at a point; less, exact algebra gives the directions that no derivative shows. What could not be decided is not
-//! said, nor is it said that there are no others.
+//! said; that there are no other such motions is said only where each of them was seen to end at once.
 
 mod losses;
 mod question;
@@ -32,11 +32,11 @@ pub(super) use question::seen;
 /// Inputs up to which motions are tried one by one.
 const MOST_INPUTS: usize = 6;
 
+/// Of longer rows, the part of the budget that the conditions on parameters may take.
+const FOR_PARAMETERS: u64 = 8;
+
 /// Values of inputs that are tried.
 const MOST_VALUES: usize = 8;
-
-/// Beyond `MOST_OF_DETERMINANT`, the part of the budget that the conditions on parameters may take.
-const FOR_PARAMETERS: u64 = 8;
 
 /// What has to move, and combinations of the parameters that must not vanish for the rank to be full.
 pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: &Regression) -> (Motion, Vec<Expr>) {

@@ -1,6 +1,9 @@
 //! Emitted functions of plants whose names were once taken for the generator's own.
 
+use std::collections::BTreeSet;
+
 use crate::emit::Scalar;
+use crate::emit::names::TYPES;
 use crate::program::{Interpreter, lower};
 use crate::source::Source;
 use crate::{Derived, derive};
@@ -55,4 +58,48 @@ fn each_entry_of_a_wide_fundamental_matrix_is_read_where_it_stands() {
     // Read back and compared entry by entry, or not emitted.
     let text = wide.emit(Scalar::F64).expect("emitted").text;
     assert!(text.contains("psi1_11") && text.contains("psi11_1") && !text.contains("psi111"));
+}
+
+/// Every name in capitals that an emitted module uses is one that the model's type does not take.
+#[test]
+fn the_type_is_named_like_nothing_that_the_module_uses() {
+    let settings = [
+        "estimator: {least_squares: {covariance: 10}}, filter: 4, gate: {threshold: 9}",
+        "estimator: {drem: {gain: 4, extension: {gradient: {gain: 2}}}}, filter: 3, bounds: {z1: [-5, 5]}",
+        "estimator: {least_squares: {covariance: 10}}, filter: 4, limits: {q: [-9, 9]}, within: {p: [-2, 2]}",
+        "sensors: {q: 0.1}, start: {p: 1}",
+    ];
+    for settings in settings {
+        let text = format!(
+            "model: gate\nparameters: {{k: 3}}\nx: [p]\ny: [q]\nu: [v]\nf_x: {{p: k*v - sqrt(q)}}\nf_y: {{q: p*sin(q)}}\n\
+             assume: [q > 0]\nphi: [p]\nobserver: {{{settings}}}\nsimulation: {{duration: 1, step: 0.01, signals: {{v: 1}}, \
+             initial: {{p: 1, q: 1}}}}\n"
+        );
+        let text = derived(&text).emit(Scalar::F32).expect("emitted").text;
+        let code: proc_macro2::TokenStream = text.parse().expect("tokens");
+        let used = capitalised(code);
+        assert!(used.contains("GatePlant") && used.len() > 10, "{used:?}");
+        let taken = |name: &String| TYPES.contains(&name.as_str()) || *name == "GatePlant" || name.starts_with("RATIO");
+        let others: Vec<&String> = used.iter().filter(|name| !taken(name)).collect();
+        assert!(others.is_empty(), "{settings}: {others:?}");
+    }
+}
+
+/// The identifiers that start with a capital, but for the attributes'.
+fn capitalised(code: proc_macro2::TokenStream) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    let mut before = String::new();
+    for token in code {
+        match &token {
+            proc_macro2::TokenTree::Ident(ident) => {
+                found.extend(Some(ident.to_string()).filter(|name| name.starts_with(char::is_uppercase)));
+            }
+            proc_macro2::TokenTree::Group(group) if before != "#" && before != "!" => {
+                found.extend(capitalised(group.stream()));
+            }
+            _ => {}
+        }
+        before = token.to_string();
+    }
+    found
 }

@@ -342,13 +342,19 @@ const OBSERVER: &[Key] = &[
         "rebase",
         Shape::Number,
         "rebase: 1",
-        "Samples after which the extension starts again from the estimate, with all memory carried over; never if left out",
+        "Samples after which the extension starts again from the estimate, with all memory carried over: 1 is the form without drift; never if left out",
     ),
     optional(
         "gate",
         Shape::Number,
         "gate: 25",
         "The normalised square of the innovation beyond which a sample is refused as an outlier; without gains only",
+    ),
+    optional(
+        "wanted",
+        DEVIATIONS,
+        "wanted: {i1: 0.05}",
+        "The standard error that each state shall be known to: a run says from when on all are, or which is not; without gains only",
     ),
     optional(
         "limits",

@@ -11,6 +11,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 
 use crate::program::Interpreter;
+use crate::simulate::certainty::Following;
 use crate::simulate::derived::observer;
 use crate::simulate::excitation::Watch;
 use crate::simulate::expected::Expected;
@@ -92,6 +93,7 @@ struct Machine<'a, 'w> {
     misfits: Vec<Scoring>,
     watch: Watch,
     expected: Expected,
+    certain: Following<'a>,
     rows: u64,
     samples: u64,
     /// The first instant, and that of the last accepted sample.
@@ -123,6 +125,7 @@ impl<'a, 'w> Machine<'a, 'w> {
             misfits: residuals.outputs.iter().map(|_| Scoring::new(Some(0.0))).collect(),
             watch: Watch::default(),
             expected: Expected::default(),
+            certain: Following::new(&design.wanted),
             rows: 0,
             samples: 0,
             first: None,
@@ -246,7 +249,9 @@ impl<'a, 'w> Machine<'a, 'w> {
     /// Looks at what the data determine.
     fn look(&mut self) {
         self.watch.look(self.last, &self.stepping.observer.said());
-        self.expected.add(self.last, self.stepping.observer.standard_errors());
+        let predicted = self.stepping.standard_errors();
+        self.certain.look(self.last, predicted.as_deref());
+        self.expected.add(self.last, predicted);
     }
 
     fn header(&mut self) -> Result<(), Failure> {
@@ -291,7 +296,7 @@ impl<'a, 'w> Machine<'a, 'w> {
         let rated = |((judged, score), place): ((&Judged, &Scoring), &usize)| {
             let score = score.finish();
             let expected = self.expected.since(score.since, *place);
-            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step }
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: false }
         };
         let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
             output: names.y[*output].clone(),
@@ -323,6 +328,7 @@ impl<'a, 'w> Machine<'a, 'w> {
                 parted: self.stepping.parted(),
                 restarts: self.stepping.restarts(),
                 surprise: self.stepping.surprise(),
+                certainty: self.certain.certainty(),
                 known: design.settings.known.clone(),
             },
             residuals: misfits.map(misfit).collect(),

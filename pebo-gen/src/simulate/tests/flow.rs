@@ -36,7 +36,7 @@ fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8)
     let signal = Signal::resolve(&arena, &scope, &model.simulation.unwrap().signals[0], &mut problems);
     assert!(!problems.has_errors());
     let program = lower(&arena, &symbols, &[rate(&arena, state, course)]).unwrap();
-    let mut flow = Flow::new(&program, 1..2, &[(2, &signal)], 1e-9);
+    let mut flow = Flow::new(&program, None, 1..2, &[(2, &signal)], 1e-9);
     let mut table = [0.0, 1.0, 0.0];
     let mut states = Vec::new();
     for step in 0..steps {

@@ -119,7 +119,7 @@ impl Loop {
         let inputs = state.end..state.end + layout.u.len();
         let signals: Vec<_> = (inputs.end..).zip(&scenario.signals).collect();
         let rates = lower(arena, &symbols, &self.at_values(&rates)).unwrap();
-        let mut flow = Flow::new(&rates, state.clone(), &signals, scenario.timing.slack());
+        let mut flow = Flow::new(&rates, None, state.clone(), &signals, scenario.timing.slack());
 
         let z_of = lower(arena, &symbols, &self.at_values(&plant.transform())).unwrap();
         let (mut z_of, n) = (Interpreter::new(&z_of), plant.phi.len());

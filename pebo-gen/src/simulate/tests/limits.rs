@@ -1,8 +1,8 @@
 //! What samples may be, and how long the observer waits for one.
 
-use crate::simulate::Overrides;
+use crate::simulate::{Certainty, Overrides};
 
-use super::{SPRING, run, with};
+use super::{SPRING, resolve, run, with};
 
 /// The spring from rest's place, so that its first sample is within limits; q is sin(2 t).
 fn spring(observer: &str, simulation: &str) -> String {
@@ -23,7 +23,10 @@ fn a_sample_off_its_range_is_refused_and_bridged() {
     assert!(summary.estimates[0].score.rms < 0.1, "{}", summary.text());
     // No number of them ends the run, also at its start.
     let low = run(&spring(", limits: {q: [-2, -0.1]}", "").replace("step: 0.01", "step: 1e-3"), &Overrides::default());
-    assert!(low.summary().faults.count() > 5000, "{}", low.summary().text());
+    let summary = low.summary();
+    assert!(summary.faults.count() > 5000, "{}", summary.text());
+    // The first of all samples is one too.
+    assert!(summary.text().contains(" of 10001 samples: output sample 0"), "{}", summary.text());
     // Limits that nothing reaches change nothing.
     let wide = run(&spring(", limits: {q: [-2, 2]}, gap: 1", ""), &Overrides::default());
     assert_eq!(wide.csv(), run(&spring("", ""), &Overrides::default()).csv());
@@ -56,4 +59,84 @@ simulation: {duration: 5, step: 0.01, initial: {p: 1, q: 2, r: 2}, every: {r: 10
 ";
     let summary = run(text, &Overrides::default()).summary().clone();
     assert_eq!((summary.parted, summary.faults.count(), summary.restarts), (450, 0, 0), "{}", summary.text());
+}
+
+/// A mass on which an unknown constant force acts, with its speed measured.
+const FORCE: &str = "
+model: force
+x: [F]
+y: [v]
+u: [a]
+f_x: {F: 0}
+f_y: {v: F + a}
+phi: [F]
+observer: {sensors: {v: 0.01}, start: {F: 10}, disturbance: {F: 0.1}}
+simulation: {duration: 10, step: 0.01, initial: {F: 3, v: 0}, control: {a: -v}, noise: {v: 0.01}}
+";
+
+#[test]
+fn certainty_is_told_beside_what_is_wanted() {
+    let line = |wanted: &str| {
+        let text = with(FORCE, "disturbance: {F: 0.1}", &format!("disturbance: {{F: 0.1}}, wanted: {{F: {wanted}}}"));
+        let text = run(&text, &Overrides::default()).summary().text();
+        text.lines().find(|line| line.starts_with("certainty: ")).map(str::to_owned)
+    };
+    // What such sensor and drift come to: P = q sqrt(r dt) of the pair (v, F) is about 0.04^2.
+    assert!(line("0.2").is_some_and(|line| line.starts_with("certainty: as wanted from t = 0.")), "{:?}", line("0.2"));
+    assert!(line("1e-3").is_some_and(|line| line.contains("not yet, `F` is known to 0.0")), "{:?}", line("1e-3"));
+    assert_eq!(run(FORCE, &Overrides::default()).summary().certainty, None);
+}
+
+#[test]
+fn certainty_is_lost_while_no_sample_is_taken() {
+    // v goes to 3 - 5 up to 5 s, and to 3 + 5 then: its sensor ends at 6.
+    let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.1}, wanted: {F: 0.05}, limits: {v: [-10, 6]}");
+    let text = with(&text, "a: -v", "a: -v + 5*tanh(100*(t - 5))");
+    let summary = run(&text, &Overrides::default()).summary().clone();
+    // v > 6 after 5 + log(5) s; F was known to 0.04, and drifts to 0.07 within 0.4 s.
+    let Some(Certainty::Lost { since, weakest }) = &summary.certainty else { panic!("{}", summary.text()) };
+    assert!(weakest == "F" && (6.6..7.5).contains(since), "{}", summary.text());
+}
+
+#[test]
+fn bounds_that_exclude_the_truth_are_told_and_leave_the_standard_error() {
+    let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.1}, within: {lower: 5, upper: 6}");
+    let scenario = resolve(&text, &Overrides::default()).unwrap();
+    let trace = scenario.run().unwrap();
+    let (summary, free) = (trace.summary(), run(FORCE, &Overrides::default()));
+    let advice = scenario.advise(summary).unwrap();
+    assert!(advice.notes[0].contains("`F` itself is beyond the bounds of `within`"), "{advice:?}");
+    assert!(summary.estimates[0].outside && !free.summary().estimates[0].outside);
+    // An estimate that is moved to a bound is known no better: over the last tenth, as it never settles.
+    let last = |trace: &crate::simulate::Trace| trace.summary().estimates[0].expected.unwrap();
+    assert!((last(&trace) / last(&free) - 1.0).abs() < 0.2, "{} {}", last(&trace), last(&free));
+}
+
+#[test]
+fn a_state_that_moves_is_followed_by_a_disturbance() {
+    let text = with(FORCE, "initial: {F: 3, v: 0}", "initial: {v: 0}, plant: {F: 3*sin(2*pi*t)}");
+    let text = with(&text, "{v: 0.01}", "{v: 0.001}");
+    let text = with(&text, "disturbance: {F: 0.1}", "disturbance: {F: 0.001}");
+    let scenario = resolve(&text, &Overrides::default()).unwrap();
+    let trace = scenario.run().unwrap();
+    let help = scenario.advise(trace.summary()).unwrap().help.unwrap();
+    assert!(help.contains("raise `disturbance` of `F`") && !help.contains("parameter"), "{help}");
+    // And so it is: of 2.1 rms a twentieth is lag, behind (3/(0.001^2*0.01)^(1/2))^(1/2) rad/s, and an eighth noise.
+    let rms = |text: &str| run(text, &Overrides::default()).summary().estimates[0].score.rms;
+    let mended = with(&text, "disturbance: {F: 0.001}", "disturbance: {F: 3}");
+    assert!(rms(&mended) < 0.3 * rms(&text), "{} {}", rms(&mended), rms(&text));
+}
+
+#[test]
+fn time_in_a_plant_becomes_an_input_as_the_message_says() {
+    let text = with(FORCE, "v: F + a", "v: F + a + sin(t)");
+    let found = resolve(&text, &Overrides::default()).unwrap_err();
+    let help = found[0].help.clone().unwrap();
+    assert!(help.contains("add `time` to `u`") && help.contains("`time: t` under `control`"), "{help}");
+    let mended = with(&with(&text, "sin(t)", "sin(time)"), "u: [a]", "u: [a, time]");
+    let mended = with(&mended, "control: {a: -v}", "control: {a: -v, time: t}");
+    // Of a force that hardly drifts: to less than a hundredth.
+    let mended = with(&mended, "disturbance: {F: 0.1}", "disturbance: {F: 0.001}");
+    let trace = run(&mended, &Overrides::default());
+    assert!(trace.summary().unsettled().is_empty(), "{}", trace.summary().text());
 }

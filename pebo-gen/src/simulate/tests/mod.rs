@@ -10,6 +10,7 @@ mod refusal;
 mod rival;
 mod run;
 mod sensor;
+mod switching;
 mod truth;
 
 use crate::analysis::Derivation;

@@ -1,5 +1,6 @@
 use crate::simulate::{Failure, Overrides, Scenario};
 use crate::source::{Code, Diagnostic, Source, Span};
+use crate::tuning::tests::EXCHANGER;
 
 use super::{CUK, CUK_CASE_2, SPRING, resolve, with};
 
@@ -157,25 +158,15 @@ fn a_run_that_cannot_go_on_says_where_and_when() {
     assert_eq!(failure(&scenario), Failure::NotFinite { name: "d".to_owned(), at: 0.4 });
     // An escape to infinity at t = 1.
     let text = with(&with(SPRING, "{v: -k*q}", "{v: q^2*k}"), "{q: v}", "{q: v + q^3}");
-    let Failure::Stuck { at, .. } = failure(&resolve(&text, &Overrides::default()).unwrap()) else { panic!() };
+    let Failure::Diverged { at, .. } = failure(&resolve(&text, &Overrides::default()).unwrap()) else { panic!() };
     assert!(at > 0.1 && at < 1.0, "{at}");
 }
 
 #[test]
 fn a_start_without_a_left_inverse_is_refused_with_one_that_has_it() {
-    let exchanger = "
-model: exchanger
-parameters: {V: 1, rc: 4}
-x: [Th, U]
-y: [Tc]
-u: [qh, qc, Thin, Tcin]
-assume: [U > 0, V > 0, rc > 0]
-f_x: {Th: qh/V*(Thin - Th) - U/(rc*V)*(Th - Tc), U: 0}
-f_y: {Tc: qc/V*(Tcin - Tc) + U/(rc*V)*(Th - Tc)}
-phi: [U, U*(Th + Tc)]
-observer: {extension: [0, 0]}
-simulation: {duration: 1, step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 1, qc: 1, Thin: 60, Tcin: 15}}
-";
+    let scenario = "simulation: {duration: 1, step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, \
+                    control: {qh: 1, qc: 1, Thin: 60, Tcin: 15}}\n";
+    let exchanger = &format!("{EXCHANGER}observer: {{extension: [0, 0]}}\n{scenario}");
     let scenario = resolve(exchanger, &Overrides::default()).unwrap();
     let failure = scenario.run().unwrap_err();
     let help = scenario.explain(&failure).help.unwrap();

@@ -168,7 +168,7 @@ fn faults_are_counted_and_the_run_goes_on() {
     let below = column(&trace, "p").iter().filter(|p| **p < 0.0).count();
     assert!(summary.faults.count() > 0, "{below} {faults:?}");
     assert!(faults.keys().all(|reason| reason.contains("not be finite")), "{faults:?}");
-    assert!(summary.text().contains("of 500 samples: the new state would not be finite"), "{}", summary.text());
+    assert!(summary.text().contains("of 501 samples: the new state would not be finite"), "{}", summary.text());
 }
 
 #[test]

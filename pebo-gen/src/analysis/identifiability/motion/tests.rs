@@ -103,6 +103,7 @@ fn what_several_signals_hide_at_rest_is_listed() {
                      f_y: {S: w - S + k*(T - S)}\nphi: [k, k*(T + S)]";
     let lines = of(exchanger);
     assert!(lines[0].ends_with("almost wherever the plant rests"), "{lines:?}");
+    assert!(lines[1].starts_with("while the plant rests and `"), "{lines:?}");
     assert!(lines[1].ends_with("= 0`, it was not decided what is identified"), "{lines:?}");
     assert_eq!(lines.len(), 2, "{lines:?}");
 }

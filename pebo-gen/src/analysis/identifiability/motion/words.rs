@@ -20,6 +20,11 @@ impl Motion {
             (Some(true), true, true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
+            (Some(true), true, true)
+                if self.blind.iter().all(|blind| matches!(blind.place, Place::UnshownAtRest(_))) =>
+            {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
+            }
             (Some(true), true, true) => {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
             }
