@@ -179,6 +179,22 @@ const CASES: &[Case] = &[
                 f_y: {h: (q - a*sqrt(2*g*h))/A}",
         truth: Truth::Pebo,
     },
+    Case {
+        from: "a plant of third order with unknown coefficients (Kreisselmeier 1977)",
+        lines: "x: [y1, y2, a, b, c, d]\ny: [y0]\nu: [u]\n\
+                f_x: {y1: y2, y2: -a*y0 - b*y1 - c*y2 + d*u, a: 0, b: 0, c: 0, d: 0}\nf_y: {y0: y1}",
+        truth: Truth::Gpebo,
+    },
+    Case {
+        from: "two tones of unknown frequencies (Hsu, Ortega, Damm 1999)",
+        lines: "x: [s1, s2, s3, p, q]\ny: [s0]\nf_x: {s1: s2, s2: s3, s3: -p*s0 - q*s2, p: 0, q: 0}\nf_y: {s0: s1}",
+        truth: Truth::Gpebo,
+    },
+    Case {
+        from: "friction that grows with the third power of the position, unknown (van der Pol 1920)",
+        lines: "x: [v, c, d]\ny: [q]\nu: [u]\nf_x: {v: u - c*v*q - d*v*q^3, c: 0, d: 0}\nf_y: {q: v}",
+        truth: Truth::Pebo,
+    },
 ];
 
 /// The class of the transform that was found, every claim being proved.
