@@ -182,3 +182,24 @@ fn a_parameter_given_as_zero_is_zero() {
     let refused = derive(&Source::new("m", divided).expect("a text")).expect_err("a refusal");
     assert_eq!(refused[0].code, Code::DivisionByZero);
 }
+
+#[test]
+fn a_condition_is_listed_once_in_its_plainest_form() {
+    for (rate, expected) in [
+        ("a + log(abs(i)) + 1/i", &["i != 0"][..]),
+        ("a + 1/abs(i) + 1/i", &["i != 0"]),
+        ("a + log(i^2) + log(abs(i))", &["i != 0"]),
+        ("a + log(i) + 1/abs(i)", &["i > 0"]),
+        ("a + log(i^2*abs(k))", &["i != 0", "k != 0"]),
+        // Never zero, or never negative.
+        ("a + log(i^2 + 1) + 1/(abs(i) + 2) + sqrt(abs(i*k))", &[]),
+        ("a + log(i^2 + k^2)", &["i^2 + k^2 > 0"]),
+    ] {
+        let found = derived(&format!("x: [a]\ny: [v]\nu: [i, k]\nf_x: {{a: i}}\nf_y: {{v: {rate}}}\nphi: [a]"));
+        assert_eq!(found.derivation.outcome, Outcome::Accepted, "{rate}");
+        let arena = &found.plant.arena;
+        let listed: Vec<String> =
+            found.derivation.conditions.iter().map(|(e, r)| format!("{} {}", arena.print(*e), r.sign())).collect();
+        assert_eq!(listed, expected, "{rate}");
+    }
+}

@@ -66,12 +66,11 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
         Some(false) | None => note(Place::Constant(plant.u.clone()), &held),
     }
     let free;
-    let shown = match [&rest, &held].into_iter().flatten().find(|shown| shown.hidden.is_empty()) {
-        Some(shown) => Some(shown),
-        None => {
-            free = question.shown(&Restriction::default());
-            free.as_ref().ok()
-        }
+    let shown = if let Some(shown) = [&rest, &held].into_iter().flatten().find(|shown| shown.hidden.is_empty()) {
+        Some(shown)
+    } else {
+        free = question.shown(&Restriction::default());
+        free.as_ref().ok()
     };
     let special = shown.and_then(|shown| {
         let few = arena.postorder(&shown.stack.concat()).len() <= MOST_OF_DETERMINANT;
