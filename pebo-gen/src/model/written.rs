@@ -243,7 +243,6 @@ pub enum Scale {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
-#[non_exhaustive]
 pub enum CascadeClass {
     /// z' = h: the extension is an integrator, z = chi + theta.
     Pebo,

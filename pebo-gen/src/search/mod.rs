@@ -332,8 +332,11 @@ impl Hunt<'_> {
     /// A transform by way of one that there is if the unknown constants are measured.
     fn with_constants(&mut self) {
         let question = self.question;
-        let by_parts = parts::by_parts(question, &constants::constants(question)).map(Option::unwrap_or_default);
-        self.judge(Form::Closure(Start::Parts), 0, by_parts);
+        let unknown = constants::constants(question);
+        if !unknown.is_empty() {
+            let by_parts = parts::by_parts(question, &unknown).map(Option::unwrap_or_default);
+            self.judge(Form::Closure(Start::Parts), 0, by_parts);
+        }
         if self.is_over() {
             return;
         }

@@ -36,12 +36,9 @@ struct Term {
     coefficient: Expr,
 }
 
-/// The functions; none where there are no constants to take out, or it does not end.
+/// The functions; none where it does not end.
 pub(super) fn by_parts(question: &Question<'_>, constants: &BTreeSet<Symbol>) -> Result<Option<Vec<Expr>>, Obstacle> {
     let arena = question.arena;
-    if constants.is_empty() {
-        return Ok(None);
-    }
     let mut search = ByParts { question, constants, components: Vec::new(), steps: 0 };
     for _ in 0..MOST_ROUNDS {
         let before: Vec<Expr> = search.functions();
