@@ -89,10 +89,11 @@ const RESERVED: [&str; 62] = [
 ];
 
 /// What an emitted module declares or imports, and the names of the prelude and of the trait's items that it uses.
-pub(super) const TYPES: [&str; 56] = [
+pub(super) const TYPES: [&str; 57] = [
     "Bounded",
     "Default",
     "Drem",
+    "E",
     "Err",
     "Extension",
     "Fault",

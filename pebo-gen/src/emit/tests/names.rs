@@ -64,15 +64,15 @@ fn each_entry_of_a_wide_fundamental_matrix_is_read_where_it_stands() {
 #[test]
 fn the_type_is_named_like_nothing_that_the_module_uses() {
     let settings = [
-        "estimator: {least_squares: {covariance: 10}}, filter: 4, gate: {threshold: 9}",
-        "estimator: {drem: {gain: 4, extension: {gradient: {gain: 2}}}}, filter: 3, bounds: {z1: [-5, 5]}",
-        "estimator: {least_squares: {covariance: 10}}, filter: 4, limits: {q: [-9, 9]}, within: {p: [-2, 2]}",
-        "sensors: {q: 0.1}, start: {p: 1}",
+        "estimator: least-squares, covariance: 10, filter: 4, bounds: {lower: -5, upper: 5}",
+        "estimator: finite-time-drem, gain: 4, regressor_gain: 2, clip: 0.1, filter: 3",
+        "estimator: gradient, gain: 10, filter: 4, limits: {q: [-9, 9]}, within: {lower: -2, upper: 2}",
+        "sensors: {q: 0.1}, start: {p: 1}, gate: 25",
     ];
     for settings in settings {
         let text = format!(
             "model: gate\nparameters: {{k: 3}}\nx: [p]\ny: [q]\nu: [v]\nf_x: {{p: k*v - sqrt(q)}}\nf_y: {{q: p*sin(q)}}\n\
-             assume: [q > 0]\nphi: [p]\nobserver: {{{settings}}}\nsimulation: {{duration: 1, step: 0.01, signals: {{v: 1}}, \
+             assume: [q > 0]\nphi: [p]\nobserver: {{{settings}}}\nsimulation: {{duration: 1, step: 0.01, control: {{v: 1}}, \
              initial: {{p: 1, q: 1}}}}\n"
         );
         let text = derived(&text).emit(Scalar::F32).expect("emitted").text;
@@ -85,14 +85,15 @@ fn the_type_is_named_like_nothing_that_the_module_uses() {
     }
 }
 
-/// The identifiers that start with a capital, but for the attributes'.
+/// The identifiers that start with a capital, but for those of attributes and what is found in another type or module.
 fn capitalised(code: proc_macro2::TokenStream) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut before = String::new();
     for token in code {
         match &token {
             proc_macro2::TokenTree::Ident(ident) => {
-                found.extend(Some(ident.to_string()).filter(|name| name.starts_with(char::is_uppercase)));
+                let is_own = |name: &String| name.starts_with(char::is_uppercase) && before != ":";
+                found.extend(Some(ident.to_string()).filter(is_own));
             }
             proc_macro2::TokenTree::Group(group) if before != "#" && before != "!" => {
                 found.extend(capitalised(group.stream()));
