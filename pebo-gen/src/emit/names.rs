@@ -5,7 +5,7 @@
 //!
 //! 1. lower case, with `_` where a capital follows a small letter or a digit: `L1` is `l1`, `nP` is `n_p`;
 //! 2. what no Rust name may contain becomes `_`, and `_` neither leads, trails nor repeats;
-//! 3. more than [`LONGEST_WRITTEN`] characters are cut off;
+//! 3. of more than [`LONGEST_WRITTEN`] characters the words before the last are left out, as many as it takes;
 //! 4. a keyword, and a name that the emitted code uses itself (`y`, `self`), gets a trailing `_`: `type_`;
 //! 5. a name that is taken gets the first free number from 2; of names that differ in case alone, the one that is written as
 //!    Rust writes it stays as it is: `TL` and `tl` are `tl_2` and `tl`, whichever comes first.
@@ -15,8 +15,8 @@ use std::collections::BTreeSet;
 /// No name that is made of formulas is longer.
 pub(super) const LONGEST: usize = 20;
 
-/// Of the author's own names no more is kept, so that a line holds one of them with what is said of it.
-const LONGEST_WRITTEN: usize = 60;
+/// Of the author's own names no more is kept, so that a line holds the product of two parameters.
+const LONGEST_WRITTEN: usize = 28;
 
 /// The same for the model's type.
 const LONGEST_TYPE: usize = 40;
@@ -212,7 +212,12 @@ fn cut(name: &str, longest: usize) -> String {
         }
         before = c;
     }
-    let cut: String = snake.trim_matches('_').chars().take(longest).collect();
+    // What tells long names apart is as a rule the end, as the phase in `stator_resistance_of_the_winding_a`.
+    let mut words: Vec<&str> = snake.split('_').filter(|word| !word.is_empty()).collect();
+    while words.len() > 2 && words.join("_").chars().count() > longest {
+        words.remove(words.len() - 2);
+    }
+    let cut: String = words.join("_").chars().take(longest).collect();
     let cut = cut.trim_end_matches('_');
     if cut.is_empty() {
         "it".to_owned()
@@ -250,7 +255,9 @@ mod tests {
             ("iL1", "i_l1"),
             ("E", "e"),
             ("a__b", "a_b"),
-            ("temperature_of_winding_a", "temperature_of_winding_a"),
+            ("stator_resistance_of_phase_a", "stator_resistance_of_phase_a"),
+            ("stator_resistance_of_the_winding_a", "stator_resistance_of_the_a"),
+            ("stator_resistance_of_the_winding_b", "stator_resistance_of_the_b"),
         ] {
             assert_eq!(snake(name), expected, "{name}");
         }

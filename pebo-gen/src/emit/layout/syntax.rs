@@ -54,6 +54,9 @@ pub(super) fn expression(syntax: &Expr, indent: usize, column: usize, behind: us
             }
             Ok(page.within(&format!("{} {{", structure.path.to_token_stream()), "}", indent))
         }
+        Expr::Binary(binary) if matches!(binary.op, BinOp::And(_)) => {
+            Ok(format!("{}\n{:inner$}&& {}", flat(&binary.left)?, "", flat(&binary.right)?))
+        }
         _ => Ok(one_line),
     }
 }
