@@ -39,7 +39,7 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
         })
     };
     let mut forms = vec![expr];
-    if let Ok(field) = Field::over(arena, &domain.facts, &[expr]) {
+    if let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) {
         forms.extend(written(&field, expr));
         if forms.iter().skip(1).all(|form| !kept(*form)) {
             forms.extend(in_own_functions(&field, &domain.facts, expr, &own, kept));
@@ -56,7 +56,7 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
 /// The other ways to write an expression that have a value wherever it has, those with the fewest operations first. They
 /// may be in other functions than the author's and divide by other sums: that they are equal, the caller decides.
 pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
-    let Ok(field) = Field::over(arena, &domain.facts, &[expr]) else { return Vec::new() };
+    let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) else { return Vec::new() };
     let orientation = Orientation::new(arena, domain);
     let own = functions(arena, &[expr]);
     let mut ways = written(&field, expr);
@@ -103,7 +103,7 @@ fn in_own_functions(
     if frozen.is_empty() {
         return Vec::new();
     }
-    let Ok(field) = Field::over(arena, facts, &[over]) else { return Vec::new() };
+    let Ok(field) = Field::of_long_sums(arena, facts, &[over]) else { return Vec::new() };
     written(&field, over).into_iter().map(|form| frozen.thaw(form)).collect()
 }
 

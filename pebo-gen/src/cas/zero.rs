@@ -69,7 +69,7 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
         let fraction = field.fraction(expr)?;
         if fraction.is_zero() { Ok(()) } else { Err(field.doubt(&fraction)) }
     };
-    let mut normal = vanishes(Field::over(arena, &domain.facts, &[expr]));
+    let mut normal = vanishes(Field::of_long_sums(arena, &domain.facts, &[expr]));
     // What vanishes everywhere does so on the manifold; the converse is false.
     if normal.is_err() && !domain.manifold.is_empty() {
         let unsolved = domain.manifold.open().map(|equation| Obstacle::Unsolved(arena.print(equation)));

@@ -109,7 +109,7 @@ impl Matrix {
 
     /// The matrix with each entry in normal form.
     pub fn normal(&self, arena: &Arena, facts: &Facts) -> Result<Self, Obstacle> {
-        let field = Field::over(arena, facts, &self.entries())?;
+        let field = Field::of_long_sums(arena, facts, &self.entries())?;
         let shown = |row: &Vec<Expr>| row.iter().map(|e| Ok(field.show(&field.fraction(*e)?))).collect();
         Ok(Self { rows: self.rows.iter().map(shown).collect::<Result<_, Obstacle>>()? })
     }
@@ -117,7 +117,7 @@ impl Matrix {
     /// The inverse in normal form; none if the determinant is zero everywhere.
     pub fn inverse(&self, arena: &Arena, facts: &Facts) -> Result<Option<Self>, Obstacle> {
         let size = self.height();
-        let field = Field::over(arena, facts, &self.entries())?;
+        let field = Field::of_long_sums(arena, facts, &self.entries())?;
         let mut augmented = Vec::with_capacity(size);
         for (i, row) in self.rows.iter().enumerate() {
             let mut fractions = row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
@@ -153,7 +153,7 @@ impl Matrix {
 
     /// The determinant in normal form.
     pub fn determinant(&self, arena: &Arena, facts: &Facts) -> Result<Expr, Obstacle> {
-        let field = Field::over(arena, facts, &self.entries())?;
+        let field = Field::of_long_sums(arena, facts, &self.entries())?;
         let fractions = |row: &Vec<Expr>| row.iter().map(|e| field.fraction(*e)).collect();
         let rows = self.rows.iter().map(fractions).collect::<Result<Vec<Vec<Fraction>>, _>>()?;
         Ok(field.show(&determinant(&field, rows)?))
@@ -165,7 +165,7 @@ impl Matrix {
         facts: &Facts,
         read: impl FnOnce(&Field<'_>, &Echelon) -> T,
     ) -> Result<T, Obstacle> {
-        let field = Field::over(arena, facts, &self.entries())?;
+        let field = Field::of_long_sums(arena, facts, &self.entries())?;
         let fractions = |row: &Vec<Expr>| row.iter().map(|e| field.fraction(*e)).collect();
         let rows = self.rows.iter().map(fractions).collect::<Result<Vec<Vec<Fraction>>, _>>()?;
         let (echelon, _) = Echelon::of(&field, rows, self.width())?;

@@ -101,6 +101,12 @@ const TABLE: &[Row] = &[
         Accepted("implicit linear excitation"),
     ),
     (
+        "a cosine of the sum of two unknown angles, which has four summands at z = chi + theta",
+        "x: [p, s]\ny: [q, r]\nu: [v, w]\nf_x: {p: v, s: w}\nf_y: {q: cos(p + s), r: s}\nphi: [p, s]\n\
+         angles: {p: 2*pi, s: 2*pi}",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    (
         "a function of a constant",
         "x: [x]\ny: [y]\nu: [u]\nassume: [x > 0]\nf_x: {x: 0}\nf_y: {y: u*sqrt(x)}\nphi: [x]",
         Undecided(Code::RegressionUndecided),

@@ -124,9 +124,10 @@ struct Round {
 
 impl<'a> Field<'a> {
     /// The field that holds all the roots; afterwards [`Self::fraction`] answers for each of them and
-    /// for whatever is built of the same kernels.
+    /// for whatever is built of the same kernels. An angle that is a sum of symbols is split into these, so that what is
+    /// measured and what is not come apart.
     pub fn over(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
-        Self::of(arena, facts, &[], roots)
+        Self::of(arena, facts, &[], &[], roots)
     }
 
     /// The field of the roots on the domain's manifold: a symbol for which an equation is solved is what it is there.
@@ -134,10 +135,21 @@ impl<'a> Field<'a> {
     /// Holds after: every rewriting is an identity where the equations hold. What an equation that was not solved
     /// would make zero is not seen to be zero.
     pub fn on(arena: &'a Arena, domain: &Domain, roots: &[Expr]) -> Result<Self, Obstacle> {
-        Self::of(arena, &domain.facts, domain.manifold.steps(), roots)
+        Self::of(arena, &domain.facts, domain.manifold.steps(), &[], roots)
     }
 
-    fn of(arena: &'a Arena, facts: &Facts, steps: &[Step], roots: &[Expr]) -> Result<Self, Obstacle> {
+    /// As [`Self::over`], for what does not ask which symbols a kernel holds: long sums of angles may be kernels as they are.
+    pub(crate) fn of_long_sums(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
+        Self::of(arena, facts, &[], &absolute_angles(arena, roots), roots)
+    }
+
+    fn of(
+        arena: &'a Arena,
+        facts: &Facts,
+        steps: &[Step],
+        absolute: &[Expr],
+        roots: &[Expr],
+    ) -> Result<Self, Obstacle> {
         let mut field = Self {
             arena,
             work: Work::within(STEPS, arena.budget()),
@@ -150,13 +162,11 @@ impl<'a> Field<'a> {
             known_signs: Known::default(),
             round: Round::default(),
         };
-        // On a manifold, symbols are combinations of others: what is independent of the rest is found as it comes.
-        let absolute = if steps.is_empty() { absolute_angles(arena, roots) } else { Vec::new() };
         for _ in 0..MOST_ROUNDS {
             if arena.budget().is_exhausted() {
                 return Err(Obstacle::OutOfBudget);
             }
-            for angle in &absolute {
+            for angle in absolute {
                 field.take_for_atom(Family::Angle, *angle)?;
             }
             for root in roots {

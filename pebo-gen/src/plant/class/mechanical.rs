@@ -267,7 +267,7 @@ fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr], is_implicit: b
     if is_implicit {
         return Ok(products);
     }
-    let field = Field::over(place.arena, &place.domain.facts, &products)?;
+    let field = Field::of_long_sums(place.arena, &place.domain.facts, &products)?;
     let over_one = |e: &Expr| Ok(oriented(place.arena, place.domain, field.show(&field.fraction(*e)?)));
     products.iter().map(over_one).collect()
 }

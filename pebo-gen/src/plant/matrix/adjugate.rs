@@ -25,7 +25,7 @@ impl Matrix {
         if self.height() > MOST_ROWS {
             return Ok(false);
         }
-        let field = Field::over(arena, facts, &self.entries())?;
+        let field = Field::of_long_sums(arena, facts, &self.entries())?;
         let mut products = 1_usize;
         for row in &self.rows {
             let mut terms = 0;
