@@ -137,7 +137,7 @@ fn a_sign_of_a_signal_changes_between_samples() {
     compare(&found, |t| vec![t.sin().asin()]);
 }
 
-/// A motor with dry friction that is driven to and fro too weakly to move all the time.
+/// A motor with dry friction under a torque that alternates and is too weak to move it all the time.
 const BRAKE: &str = "
 model: brake
 parameters: {J: 1, M_c: 2}
