@@ -9,12 +9,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cas::field::{Field, Obstacle};
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::field::Obstacle;
+use crate::cas::{Expr, Symbol};
 use crate::plant::{Output, Plant};
 
 use super::candidate::Candidate;
+use super::products::terms;
 use super::question::Question;
 
 /// More functions than this make no observer that anybody would run.
@@ -79,22 +79,7 @@ pub(super) fn closure(question: &Question<'_>, candidate: &Candidate) -> Result<
 /// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they stand
 /// in a sum below a fraction bar, or in a function.
 fn monomials(question: &Question<'_>, formula: Expr, hidden: &BTreeSet<Symbol>) -> Result<Option<Vec<Expr>>, Obstacle> {
-    let arena: &Arena = question.arena;
-    let field = Field::over(arena, &question.domain.facts, &[formula])?;
-    let fraction = field.fraction(formula)?;
-    let kernels: Vec<u32> = field.kernels_of(hidden).into_iter().collect();
-    if kernels.iter().any(|kernel| arena.as_symbol(field.kernel(*kernel)).is_none()) {
-        return Ok(None);
-    }
-    let [(below, _)] = &fraction.denominator().collect(&kernels)[..] else { return Ok(None) };
-    let power = |powers: &[(u32, u32)], sign: i64| {
-        let factors = powers
-            .iter()
-            .map(|(kernel, exponent)| (field.kernel(*kernel), Rational::from(sign * i64::from(*exponent))));
-        arena.multiply(&Rational::ONE, factors)
-    };
-    let divisor = power(below.powers(), -1);
-    let above = fraction.numerator().collect(&kernels);
-    let functions = above.into_iter().map(|(monomial, _)| arena.mul(power(monomial.powers(), 1), divisor));
-    Ok(Some(functions.filter(|function| !arena.symbols_of(&[*function]).is_empty()).collect()))
+    let holds_symbols = |product: &Expr| !question.arena.symbols_of(&[*product]).is_empty();
+    let terms = terms(question, formula, hidden)?;
+    Ok(terms.map(|terms| terms.into_iter().map(|term| term.product).filter(holds_symbols).collect()))
 }

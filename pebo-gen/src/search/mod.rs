@@ -27,6 +27,7 @@ mod frame;
 mod functions;
 mod largest;
 mod parts;
+mod products;
 mod quadrature;
 mod question;
 mod sample;

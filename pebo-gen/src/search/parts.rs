@@ -14,6 +14,7 @@ use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
 
+use super::products::{Term, terms};
 use super::quadrature::antiderivative;
 use super::question::Question;
 
@@ -28,12 +29,6 @@ const MOST_ROUNDS: usize = 12;
 struct Component {
     lead: Expr,
     function: Expr,
-}
-
-/// A product of hidden symbols in a rate, with its coefficient in y and u.
-struct Term {
-    product: Expr,
-    coefficient: Expr,
 }
 
 /// The functions; none where it does not end.
@@ -160,29 +155,8 @@ impl ByParts<'_, '_> {
         self.question.arena.symbols_of(&[product]).is_subset(self.constants)
     }
 
-    /// A formula as a sum of products of hidden symbols; none where they stand in functions or in a sum below a fraction bar.
     fn terms(&self, formula: Expr) -> Result<Option<Vec<Term>>, Obstacle> {
-        let (arena, question) = (self.question.arena, self.question);
-        let field = Field::over(arena, &question.domain.facts, &[formula])?;
-        let fraction = field.fraction(formula)?;
-        let kernels: Vec<u32> = field.kernels_of(&question.hidden).into_iter().collect();
-        if kernels.iter().any(|kernel| arena.as_symbol(field.kernel(*kernel)).is_none()) {
-            return Ok(None);
-        }
-        let [(below, rest)] = &fraction.denominator().collect(&kernels)[..] else { return Ok(None) };
-        let power = |powers: &[(u32, u32)], sign: i64| {
-            let factors = powers
-                .iter()
-                .map(|(kernel, exponent)| (field.kernel(*kernel), Rational::from(sign * i64::from(*exponent))));
-            arena.multiply(&Rational::ONE, factors)
-        };
-        let divisor = power(below.powers(), -1);
-        let mut terms = Vec::new();
-        for (monomial, coefficient) in fraction.numerator().collect(&kernels) {
-            let product = arena.mul(power(monomial.powers(), 1), divisor);
-            terms.push(Term { product, coefficient: field.show(&field.quotient(&coefficient, rest)?) });
-        }
-        Ok(Some(terms))
+        terms(self.question, formula, &self.question.hidden)
     }
 
     /// The polynomials in the constants that multiply known signals which are independent of each other.

@@ -2,6 +2,7 @@
 
 mod conditions;
 mod fundamental;
+mod implicit;
 mod refusals;
 mod relations;
 mod shapes;

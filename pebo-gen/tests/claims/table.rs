@@ -5,6 +5,7 @@ use pebo_gen::analysis::{Class, Outcome};
 use pebo_gen::source::Code;
 
 use super::derived;
+use super::implicit::IMPLICIT;
 use super::relations::RELATIONS;
 
 /// What is expected of a plant: every claim proved, or the code of the first refusal.
@@ -66,55 +67,10 @@ const TABLE: &[Row] = &[
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x*exp(x)}\nphi: [x]",
         Accepted("dynamic over-parameterised excitation"),
     ),
-    // With exp(2 z) + 1 and 1 + z^2 for multipliers they are linear in functions of theta under the derivative, a form that is
-    // not sought; refuted they are not.
-    ("tanh", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: tanh(x)}\nphi: [x]", Undecided(Code::RegressionUndecided)),
     (
         "gaussian",
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: exp(-x^2)}\nphi: [x]",
         Rejected(Code::RegressionNonlinear),
-    ),
-    (
-        "rational",
-        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/(1 + x^2)}\nphi: [x]",
-        Undecided(Code::RegressionUndecided),
-    ),
-    (
-        "rational, its square beside it",
-        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/(1 + x^2)}\nphi: [x, x^2]",
-        Accepted("gpebo implicit linear excitation"),
-    ),
-    (
-        "what is known below stays there",
-        "x: [x]\ny: [l, y]\nu: [u]\nassume: [l > 0, x > 0]\nf_x: {x: u}\nf_y: {l: u, y: (u - y)/(l*(2 + x))}\nphi: [x]",
-        Accepted("implicit linear instant"),
-    ),
-    (
-        "another output in what multiplies the rate",
-        "x: [x]\ny: [y, q]\nu: [u]\nassume: [x > 0, y > 0, q > 0]\nf_x: {x: 0}\nf_y: {y: u/(q + y*x), q: 1}\nphi: [x]",
-        Accepted("implicit linear instant"),
-    ),
-    (
-        "two rates with one unknown below, of which one has the form",
-        "parameters: {F: 10}\nx: [m, k]\ny: [s, q]\nu: [d]\nassume: [s > 0, q > 0, k > 0, m > 0]\nf_x: {m: 0, k: 0}\n\
-         f_y: {s: d*(F - s) - 2*m*s*q/(k + s), q: m*s*q/(k + s) - d*q}\nphi: [m, k]",
-        Accepted("implicit linear excitation"),
-    ),
-    (
-        "a cosine of the sum of two unknown angles, which has four summands at z = chi + theta",
-        "x: [p, s]\ny: [q, r]\nu: [v, w]\nf_x: {p: v, s: w}\nf_y: {q: cos(p + s), r: s}\nphi: [p, s]\n\
-         angles: {p: 2*pi, s: 2*pi}",
-        Accepted("dynamic over-parameterised excitation"),
-    ),
-    (
-        "a function of a constant",
-        "x: [x]\ny: [y]\nu: [u]\nassume: [x > 0]\nf_x: {x: 0}\nf_y: {y: u*sqrt(x)}\nphi: [x]",
-        Undecided(Code::RegressionUndecided),
-    ),
-    (
-        "a rate without a usable form beside one that tells all",
-        "x: [x]\ny: [y, q]\nu: [u]\nf_x: {x: u}\nf_y: {y: x, q: exp(-x^2)}\nphi: [x]",
-        Accepted("dynamic linear instant"),
     ),
     // The unknown multiplies the rate: not linear as a dynamic regression, but as an implicit one.
     (
@@ -590,7 +546,7 @@ const TABLE: &[Row] = &[
 
 /// All of them.
 pub(super) fn rows() -> impl Iterator<Item = &'static Row> {
-    TABLE.iter().chain(RELATIONS)
+    TABLE.iter().chain(IMPLICIT).chain(RELATIONS)
 }
 
 #[test]

@@ -23,19 +23,25 @@ fn a_spring_swings_as_its_closed_form_says() {
     }
 }
 
+/// The course of the signal `s`.
+pub(super) fn course(arena: &Arena, formula: &str) -> Signal {
+    let text = with(SPRING, "duration", &format!("signals: {{s: {formula}}}, duration"));
+    let model = Model::parse(&Source::new("test", text).unwrap()).unwrap();
+    let mut scope = Scope::new();
+    scope.define("t", arena.of_symbol(time(arena)));
+    let mut problems = Diagnostics::new();
+    let signal = Signal::resolve(arena, &scope, &model.simulation.unwrap().signals[0], &mut problems);
+    assert!(!problems.has_errors());
+    signal
+}
+
 /// The state after each of `steps` steps of 0.1 s, where the table is time, one state and the signal `s`.
 fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8) -> Result<Vec<f64>, Stuck> {
     let arena = Arena::new();
-    let (state, course) = (arena.variable("a"), arena.variable("s"));
+    let (state, input) = (arena.variable("a"), arena.variable("s"));
     let symbols = [time(&arena), arena.symbol("a"), arena.symbol("s")];
-    let text = with(SPRING, "duration", &format!("signals: {{s: {signal}}}, duration"));
-    let model = Model::parse(&Source::new("test", text).unwrap()).unwrap();
-    let mut scope = Scope::new();
-    scope.define("t", arena.of_symbol(time(&arena)));
-    let mut problems = Diagnostics::new();
-    let signal = Signal::resolve(&arena, &scope, &model.simulation.unwrap().signals[0], &mut problems);
-    assert!(!problems.has_errors());
-    let program = lower(&arena, &symbols, &[rate(&arena, state, course)]).unwrap();
+    let signal = course(&arena, signal);
+    let program = lower(&arena, &symbols, &[rate(&arena, state, input)]).unwrap();
     let mut flow = Flow::new(&program, None, 1..2, &[(2, &signal)], 1e-9);
     let mut table = [0.0, 1.0, 0.0];
     let mut states = Vec::new();

@@ -2,16 +2,14 @@
 
 use crate::cas::Function::Sign;
 use crate::cas::{Arena, Expr};
-use crate::model::Model;
-use crate::plant::Scope;
 use crate::program::lower;
 use crate::simulate::flow::Flow;
 use crate::simulate::layout::time;
-use crate::simulate::signal::Signal;
 use crate::simulate::switching::Switches;
 use crate::simulate::{Failure, Overrides};
-use crate::source::{Diagnostics, Source, Span};
+use crate::source::Span;
 
+use super::flow::course;
 use super::{SPRING, resolve, run, with};
 
 /// What a level is known to: the tolerance of the integrator over some hundred steps.
@@ -33,15 +31,7 @@ fn states(begin: &[f64], rates: impl Fn(&Arena, &[Expr], Expr) -> Vec<Expr>, sig
     assert!(!switches.levels.is_empty());
     let symbols = [&[time(&arena)], state.as_slice(), &[s], &switches.symbols].concat();
     let switched = switches.programs(&arena, &symbols, Span::NOWHERE).unwrap();
-
-    let text = with(SPRING, "duration", &format!("signals: {{s: {signal}}}, duration"));
-    let model = Model::parse(&Source::new("test", text).unwrap()).unwrap();
-    let mut scope = Scope::new();
-    scope.define("t", arena.of_symbol(time(&arena)));
-    let mut problems = Diagnostics::new();
-    let signal = Signal::resolve(&arena, &scope, &model.simulation.unwrap().signals[0], &mut problems);
-    assert!(!problems.has_errors());
-
+    let signal = course(&arena, signal);
     let program = lower(&arena, &symbols, &rates).unwrap();
     let end = 1 + begin.len();
     let mut flow = Flow::new(&program, switched.as_ref(), 1..end, &[(end, &signal)], 1e-9);
