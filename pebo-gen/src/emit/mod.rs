@@ -38,7 +38,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
-pub use accuracy::{Accuracy, Loss, Worst};
+pub use accuracy::{Accuracy, Cause, Loss, Worst};
 pub use error::EmitError;
 pub use literal::Scalar;
 

@@ -23,6 +23,8 @@ pub(super) struct Parts {
 #[derive(Debug, Default)]
 pub(super) struct Angles {
     parts: FxHashMap<Expr, Parts>,
+    /// What was worked out: each angle is a part of many others.
+    known: FxHashMap<(Function, Expr), Operand>,
 }
 
 /// More angles are called for one by one: pairs are searched.
@@ -63,7 +65,7 @@ impl Angles {
             simpler.push(angle);
             known.insert(angle);
         }
-        Self { parts }
+        Self { parts, known: FxHashMap::default() }
     }
 }
 
@@ -83,6 +85,15 @@ impl Lowering<'_> {
 
     /// The sine or cosine of an angle.
     pub(super) fn trigonometric(&mut self, function: Function, angle: Expr) -> Operand {
+        if let Some(known) = self.angles.known.get(&(function, angle)) {
+            return *known;
+        }
+        let value = self.worked_out(function, angle);
+        self.angles.known.insert((function, angle), value);
+        value
+    }
+
+    fn worked_out(&mut self, function: Function, angle: Expr) -> Operand {
         let Some(&Parts { first, second, minus }) = self.angles.parts.get(&angle) else {
             let argument = self.lowered(angle);
             return self.operation(Operation::Unary(function, argument));
