@@ -14,6 +14,7 @@ mod interpret;
 mod lower;
 mod numbers;
 mod product;
+mod reuse;
 mod sharing;
 mod signs;
 mod stage;

@@ -14,6 +14,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::factor::factor;
 use super::lower::{Undeclared, lower, lower_with};
 use super::product::magnitude_together;
+use super::reuse::with_values;
 use super::straight::{Operand, Operation, Program};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
@@ -68,11 +69,12 @@ pub(crate) fn stage(
     for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| **regular) {
         *value = steady.next().unwrap_or(*value);
     }
-    let known: FxHashMap<Expr, Expr> = terms.iter().map(|&(term, value)| (value, arena.of_symbol(term))).collect();
-    for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
-        *value = arena.replace(*value, &known);
-    }
     let inputs = [stored.as_slice(), sampled].concat();
+    let seldom: Vec<Expr> = varying.iter().zip(&regular).filter_map(|(value, &is)| (!is).then_some(*value)).collect();
+    let mut seldom = with_values(arena, &prepared(arena, &seldom, &inputs), &terms).into_iter();
+    for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
+        *value = seldom.next().unwrap_or(*value);
+    }
     let same = same(arena, &inputs, &terms)?;
     terms.retain(|term| !same.contains_key(&term.0));
     let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true, is_constant(arena, &constants));
@@ -173,15 +175,16 @@ fn split(
     (prefix, first): (&'static str, usize),
     worth: impl Fn(Expr) -> bool,
 ) -> (Vec<Expr>, Vec<(Symbol, Expr)>) {
-    let symbols: BTreeSet<Symbol> = symbols.iter().copied().collect();
-    // Factors that vary leave first: what they leave behind may be a sum of the given symbols.
-    let factored = {
-        let fixed = fixed(arena, roots, &symbols);
-        factor(arena, roots, |base| !fixed.contains(&base), |base| fixed.contains(&base))
-    };
-    let fixed = fixed(arena, &factored, &symbols);
+    let factored = prepared(arena, roots, symbols);
+    let fixed = fixed(arena, &factored, symbols);
     let mut split = Split { arena, fixed, prefix, first, worth, found: Vec::new(), symbols: FxHashMap::default() };
     (split.split(&factored), split.found)
+}
+
+/// The expressions without what varies in the sums: what that leaves behind may be a sum of the given symbols.
+fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol]) -> Vec<Expr> {
+    let fixed = fixed(arena, roots, symbols);
+    factor(arena, roots, |base| !fixed.contains(&base), |base| fixed.contains(&base))
 }
 
 /// Whether computing the value takes more than a few operations.
@@ -206,7 +209,8 @@ fn is_natural(exponent: &Rational) -> bool {
 }
 
 /// Every sub-expression that depends on nothing but parameters.
-fn fixed(arena: &Arena, roots: &[Expr], parameters: &BTreeSet<Symbol>) -> FxHashSet<Expr> {
+fn fixed(arena: &Arena, roots: &[Expr], parameters: &[Symbol]) -> FxHashSet<Expr> {
+    let parameters: FxHashSet<Symbol> = parameters.iter().copied().collect();
     let mut fixed = FxHashSet::default();
     for expr in arena.postorder(roots) {
         let is_fixed = match arena.node(expr) {
