@@ -15,6 +15,7 @@ use super::frozen::Frozen;
 use super::function::Function;
 use super::oriented::Orientation;
 use super::rational::Rational;
+use super::scaled::scaled;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
@@ -46,6 +47,7 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
         }
     }
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
+    let forms = forms.flat_map(|form| [form, scaled(arena, form)]);
     forms.fold(expr, |best, form| {
         let shorter = operations(arena, form) < operations(arena, best) && kept(form) && divides_as(arena, expr, form);
         let cancels = || !root_differences(arena, form).is_subset(&root_differences(arena, expr));

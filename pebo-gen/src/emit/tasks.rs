@@ -148,7 +148,8 @@ impl Affine {
         }
         let mut affine = Self { rows: found, has_velocity: false };
         let factors: BTreeMap<Symbol, Expr> = affine.rows.iter().flat_map(|row| row.factors.iter().copied()).collect();
-        let plain = arena.substitute_all(&affine.rates(arena, definitions), &factors);
+        let rates = affine.rates(arena, definitions, &vec![true; affine.rows.len()]);
+        let plain = arena.substitute_all(&rates, &factors);
         affine.has_velocity = rows(VELOCITY).is_some_and(|velocities| {
             let velocities = velocities.concat();
             velocities.len() == plain.len() && plain.iter().zip(&velocities).all(|(&a, &b)| same(a, b))
@@ -156,15 +157,19 @@ impl Affine {
         Some(affine)
     }
 
-    /// The rates of the outputs in the names of the factors, for the coordinates in the place of the extension.
-    fn rates(&self, arena: &Arena, definitions: &Definitions) -> Vec<Expr> {
+    /// The rates of the outputs, those chosen in the names of the factors, for the coordinates in the place of the
+    /// extension.
+    fn rates(&self, arena: &Arena, definitions: &Definitions, chosen: &[bool]) -> Vec<Expr> {
         let z = definitions.symbols(Argument::Z).into_iter().map(|z| arena.of_symbol(z));
         let coordinates: BTreeMap<Symbol, Expr> = definitions.chi.iter().copied().zip(z).collect();
-        let known: Vec<Expr> = self.rows.iter().map(|row| row.known).collect();
+        let derived = definitions.functions.iter().find(|function| function.name == "phi_0");
+        let derived = derived.into_iter().flat_map(|function| function.rows.concat());
+        let rows = self.rows.iter().zip(derived).zip(chosen);
+        let known: Vec<Expr> = rows.map(|((row, derived), &chosen)| if chosen { row.known } else { derived }).collect();
         arena.substitute_all(&known, &coordinates)
     }
 
-    /// The tasks with those equations, and behind them the velocities, by factors that are chosen.
+    /// The tasks with the chosen equations by factors; behind these, whether the velocities are as the equations are.
     fn tasks(&self, arena: &Arena, definitions: &Definitions, chosen: &[bool]) -> Vec<Task> {
         let mut tasks = tasks(definitions);
         for (group, task) in definitions.groups().iter().zip(&mut tasks) {
@@ -180,8 +185,9 @@ impl Affine {
                     first += row.regressor.len();
                 }
             } else if group.name == VELOCITY && chosen.get(self.rows.len()) == Some(&true) {
-                task.parts = self.rows.iter().flat_map(|row| row.factors.iter().copied()).collect();
-                task.outputs = self.rates(arena, definitions);
+                let by_factors = self.rows.iter().zip(chosen).filter(|(_, chosen)| **chosen);
+                task.parts = by_factors.flat_map(|(row, _)| row.factors.iter().copied()).collect();
+                task.outputs = self.rates(arena, definitions, chosen);
             }
         }
         tasks

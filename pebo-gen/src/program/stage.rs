@@ -75,10 +75,18 @@ pub(crate) fn stage(
     for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
         *value = seldom.next().unwrap_or(*value);
     }
-    let same = same(arena, &inputs, &terms)?;
-    terms.retain(|term| !same.contains_key(&term.0));
-    let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true, is_constant(arena, &constants));
+    let level = same(arena, &inputs, &terms)?;
+    terms.retain(|term| !level.contains_key(&term.0));
+    let varying = factor(arena, &arena.substitute_all(&varying, &level), |_| true, is_constant(arena, &constants));
     let varying = merged(arena, varying, &mut terms, &mut constants);
+
+    // Two shapes of a formula in the parameters may be one value.
+    let equal = same(arena, parameters, &constants)?;
+    constants.retain(|constant| !equal.contains_key(&constant.0));
+    let varying = arena.substitute_all(&varying, &equal);
+    for term in &mut terms {
+        term.1 = arena.substitute(term.1, &equal);
+    }
 
     let used = arena.symbols_of(&varying);
     terms.retain(|term| used.contains(&term.0));
@@ -314,6 +322,11 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         if matches!(arena.node(value), Node::Number(_) | Node::Pi) || !(self.worth)(value) {
             return value;
         }
+        let (is_opposite, oriented) = oriented(arena, value);
+        if is_opposite {
+            return arena.scale(self.constant(oriented), &Rational::from(-1));
+        }
+        let value = oriented;
         if let Some(&known) = self.symbols.get(&value) {
             return known;
         }
@@ -321,10 +334,6 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         let opposite = arena.combine(&Rational::ZERO, [(value, minus.clone())]);
         let known = self.symbols.get(&opposite).copied();
         if let Some(known) = known {
-            return arena.scale(known, &minus);
-        }
-        if is_negative(arena, value) {
-            let known = self.constant(opposite);
             return arena.scale(known, &minus);
         }
         let symbol = arena.generated(&format!("{}{}", self.prefix, self.first + self.found.len()));
@@ -335,14 +344,31 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
     }
 }
 
-/// Whether every summand bears a minus.
-fn is_negative(arena: &Arena, expr: Expr) -> bool {
-    match arena.node(expr) {
-        Node::Product(product) => product.coefficient.is_negative(),
+/// A value without the minus that it bears as a whole, and whether it bears one: of a product, those of all its factors.
+fn oriented(arena: &Arena, value: Expr) -> (bool, Expr) {
+    let minus = Rational::from(-1);
+    let all_negative = |expr: Expr| match arena.node(expr) {
         Node::Sum(sum) => {
-            let all = sum.terms.iter().all(|term| term.1.is_negative());
-            all && (sum.constant.is_zero() || sum.constant.is_negative())
+            sum.terms.iter().all(|term| term.1.is_negative()) && (sum.constant.is_zero() || sum.constant.is_negative())
         }
         _ => false,
-    }
+    };
+    let Node::Product(product) = arena.node(value) else {
+        let is_negative = all_negative(value);
+        return (is_negative, if is_negative { arena.scale(value, &minus) } else { value });
+    };
+    let mut is_negative = product.coefficient.is_negative();
+    let factors: Vec<(Expr, Rational)> = product
+        .factors
+        .iter()
+        .map(|(base, exponent)| {
+            let is_odd = exponent.is_integer() && exponent.numerator().trailing_zeros() == 0;
+            if is_odd && all_negative(*base) {
+                is_negative = !is_negative;
+                return (arena.scale(*base, &minus), exponent.clone());
+            }
+            (*base, exponent.clone())
+        })
+        .collect();
+    (is_negative, arena.multiply(&product.coefficient.abs(), factors))
 }

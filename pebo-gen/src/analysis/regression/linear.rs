@@ -68,11 +68,11 @@ pub(super) fn linear(
             arena.add(row.known, arena.sum(row.factors.iter().zip(&chi).map(|(factor, chi)| arena.mul(*factor, *chi))));
         let written = plant.y[*output].rate.map(|rate| arena.substitute(rate.expr, &states));
         let written: Vec<Expr> = written.into_iter().filter(|w| !arena.depends_on(*w, &plant.hidden())).collect();
-        // In the author's own shape, if each state is a coordinate.
+        // In the author's own shape, if there is one and each state is a coordinate.
         let is_coordinate =
             |symbol: &Symbol| states.get(symbol).is_none_or(|formula| arena.as_symbol(*formula).is_some());
         let own = plant.y[*output].rate.filter(|rate| arena.symbols_of(&[rate.expr]).iter().all(is_coordinate));
-        let own = own.and_then(|_| written.first().copied());
+        let own = own.filter(|_| plant.class.is_none()).and_then(|_| written.first().copied());
         phi_0.push(match own.filter(|own| decide(arena, arena.sub(*own, known), domain).is_zero()) {
             Some(own) => own,
             None => {
