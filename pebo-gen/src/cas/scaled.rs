@@ -91,8 +91,8 @@ mod tests {
         let over = |number: Rational, sum: Expr| arena.scale(arena.div(sum, d), &number);
         let million = 1_000_000;
         let cases = [
-            (over(fraction(1, 2), sum([3, -2, 0], 0)), "(1.5*a - b)/d"),
-            (over(fraction(1, 5), sum([2, 0, 0], -5)), "(0.4*a - 1)/d"),
+            (over(fraction(1, 2), sum([3, -2, 0], 0)), "(3*a/2 - b)/d"),
+            (over(fraction(1, 5), sum([2, 0, 0], -5)), "(2*a/5 - 1)/d"),
             (over(fraction(1, million), sum([million, -million, 1], 0)), "(a - b + c/1000000)/d"),
             // A third has no decimal.
             (over(fraction(1, 3), sum([1, 2, 0], 0)), "(a + 2*b)/(3*d)"),

@@ -88,6 +88,10 @@ impl Lowering<'_> {
             return self.operation(Operation::Unary(function, argument));
         };
         let [sin_a, cos_a] = self.sine_and_cosine(first);
+        if first == second && function == Function::Sin {
+            let half = self.operation(Operation::Mul(sin_a, cos_a));
+            return self.operation(Operation::Add(half, half));
+        }
         let [sin_b, cos_b] = self.sine_and_cosine(second);
         let (left, right, takes) = match function {
             Function::Sin => ((sin_a, cos_b), (cos_a, sin_b), minus),

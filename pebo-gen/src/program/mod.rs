@@ -17,6 +17,7 @@ mod product;
 mod reuse;
 mod sharing;
 mod signs;
+mod spread;
 mod stage;
 mod straight;
 

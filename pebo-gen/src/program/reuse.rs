@@ -67,7 +67,7 @@ mod tests {
             (arena.div(a, b), "s"),
             (arena.sub(c, a), "-t"),
             (arena.product([arena.number(2), arena.div(a, b), c]), "2*c*s"),
-            (arena.mul(arena.sub(a, c), arena.sqrt(arena.div(a, b))), "t*sqrt(s)"),
+            (arena.mul(arena.sub(a, c), arena.sqrt(arena.div(a, b))), "sqrt(s)*t"),
             // Neither `a*b` nor `a/b^2` holds `a/b` as factors of its own.
             (arena.mul(a, b), "a*b"),
             (arena.div(a, arena.mul(b, b)), "a/b^2"),

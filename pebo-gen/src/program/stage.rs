@@ -15,6 +15,7 @@ use super::factor::factor;
 use super::lower::{Undeclared, lower, lower_with};
 use super::product::magnitude_together;
 use super::reuse::with_values;
+use super::spread::spread;
 use super::straight::{Operand, Operation, Program};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
@@ -59,6 +60,7 @@ pub(crate) fn stage(
 ) -> Result<Staged, Undeclared> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
+    let roots = spread(arena, &prepared(arena, &roots, parameters), parameters);
     let (mut varying, mut constants) = split(arena, &roots, parameters, ("$", 0), |_| true);
     let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
     let regular: Vec<bool> = tasks.iter().flat_map(|task| values(task).into_iter().map(|_| task.is_regular)).collect();
@@ -93,22 +95,84 @@ pub(crate) fn stage(
     let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
     let used: BTreeSet<Symbol> = arena.symbols_of(&formulas).into_iter().chain(used).collect();
     constants.retain(|constant| used.contains(&constant.0));
-    let setup = lower(arena, parameters, &constants.iter().map(|constant| constant.1).collect::<Vec<_>>())?;
-    let mut inputs: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
-    inputs.extend(sampled);
-    let sample = lower(arena, &inputs, &formulas)?;
-    inputs.extend(terms.iter().map(|term| term.0));
-
-    let mut programs = Vec::with_capacity(tasks.len());
-    let mut first = 0;
-    for task in tasks {
-        let (parts, rest) = varying[first..].split_at(task.parts.len());
-        let outputs = &rest[..task.outputs.len()];
-        first += task.parts.len() + task.outputs.len();
-        let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
-        programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
+    let split = Stages { constants, terms, varying };
+    let staged = split.lowered(arena, parameters, sampled, tasks)?;
+    let negated = staged.only_negated();
+    if negated.is_empty() {
+        return Ok(staged);
     }
-    Ok(Staged { constants, setup, terms, sample, programs })
+    split.with_opposites(arena, &negated).lowered(arena, parameters, sampled, tasks)
+}
+
+/// What is computed when, as expressions.
+struct Stages {
+    constants: Vec<(Symbol, Expr)>,
+    terms: Vec<(Symbol, Expr)>,
+    /// Of each task its parts, then its outputs.
+    varying: Vec<Expr>,
+}
+
+impl Stages {
+    fn lowered(
+        &self,
+        arena: &Arena,
+        parameters: &[Symbol],
+        sampled: &[Symbol],
+        tasks: &[Task],
+    ) -> Result<Staged, Undeclared> {
+        let formulas = |named: &[(Symbol, Expr)]| named.iter().map(|part| part.1).collect::<Vec<Expr>>();
+        let setup = lower(arena, parameters, &formulas(&self.constants))?;
+        let mut inputs: Vec<Symbol> = self.constants.iter().map(|constant| constant.0).collect();
+        inputs.extend(sampled);
+        let sample = lower(arena, &inputs, &formulas(&self.terms))?;
+        inputs.extend(self.terms.iter().map(|term| term.0));
+
+        let mut programs = Vec::with_capacity(tasks.len());
+        let mut first = 0;
+        for task in tasks {
+            let (parts, rest) = self.varying[first..].split_at(task.parts.len());
+            let outputs = &rest[..task.outputs.len()];
+            first += task.parts.len() + task.outputs.len();
+            let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
+            programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
+        }
+        Ok(Staged { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
+    }
+
+    /// The same with the opposites of these kept in their place.
+    fn with_opposites(mut self, arena: &Arena, negated: &BTreeSet<Symbol>) -> Self {
+        let opposites = negated.iter().map(|&symbol| (symbol, arena.neg(arena.of_symbol(symbol)))).collect();
+        for term in &mut self.terms {
+            term.1 = arena.substitute(term.1, &opposites);
+        }
+        self.varying = arena.substitute_all(&self.varying, &opposites);
+        for (_, value) in
+            self.constants.iter_mut().chain(&mut self.terms).filter(|(symbol, _)| negated.contains(symbol))
+        {
+            *value = arena.neg(*value);
+        }
+        self
+    }
+}
+
+impl Staged {
+    /// The constants and terms of which nothing but the opposite is used.
+    fn only_negated(&self) -> BTreeSet<Symbol> {
+        let named: BTreeSet<Symbol> = self.constants.iter().chain(&self.terms).map(|part| part.0).collect();
+        let (mut negated, mut plain) = (BTreeSet::new(), BTreeSet::new());
+        for program in self.programs.iter().chain([&self.sample]) {
+            let symbol = |operand: Operand| match operand {
+                Operand::Input(input) => program.inputs.get(input).copied(),
+                _ => None,
+            };
+            for operation in &program.operations {
+                let uses = if matches!(operation, Operation::Neg(_)) { &mut negated } else { &mut plain };
+                uses.extend(operation.operands().filter_map(symbol));
+            }
+            plain.extend(program.outputs.iter().filter_map(|output| symbol(*output)));
+        }
+        negated.into_iter().filter(|symbol| named.contains(symbol) && !plain.contains(symbol)).collect()
+    }
 }
 
 /// The functions and terms with constants that meet as one: a factor that left a sum stands beside others.
@@ -217,7 +281,7 @@ fn is_natural(exponent: &Rational) -> bool {
 }
 
 /// Every sub-expression that depends on nothing but parameters.
-fn fixed(arena: &Arena, roots: &[Expr], parameters: &[Symbol]) -> FxHashSet<Expr> {
+pub(super) fn fixed(arena: &Arena, roots: &[Expr], parameters: &[Symbol]) -> FxHashSet<Expr> {
     let parameters: FxHashSet<Symbol> = parameters.iter().copied().collect();
     let mut fixed = FxHashSet::default();
     for expr in arena.postorder(roots) {
