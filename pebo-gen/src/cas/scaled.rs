@@ -47,6 +47,7 @@ fn share(sum: &Sum, coefficient: &Rational) -> Option<Rational> {
             count += usize::from(!quotient.abs().is_one());
         }
         let constant = sum.constant.checked_div(share)?;
+        count += usize::from(!constant.is_integer());
         (is_short(&constant) || !is_short(&sum.constant)).then_some(count)
     };
     let mut best = (count(&Rational::ONE)?, None);
@@ -93,7 +94,7 @@ mod tests {
         let cases = [
             (over(fraction(1, 2), sum([3, -2, 0], 0)), "(3*a/2 - b)/d"),
             (over(fraction(1, 5), sum([2, 0, 0], -5)), "(2*a/5 - 1)/d"),
-            (over(fraction(1, million), sum([million, -million, 1], 0)), "(a - b + c/1000000)/d"),
+            (over(fraction(1, million), sum([million, -million, 1], 0)), "(a - b + 1e-6*c)/d"),
             // A third has no decimal.
             (over(fraction(1, 3), sum([1, 2, 0], 0)), "(a + 2*b)/(3*d)"),
             (over(fraction(1, 2), sum([1, -1, 0], 0)), "(a - b)/(2*d)"),

@@ -66,7 +66,7 @@ mod tests {
         let spread = |expr: Expr| arena.print(super::spread(&arena, &[expr], &parameters)[0]);
         let sum = arena.add(arena.mul(a, x), arena.mul(b, y));
         assert_eq!(spread(arena.mul(k, sum)), "a*k*x + b*k*y");
-        assert_eq!(spread(arena.mul(k, arena.add(arena.mul(a, x), b))), "b*k + a*k*x");
+        assert_eq!(spread(arena.mul(k, arena.add(arena.mul(a, x), b))), "a*k*x + b*k");
         // `y` alone would have to be multiplied, and `x*k*(..)` is a product that moves.
         let plain = arena.add(arena.mul(a, x), y);
         assert_eq!(spread(arena.mul(k, plain)), "k*(a*x + y)");

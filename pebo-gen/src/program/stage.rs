@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::angles::halved;
 use super::factor::factor;
 use super::lower::{Undeclared, lower, lower_with};
 use super::product::magnitude_together;
@@ -60,7 +61,7 @@ pub(crate) fn stage(
 ) -> Result<Staged, Undeclared> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
-    let roots = spread(arena, &prepared(arena, &roots, parameters), parameters);
+    let roots = spread(arena, &prepared(arena, &halved(arena, &roots), parameters), parameters);
     let (mut varying, mut constants) = split(arena, &roots, parameters, ("$", 0), |_| true);
     let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
     let regular: Vec<bool> = tasks.iter().flat_map(|task| values(task).into_iter().map(|_| task.is_regular)).collect();
