@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
+use super::stage::oriented;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Product, Symbol};
 
@@ -17,6 +18,8 @@ pub(super) fn with_values(arena: &Arena, exprs: &[Expr], values: &[(Symbol, Expr
     let mut products: Vec<(Expr, Rc<Product>)> = Vec::new();
     for &(name, value) in values {
         let name = arena.of_symbol(name);
+        let (is_opposite, value) = oriented(arena, value);
+        let name = if is_opposite { arena.scale(name, &minus) } else { name };
         whole.entry(arena.scale(value, &minus)).or_insert_with(|| arena.scale(name, &minus));
         whole.insert(value, name);
         if let Node::Product(product) = arena.node(value) {
@@ -27,9 +30,11 @@ pub(super) fn with_values(arena: &Arena, exprs: &[Expr], values: &[(Symbol, Expr
     products.sort_by_key(|(_, product)| std::cmp::Reverse(product.factors.len()));
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
     for expr in arena.postorder(exprs) {
-        let by_names = match (whole.get(&expr), arena.node(expr)) {
-            (Some(name), _) => *name,
-            (None, Node::Product(product)) => by_parts(arena, &product, &products, &known),
+        let (is_opposite, plain) = oriented(arena, expr);
+        let sign = if is_opposite { &minus } else { &Rational::ONE };
+        let by_names = match (whole.get(&plain), arena.node(plain)) {
+            (Some(name), _) => arena.scale(*name, sign),
+            (None, Node::Product(product)) => arena.scale(by_parts(arena, &product, &products, &known), sign),
             (None, _) => arena.rebuild(expr, &known),
         };
         known.insert(expr, by_names);
@@ -49,7 +54,12 @@ fn by_parts(arena: &Arena, product: &Product, named: &[(Expr, Rc<Product>)], kno
             factors.push((*name, Rational::ONE));
         }
     }
-    factors.extend(rest.into_iter().map(|(base, exponent)| (known[&base], exponent)));
+    let minus = Rational::from(-1);
+    let value = |base: Expr| {
+        // A sum may have changed its sign.
+        known.get(&base).copied().unwrap_or_else(|| arena.scale(known[&arena.scale(base, &minus)], &minus))
+    };
+    factors.extend(rest.into_iter().map(|(base, exponent)| (value(base), exponent)));
     arena.multiply(&coefficient, factors)
 }
 
@@ -61,11 +71,13 @@ mod tests {
     fn a_value_is_found_whole_with_the_other_sign_and_in_products() {
         let arena = Arena::new();
         let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
-        let [s, t] = ["s", "t"].map(|name| arena.symbol(name));
-        let values = [(s, arena.div(a, b)), (t, arena.sub(a, c))];
+        let [r, s, t] = ["r", "s", "t"].map(|name| arena.symbol(name));
+        let values = [(s, arena.div(a, b)), (t, arena.sub(a, c)), (r, arena.div(arena.add(a, b), c))];
         let cases = [
             (arena.div(a, b), "s"),
             (arena.sub(c, a), "-t"),
+            (arena.div(arena.neg(arena.add(a, b)), c), "-r"),
+            (arena.product([c, arena.neg(arena.add(a, b)), arena.power(c, &Rational::from(-2))]), "-r"),
             (arena.product([arena.number(2), arena.div(a, b), c]), "2*c*s"),
             (arena.mul(arena.sub(a, c), arena.sqrt(arena.div(a, b))), "sqrt(s)*t"),
             // Neither `a*b` nor `a/b^2` holds `a/b` as factors of its own.

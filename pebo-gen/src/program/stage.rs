@@ -97,15 +97,14 @@ pub(crate) fn stage(
     let used: BTreeSet<Symbol> = arena.symbols_of(&formulas).into_iter().chain(used).collect();
     constants.retain(|constant| used.contains(&constant.0));
     let split = Stages { constants, terms, varying };
-    let staged = split.lowered(arena, parameters, sampled, tasks)?;
-    let negated = staged.only_negated();
-    if negated.is_empty() {
-        return Ok(staged);
-    }
-    split.with_opposites(arena, &negated).lowered(arena, parameters, sampled, tasks)
+    split.with_fewest_signs(arena, parameters, sampled, tasks)
 }
 
+/// More signs are chosen together, not one by one.
+const MOST_SIGNS: usize = 6;
+
 /// What is computed when, as expressions.
+#[derive(Clone)]
 struct Stages {
     constants: Vec<(Symbol, Expr)>,
     terms: Vec<(Symbol, Expr)>,
@@ -140,6 +139,37 @@ impl Stages {
         Ok(Staged { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
     }
 
+    /// The programs, with the opposites of constants and terms kept where that leaves fewer negations.
+    fn with_fewest_signs(
+        self,
+        arena: &Arena,
+        parameters: &[Symbol],
+        sampled: &[Symbol],
+        tasks: &[Task],
+    ) -> Result<Staged, Undeclared> {
+        let negations = |staged: &Staged| {
+            let of = |program: &Program| program.operations.iter().filter(|o| matches!(o, Operation::Neg(_))).count();
+            // What runs at both ends of an interval counts twice.
+            let often = |task: &Task| if task.is_regular { 2 } else { 1 };
+            of(&staged.sample) + tasks.iter().zip(&staged.programs).map(|(task, p)| often(task) * of(p)).sum::<usize>()
+        };
+        let mut best = self.lowered(arena, parameters, sampled, tasks)?;
+        let mut least = negations(&best);
+        let negated = best.negated();
+        let together = std::iter::once(negated.clone()).filter(|all| all.len() > 1);
+        let each = negated.iter().take(if negated.len() > MOST_SIGNS { 0 } else { MOST_SIGNS });
+        let mut stages = self;
+        for chosen in together.chain(each.map(|symbol| BTreeSet::from([*symbol]))) {
+            let other = stages.clone().with_opposites(arena, &chosen);
+            let staged = other.lowered(arena, parameters, sampled, tasks)?;
+            if negations(&staged) < least {
+                least = negations(&staged);
+                (stages, best) = (other, staged);
+            }
+        }
+        Ok(best)
+    }
+
     /// The same with the opposites of these kept in their place.
     fn with_opposites(mut self, arena: &Arena, negated: &BTreeSet<Symbol>) -> Self {
         let opposites = negated.iter().map(|&symbol| (symbol, arena.neg(arena.of_symbol(symbol)))).collect();
@@ -157,22 +187,31 @@ impl Stages {
 }
 
 impl Staged {
-    /// The constants and terms of which nothing but the opposite is used.
-    fn only_negated(&self) -> BTreeSet<Symbol> {
+    /// The constants and terms whose opposite is used, or that of a product with them.
+    fn negated(&self) -> BTreeSet<Symbol> {
         let named: BTreeSet<Symbol> = self.constants.iter().chain(&self.terms).map(|part| part.0).collect();
-        let (mut negated, mut plain) = (BTreeSet::new(), BTreeSet::new());
+        let mut negated = BTreeSet::new();
         for program in self.programs.iter().chain([&self.sample]) {
-            let symbol = |operand: Operand| match operand {
-                Operand::Input(input) => program.inputs.get(input).copied(),
-                _ => None,
-            };
-            for operation in &program.operations {
-                let uses = if matches!(operation, Operation::Neg(_)) { &mut negated } else { &mut plain };
-                uses.extend(operation.operands().filter_map(symbol));
+            let mut open: Vec<Operand> = Vec::new();
+            let opposites = program.operations.iter().filter(|operation| matches!(operation, Operation::Neg(_)));
+            open.extend(opposites.flat_map(|operation| operation.operands()));
+            let mut seen: FxHashSet<Operand> = FxHashSet::default();
+            while let Some(operand) = open.pop() {
+                match operand {
+                    _ if !seen.insert(operand) => {}
+                    Operand::Input(input) => negated.extend(program.inputs.get(input)),
+                    Operand::Result(result) => {
+                        let operation = program.operations[result];
+                        if matches!(operation, Operation::Mul(..) | Operation::Add(..)) {
+                            open.extend(operation.operands());
+                        }
+                    }
+                    Operand::Constant(_) => {}
+                }
             }
-            plain.extend(program.outputs.iter().filter_map(|output| symbol(*output)));
         }
-        negated.into_iter().filter(|symbol| named.contains(symbol) && !plain.contains(symbol)).collect()
+        negated.retain(|symbol| named.contains(symbol));
+        negated
     }
 }
 
@@ -410,7 +449,7 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
 }
 
 /// A value without the minus that it bears as a whole, and whether it bears one: of a product, those of all its factors.
-fn oriented(arena: &Arena, value: Expr) -> (bool, Expr) {
+pub(super) fn oriented(arena: &Arena, value: Expr) -> (bool, Expr) {
     let minus = Rational::from(-1);
     let all_negative = |expr: Expr| match arena.node(expr) {
         Node::Sum(sum) => {
