@@ -117,10 +117,13 @@ impl Affine {
             if !same(affine(&values), entry_0) {
                 return None;
             }
-            let mut factors = Vec::new();
+            let mut factors: Vec<(Symbol, Expr)> = Vec::new();
             let names = values.iter().enumerate().map(|(column, &value)| {
                 if arena.as_number(value).is_some() {
                     return value;
+                }
+                if let Some((name, _)) = factors.iter().find(|factor| factor.1 == value) {
+                    return arena.of_symbol(*name);
                 }
                 let name = arena.generated(&format!("B[{row},{column}]"));
                 factors.push((name, value));

@@ -101,7 +101,7 @@ pub(crate) fn stage(
 }
 
 /// More signs are chosen together, not one by one.
-const MOST_SIGNS: usize = 6;
+const MOST_SIGNS: usize = 12;
 
 /// What is computed when, as expressions.
 #[derive(Clone)]
@@ -156,10 +156,12 @@ impl Stages {
         let mut best = self.lowered(arena, parameters, sampled, tasks)?;
         let mut least = negations(&best);
         let negated = best.negated();
-        let together = std::iter::once(negated.clone()).filter(|all| all.len() > 1);
-        let each = negated.iter().take(if negated.len() > MOST_SIGNS { 0 } else { MOST_SIGNS });
+        let choices: Vec<BTreeSet<Symbol>> = match negated.len() {
+            0..=MOST_SIGNS => negated.iter().map(|symbol| BTreeSet::from([*symbol])).collect(),
+            _ => vec![negated],
+        };
         let mut stages = self;
-        for chosen in together.chain(each.map(|symbol| BTreeSet::from([*symbol]))) {
+        for chosen in choices {
             let other = stages.clone().with_opposites(arena, &chosen);
             let staged = other.lowered(arena, parameters, sampled, tasks)?;
             if negations(&staged) < least {
