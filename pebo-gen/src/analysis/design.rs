@@ -191,7 +191,7 @@ impl Regression {
     }
 
     /// Positions of the equations that tell the estimator nothing: of known rates, in which no unknown stands.
-    pub(crate) fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
+    pub fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
         if self.kind == RegressionKind::Static {
             return Vec::new();
         }
@@ -203,7 +203,7 @@ impl Regression {
     /// The equations that an observer runs: all of them where each `serves`, else those with an unknown. An equation
     /// without one serves a gate, which looks at the sample of its output, and the output form, in which the output
     /// itself is estimated.
-    pub(crate) fn computed(&self, arena: &Arena, serves: bool) -> Self {
+    pub fn computed(&self, arena: &Arena, serves: bool) -> Self {
         let idle = if serves { Vec::new() } else { self.without_unknowns(arena) };
         let mut computed = self.clone();
         if idle.is_empty() {

@@ -10,9 +10,11 @@
 mod angles;
 mod cost;
 mod factor;
+mod fixed;
 mod interpret;
 mod lower;
 mod numbers;
+mod oriented;
 mod product;
 mod reuse;
 mod sharing;

@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
-use super::stage::oriented;
+use super::oriented::oriented;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Product, Symbol};
 

@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::stage::fixed;
+use super::fixed::fixed;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Sum, Symbol};
 

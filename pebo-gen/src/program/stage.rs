@@ -13,7 +13,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::angles::halved;
 use super::factor::factor;
+use super::fixed::fixed;
 use super::lower::{Undeclared, lower, lower_with};
+use super::oriented::oriented;
 use super::product::magnitude_together;
 use super::reuse::with_values;
 use super::spread::spread;
@@ -322,22 +324,6 @@ fn is_natural(exponent: &Rational) -> bool {
     exponent.is_integer() && !exponent.is_negative()
 }
 
-/// Every sub-expression that depends on nothing but parameters.
-pub(super) fn fixed(arena: &Arena, roots: &[Expr], parameters: &[Symbol]) -> FxHashSet<Expr> {
-    let parameters: FxHashSet<Symbol> = parameters.iter().copied().collect();
-    let mut fixed = FxHashSet::default();
-    for expr in arena.postorder(roots) {
-        let is_fixed = match arena.node(expr) {
-            Node::Symbol(symbol) => parameters.contains(&symbol),
-            _ => arena.operands(expr).iter().all(|operand| fixed.contains(operand)),
-        };
-        if is_fixed {
-            fixed.insert(expr);
-        }
-    }
-    fixed
-}
-
 struct Split<'a, W> {
     arena: &'a Arena,
     fixed: FxHashSet<Expr>,
@@ -448,33 +434,4 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         self.symbols.insert(value, constant);
         constant
     }
-}
-
-/// A value without the minus that it bears as a whole, and whether it bears one: of a product, those of all its factors.
-pub(super) fn oriented(arena: &Arena, value: Expr) -> (bool, Expr) {
-    let minus = Rational::from(-1);
-    let all_negative = |expr: Expr| match arena.node(expr) {
-        Node::Sum(sum) => {
-            sum.terms.iter().all(|term| term.1.is_negative()) && (sum.constant.is_zero() || sum.constant.is_negative())
-        }
-        _ => false,
-    };
-    let Node::Product(product) = arena.node(value) else {
-        let is_negative = all_negative(value);
-        return (is_negative, if is_negative { arena.scale(value, &minus) } else { value });
-    };
-    let mut is_negative = product.coefficient.is_negative();
-    let factors: Vec<(Expr, Rational)> = product
-        .factors
-        .iter()
-        .map(|(base, exponent)| {
-            let is_odd = exponent.is_integer() && exponent.numerator().trailing_zeros() == 0;
-            if is_odd && all_negative(*base) {
-                is_negative = !is_negative;
-                return (arena.scale(*base, &minus), exponent.clone());
-            }
-            (*base, exponent.clone())
-        })
-        .collect();
-    (is_negative, arena.multiply(&product.coefficient.abs(), factors))
 }
