@@ -203,6 +203,7 @@ impl Regression {
     /// The equations that an observer runs: all of them where each `serves`, else those with an unknown. An equation
     /// without one serves a gate, which looks at the sample of its output, and the output form, in which the output
     /// itself is estimated.
+    #[must_use]
     pub fn computed(&self, arena: &Arena, serves: bool) -> Self {
         let idle = if serves { Vec::new() } else { self.without_unknowns(arena) };
         let mut computed = self.clone();
