@@ -42,6 +42,7 @@ pub mod rational;
 mod rational_matrix;
 pub(crate) mod reducible;
 pub(crate) mod residues;
+pub(crate) mod scaled;
 pub(crate) mod solve;
 pub(crate) mod tidy;
 pub(crate) mod twice;

@@ -17,6 +17,7 @@ use super::hyperbolic::without_differences;
 use super::near_zero::near_zero;
 use super::oriented::Orientation;
 use super::rational::Rational;
+use super::scaled::scaled;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
@@ -49,6 +50,7 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     }
     forms.extend(forms.iter().filter_map(|form| without_differences(arena, *form)).collect::<Vec<Expr>>());
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
+    let forms = forms.flat_map(|form| [form, scaled(arena, form)]);
     forms.fold(expr, |best, form| {
         let shorter = operations(arena, form) < operations(arena, best) && kept(form) && divides_as(arena, expr, form);
         let cancels = || !root_differences(arena, form).is_subset(&root_differences(arena, expr));

@@ -8,6 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::lower::{Lowering, Signed};
 use super::straight::{Operand, Operation};
+use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function, Node};
 
 /// Two angles that make up another.
@@ -67,6 +68,24 @@ impl Angles {
         }
         Self { parts, known: FxHashMap::default() }
     }
+}
+
+/// The expressions with the sine of a doubled angle as a product, where the single angle is called for: its number joins
+/// others.
+pub(super) fn halved(arena: &Arena, roots: &[Expr]) -> Vec<Expr> {
+    let two = Rational::from(2);
+    let parts = arena.postorder(roots);
+    let there: FxHashSet<Expr> = parts.iter().copied().collect();
+    let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+    for call in parts {
+        let Node::Call(Function::Sin, arguments) = arena.node(call) else { continue };
+        let Some(half) = two.recip().map(|share| arena.scale(arguments[0], &share)) else { continue };
+        let both = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[half]));
+        if both.iter().any(|single| there.contains(single)) {
+            known.insert(call, arena.multiply(&two, both.map(|single| (single, Rational::ONE))));
+        }
+    }
+    roots.iter().map(|root| arena.replace(*root, &known)).collect()
 }
 
 /// How many summands an angle has.
