@@ -76,6 +76,20 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
             beside(symbol, -part);
         }
     }
+    // All of them at once, no two alike: `sqrt(q^2 + 1) - sqrt(r^2 + 1)` loses digits where both are small.
+    let moving: Vec<Symbol> = signals.iter().chain(&states).copied().collect();
+    for part in BESIDE {
+        let near = |symbol: &Symbol| {
+            let index = moving.iter().position(|other| other == symbol)?;
+            // No two are the same part of each other.
+            let turn = (0.618_034 * f64::from(u32::try_from(index).ok()?)).fract();
+            Some(round(Scalar::F32, part * (1.0 + turn)))
+        };
+        let place: Place = base.iter().map(|(symbol, &value)| (*symbol, near(symbol).unwrap_or(value))).collect();
+        if inside.holds(&place) {
+            places.push(place);
+        }
+    }
     places
 }
 
