@@ -80,6 +80,12 @@ fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
         format!("{name}{} {}", if symbols.len() == 1 { "" } else { "s" }, listed(arena, symbols.into_iter()))
     });
     lines.push(format!("{}.", signals.collect::<Vec<String>>().join("; ")));
+    lines.extend(plant.time.map(|time| {
+        format!(
+            "The input `{}` is the time in s, from where the formulas count it: hand over that of the middle of the step.",
+            arena.name(time)
+        )
+    }));
     let states = plant.x.iter().map(|state| (state.symbol, Some(state.rate.expr)));
     let outputs = plant.y.iter().map(|o| (o.symbol, o.rate.as_ref().map(|rate| rate.expr)));
     let rates = states

@@ -4,7 +4,10 @@
 //! at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign in the rates
 //! changes (`switching`), which is found by halving the step in which it does.
 //! Holds when: the plant is not stiff at its sampling period. The first step tried is the whole
-//! interval: a loop that is sampled well needs one step a sample.
+//! interval: a loop that is sampled well needs one step a sample. From an interval on that needs very many, the method for
+//! stiff plants (`stiff`) is taken if it needs fewer.
+//!
+//! One thing with `stiff`: both methods solve the same equation.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -13,17 +16,20 @@ use std::ops::Range;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+
 use crate::program::{Interpreter, Program};
 
 use super::layout::TIME;
 use super::signal::{Course, Signal};
+use super::stiff::Stiff;
 use super::switching::{Switched, Switching};
 
 /// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
-const RELATIVE: f64 = 1e-10;
+pub(super) const RELATIVE: f64 = 1e-10;
 
 /// For states that pass through zero: far below any value of interest in SI units.
-const ABSOLUTE: f64 = 1e-12;
+pub(super) const ABSOLUTE: f64 = 1e-12;
 
 /// A rate this small is zero: over years it moves nothing by as much as [`ABSOLUTE`]. The library divides by the square
 /// of a step's error, which for a rate that fades away becomes too small to be divided by.
@@ -32,11 +38,14 @@ const STILL: f64 = 1e-100;
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
+/// Explicit steps between two samples from which on the plant may be stiff.
+const MANY_STEPS: u64 = 1000;
+
 /// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
 const MOST_STEPS_IN_ALL: u64 = 400_000_000;
 
 /// A step that is this small a part of the interval will not get anywhere.
-const SHORTEST: f64 = 1e-12;
+pub(super) const SHORTEST: f64 = 1e-12;
 
 /// The largest state that is integrated.
 pub(super) const LARGEST: usize = 64;
@@ -69,6 +78,10 @@ pub(super) struct Stuck {
 pub(super) struct Flow {
     rates: Equation,
     solver: Box<dyn Solve>,
+    /// The method for stiff plants, until it has shown that it needs as many steps.
+    stiff: Option<Box<dyn Solve>>,
+    /// Whether the plant has shown that it is stiff.
+    is_stiff: bool,
     state: Range<usize>,
     /// When the rates jump.
     jumps: Vec<f64>,
@@ -80,7 +93,7 @@ pub(super) struct Flow {
 
 /// The right side as the library calls it: through a shared reference.
 #[derive(Debug)]
-struct Equation(RefCell<Rates>);
+pub(super) struct Equation(RefCell<Rates>);
 
 /// The right side, with the table that its formulas read.
 #[derive(Debug)]
@@ -92,15 +105,20 @@ struct Rates {
     /// Signals that the rates depend on, with their positions in the table.
     signals: Vec<(usize, Course)>,
     formulas: Interpreter,
+    /// The derivatives of the formulas by the state, by rows.
+    slopes: Option<Interpreter>,
+    /// Whether the rates depend on more than the state.
+    moves: bool,
     switching: Option<Switching>,
     /// How far to either side of an instant signals are looked at for their rates, in seconds.
     aside: f64,
 }
 
 impl Flow {
-    /// The equation with the rates of the table's positions `state`; of the `signals`, those that it reads are followed.
+    /// The equation with the rates of the table's positions `state`, and their derivatives by these where it may be stiff; of
+    /// the `signals`, those that it reads are followed.
     pub(super) fn new(
-        rates: &Program,
+        (rates, slopes): (&Program, Option<&Program>),
         switches: Option<&Switched>,
         state: Range<usize>,
         signals: &[(usize, &Signal)],
@@ -118,18 +136,22 @@ impl Flow {
             origin: 0.0,
             signals: read.iter().map(|(position, signal)| (*position, signal.course())).collect(),
             formulas: Interpreter::new(rates),
+            slopes: slopes.map(Interpreter::new),
+            moves: !read.is_empty() || rates.reads(TIME),
             switching: switches.map(|switches| Switching::new(switches, (RELATIVE, ABSOLUTE))),
             aside: 0.0,
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
-        let solver: Box<dyn Solve> = match state.len() {
-            0..=4 => Box::new(Solver::<4>::new()),
-            5..=8 => Box::new(Solver::<8>::new()),
-            9..=16 => Box::new(Solver::<16>::new()),
-            _ => Box::new(Solver::<LARGEST>::new()),
+        let (solver, stiff): (Box<dyn Solve>, Box<dyn Solve>) = match state.len() {
+            0..=4 => (Box::new(Solver::<4>::new()), Box::new(Stiff::<4>::new())),
+            5..=8 => (Box::new(Solver::<8>::new()), Box::new(Stiff::<8>::new())),
+            9..=16 => (Box::new(Solver::<16>::new()), Box::new(Stiff::<16>::new())),
+            _ => (Box::new(Solver::<LARGEST>::new()), Box::new(Stiff::<LARGEST>::new())),
         };
         let rates = Equation(RefCell::new(inner));
-        Self { rates, solver, state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
+        // Where signs change, steps are short for another reason.
+        let stiff = slopes.filter(|_| switches.is_none()).map(|_| stiff);
+        Self { rates, solver, stiff, is_stiff: false, state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
     }
 
     /// Moves the state in `table` from the instant `from` to `to`, all other values held.
@@ -158,8 +180,36 @@ impl Flow {
             switching.begin(to - from);
             return self.switch(state, from, to);
         }
-        self.left -= self.solver.solve(&self.rates, state, to - from, self.left.min(MOST_STEPS), None)?;
+        self.left -= self.smooth(state, to - from)?;
         Ok(())
+    }
+
+    /// Moves the state on by `length` seconds of smooth rates; gives the number of steps.
+    fn smooth(&mut self, state: &mut [f64], length: f64) -> Result<u64, Stuck> {
+        let most = self.left.min(MOST_STEPS);
+        let Some(stiff) = &mut self.stiff else { return self.solver.solve(&self.rates, state, length, most, None) };
+        if self.is_stiff {
+            return stiff.solve(&self.rates, state, length, most, None);
+        }
+        let few = most.min(MANY_STEPS);
+        let mut begun = state.to_vec();
+        match self.solver.solve(&self.rates, &mut begun, length, few, None) {
+            Ok(steps) => {
+                state.copy_from_slice(&begun);
+                return Ok(steps);
+            }
+            // It will not get on with more steps.
+            Err(stuck) if stuck.steps < few => return Err(stuck),
+            Err(_) => {}
+        }
+        begun.copy_from_slice(state);
+        if let Ok(steps) = stiff.solve(&self.rates, &mut begun, length, few, None) {
+            state.copy_from_slice(&begun);
+            self.is_stiff = true;
+            return Ok(steps);
+        }
+        self.stiff = None;
+        self.solver.solve(&self.rates, state, length, most, None)
     }
 
     /// Moves the state on from one change of a sign to the next.
@@ -235,6 +285,15 @@ impl Rates {
         self.table[self.state.clone()].copy_from_slice(&state[..self.state.len()]);
     }
 
+    /// Writes time and signals of an instant into the table, `t` seconds behind the origin.
+    fn follow(&mut self, t: f64) {
+        let now = self.origin + t;
+        self.table[TIME] = now;
+        for (position, signal) in &mut self.signals {
+            self.table[*position] = signal.value(now);
+        }
+    }
+
     /// Before an integration from this instant.
     fn begin(&mut self, origin: f64, state: &[f64], reached: &[bool]) {
         self.origin = origin;
@@ -252,10 +311,10 @@ impl Rates {
 }
 
 /// Told of each step's end, in seconds since the start, with the state there; whether to end there.
-type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
+pub(super) type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
 
 /// What moves a state on.
-trait Solve: fmt::Debug {
+pub(super) trait Solve: fmt::Debug {
     /// Moves the state on by `length` seconds in at most so many steps, or to where it is watched to end; gives the number of
     /// steps.
     fn solve(
@@ -348,17 +407,47 @@ impl<const N: usize> ODE<f64, [f64; N]> for Equation {
                 switching.hold(table);
             }
         }
-        let Rates { table, state: place, origin, signals, formulas, .. } = &mut *inner;
-        let now = *origin + t;
-        table[TIME] = now;
-        for (position, signal) in signals {
-            table[*position] = signal.value(now);
-        }
+        inner.follow(t);
+        let Rates { table, state: place, formulas, .. } = &mut *inner;
         let of =
             |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
         for (index, value) in formulas.evaluate(of).enumerate() {
             rates[index] = if value.abs() < STILL { 0.0 } else { value };
         }
         rates[place.len()..].fill(0.0);
+    }
+}
+
+impl Equation {
+    /// The instant from which the integration counts.
+    pub(super) fn origin(&self) -> f64 {
+        self.0.borrow().origin
+    }
+
+    /// Whether the rates depend on more than the state.
+    pub(super) fn moves(&self) -> bool {
+        self.0.borrow().moves
+    }
+
+    /// The rates.
+    pub(super) fn at<const N: usize>(&self, t: f64, state: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut rates = [0.0; N];
+        self.diff(t, &state.data.0[0], &mut rates);
+        rates.into()
+    }
+
+    /// The derivatives of the rates by the state; of what is beyond the state, none.
+    pub(super) fn slopes<const N: usize>(&self, t: f64, state: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        let mut inner = self.0.borrow_mut();
+        inner.follow(t);
+        let Rates { table, state: place, slopes, .. } = &mut *inner;
+        let mut matrix = SMatrix::zeros();
+        let Some(slopes) = slopes else { return matrix };
+        let of =
+            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
+        for (index, value) in slopes.evaluate(of).enumerate() {
+            matrix[(index / place.len(), index % place.len())] = value;
+        }
+        matrix
     }
 }

@@ -46,6 +46,7 @@ mod settings;
 mod signal;
 mod sizes;
 mod stepping;
+mod stiff;
 mod summary;
 mod switching;
 mod timing;

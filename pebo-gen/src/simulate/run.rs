@@ -164,7 +164,7 @@ impl<'a> Machine<'a> {
             stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
             sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
-                &scenario.rates,
+                (&scenario.rates, scenario.slopes.as_ref()),
                 scenario.switches.as_ref(),
                 layout.state.clone(),
                 &positions.collect::<Vec<_>>(),
@@ -241,6 +241,10 @@ impl<'a> Machine<'a> {
         let inputs = self.control.of(&self.table);
         let place = self.scenario.layout.u.clone();
         self.table[place.clone()].copy_from_slice(inputs);
+        if let Some(told) = self.scenario.layout.told {
+            // An input holds for an interval: of one that moves on, the mean does.
+            self.table[told] += self.scenario.timing.step / 2.0;
+        }
         self.admit(place)
     }
 
@@ -336,7 +340,7 @@ impl<'a> Record<'a> {
         self.rows.push(table[TIME]);
         self.rows.extend(&table[layout.x.clone()]);
         self.rows.extend(self.measured.of(table));
-        self.rows.extend(&table[layout.u.clone()]);
+        self.rows.extend(&table[layout.commanded()]);
         // The errors of the observer's estimates are the first.
         for (hat, error) in table[layout.hat.clone()].iter().zip(errors) {
             self.rows.extend([*hat, *error]);
