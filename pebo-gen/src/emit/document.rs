@@ -82,7 +82,7 @@ fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
     lines.push(format!("{}.", signals.collect::<Vec<String>>().join("; ")));
     lines.extend(plant.time.map(|time| {
         format!(
-            "The input `{}` is the time in s, from where the formulas count it: hand over that of the middle of the step.",
+            "The input `{}` is the time in s, as the formulas count it: give each step the time of its middle.",
             arena.name(time)
         )
     }));

@@ -12,7 +12,9 @@ use super::names::camel;
 use super::parameters::decimal;
 use super::permission;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings};
+use crate::plant::settings::{
+    Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings,
+};
 
 impl Module<'_> {
     /// The constructors, with the types that they name.
@@ -460,7 +462,8 @@ fn is_within(settings: &Settings<Rational>) -> bool {
 
 /// All numbers of the settings but the length of a window.
 fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
-    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, limits, rebase, .. } = settings;
+    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, limits, rebase, .. } =
+        settings;
     let mut numbers: Vec<&Rational> =
         [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().chain(gate).collect();
     if let Some(Limits { outputs, inputs, gap }) = limits {

@@ -11,7 +11,9 @@ use super::error::EmitError;
 use super::value::{self, Value, unreadable};
 use crate::cas::Arena;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings};
+use crate::plant::settings::{
+    Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings,
+};
 
 /// The constant with the length of a window.
 pub(super) const WINDOW: &str = "NW";

@@ -20,7 +20,9 @@ pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagn
         None => format!("{text}_0"),
     };
     let help = if text == TIME {
-        format!("if it is the time, remove the declaration, which formulas do not need; if not, choose another name, as `{other}`")
+        format!(
+            "if it is the time, remove the declaration, which formulas do not need; if not, choose another name, as `{other}`"
+        )
     } else {
         format!("choose another name, as `{other}`")
     };

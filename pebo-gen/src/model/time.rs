@@ -38,7 +38,10 @@ impl Model {
     fn formulas(&self) -> impl Iterator<Item = &Formula> {
         let maps = [&self.define, &self.f_x, &self.f_y, &self.g_y, &self.phi_left, &self.angles];
         let maps = maps.into_iter().flatten().map(|entry| &entry.value);
-        let assumed = self.assume.iter().flat_map(|chain| std::iter::once(&chain.first).chain(chain.rest.iter().map(|side| &side.1)));
+        let assumed = self
+            .assume
+            .iter()
+            .flat_map(|chain| std::iter::once(&chain.first).chain(chain.rest.iter().map(|side| &side.1)));
         let of_class = self.class.iter().flat_map(Class::formulas);
         maps.chain(&self.phi).chain(&self.identities).chain(assumed).chain(of_class)
     }

@@ -206,7 +206,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             (None, filter) => Operator::Filter(section.number(filter.as_ref()?)?),
         };
         let ([lower, upper], within, zero) = (bounds?, within?, section.zero()?);
-        let rebase = section.rebase()?;
+        let rebase = section.rebase().ok()?;
         Some(Self {
             operator,
             output: false,
@@ -256,7 +256,7 @@ impl<N: Clone + PartialOrd> Frame<N> {
         let noise = section.list(&written.process_noise, coordinates, "process noise for each component of phi");
         let within = section.bounds(&written.within, states, "recovered state");
         let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
-        let rebase = section.rebase()?;
+        let rebase = section.rebase().ok()?;
         Some(Self {
             covariance: covariance.ok()?,
             process_noise: noise.ok()?,
@@ -279,7 +279,7 @@ pub(crate) fn cannot_rebase(name: &str, rebase: Span) -> Diagnostic {
         .help("remove `rebase`: such an observer is restarted instead")
 }
 
-/// A list that has no value for each unknown.
+/// A list that has no value for each unknown, or a number that cannot be read.
 struct Unusable;
 
 struct Section<'a, F> {
@@ -339,16 +339,17 @@ impl<F> Section<'_, F> {
         Some(Estimator::Drem { gain: gain?, extension })
     }
 
-    /// When the extension starts again, if it does; nothing where a number cannot be read.
-    fn rebase<N>(&self) -> Option<Option<Rebase<N>>>
+    /// When the extension starts again, if it does.
+    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, Unusable>
     where
         F: Fn(&Decimal) -> Option<N>,
     {
         let model::Rebase { samples, above, leak, .. } = &self.written.rebase;
-        Some(match (samples, above, leak) {
-            (Some(samples), ..) => Some(Rebase::Samples(self.number(samples)?)),
-            (None, Some(bound), _) => Some(Rebase::Above(self.number(bound)?)),
-            (None, None, Some(rate)) => Some(Rebase::Leak(self.number(rate)?)),
+        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(Unusable);
+        Ok(match (samples, above, leak) {
+            (Some(samples), ..) => Some(Rebase::Samples(number(samples)?)),
+            (None, Some(bound), _) => Some(Rebase::Above(number(bound)?)),
+            (None, None, Some(rate)) => Some(Rebase::Leak(number(rate)?)),
             (None, None, None) => None,
         })
     }

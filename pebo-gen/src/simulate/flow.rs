@@ -24,6 +24,7 @@ use super::layout::TIME;
 use super::signal::{Course, Signal};
 use super::stiff::Stiff;
 use super::switching::{Switched, Switching};
+use super::timing::real;
 
 /// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
 pub(super) const RELATIVE: f64 = 1e-10;
@@ -43,6 +44,9 @@ const MANY_STEPS: u64 = 1000;
 
 /// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
 const MOST_STEPS_IN_ALL: u64 = 400_000_000;
+
+/// Steps after which it is known how many a whole run takes; some seconds of computing at most.
+const ENOUGH_STEPS: u64 = 2_000_000;
 
 /// A step that is this small a part of the interval will not get anywhere.
 pub(super) const SHORTEST: f64 = 1e-12;
@@ -71,6 +75,8 @@ pub(super) struct Stuck {
     pub(super) at: f64,
     /// The last state that it came to.
     pub(super) state: Vec<f64>,
+    /// Where it got on, but too slowly for the run: the place of the state that moves fastest, and its rate in 1/s.
+    pub(super) fast: Option<(usize, f64)>,
 }
 
 /// The differential equation of a run.
@@ -89,6 +95,8 @@ pub(super) struct Flow {
     slack: f64,
     /// The steps that may still be taken.
     left: u64,
+    /// The end of the run in seconds, if it is known.
+    until: f64,
 }
 
 /// The right side as the library calls it: through a shared reference.
@@ -151,7 +159,23 @@ impl Flow {
         let rates = Equation(RefCell::new(inner));
         // Where signs change, steps are short for another reason.
         let stiff = slopes.filter(|_| switches.is_none()).map(|_| stiff);
-        Self { rates, solver, stiff, is_stiff: false, state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
+        Self {
+            rates,
+            solver,
+            stiff,
+            is_stiff: false,
+            state,
+            jumps,
+            next_jump: 0,
+            slack,
+            left: MOST_STEPS_IN_ALL,
+            until: 0.0,
+        }
+    }
+
+    /// The same for a run that ends then: once it is known that this would take too many steps, it is given up.
+    pub(super) fn until(self, end: f64) -> Self {
+        Self { until: end, ..self }
     }
 
     /// Moves the state in `table` from the instant `from` to `to`, all other values held.
@@ -164,7 +188,14 @@ impl Flow {
                 at = jump;
             }
         }
-        self.integrate(table, at, to)
+        self.integrate(table, at, to)?;
+        let taken = MOST_STEPS_IN_ALL - self.left;
+        if taken > ENOUGH_STEPS && real(taken) * self.until > real(MOST_STEPS_IN_ALL) * to {
+            let state = table[self.state.clone()].to_vec();
+            let fast = self.rates.0.get_mut().fastest(&state);
+            return Err(Stuck { steps: taken, at: to, state, fast });
+        }
+        Ok(())
     }
 
     fn integrate(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
@@ -294,6 +325,22 @@ impl Rates {
         }
     }
 
+    /// Which component of the state moves fastest where the integration was last, and its rate in 1/s, whatever the units.
+    fn fastest(&mut self, state: &[f64]) -> Option<(usize, f64)> {
+        let (slopes, table, place) = (self.slopes.as_mut()?, &self.table, &self.state);
+        let of =
+            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
+        let slopes: Vec<f64> = slopes.evaluate(of).collect();
+        let count = state.len();
+        // By itself, or to and fro with another.
+        let rate = |row: usize| {
+            (0..count)
+                .map(|other| (slopes[row * count + other] * slopes[other * count + row]).abs().sqrt())
+                .fold(0.0, f64::max)
+        };
+        (0..count).map(|row| (row, rate(row))).max_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
     /// Before an integration from this instant.
     fn begin(&mut self, origin: f64, state: &[f64], reached: &[bool]) {
         self.origin = origin;
@@ -362,11 +409,12 @@ impl<const N: usize> Solve for Solver<N> {
             steps,
             at: origin + method.t(),
             state: method.y()[..state.len()].to_vec(),
+            fast: None,
         };
         method.h0 = length;
         let mut steps = 0;
         if method.init(rates, 0.0, length, &start).is_err() {
-            return Err(Stuck { steps, at: origin, state: state.to_vec() });
+            return Err(Stuck { steps, at: origin, state: state.to_vec(), fast: None });
         }
         loop {
             let rest = length - method.t();

@@ -164,12 +164,13 @@ impl<'a> Machine<'a> {
             stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
             sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
-                (&scenario.rates, scenario.slopes.as_ref()),
+                (&scenario.rates, Some(&scenario.slopes)),
                 scenario.switches.as_ref(),
                 layout.state.clone(),
                 &positions.collect::<Vec<_>>(),
                 scenario.timing.slack(),
-            ),
+            )
+            .until(scenario.timing.at(scenario.timing.samples)),
             growth: Growth::new(&[]),
             signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
             given: Formulas::new(&scenario.given.1),
@@ -210,6 +211,10 @@ impl<'a> Machine<'a> {
             self.table[*position] = *value;
         }
         let arrives = self.measure(sample);
+        if let Some(told) = self.scenario.layout.told {
+            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is told.
+            self.table[told] = timing.at(sample) - timing.step / 2.0;
+        }
         let state = self.scenario.layout.state.clone();
         self.admit(state.clone())
             .map_err(|failure| self.diverged(&self.table[state.clone()], to).unwrap_or(failure))?;
@@ -225,8 +230,14 @@ impl<'a> Machine<'a> {
     }
 
     /// Why the integration came to a stand.
-    fn stuck(&self, Stuck { steps, at, state }: Stuck) -> Failure {
-        self.diverged(&state, at).unwrap_or(Failure::Stuck { at, steps })
+    fn stuck(&self, Stuck { steps, at, state, fast }: Stuck) -> Failure {
+        let slow = fast.map(|(place, rate)| Failure::Slow {
+            at,
+            steps,
+            fastest: self.scenario.names[self.scenario.layout.state.start + place].clone(),
+            constant: 1.0 / rate,
+        });
+        self.diverged(&state, at).or(slow).unwrap_or(Failure::Stuck { at, steps })
     }
 
     /// The state that runs away, if one does.
@@ -241,10 +252,6 @@ impl<'a> Machine<'a> {
         let inputs = self.control.of(&self.table);
         let place = self.scenario.layout.u.clone();
         self.table[place.clone()].copy_from_slice(inputs);
-        if let Some(told) = self.scenario.layout.told {
-            // An input holds for an interval: of one that moves on, the mean does.
-            self.table[told] += self.scenario.timing.step / 2.0;
-        }
         self.admit(place)
     }
 

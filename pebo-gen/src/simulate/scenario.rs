@@ -66,8 +66,8 @@ pub struct Scenario {
     moved: Option<String>,
     /// The rates of the state.
     pub(super) rates: Program,
-    /// Their derivatives by the state, by rows, where they are smooth.
-    pub(super) slopes: Option<Program>,
+    /// Their derivatives by the state, by rows, with signs held.
+    pub(super) slopes: Program,
     /// The signs in them, if there are any.
     pub(super) switches: Option<Switched>,
     /// The baselines' estimates.
@@ -231,7 +231,7 @@ impl Resolution<'_> {
 
         let layout = Layout::new(plant, simulation, &design.recovered);
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
-        let (is_smooth, state) = (switches.levels.is_empty(), &layout.symbols[layout.state.clone()]);
+        let state = &layout.symbols[layout.state.clone()];
         let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > flow::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());
@@ -268,7 +268,7 @@ impl Resolution<'_> {
             moved: moved(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
-            slopes: if is_smooth { Some(compile(&slopes(arena, &rates, state))?) } else { None },
+            slopes: compile(&slopes(arena, &rates, state))?,
             switches: switches?,
             rivals: compile(&estimates)?,
             followers,

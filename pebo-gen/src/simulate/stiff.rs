@@ -93,13 +93,14 @@ where
             h = h.min(length - t);
             if steps == most || h.is_nan() || h <= SHORTEST * length {
                 let state = y.as_slice()[..state.len()].to_vec();
-                return Err(Stuck { steps, at: rates.origin() + t, state });
+                return Err(Stuck { steps, at: rates.origin() + t, state, fast: None });
             }
             steps += 1;
             let &mut (ref slopes, drift) =
                 at.get_or_insert_with(|| (rates.slopes::<N>(t, &y), drift::<N>(rates, t, &y, APART * length)));
             let (next, error) = step(rates, (t, &y), h, slopes, &drift);
-            let scaled = |place: usize| error[place].abs() / (ABSOLUTE + RELATIVE * y[place].abs().max(next[place].abs()));
+            let scaled =
+                |place: usize| error[place].abs() / (ABSOLUTE + RELATIVE * y[place].abs().max(next[place].abs()));
             // What is no number is as wrong as can be.
             let worst = (0..state.len()).map(scaled).fold(0.0, |worst, one| if one <= worst { worst } else { one });
             let scale = AIM * worst.powf(-0.25);

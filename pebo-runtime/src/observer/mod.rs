@@ -10,7 +10,7 @@ use crate::regression::{Outcome as _, Sides};
 use crate::sum::{all_finite, blemish};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator};
 pub use confidence::Innovation;
-use rebasing::{End, Turn};
+use rebasing::Rebasing;
 
 /// A parameter-estimation-based observer.
 ///
@@ -62,7 +62,7 @@ pub struct Observer<
     terms: Option<M::Terms>,
     /// What makes the extension start again, if it does, and the end of a step that does so. That end is
     /// compiled where re-basing was asked for alone, and what remains of a step without it has no second caller.
-    rebasing: Option<(Turn<M::Scalar>, End<Self, M, R, NX, NY, NU, NZ, NR, NE>)>,
+    rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
 }
 
 /// Everything that a step of an [`Observer`] changes, gains and filter included.

@@ -21,7 +21,7 @@ pub(super) enum Turn<S: Real> {
 
 /// The end of a step of an observer `O` that starts its extension again: from what makes it do so, extension and
 /// regression at the end of the interval, terms and output of the sample, and the interval's time.
-pub(super) type End<
+type End<
     O,
     M,
     R,
@@ -38,6 +38,22 @@ pub(super) type End<
     (<M as Model<NX, NY, NU, NZ, NR, NE>>::Terms, &SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY>),
     <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar,
 ) -> Result<SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NX>, Fault>;
+
+/// What makes an observer start its extension again, and the end of a step that does so.
+pub(super) type Rebasing<
+    O,
+    M,
+    R,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+> = (Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>, End<O, M, R, NX, NY, NU, NZ, NR, NE>);
+
+/// What an interval led to, if there was one.
+type Led<X, R, E, S, const NR: usize, const NE: usize> = Option<Next<X, StepOf<R, S, NR, NE>, E>>;
 
 type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
 
@@ -151,7 +167,7 @@ where
     fn move_by_drift(
         &mut self,
         drift: Drift<M::Scalar>,
-        next: Option<Next<M::Extension, StepOf<R, M::Scalar, NR, NZ>, E>>,
+        next: Led<M::Extension, R, E, M::Scalar, NR, NZ>,
         (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {

@@ -202,7 +202,7 @@ fn an_extension_is_kept_bounded_in_the_form_that_is_asked_for() {
         let given = Settings { rebase: Some(form), ..gradient() };
         let text = tuned(&given);
         assert!(text.contains(&format!("observer.{call}")) && text.contains(words), "{text}");
-        assert!(text.contains("{Drift, "), "{text}");
+        assert!(text.contains("Drift, Fault"), "{text}");
         let inner = call.trim_start_matches("without_drift(").trim_end_matches(')').to_owned() + ")";
         refuse_changed(&given, &[(inner.as_str(), other)]);
     }
@@ -211,7 +211,8 @@ fn an_extension_is_kept_bounded_in_the_form_that_is_asked_for() {
 #[test]
 fn a_constructor_with_other_settings_is_refused() {
     let within = [None, Some(numbers(["7", "8"]))];
-    let given = Settings { within, upper: Some(numbers(["5", "6"])), rebase: Some(Rebase::Samples(number("3"))), ..gradient() };
+    let given =
+        Settings { within, upper: Some(numbers(["5", "6"])), rebase: Some(Rebase::Samples(number("3"))), ..gradient() };
     let changes = [
         ("from([0.001, 2e-6])", "from([0.001, 2e-5])"),
         ("Filter::new(0.5", "Filter::new(0.6"),

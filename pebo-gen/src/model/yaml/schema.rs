@@ -384,7 +384,12 @@ const REBASE: &[Key] = &[
         "above: 100",
         "When a component of the extension exceeds this, in units of phi: cheap, as it seldom does",
     ),
-    optional("leak", Shape::Number, "leak: 5", "All the time, at this rate in 1/s: what leaks from the extension goes into theta"),
+    optional(
+        "leak",
+        Shape::Number,
+        "leak: 5",
+        "All the time, at this rate in 1/s: what leaks from the extension goes into theta",
+    ),
 ];
 
 const BOUNDS: &[Key] = &[

@@ -150,7 +150,8 @@ impl Pass<'_> {
         if let Some(entry) = &self.written.t {
             return self.formula(&entry.value);
         }
-        let declared = self.asked.plant.time.is_none() && self.asked.model.names().any(|name| name.value == Recording::T);
+        let declared =
+            self.asked.plant.time.is_none() && self.asked.model.names().any(|name| name.value == Recording::T);
         if let Some(column) = self.column(Recording::T).filter(|_| !declared) {
             return Some(column);
         }
