@@ -1,40 +1,21 @@
 //! The plant, and the baselines that have equations, between two samples: one ordinary differential equation.
 //!
-//! Method: Dormand and Prince's explicit Runge-Kutta pair of order 5(4), from a library, started anew
-//! at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign in the rates
-//! changes (`switching`), which is found by halving the step in which it does.
-//! Holds when: the plant is not stiff at its sampling period. The first step tried is the whole
-//! interval: a loop that is sampled well needs one step a sample. From an interval on that needs very many, the method for
-//! stiff plants (`stiff`) is taken if it needs fewer.
-//!
-//! One thing with `stiff`: both methods solve the same equation.
+//! It is started anew at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign
+//! in the rates changes (`switching`), which is found by halving the step in which it does. The method is explicit; from an
+//! interval on that needs very many steps, the one for stiff plants (`stiff`) is taken if it needs fewer.
 
 use std::cell::RefCell;
-use std::fmt;
 use std::ops::Range;
-
-use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
-use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-
-use pebo_runtime::nalgebra::{SMatrix, SVector};
 
 use crate::program::{Interpreter, Program};
 
+use super::equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solve, Stuck};
+use super::explicit::Explicit;
 use super::layout::TIME;
-use super::signal::{Course, Signal};
+use super::signal::Signal;
 use super::stiff::Stiff;
 use super::switching::{Switched, Switching};
 use super::timing::real;
-
-/// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
-pub(super) const RELATIVE: f64 = 1e-10;
-
-/// For states that pass through zero: far below any value of interest in SI units.
-pub(super) const ABSOLUTE: f64 = 1e-12;
-
-/// A rate this small is zero: over years it moves nothing by as much as [`ABSOLUTE`]. The library divides by the square
-/// of a step's error, which for a rate that fades away becomes too small to be divided by.
-const STILL: f64 = 1e-100;
 
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
@@ -47,9 +28,6 @@ const MOST_STEPS_IN_ALL: u64 = 400_000_000;
 
 /// Steps after which it is known how many a whole run takes; some seconds of computing at most.
 const ENOUGH_STEPS: u64 = 2_000_000;
-
-/// A step that is this small a part of the interval will not get anywhere.
-pub(super) const SHORTEST: f64 = 1e-12;
 
 /// The largest state that is integrated.
 pub(super) const LARGEST: usize = 64;
@@ -65,19 +43,6 @@ const LOOKS: f64 = 1000.0;
 /// How far to either side a signal is looked at for its rate, as a part of the interval: of a formula whose third derivative
 /// is one over the interval cubed, the rate errs by 2e-9 of itself.
 const ASIDE: f64 = 1e-4;
-
-/// The integration came to a stand.
-#[derive(Clone, Debug)]
-pub(super) struct Stuck {
-    /// The steps that it took.
-    pub(super) steps: u64,
-    /// When, in seconds.
-    pub(super) at: f64,
-    /// The last state that it came to.
-    pub(super) state: Vec<f64>,
-    /// Where it got on, but too slowly for the run: the place of the state that moves fastest, and its rate in 1/s.
-    pub(super) fast: Option<(usize, f64)>,
-}
 
 /// The differential equation of a run.
 #[derive(Debug)]
@@ -97,29 +62,6 @@ pub(super) struct Flow {
     left: u64,
     /// The end of the run in seconds, if it is known.
     until: f64,
-}
-
-/// The right side as the library calls it: through a shared reference.
-#[derive(Debug)]
-pub(super) struct Equation(RefCell<Rates>);
-
-/// The right side, with the table that its formulas read.
-#[derive(Debug)]
-struct Rates {
-    table: Vec<f64>,
-    state: Range<usize>,
-    /// Where the integration began.
-    origin: f64,
-    /// Signals that the rates depend on, with their positions in the table.
-    signals: Vec<(usize, Course)>,
-    formulas: Interpreter,
-    /// The derivatives of the formulas by the state, by rows.
-    slopes: Option<Interpreter>,
-    /// Whether the rates depend on more than the state.
-    moves: bool,
-    switching: Option<Switching>,
-    /// How far to either side of an instant signals are looked at for their rates, in seconds.
-    aside: f64,
 }
 
 impl Flow {
@@ -151,10 +93,10 @@ impl Flow {
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
         let (solver, stiff): (Box<dyn Solve>, Box<dyn Solve>) = match state.len() {
-            0..=4 => (Box::new(Solver::<4>::new()), Box::new(Stiff::<4>::new())),
-            5..=8 => (Box::new(Solver::<8>::new()), Box::new(Stiff::<8>::new())),
-            9..=16 => (Box::new(Solver::<16>::new()), Box::new(Stiff::<16>::new())),
-            _ => (Box::new(Solver::<LARGEST>::new()), Box::new(Stiff::<LARGEST>::new())),
+            0..=4 => (Box::new(Explicit::<4>::new()), Box::new(Stiff::<4>::new())),
+            5..=8 => (Box::new(Explicit::<8>::new()), Box::new(Stiff::<8>::new())),
+            9..=16 => (Box::new(Explicit::<16>::new()), Box::new(Stiff::<16>::new())),
+            _ => (Box::new(Explicit::<LARGEST>::new()), Box::new(Stiff::<LARGEST>::new())),
         };
         let rates = Equation(RefCell::new(inner));
         // Where signs change, steps are short for another reason.
@@ -298,204 +240,5 @@ impl Flow {
         }
         self.left -= left - most;
         Ok(())
-    }
-}
-
-impl Rates {
-    /// Writes state, time and signals of an instant into the table, `t` seconds behind the origin.
-    fn place(&mut self, t: f64, state: &[f64]) {
-        let now = self.origin + t;
-        self.table[TIME] = now;
-        let (moving, aside) = (self.switching.iter().flat_map(|switching| &switching.moving), self.aside);
-        for (position, signal) in &mut self.signals {
-            self.table[*position] = signal.value(now);
-            for (_, rate) in moving.clone().filter(|(of, _)| of == position) {
-                self.table[*rate] = (signal.value(now + aside) - signal.value(now - aside)) / (2.0 * aside);
-            }
-        }
-        self.table[self.state.clone()].copy_from_slice(&state[..self.state.len()]);
-    }
-
-    /// Writes time and signals of an instant into the table, `t` seconds behind the origin.
-    fn follow(&mut self, t: f64) {
-        let now = self.origin + t;
-        self.table[TIME] = now;
-        for (position, signal) in &mut self.signals {
-            self.table[*position] = signal.value(now);
-        }
-    }
-
-    /// Which component of the state moves fastest where the integration was last, and its rate in 1/s, whatever the units.
-    fn fastest(&mut self, state: &[f64]) -> Option<(usize, f64)> {
-        let (slopes, table, place) = (self.slopes.as_mut()?, &self.table, &self.state);
-        let of =
-            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
-        let slopes: Vec<f64> = slopes.evaluate(of).collect();
-        let count = state.len();
-        // By itself, or to and fro with another.
-        let rate = |row: usize| {
-            (0..count)
-                .map(|other| (slopes[row * count + other] * slopes[other * count + row]).abs().sqrt())
-                .fold(0.0, f64::max)
-        };
-        (0..count).map(|row| (row, rate(row))).max_by(|one, other| one.1.total_cmp(&other.1))
-    }
-
-    /// Before an integration from this instant.
-    fn begin(&mut self, origin: f64, state: &[f64], reached: &[bool]) {
-        self.origin = origin;
-        self.place(0.0, state);
-        if let Some(switching) = &mut self.switching {
-            switching.decide(&mut self.table, reached);
-        }
-    }
-
-    /// Which switches can no longer do what they do.
-    fn reached(&mut self, t: f64, state: &[f64]) -> Option<Vec<bool>> {
-        self.place(t, state);
-        self.switching.as_mut()?.reached(&mut self.table)
-    }
-}
-
-/// Told of each step's end, in seconds since the start, with the state there; whether to end there.
-pub(super) type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
-
-/// What moves a state on.
-pub(super) trait Solve: fmt::Debug {
-    /// Moves the state on by `length` seconds in at most so many steps, or to where it is watched to end; gives the number of
-    /// steps.
-    fn solve(
-        &mut self,
-        rates: &Equation,
-        state: &mut [f64],
-        length: f64,
-        most: u64,
-        watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck>;
-}
-
-/// The method, made once for the run: its start sets all that a step changes but the count of its steps, which nothing
-/// depends on.
-struct Solver<const N: usize>(DormandPrinceOf<N>);
-
-type DormandPrinceOf<const N: usize> = ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>;
-
-impl<const N: usize> Solver<N> {
-    fn new() -> Self {
-        Self(ExplicitRungeKutta::dopri5().rtol(RELATIVE).atol(ABSOLUTE).max_steps(usize::MAX))
-    }
-}
-
-impl<const N: usize> fmt::Debug for Solver<N> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Solver<{N}>")
-    }
-}
-
-impl<const N: usize> Solve for Solver<N> {
-    fn solve(
-        &mut self,
-        rates: &Equation,
-        state: &mut [f64],
-        length: f64,
-        most: u64,
-        mut watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck> {
-        let mut start = [0.0; N];
-        start[..state.len()].copy_from_slice(state);
-        let method = &mut self.0;
-        let origin = rates.0.borrow().origin;
-        let stuck = |method: &DormandPrinceOf<N>, steps| Stuck {
-            steps,
-            at: origin + method.t(),
-            state: method.y()[..state.len()].to_vec(),
-            fast: None,
-        };
-        method.h0 = length;
-        let mut steps = 0;
-        if method.init(rates, 0.0, length, &start).is_err() {
-            return Err(Stuck { steps, at: origin, state: state.to_vec(), fast: None });
-        }
-        loop {
-            let rest = length - method.t();
-            if rest <= SHORTEST * length {
-                break;
-            }
-            if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
-                return Err(stuck(method, steps));
-            }
-            if method.h() > rest {
-                method.set_h(rest);
-            }
-            let before = method.t();
-            if method.step(rates).is_err() {
-                return Err(stuck(method, steps));
-            }
-            steps += 1;
-            // A step that was refused has moved nothing.
-            if method.t() > before
-                && let Some(watch) = &mut watch
-                && watch(method.t(), &method.y()[..state.len()])
-            {
-                break;
-            }
-        }
-        state.copy_from_slice(&method.y()[..state.len()]);
-        Ok(steps)
-    }
-}
-
-impl<const N: usize> ODE<f64, [f64; N]> for Equation {
-    fn diff(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
-        let mut inner = self.0.borrow_mut();
-        if inner.switching.is_some() {
-            inner.place(t, state);
-            let Rates { table, switching, .. } = &mut *inner;
-            if let Some(switching) = switching {
-                switching.hold(table);
-            }
-        }
-        inner.follow(t);
-        let Rates { table, state: place, formulas, .. } = &mut *inner;
-        let of =
-            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
-        for (index, value) in formulas.evaluate(of).enumerate() {
-            rates[index] = if value.abs() < STILL { 0.0 } else { value };
-        }
-        rates[place.len()..].fill(0.0);
-    }
-}
-
-impl Equation {
-    /// The instant from which the integration counts.
-    pub(super) fn origin(&self) -> f64 {
-        self.0.borrow().origin
-    }
-
-    /// Whether the rates depend on more than the state.
-    pub(super) fn moves(&self) -> bool {
-        self.0.borrow().moves
-    }
-
-    /// The rates.
-    pub(super) fn at<const N: usize>(&self, t: f64, state: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut rates = [0.0; N];
-        self.diff(t, &state.data.0[0], &mut rates);
-        rates.into()
-    }
-
-    /// The derivatives of the rates by the state; of what is beyond the state, none.
-    pub(super) fn slopes<const N: usize>(&self, t: f64, state: &SVector<f64, N>) -> SMatrix<f64, N, N> {
-        let mut inner = self.0.borrow_mut();
-        inner.follow(t);
-        let Rates { table, state: place, slopes, .. } = &mut *inner;
-        let mut matrix = SMatrix::zeros();
-        let Some(slopes) = slopes else { return matrix };
-        let of =
-            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
-        for (index, value) in slopes.evaluate(of).enumerate() {
-            matrix[(index / place.len(), index % place.len())] = value;
-        }
-        matrix
     }
 }

@@ -10,7 +10,7 @@
 
 use pebo_runtime::nalgebra::{Const, DimMin, SMatrix, SVector};
 
-use super::flow::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solve, Stuck, Watch};
+use super::equation::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solve, Stuck, Watch};
 
 /// The diagonal of the method.
 const GAMMA: f64 = 0.25;
