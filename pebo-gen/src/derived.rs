@@ -137,6 +137,22 @@ impl Derived {
         self.emit(scalar).map_err(|error| vec![self.refusal(&error, scalar)])
     }
 
+    /// What the emitted code loses because the model's own formulas lose it, said of the model's name.
+    pub(crate) fn cautions(&self, emitted: &Emitted, scalar: Scalar) -> Vec<Diagnostic> {
+        let losses = emitted.accuracy.cautions(scalar).into_iter().map(|(function, worst)| {
+            let (scalar, place) = (scalar.name(), &worst.place);
+            let how_much = if worst.is_finite() {
+                format!("its error is {} times what rounding of its arguments causes", worst.told())
+            } else {
+                "it is not finite".to_owned()
+            };
+            let message = format!("`{function}` loses digits in `{scalar}`: at {place} {how_much}");
+            Diagnostic::warning(Code::LosesDigits, self.model.name.span, message)
+                .note("the model's own formulas lose as many there")
+        });
+        losses.collect()
+    }
+
     /// Why an accepted derivation is not emitted, said of the model's name.
     fn refusal(&self, error: &EmitError, scalar: Scalar) -> Diagnostic {
         let span = self.model.name.span;

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::real::Real;
+
 /// The reason for which a call was refused. What was called is then exactly as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -53,6 +55,12 @@ pub enum Fault {
         /// The place of the first condition that does not hold, from 0, among those of the model's `Parameters::check`.
         index: usize,
     },
+    /// A number that the model computes from its parameters is infinite or NaN: parameters that each are in their range
+    /// nearly cancel in a divisor, or their product is beyond what the floating-point type holds.
+    Constant {
+        /// Its place, from 0, among the fields of the model that are no parameters.
+        index: usize,
+    },
 }
 
 impl Fault {
@@ -62,6 +70,15 @@ impl Fault {
     /// [`Fault::Parameter`] with the place of the first that does not.
     pub fn of_parameters<const N: usize>(conditions: [bool; N]) -> Result<(), Self> {
         conditions.iter().position(|holds| !holds).map_or(Ok(()), |index| Err(Self::Parameter { index }))
+    }
+
+    /// Accepts what a model computed from its parameters if all of it is finite.
+    ///
+    /// # Errors
+    /// [`Fault::Constant`] with the place of the first that is not.
+    pub fn of_constants<R: Real, const N: usize>(constants: [R; N]) -> Result<(), Self> {
+        let first = constants.iter().position(|constant| !constant.is_finite());
+        first.map_or(Ok(()), |index| Err(Self::Constant { index }))
     }
 }
 
@@ -83,6 +100,7 @@ impl fmt::Display for Fault {
             Self::State => f.write_str("the new state would not be finite"),
             Self::Estimate => f.write_str("the left inverse is not finite here"),
             Self::Parameter { index } => write!(f, "condition {index} of the parameters does not hold"),
+            Self::Constant { index } => write!(f, "constant {index} of the model is not finite"),
         }
     }
 }

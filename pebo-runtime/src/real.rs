@@ -55,6 +55,8 @@ pub trait Real: RealField + Copy {
     fn exp(self) -> Self;
     /// `exp(self) - 1`, accurate near 0.
     fn exp_m1(self) -> Self;
+    /// Natural logarithm of 1 plus the number, with all digits also where that is small.
+    fn ln_1p(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
     /// Square root.
@@ -134,10 +136,10 @@ macro_rules! real {
 }
 
 real!(
-    f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh, acosh, atanh, exp, exp_m1, ln, sqrt, abs;
+    f64: sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh, acosh, atanh, exp, exp_m1, ln, ln_1p, sqrt, abs;
     atan2 = double::atan2, sin_cos = ComplexField::sin_cos
 );
 real!(
-    f32: tan, asin, acos, sinh, cosh, tanh, asinh, acosh, atanh, exp_m1, ln, sqrt, abs;
+    f32: tan, asin, acos, sinh, cosh, tanh, asinh, acosh, atanh, exp_m1, ln, ln_1p, sqrt, abs;
     atan2 = single::atan2, sin_cos = single::sin_cos, sin = single::sin, cos = single::cos, atan = single::atan, exp = single::exp
 );

@@ -254,7 +254,8 @@ fn by_values(
     }
 }
 
-/// Where a rate has no usable form, those that are affine in phi may do: else the given.
+/// Where a rate has no usable form, those that are affine in phi may do, or those that are made of functions of theta: else
+/// the given.
 fn without_others(
     plant: &Plant,
     domain: &Domain,
@@ -267,13 +268,20 @@ fn without_others(
     if is_given || plant.arena.budget().is_exhausted() {
         return given;
     }
-    let mut said = Vec::new();
-    let others = regression::of_affine_rates(plant, domain, cascade, inverse);
-    let both = others.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
-    let Some(both) = both else { return given };
-    found.truncate(before);
-    found.extend(said);
-    both
+    let affine = |_: &mut Vec<Diagnostic>| regression::of_affine_rates(plant, domain, cascade, inverse);
+    let separable = |said: &mut Vec<Diagnostic>| regression::of_separable_rates(plant, domain, cascade, inverse, said);
+    let ways: [&dyn Fn(&mut Vec<Diagnostic>) -> Option<Claim<Regression>>; 2] = [&affine, &separable];
+    for way in ways {
+        let mut said = Vec::new();
+        let both =
+            way(&mut said).and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
+        if let Some(both) = both {
+            found.truncate(before);
+            found.extend(said);
+            return both;
+        }
+    }
+    given
 }
 
 /// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.

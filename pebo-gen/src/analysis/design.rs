@@ -4,7 +4,7 @@ use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::parts::Side;
-use crate::cas::{Expr, Symbol};
+use crate::cas::{Arena, Expr, Symbol};
 pub use crate::plant::CascadeClass as Class;
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
@@ -189,6 +189,40 @@ impl Regression {
         self.eta.len() == plant.theta.len()
             && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
     }
+
+    /// Positions of the equations that tell the estimator nothing: of known rates, in which no unknown stands.
+    pub fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
+        if self.kind == RegressionKind::Static {
+            return Vec::new();
+        }
+        let nothing = |row: Option<&Vec<Expr>>| row.into_iter().flatten().all(|factor| arena.is_zero(*factor));
+        let is_idle = |row: &usize| nothing(self.phi_1.get(*row)) && nothing(self.primitive_1.get(*row));
+        (0..self.phi_0.len()).filter(is_idle).collect()
+    }
+
+    /// The equations that an observer runs: all of them where each `serves`, else those with an unknown. An equation
+    /// without one serves a gate, which looks at the sample of its output, and the output form, in which the output
+    /// itself is estimated.
+    #[must_use]
+    pub fn computed(&self, arena: &Arena, serves: bool) -> Self {
+        let idle = if serves { Vec::new() } else { self.without_unknowns(arena) };
+        let mut computed = self.clone();
+        if idle.is_empty() {
+            return computed;
+        }
+        retain(&mut computed.rows, &idle);
+        retain(&mut computed.phi_0, &idle);
+        retain(&mut computed.phi_1, &idle);
+        retain(&mut computed.primitive_0, &idle);
+        retain(&mut computed.primitive_1, &idle);
+        computed
+    }
+}
+
+/// Takes the entries at these positions out of a list of all rows.
+fn retain<T>(rows: &mut Vec<T>, left_out: &[usize]) {
+    let mut row = 0..;
+    rows.retain(|_| row.next().is_none_or(|row| !left_out.contains(&row)));
 }
 
 /// Claim 4: the unknowns can be told apart.

@@ -7,6 +7,7 @@
 //! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
 //! et al. 2015, remark R3).
 
+mod crossing;
 mod divided;
 mod excitation;
 mod flow;
@@ -24,7 +25,7 @@ use crate::source::{Code, Diagnostic, Span};
 
 use self::divided::{Decided, Formulas};
 use self::flow::{Flow, effective, without_psi};
-use self::singular::Places;
+use self::singular::{Places, Volume};
 use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use crate::analysis::left_inverse::at_phi;
 use crate::analysis::pencil;
@@ -51,7 +52,7 @@ pub(super) fn prove(
     let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
         where_analytic(plant, domain, cascade, regression, left_inverse, found)
     };
-    divided::decide(plant, domain, regression, &formulas, found, on)
+    divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
 }
 
@@ -135,8 +136,8 @@ fn where_analytic(
     };
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
-        // Nothing can be read off rates.
-        let (places, gram) = if by_rates { (Places::default(), None) } else { excitation::of(plant, domain, &phi_1) };
+        let (places, gram) =
+            if by_rates { (of_rates(plant, domain, &phi_1), None) } else { excitation::of(plant, domain, &phi_1) };
         let result = Identifiability {
             kind: Excitation::Instant,
             singular_where: places.signals,
@@ -191,6 +192,11 @@ fn where_analytic(
     let Some(direction) = unseen.directions.first().cloned() else {
         return open(plant, &Obstacle::NoWitness, found).into();
     };
+    // What is constant along every motion and holds what moves may be another constant elsewhere: the quotient of v and
+    // |v|.
+    if cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
+        return open(plant, &Obstacle::NoWitness, found).into();
+    }
     // What does not identify functions of theta may identify theta.
     if !regression.is_linear(plant)
         && let Some(doubt) = of_theta(plant, domain, &stack, regression, &direction)
@@ -252,6 +258,19 @@ fn of_theta(
     ))
 }
 
+/// Where a regressor with the rates of outputs in it loses rank: what parameters and signals alone make zero. What states
+/// make zero is no place that an observer could know.
+fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
+    let arena = &plant.arena;
+    let found = || Volume::of(arena, domain, rows)?.places(plant, domain);
+    let Places { signals, zeros, constants, all } = arena.budget().share(8, found).unwrap_or_default();
+    let hidden = plant.hidden();
+    let (known, other): (Vec<_>, Vec<_>) =
+        signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));
+    let (signals, zeros) = known.into_iter().unzip();
+    Places { signals, zeros, constants, all: all && other.is_empty() }
+}
+
 /// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
 fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
     let arena = &plant.arena;
@@ -270,6 +289,14 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
         flow.advance(plant);
     }
     false
+}
+
+/// Whether formulas hold what moves: all but the parameters and signals whose rate is zero.
+fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -> bool {
+    let arena = &plant.arena;
+    let Ok(flow) = Flow::new(plant, domain, cascade) else { return true };
+    let rests = |symbol: Symbol| decide(arena, flow.rate(arena, arena.of_symbol(symbol)), domain).is_zero();
+    arena.symbols_of(formulas).into_iter().any(|symbol| !rests(symbol))
 }
 
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the

@@ -91,6 +91,36 @@ pub(super) fn of_affine_rates(
     (!rows.is_empty()).then(|| Claim { verdict: Verdict::Proved, result: Some(regression()) })
 }
 
+/// The regression in functions of theta of the rates that are made of such functions, where there are others too; none if no
+/// rate is.
+pub(super) fn of_separable_rates(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let left_inverse = left_inverse.filter(|_| cascade.lambda.is_none())?;
+    let unmeasured: BTreeSet<Symbol> = plant.w.iter().copied().collect();
+    let rates = plant.y.iter().enumerate().filter_map(|(index, output)| Some((index, output.rate?.expr)));
+    let known = rates.filter(|(_, rate)| !plant.arena.depends_on(*rate, &unmeasured));
+    let in_z = known.map(|(index, rate)| (index, of_z(plant, domain, left_inverse, rate)));
+    let (outputs, rates): (Vec<usize>, Vec<Expr>) = in_z.filter(|(_, rate)| is_separable(plant, domain, *rate)).unzip();
+    let separated = separation::separate(plant, domain, &rates).ok()??;
+    over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found)
+}
+
+/// A rate as a function of z.
+fn of_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse, rate: Expr) -> Expr {
+    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
+    plant.arena.substitute(unbent(plant, domain, rate), &inverse)
+}
+
+/// Whether a rate is a sum of known signals times functions of theta.
+fn is_separable(plant: &Plant, domain: &Domain, rate: Expr) -> bool {
+    matches!(separation::separate(plant, domain, &[rate]), Ok(Some(_)))
+}
+
 /// Proves or refutes the regression.
 pub(super) fn prove(
     plant: &Plant,
@@ -141,9 +171,7 @@ pub(super) fn prove(
     let mut unrecovered = None;
     let mut in_z: BTreeMap<usize, Expr> = BTreeMap::new();
     if let Some(left_inverse) = left_inverse {
-        let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-        let of_z = |rate: Expr| plant.arena.substitute(unbent(plant, domain, rate), &inverse);
-        let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| of_z(*rate)).collect();
+        let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| of_z(plant, domain, left_inverse, *rate)).collect();
         in_z = rows.iter().map(|row| row.0).zip(rates.iter().copied()).collect();
         match separation::separate(plant, domain, &rates) {
             Ok(Some(_)) if cascade.lambda.is_some() => unsought = true,
@@ -160,6 +188,14 @@ pub(super) fn prove(
                 let claim = under_derivative(plant, domain, cascade, left_inverse, &of_outputs, found);
                 if let Some(claim) = claim {
                     return claim;
+                }
+                // It is the others that have no form.
+                let usable = |row: &(usize, Expr, Span, Option<Obstacle>)| {
+                    cascade.lambda.is_none() && in_z.get(&row.0).is_some_and(|rate| is_separable(plant, domain, *rate))
+                };
+                let usable: BTreeSet<usize> = obstacles.iter().filter(|row| usable(row)).map(|row| row.0).collect();
+                if usable.len() < obstacles.len() {
+                    obstacles.retain(|row| !usable.contains(&row.0));
                 }
             }
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),

@@ -169,7 +169,10 @@ impl Answer {
         }
         if let Some(scalar) = ask.scalar {
             match derived.admitted(scalar) {
-                Ok(emitted) => self.emitted = Some(emitted),
+                Ok(emitted) => {
+                    self.diagnostics.extend(derived.cautions(&emitted, scalar));
+                    self.emitted = Some(emitted);
+                }
                 Err(found) => self.refuse(Standing::of_emission(&found), found),
             }
         }

@@ -10,7 +10,7 @@
 use super::Arena;
 use super::domain::Domain;
 use super::expr::{Expr, Node};
-use super::facts::Relation;
+use super::facts::{Facts, Relation};
 use super::field::{Field, Obstacle};
 use super::function::Function;
 use super::rational::Rational;
@@ -55,16 +55,22 @@ impl Domain {
         exprs: &[Expr],
         varies: impl Fn(Expr) -> bool,
     ) -> Result<Vec<Part>, Obstacle> {
-        let mut parts = vec![Part { domain: self.clone(), sides: Vec::new() }];
-        for divisor in self.dividers(arena, exprs)?.into_iter().filter(|divisor| varies(*divisor)) {
-            let mut finer = Vec::new();
-            for part in parts {
-                finer.extend(part.divided(arena, divisor)?);
+        let mut parts = Vec::new();
+        let mut open = vec![Part { domain: self.clone(), sides: Vec::new() }];
+        while let Some(part) = open.pop() {
+            // Of `sqrt((|q| - 1)^2)` each side of q = 0 has a border of its own.
+            let mut dividers = part.domain.dividers(arena, exprs)?.into_iter().filter(|divider| varies(*divider));
+            let finer = dividers.find_map(|divider| match part.divided(arena, divider) {
+                Ok(finer) => (finer.len() > 1).then_some(Ok(finer)),
+                Err(obstacle) => Some(Err(obstacle)),
+            });
+            match finer {
+                Some(finer) => open.extend(finer?.into_iter().rev()),
+                None => parts.push(part),
             }
-            if finer.len() > MOST_PARTS {
+            if parts.len() + open.len() > MOST_PARTS {
                 return Err(Obstacle::TooLarge);
             }
-            parts = finer;
         }
         for part in &parts {
             part.domain.tell_angles_apart(arena, exprs, &varies)?;
@@ -72,12 +78,14 @@ impl Domain {
         Ok(parts)
     }
 
-    /// The factors of what stands under absolute values, also where these are written as roots of squares.
+    /// The factors of what stands under absolute values, also where these are written as roots of squares or as other
+    /// functions: `exp(log(q^2)/2)` is `|q|`.
     fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
         let mut under = arena.dividers(exprs);
-        let magnitudes: Vec<Expr> =
+        let mut magnitudes: Vec<Expr> =
             arena.magnitudes(exprs).into_iter().filter(|root| !arena.symbols_of(&[*root]).is_empty()).collect();
-        let field = Field::on(arena, self, &magnitudes)?;
+        magnitudes.extend(arena.branched(exprs));
+        let field = Field::on(arena, &self.but_for_radicands(arena, &magnitudes), &magnitudes)?;
         for magnitude in &magnitudes {
             field.fraction(*magnitude)?;
         }
@@ -100,6 +108,27 @@ impl Domain {
             }
         }
         Ok(found)
+    }
+
+    /// The domain without what is assumed of radicands as they are written, which would be kept for it: that a root has a
+    /// value says nothing of where it bends.
+    fn but_for_radicands(&self, arena: &Arena, exprs: &[Expr]) -> Self {
+        let is_root = |(base, power): &(Expr, Rational)| (!power.is_integer()).then_some(*base);
+        let radicands: Vec<Expr> = arena
+            .postorder(exprs)
+            .into_iter()
+            .filter_map(|expr| match arena.node(expr) {
+                Node::Product(product) => Some(product.factors.iter().filter_map(is_root).collect::<Vec<Expr>>()),
+                _ => None,
+            })
+            .flatten()
+            .filter(|base| arena.as_symbol(*base).is_none())
+            .collect();
+        let mut facts = Facts::new();
+        for (fact, relation) in self.facts.iter().filter(|(fact, _)| !radicands.contains(fact)) {
+            facts.assume(fact, relation);
+        }
+        Self { facts, ..self.clone() }
     }
 
     /// An obstacle where an inverse circular function that stays in the normal form moves as a multiple of its arguments,
@@ -150,10 +179,10 @@ impl Domain {
 
 impl Part {
     /// What of the part is on either side.
-    fn divided(self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
+    fn divided(&self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
         let sides = [(Side::Positive, divisor), (Side::Negative, arena.neg(divisor))];
         if sides.iter().any(|(_, positive)| self.domain.implies(arena, *positive, Relation::NonNegative)) {
-            return Ok(vec![self]);
+            return Ok(vec![self.clone()]);
         }
         let one = |(side, positive): (Side, Expr)| {
             let mut part = self.clone();
@@ -184,6 +213,18 @@ impl Arena {
             }
         }
         found
+    }
+
+    /// The expressions that hold roots or logarithms: what these make together may be a magnitude.
+    fn branched(&self, exprs: &[Expr]) -> Vec<Expr> {
+        let is_one = |expr: Expr| match self.node(expr) {
+            Node::Product(product) => product.factors.iter().any(|(_, power)| !power.is_integer()),
+            Node::Call(function, _) => matches!(function, Function::Log | Function::Acosh),
+            _ => false,
+        };
+        let holds =
+            |expr: &Expr| !self.symbols_of(&[*expr]).is_empty() && self.postorder(&[*expr]).into_iter().any(is_one);
+        exprs.iter().copied().filter(holds).collect()
     }
 
     /// What may be the magnitude of something: even roots, and the cosines of inverse sines and cosines.
@@ -237,5 +278,21 @@ mod tests {
         assert_eq!(parts(&[], both).len(), 4);
         // Three of four: a > 1 and a < -1 exclude each other.
         assert_eq!(parts(&[], |arena, [a, _]| arena.call(Function::Sat, &[a])).len(), 3);
+    }
+
+    #[test]
+    fn magnitudes_are_seen_however_they_are_written() {
+        let by_logarithm = |arena: &Arena, [a, _]: [Expr; 2]| {
+            let log = arena.call(Function::Log, &[arena.mul(a, a)]);
+            arena.call(Function::Exp, &[arena.scale(log, &Rational::new(1, 2).unwrap())])
+        };
+        assert_eq!(parts(&[], by_logarithm), ["a > 0", "a < 0"]);
+        // sqrt((|a| - 1)^2)
+        let within = |arena: &Arena, [a, _]: [Expr; 2]| {
+            let square = arena.mul(a, a);
+            let root = arena.sqrt(square);
+            arena.sqrt(arena.sum([square, arena.one(), arena.scale(root, &Rational::from(-2))]))
+        };
+        assert_eq!(parts(&[], within).len(), 4, "{:?}", parts(&[], within));
     }
 }

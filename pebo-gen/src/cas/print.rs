@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::arena::Arena;
-use super::arranged::{Factor, Summand, as_fraction, decimal, is_root, quotient, summands};
+use super::arranged::{Factor, Summand, as_fraction, decimal, is_root, quotient, summands, whole};
 use super::expr::{Expr, Node, Product, Sum};
 use super::rational::Rational;
 
@@ -137,7 +137,7 @@ fn power(base: &Text, exponent: &Rational) -> String {
 fn number(value: &Rational) -> Text {
     if value.is_integer() {
         let binding = if value.is_negative() { Binding::Negation } else { Binding::Atom };
-        return Text::new(value.to_string(), binding);
+        return Text::new(whole(value), binding);
     }
     let sign = if value.is_negative() { "-" } else { "" };
     match decimal(&value.abs()) {

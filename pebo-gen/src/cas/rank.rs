@@ -34,14 +34,9 @@ pub(crate) fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], colu
     most
 }
 
-/// Whether the matrix at a point of each domain, one below the other, provably has full column rank.
-pub(crate) fn full_rank_together(arena: &Arena, domains: &[Domain], rows: &[Vec<Expr>], columns: usize) -> bool {
-    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    let mut points: Vec<_> = domains.iter().map(|domain| domain.points(arena, &entries)).collect();
-    (0..MOST_POINTS).any(|_| {
-        let seen = points.iter_mut().filter_map(|points| values_at(arena, &entries, columns, &points.next()?));
-        rank_of(seen.flatten().collect(), columns) == columns
-    })
+/// Whether a matrix, whose entries are given row by row, provably has full column rank at a point.
+pub(crate) fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> bool {
+    rank_at(arena, entries, columns, point) == columns
 }
 
 const PRECISION: Precision = Precision::new(256);

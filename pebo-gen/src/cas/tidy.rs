@@ -13,8 +13,11 @@ use super::facts::Facts;
 use super::field::Field;
 use super::frozen::Frozen;
 use super::function::Function;
+use super::hyperbolic::without_differences;
+use super::near_zero::near_zero;
 use super::oriented::Orientation;
 use super::rational::Rational;
+use super::scaled::scaled;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
@@ -45,7 +48,9 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
             forms.extend(in_own_functions(&field, &domain.facts, expr, &own, kept));
         }
     }
+    forms.extend(forms.iter().filter_map(|form| without_differences(arena, *form)).collect::<Vec<Expr>>());
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
+    let forms = forms.flat_map(|form| [form, scaled(arena, form)]);
     forms.fold(expr, |best, form| {
         let shorter = operations(arena, form) < operations(arena, best) && kept(form) && divides_as(arena, expr, form);
         let cancels = || !root_differences(arena, form).is_subset(&root_differences(arena, expr));
@@ -65,6 +70,7 @@ pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
         ways.extend(field.show_rationalised(&fraction));
     }
     ways.extend(in_own_functions(&field, &domain.facts, expr, &own, |form| functions(arena, &[form]).is_subset(&own)));
+    ways.extend([expr].iter().chain(&ways).filter_map(|form| near_zero(arena, *form)).collect::<Vec<Expr>>());
     let mut found: Vec<Expr> = Vec::new();
     for form in ways.into_iter().flat_map(|form| [orientation.of(form), form]) {
         if form != expr && !found.contains(&form) && asks_no_more(arena, domain, expr, form) {

@@ -69,12 +69,33 @@ pub struct Worst {
     pub units: f64,
     /// Where, as `y2 = 0.01, z1 = 0.5`.
     pub place: String,
-    /// Whether it is a part of the author's own formulas that loses digits there, and these lose as much, or the error is
-    /// small beside what the value is elsewhere.
-    pub as_written: bool,
+    /// Whose loss it is.
+    pub cause: Cause,
+}
+
+/// Whose loss of digits it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum Cause {
+    /// The emitted form's.
+    #[default]
+    Form,
+    /// The author's: a part of the model's own formulas loses digits there, and these lose as much.
+    Model,
+    /// Nobody's: the error is that of rounding what the value is elsewhere.
+    Small,
 }
 
 impl Accuracy {
+    /// What the author's formulas lose in this scalar wherever they are computed, worst first.
+    pub(crate) fn cautions(&self, scalar: Scalar) -> Vec<(&'static str, &Worst)> {
+        let mut found: Vec<(&'static str, &Worst)> =
+            self.of(scalar).filter(|(_, worst)| worst.is_loss() && worst.cause == Cause::Model).collect();
+        found.sort_by(|(_, a), (_, b)| b.units.total_cmp(&a.units));
+        found
+    }
+
     /// What is lost in this scalar.
     pub fn of(&self, scalar: Scalar) -> impl Iterator<Item = (&'static str, &Worst)> {
         self.losses.iter().map(move |loss| (loss.function, loss.worst(scalar)))
@@ -82,9 +103,14 @@ impl Accuracy {
 }
 
 impl Worst {
+    /// Whether the value itself is a number there.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.units.is_finite()
+    }
+
     /// The error as a reader takes it.
     pub fn told(&self) -> String {
-        if self.units.is_finite() { told_units(self.units) } else { "not finite".to_owned() }
+        if self.is_finite() { told_units(self.units) } else { "not finite".to_owned() }
     }
 
     /// Whether digits are lost that no author expects to lose.
@@ -92,9 +118,20 @@ impl Worst {
         self.units > MOST
     }
 
+    /// What is told before what: a refusal before the author's loss, that before one that does not matter.
+    fn rank(&self) -> (u8, f64) {
+        let cause = match self.cause {
+            _ if !self.is_loss() => 0,
+            Cause::Small => 1,
+            Cause::Model => 2,
+            Cause::Form => 3,
+        };
+        (cause, self.units)
+    }
+
     /// Whether the emission is refused for it.
     pub(super) fn is_refused(&self) -> bool {
-        self.is_loss() && !self.as_written
+        self.is_loss() && self.cause == Cause::Form
     }
 }
 
@@ -155,8 +192,8 @@ impl<'a> Ground<'a> {
             .map(|group| Loss { function: group.name, single: Worst::default(), double: Worst::default() })
             .collect();
         let own = OnceCell::new();
-        let is_own = |value: Expr, place: &Place, scalar: Scalar, units: f64| {
-            own.get_or_init(|| Own::of(plant, definitions, &places)).has(value, place, scalar, units)
+        let cause = |value: Expr, place: &Place, scalar: Scalar, units: f64| {
+            own.get_or_init(|| Own::of(plant, definitions, &places)).cause(value, place, scalar, units)
         };
         for place in &places {
             for scalar in [Scalar::F32, Scalar::F64] {
@@ -169,9 +206,11 @@ impl<'a> Ground<'a> {
                     for (&value, units) in values.iter().zip(exact(&plant.arena, &values, there).units(&found, scalar))
                     {
                         // A loss that the author does not have is not to hide behind a larger one that he has.
-                        let as_written = units > MOST && is_own(value, there, scalar, units);
-                        if (units > MOST && !as_written, units) > (worst.is_refused(), worst.units) {
-                            *worst = Worst { units, place: told(&plant.arena, &values, place), as_written };
+                        let cause = if units > MOST { cause(value, there, scalar, units) } else { Cause::Form };
+                        let place = || told(&plant.arena, &values, place);
+                        let found = Worst { units, place: String::new(), cause };
+                        if found.rank() > worst.rank() {
+                            *worst = Worst { place: place(), ..found };
                         }
                     }
                 }
@@ -284,10 +323,14 @@ pub(super) fn lines(accuracy: &Accuracy) -> Vec<String> {
     }
     for loss in &accuracy.losses {
         for (scalar, worst) in [(Scalar::F32, &loss.single), (Scalar::F64, &loss.double)] {
-            if worst.units > MOST {
-                let author = if worst.as_written { ", by a part that the model's own formulas have" } else { "" };
+            if worst.is_loss() {
+                let cause = match worst.cause {
+                    Cause::Form => "",
+                    Cause::Model => ", by a part that the model's own formulas have",
+                    Cause::Small => ", where it is small: the error is a rounding of what it is elsewhere",
+                };
                 let (function, scalar, place) = (loss.function, scalar.name(), &worst.place);
-                lines.extend([String::new(), format!("`{function}` loses digits in `{scalar}` at {place}{author}.")]);
+                lines.extend([String::new(), format!("`{function}` loses digits in `{scalar}` at {place}{cause}.")]);
             }
         }
     }
@@ -299,10 +342,19 @@ pub(super) fn told_units(units: f64) -> String {
     units.max(1.0).log2().ceil().exp2().to_string()
 }
 
+/// A number of `f32` in as few letters as tell it.
+fn number(value: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, reason = "places are in numbers of f32")]
+    let value = value as f32;
+    let (plain, short) = (value.to_string(), format!("{value:e}"));
+    if short.len() < plain.len() { short } else { plain }
+}
+
 /// A place as a reader takes it: what the formulas depend on.
 fn told(arena: &Arena, exprs: &[Expr], place: &Place) -> String {
     let symbols = arena.symbols_of(exprs);
     let values = place.iter().filter(|(symbol, _)| symbols.contains(symbol));
-    let values: Vec<String> = values.map(|(symbol, value)| format!("{} = {value}", arena.name(*symbol))).collect();
+    let values: Vec<String> =
+        values.map(|(symbol, value)| format!("{} = {}", arena.name(*symbol), number(*value))).collect();
     values.join(", ")
 }

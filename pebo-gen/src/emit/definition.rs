@@ -11,8 +11,9 @@ use rustc_hash::FxHashMap;
 use super::error::EmitError;
 use super::fundamental::constant_entries;
 use crate::analysis::{Class, Derivation, LeftInverse, Outcome, Regression, RegressionKind};
+use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
-use crate::plant::Plant;
+use crate::plant::{Plant, Settings};
 
 /// An argument of a function of `Model`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -96,7 +97,8 @@ pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 6] = [
 #[derive(Clone, Debug)]
 pub(super) struct Definitions<'a> {
     pub(super) functions: Vec<Definition>,
-    pub(super) regression: &'a Regression,
+    /// The equations that the module has.
+    pub(super) regression: Regression,
     pub(super) left_inverse: &'a LeftInverse,
     pub(super) class: Class,
     y: Vec<Symbol>,
@@ -112,7 +114,11 @@ pub(super) struct Definitions<'a> {
 
 impl<'a> Definitions<'a> {
     /// Collects what an accepted derivation found.
-    pub(super) fn of(plant: &Plant, derivation: &'a Derivation) -> Result<Self, EmitError> {
+    pub(super) fn of(
+        plant: &Plant,
+        derivation: &'a Derivation,
+        settings: Option<&Settings<Rational>>,
+    ) -> Result<Self, EmitError> {
         if derivation.outcome != Outcome::Accepted {
             return Err(EmitError::NotAccepted);
         }
@@ -120,6 +126,7 @@ impl<'a> Definitions<'a> {
         let left_inverse = derivation.left_inverse.result.as_ref().ok_or(EmitError::Missing("left inverse"))?;
         let regression = derivation.regression.result.as_ref().ok_or(EmitError::Missing("regression"))?;
         let arena = &plant.arena;
+        let regression = regression.computed(arena, settings.is_some_and(Settings::uses_all_rates));
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let (chi, psi) = match derivation.class {
             Class::Pebo => (plant.chi.clone(), Vec::new()),

@@ -16,6 +16,9 @@ pub(super) fn describe(arena: &Arena, expr: Expr, names: &BTreeMap<Symbol, Strin
             format!("{}_{}", function.row().rust, describe(arena, arguments[0], names)?)
         }
         Node::Sum(sum) => describe_sum(arena, &sum, names)?,
+        Node::Product(product) if product.coefficient.is_negative() => {
+            format!("minus_{}", describe(arena, arena.neg(expr), names)?)
+        }
         Node::Product(product) => describe_product(arena, &product, names)?,
         Node::Number(_) | Node::Pi | Node::Call(..) => return None,
     };

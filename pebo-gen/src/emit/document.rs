@@ -41,6 +41,7 @@ pub(super) fn module(module: &Module<'_>) -> Vec<String> {
     }
     lines.extend(equations(plant, abbreviations));
     lines.extend(observer(plant, definitions, abbreviations));
+    lines.extend(idle(plant, derivation, definitions));
     lines.extend(fundamental(derivation, rebase));
     lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
@@ -179,6 +180,31 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
     lines
 }
 
+/// What becomes of equations in which no unknown stands.
+fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Vec<String> {
+    let Some(whole) = &derivation.regression.result else { return Vec::new() };
+    let arena = &plant.arena;
+    let idle = whole.without_unknowns(arena);
+    let names: Vec<String> = idle
+        .iter()
+        .map(|&row| match (whole.rows.get(row), whole.primitive_0.get(row)) {
+            (Some(&output), _) => format!("`{}'`", arena.name(plant.y[output].symbol)),
+            (None, Some(held)) => format!("`d/dt({})`", arena.print(*held)),
+            (None, None) => format!("equation {}", row + 1),
+        })
+        .collect();
+    if names.is_empty() {
+        return names;
+    }
+    let (verb, them) = if names.len() == 1 { ("holds", "it is") } else { ("hold", "they are") };
+    let told = if definitions.regression.phi_0.len() == whole.phi_0.len() {
+        "kept for what the observer expects of the outputs"
+    } else {
+        "no part of the regression"
+    };
+    vec![String::new(), format!("{} {verb} nothing unknown: {them} {told}.", names.join(", "))]
+}
+
 /// What becomes of the fundamental matrix, and what there is against it.
 fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
     let fate = match derivation.cascade.result.as_ref().and_then(|cascade| cascade.fundamental) {
@@ -241,7 +267,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             asked.join(", ")
         ));
     }
-    let (regression, kind) = (definitions.regression, definitions.regression.kind.word());
+    let (regression, kind) = (&definitions.regression, definitions.regression.kind.word());
     let parameterisation = regression.parameterisation(plant);
     let parameterisation = if regression.is_linear(plant) {
         format!("{parameterisation} in `theta`")

@@ -187,6 +187,11 @@ impl Renderer<'_> {
                 let [a] = self.fitting([a], 14);
                 call("exp_m1", &[a], label)
             }
+            Operation::Ln1P(a) => {
+                let label = self.label(a).map(|a| format!("ln_1p_{a}"));
+                let [a] = self.fitting([a], 13);
+                call("ln_1p", &[a], label)
+            }
             Operation::Unary(function, a) => {
                 let name = function.row().rust;
                 let label = self.label(a).map(|a| format!("{name}_{a}"));
@@ -283,7 +288,7 @@ fn is_call(piece: &Piece) -> bool {
 /// Whether a program calls a function of the runtime's scalar.
 pub(super) fn calls(program: &Program) -> bool {
     program.operations.iter().any(|operation| {
-        use Operation::{Binary, ExpM1, Power, Unary};
-        matches!(operation, Power(..) | ExpM1(..) | Unary(..) | Binary(..))
+        use Operation::{Binary, ExpM1, Ln1P, Power, Unary};
+        matches!(operation, Power(..) | ExpM1(..) | Ln1P(..) | Unary(..) | Binary(..))
     })
 }

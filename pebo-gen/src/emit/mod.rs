@@ -38,7 +38,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
-pub use accuracy::{Accuracy, Loss, Worst};
+pub use accuracy::{Accuracy, Cause, Loss, Worst};
 pub use error::EmitError;
 pub use literal::Scalar;
 
@@ -90,7 +90,7 @@ pub fn emit(
     is_zero: impl Fn(&Arena, Expr) -> bool,
 ) -> Result<Emitted, EmitError> {
     let arena = &plant.arena;
-    let definitions = Definitions::of(plant, derivation)?;
+    let definitions = Definitions::of(plant, derivation, settings)?;
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
     let (choice, accuracy) =

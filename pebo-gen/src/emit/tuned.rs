@@ -3,7 +3,7 @@
 //! In: the settings, exact. Out: the type `Tuned`, and functions that `tuning` can read. Each list of numbers has a
 //! statement of its own, so that every call is short.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::expression::{ident, number};
@@ -20,15 +20,33 @@ impl Module<'_> {
     /// The constructors, with the types that they name.
     pub(super) fn constructors(&self, scope: &mut Scope) -> Option<TokenStream> {
         let checked = (!self.asked.is_empty()).then(|| {
+            let derived = self.derived_constants(scope);
+            let body = if derived.is_empty() {
+                quote! {
+                    parameters.check()?;
+                    Ok(Self::new(parameters))
+                }
+            } else {
+                quote! {
+                    parameters.check()?;
+                    let model = Self::new(parameters);
+                    let constants = [#(model.#derived),*];
+                    Fault::of_constants(constants)?;
+                    Ok(model)
+                }
+            };
+            let constants = (!derived.is_empty()).then(|| {
+                quote! {
+                    /// `Fault::Constant` if what `new` computes from the parameters is not finite.
+                }
+            });
             quote! {
                 /// The model with these parameters, if they are as the proofs assume.
                 ///
                 /// # Errors
                 /// `Fault::Parameter` with the place of the first condition that does not hold.
-                pub fn try_new(parameters: &Parameters) -> Result<Self, Fault> {
-                    parameters.check()?;
-                    Ok(Self::new(parameters))
-                }
+                #constants
+                pub fn try_new(parameters: &Parameters) -> Result<Self, Fault> { #body }
             }
         });
         let tuned = self.settings.map(|settings| self.tuned(settings));
@@ -43,6 +61,13 @@ impl Module<'_> {
             #precision
             impl #type_name { #checked #observer }
         })
+    }
+
+    /// The fields that are no parameters but computed from these. The others were looked at by `check`.
+    fn derived_constants(&self, scope: &Scope) -> Vec<Ident> {
+        let fields = self.staged.constants.iter().zip(&scope.fields);
+        let derived = fields.filter(|((_, value), _)| self.plant.arena.as_symbol(*value).is_none());
+        derived.map(|(_, field)| ident(field)).collect()
     }
 
     /// The items of the runtime that the constructors use.

@@ -78,7 +78,11 @@ pub(super) fn read(
         let ImplItem::Fn(function) = entry else { return Err(unreadable(entry)) };
         if function.sig.ident == "try_new" {
             let body = function.block.stmts.iter().map(compact).collect::<String>();
-            if body != "parameters.check()?;Ok(Self::new(parameters))" {
+            let constants = body
+                .strip_prefix("parameters.check()?;letmodel=Self::new(parameters);letconstants=[")
+                .and_then(|rest| rest.strip_suffix("];Fault::of_constants(constants)?;Ok(model)"));
+            let are_fields = |list: &str| list.split(',').all(|value| value.starts_with("model."));
+            if body != "parameters.check()?;Ok(Self::new(parameters))" && !constants.is_some_and(are_fields) {
                 return Err(unreadable(&function.block));
             }
             continue;

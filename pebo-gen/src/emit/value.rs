@@ -229,6 +229,10 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
             let power = arena.call(Function::Exp, &[argument]);
             Ok(Value::Scalar(arena.sub(power, arena.one())))
         }
+        ("Real", "ln_1p", &[argument]) => {
+            let sum = arena.add(arena.one(), argument);
+            Ok(Value::Scalar(arena.call(Function::Log, &[sum])))
+        }
         ("Real", name, arguments) => {
             let row = Function::table()
                 .iter()

@@ -65,6 +65,14 @@ impl<N> Rebase<N> {
     }
 }
 
+impl<N> Settings<N> {
+    /// Whether an equation of the regression without an unknown serves: a gate looks at the samples of all equations, and
+    /// in the output form each has the output at the start as its unknown.
+    pub(crate) fn uses_all_rates(&self) -> bool {
+        self.output || self.gate.is_some()
+    }
+}
+
 /// What samples may be.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

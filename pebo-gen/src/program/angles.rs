@@ -8,6 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::lower::{Lowering, Signed};
 use super::straight::{Operand, Operation};
+use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function, Node};
 
 /// Two angles that make up another.
@@ -23,6 +24,8 @@ pub(super) struct Parts {
 #[derive(Debug, Default)]
 pub(super) struct Angles {
     parts: FxHashMap<Expr, Parts>,
+    /// What was worked out: each angle is a part of many others.
+    known: FxHashMap<(Function, Expr), Operand>,
 }
 
 /// More angles are called for one by one: pairs are searched.
@@ -63,8 +66,26 @@ impl Angles {
             simpler.push(angle);
             known.insert(angle);
         }
-        Self { parts }
+        Self { parts, known: FxHashMap::default() }
     }
+}
+
+/// The expressions with the sine of a doubled angle as a product, where the single angle is called for: its number joins
+/// others.
+pub(super) fn halved(arena: &Arena, roots: &[Expr]) -> Vec<Expr> {
+    let two = Rational::from(2);
+    let parts = arena.postorder(roots);
+    let there: FxHashSet<Expr> = parts.iter().copied().collect();
+    let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+    for call in parts {
+        let Node::Call(Function::Sin, arguments) = arena.node(call) else { continue };
+        let Some(half) = two.recip().map(|share| arena.scale(arguments[0], &share)) else { continue };
+        let both = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[half]));
+        if both.iter().any(|single| there.contains(single)) {
+            known.insert(call, arena.multiply(&two, both.map(|single| (single, Rational::ONE))));
+        }
+    }
+    roots.iter().map(|root| arena.replace(*root, &known)).collect()
 }
 
 /// How many summands an angle has.
@@ -83,6 +104,15 @@ impl Lowering<'_> {
 
     /// The sine or cosine of an angle.
     pub(super) fn trigonometric(&mut self, function: Function, angle: Expr) -> Operand {
+        if let Some(known) = self.angles.known.get(&(function, angle)) {
+            return *known;
+        }
+        let value = self.worked_out(function, angle);
+        self.angles.known.insert((function, angle), value);
+        value
+    }
+
+    fn worked_out(&mut self, function: Function, angle: Expr) -> Operand {
         let Some(&Parts { first, second, minus }) = self.angles.parts.get(&angle) else {
             let argument = self.lowered(angle);
             return self.operation(Operation::Unary(function, argument));

@@ -38,9 +38,11 @@ impl Cost {
                 Operation::Mul(..) => &mut cost.products,
                 Operation::Div(..) => &mut cost.quotients,
                 Operation::Unary(Function::Sqrt, _) => &mut cost.roots,
-                Operation::Power(..) | Operation::ExpM1(..) | Operation::Unary(..) | Operation::Binary(..) => {
-                    &mut cost.calls
-                }
+                Operation::Power(..)
+                | Operation::ExpM1(..)
+                | Operation::Ln1P(..)
+                | Operation::Unary(..)
+                | Operation::Binary(..) => &mut cost.calls,
             };
             *counter += 1;
         }

@@ -58,6 +58,7 @@ impl Interpreter {
                 Operation::Div(a, b) => Instruction::Div(place(a), place(b)),
                 Operation::Power(a, b) => Instruction::Power(place(a), place(b)),
                 Operation::ExpM1(a) => Instruction::Unary(f64::exp_m1, place(a)),
+                Operation::Ln1P(a) => Instruction::Unary(f64::ln_1p, place(a)),
                 Operation::Unary(function, a) => Instruction::Unary(unary(function), place(a)),
                 Operation::Binary(function, a, b) => Instruction::Binary(binary(function), place(a), place(b)),
             })

@@ -142,6 +142,12 @@ impl Lowering<'_> {
                 positive(self.trigonometric(function, arguments[0]))
             }
             Node::Call(function, arguments) => {
+                if function == Function::Log
+                    && let Some(beside) = beside_one(self.arena, arguments[0])
+                {
+                    let beside = self.lowered(beside);
+                    return positive(self.operation(Operation::Ln1P(beside)));
+                }
                 let values: Vec<Operand> = arguments.iter().map(|argument| self.plain(self.known[argument])).collect();
                 let operation = match values.as_slice() {
                     [only] => Operation::Unary(function, *only),
@@ -226,6 +232,12 @@ fn exp_m1(arena: &Arena, sum: &Sum) -> Option<(Expr, bool)> {
     let Node::Call(Function::Exp, arguments) = arena.node(*term) else { return None };
     let is_it = coefficient.abs().is_one() && -coefficient == sum.constant;
     is_it.then(|| (arguments[0], coefficient.is_negative()))
+}
+
+/// The `a` of `1 + a`, whose logarithm has few digits where `a` is small.
+fn beside_one(arena: &Arena, argument: Expr) -> Option<Expr> {
+    let Node::Sum(sum) = arena.node(argument) else { return None };
+    sum.constant.is_one().then(|| arena.sub(argument, arena.one()))
 }
 
 fn positive(operand: Operand) -> Signed {

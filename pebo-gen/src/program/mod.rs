@@ -10,12 +10,16 @@
 mod angles;
 mod cost;
 mod factor;
+mod fixed;
 mod interpret;
 mod lower;
 mod numbers;
+mod oriented;
 mod product;
+mod reuse;
 mod sharing;
 mod signs;
+mod spread;
 mod stage;
 mod straight;
 

@@ -5,6 +5,7 @@
 //! sum with whole numbers that have no divisor in common, so that `y*(10 - 2*x)` and `2*y*(5 - x)` are one.
 
 use crate::cas::rational::Rational;
+use crate::cas::scaled::{divided, is_short};
 use crate::cas::{Arena, Expr, Node, Product, Sum};
 
 /// The arrangement, with what is stored.
@@ -50,11 +51,14 @@ impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
 
     /// The number by which the sum is to be divided, if any: beside it stands this coefficient.
     fn share(&self, sum: &Sum, coefficient: &Rational, is_factor: bool, is_free: bool) -> Option<Rational> {
-        let cost = |share: &Rational| -> Option<usize> {
+        // What it costs, and how many numbers there are, with those that are a part of what is stored.
+        let cost = |share: &Rational| -> Option<(usize, usize)> {
             let outer = &coefficient.abs() * share;
             let mut cost = usize::from(!is_free && !outer.is_one());
+            let mut numbers = usize::from(!outer.is_one());
             for (term, number) in &sum.terms {
                 let quotient = number.checked_div(share)?;
+                numbers += usize::from(!quotient.abs().is_one());
                 if self.has_stored(*term) {
                     continue;
                 }
@@ -66,12 +70,12 @@ impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
                 cost += usize::from(!quotient.abs().is_one());
             }
             let constant = sum.constant.checked_div(share)?;
-            (constant.is_integer() || !sum.constant.is_integer() && is_short(&constant)).then_some(cost)
+            (constant.is_integer() || !sum.constant.is_integer() && is_short(&constant)).then_some((cost, numbers))
         };
         let now = cost(&Rational::ONE)?;
         let content = sum.terms.iter().fold(sum.constant.abs(), |content, (_, number)| content.gcd(&number.abs()));
         let numbers = sum.terms.iter().map(|(_, number)| number.abs());
-        let mut best: Option<(usize, Rational)> = None;
+        let mut best: Option<((usize, usize), Rational)> = None;
         for share in std::iter::once(content.clone()).chain(numbers).chain(coefficient.abs().recip()) {
             if share.is_one() {
                 continue;
@@ -93,27 +97,10 @@ impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
     }
 }
 
-/// Whether the number has an exact decimal: its denominator has no prime factor but 2 and 5.
-pub(super) fn is_short(value: &Rational) -> bool {
-    let mut denominator = value.denominator();
-    for prime in [2, 5] {
-        while let Some(quotient) = denominator.div_exact(&prime.into()) {
-            denominator = quotient;
-        }
-    }
-    denominator.is_one()
-}
-
 /// Whether the denominator is a power of two.
 fn is_dyadic(value: &Rational) -> bool {
     let denominator = value.denominator();
     denominator.bits() == u64::from(denominator.trailing_zeros()) + 1
-}
-
-fn divided(arena: &Arena, sum: &Sum, share: &Rational) -> Expr {
-    // It is a number of the sum, or of the product, and not zero.
-    let part = |number: &Rational| number.checked_div(share).unwrap_or_else(|| number.clone());
-    arena.combine(&part(&sum.constant), sum.terms.iter().map(|(term, number)| (*term, part(number))))
 }
 
 #[cfg(test)]
@@ -156,12 +143,5 @@ mod tests {
             arena.scale(arena.mul(d, sum(arena, 0, [(a, 3), (arena.mul(c, p), -1)])), &third)
         });
         assert_eq!(stored, "d*(a - c*p/3)");
-    }
-
-    #[test]
-    fn what_has_a_finite_decimal_is_short() {
-        let short = |n: i64, d: i64| is_short(&Rational::new(n, d).unwrap());
-        assert!(short(3, 1) && short(1, 8) && short(7, 25) && short(1, 40));
-        assert!(!short(1, 3) && !short(1, 30));
     }
 }

@@ -8,10 +8,10 @@
 use std::collections::BTreeMap;
 
 use super::lower::{Lowering, Signed};
-use super::numbers::is_short;
 use super::sharing::denominators;
 use super::straight::{Operand, Operation};
 use crate::cas::rational::Rational;
+use crate::cas::scaled::is_short;
 use crate::cas::{Expr, Function, Product};
 
 /// Longer chains of multiplications lose to a general power.

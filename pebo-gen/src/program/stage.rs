@@ -11,9 +11,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::angles::halved;
 use super::factor::factor;
+use super::fixed::fixed;
 use super::lower::{Undeclared, lower, lower_with};
+use super::oriented::oriented;
 use super::product::magnitude_together;
+use super::reuse::with_values;
+use super::spread::spread;
 use super::straight::{Operand, Operation, Program};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
@@ -58,6 +63,7 @@ pub(crate) fn stage(
 ) -> Result<Staged, Undeclared> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
+    let roots = spread(arena, &prepared(arena, &halved(arena, &roots), parameters), parameters);
     let (mut varying, mut constants) = split(arena, &roots, parameters, ("$", 0), |_| true);
     let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
     let regular: Vec<bool> = tasks.iter().flat_map(|task| values(task).into_iter().map(|_| task.is_regular)).collect();
@@ -68,37 +74,149 @@ pub(crate) fn stage(
     for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| **regular) {
         *value = steady.next().unwrap_or(*value);
     }
-    let known: FxHashMap<Expr, Expr> = terms.iter().map(|&(term, value)| (value, arena.of_symbol(term))).collect();
-    for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
-        *value = arena.replace(*value, &known);
-    }
     let inputs = [stored.as_slice(), sampled].concat();
-    let same = same(arena, &inputs, &terms)?;
-    terms.retain(|term| !same.contains_key(&term.0));
-    let varying = factor(arena, &arena.substitute_all(&varying, &same), |_| true, is_constant(arena, &constants));
+    let seldom: Vec<Expr> = varying.iter().zip(&regular).filter_map(|(value, &is)| (!is).then_some(*value)).collect();
+    let mut seldom = with_values(arena, &prepared(arena, &seldom, &inputs), &terms).into_iter();
+    for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
+        *value = seldom.next().unwrap_or(*value);
+    }
+    let level = same(arena, &inputs, &terms)?;
+    terms.retain(|term| !level.contains_key(&term.0));
+    let varying = factor(arena, &arena.substitute_all(&varying, &level), |_| true, is_constant(arena, &constants));
     let varying = merged(arena, varying, &mut terms, &mut constants);
+
+    // Two shapes of a formula in the parameters may be one value.
+    let equal = same(arena, parameters, &constants)?;
+    constants.retain(|constant| !equal.contains_key(&constant.0));
+    let varying = arena.substitute_all(&varying, &equal);
+    for term in &mut terms {
+        term.1 = arena.substitute(term.1, &equal);
+    }
 
     let used = arena.symbols_of(&varying);
     terms.retain(|term| used.contains(&term.0));
     let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
     let used: BTreeSet<Symbol> = arena.symbols_of(&formulas).into_iter().chain(used).collect();
     constants.retain(|constant| used.contains(&constant.0));
-    let setup = lower(arena, parameters, &constants.iter().map(|constant| constant.1).collect::<Vec<_>>())?;
-    let mut inputs: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
-    inputs.extend(sampled);
-    let sample = lower(arena, &inputs, &formulas)?;
-    inputs.extend(terms.iter().map(|term| term.0));
+    let split = Stages { constants, terms, varying };
+    split.with_fewest_signs(arena, parameters, sampled, tasks)
+}
 
-    let mut programs = Vec::with_capacity(tasks.len());
-    let mut first = 0;
-    for task in tasks {
-        let (parts, rest) = varying[first..].split_at(task.parts.len());
-        let outputs = &rest[..task.outputs.len()];
-        first += task.parts.len() + task.outputs.len();
-        let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
-        programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
+/// More signs are chosen together, not one by one.
+const MOST_SIGNS: usize = 12;
+
+/// What is computed when, as expressions.
+#[derive(Clone)]
+struct Stages {
+    constants: Vec<(Symbol, Expr)>,
+    terms: Vec<(Symbol, Expr)>,
+    /// Of each task its parts, then its outputs.
+    varying: Vec<Expr>,
+}
+
+impl Stages {
+    fn lowered(
+        &self,
+        arena: &Arena,
+        parameters: &[Symbol],
+        sampled: &[Symbol],
+        tasks: &[Task],
+    ) -> Result<Staged, Undeclared> {
+        let formulas = |named: &[(Symbol, Expr)]| named.iter().map(|part| part.1).collect::<Vec<Expr>>();
+        let setup = lower(arena, parameters, &formulas(&self.constants))?;
+        let mut inputs: Vec<Symbol> = self.constants.iter().map(|constant| constant.0).collect();
+        inputs.extend(sampled);
+        let sample = lower(arena, &inputs, &formulas(&self.terms))?;
+        inputs.extend(self.terms.iter().map(|term| term.0));
+
+        let mut programs = Vec::with_capacity(tasks.len());
+        let mut first = 0;
+        for task in tasks {
+            let (parts, rest) = self.varying[first..].split_at(task.parts.len());
+            let outputs = &rest[..task.outputs.len()];
+            first += task.parts.len() + task.outputs.len();
+            let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
+            programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
+        }
+        Ok(Staged { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
     }
-    Ok(Staged { constants, setup, terms, sample, programs })
+
+    /// The programs, with the opposites of constants and terms kept where that leaves fewer negations.
+    fn with_fewest_signs(
+        self,
+        arena: &Arena,
+        parameters: &[Symbol],
+        sampled: &[Symbol],
+        tasks: &[Task],
+    ) -> Result<Staged, Undeclared> {
+        let negations = |staged: &Staged| {
+            let of = |program: &Program| program.operations.iter().filter(|o| matches!(o, Operation::Neg(_))).count();
+            // What runs at both ends of an interval counts twice.
+            let often = |task: &Task| if task.is_regular { 2 } else { 1 };
+            of(&staged.sample) + tasks.iter().zip(&staged.programs).map(|(task, p)| often(task) * of(p)).sum::<usize>()
+        };
+        let mut best = self.lowered(arena, parameters, sampled, tasks)?;
+        let mut least = negations(&best);
+        let negated = best.negated();
+        let choices: Vec<BTreeSet<Symbol>> = match negated.len() {
+            0..=MOST_SIGNS => negated.iter().map(|symbol| BTreeSet::from([*symbol])).collect(),
+            _ => vec![negated],
+        };
+        let mut stages = self;
+        for chosen in choices {
+            let other = stages.clone().with_opposites(arena, &chosen);
+            let staged = other.lowered(arena, parameters, sampled, tasks)?;
+            if negations(&staged) < least {
+                least = negations(&staged);
+                (stages, best) = (other, staged);
+            }
+        }
+        Ok(best)
+    }
+
+    /// The same with the opposites of these kept in their place.
+    fn with_opposites(mut self, arena: &Arena, negated: &BTreeSet<Symbol>) -> Self {
+        let opposites = negated.iter().map(|&symbol| (symbol, arena.neg(arena.of_symbol(symbol)))).collect();
+        for term in &mut self.terms {
+            term.1 = arena.substitute(term.1, &opposites);
+        }
+        self.varying = arena.substitute_all(&self.varying, &opposites);
+        for (_, value) in
+            self.constants.iter_mut().chain(&mut self.terms).filter(|(symbol, _)| negated.contains(symbol))
+        {
+            *value = arena.neg(*value);
+        }
+        self
+    }
+}
+
+impl Staged {
+    /// The constants and terms whose opposite is used, or that of a product with them.
+    fn negated(&self) -> BTreeSet<Symbol> {
+        let named: BTreeSet<Symbol> = self.constants.iter().chain(&self.terms).map(|part| part.0).collect();
+        let mut negated = BTreeSet::new();
+        for program in self.programs.iter().chain([&self.sample]) {
+            let mut open: Vec<Operand> = Vec::new();
+            let opposites = program.operations.iter().filter(|operation| matches!(operation, Operation::Neg(_)));
+            open.extend(opposites.flat_map(|operation| operation.operands()));
+            let mut seen: FxHashSet<Operand> = FxHashSet::default();
+            while let Some(operand) = open.pop() {
+                match operand {
+                    _ if !seen.insert(operand) => {}
+                    Operand::Input(input) => negated.extend(program.inputs.get(input)),
+                    Operand::Result(result) => {
+                        let operation = program.operations[result];
+                        if matches!(operation, Operation::Mul(..) | Operation::Add(..)) {
+                            open.extend(operation.operands());
+                        }
+                    }
+                    Operand::Constant(_) => {}
+                }
+            }
+        }
+        negated.retain(|symbol| named.contains(symbol));
+        negated
+    }
 }
 
 /// The functions and terms with constants that meet as one: a factor that left a sum stands beside others.
@@ -173,15 +291,16 @@ fn split(
     (prefix, first): (&'static str, usize),
     worth: impl Fn(Expr) -> bool,
 ) -> (Vec<Expr>, Vec<(Symbol, Expr)>) {
-    let symbols: BTreeSet<Symbol> = symbols.iter().copied().collect();
-    // Factors that vary leave first: what they leave behind may be a sum of the given symbols.
-    let factored = {
-        let fixed = fixed(arena, roots, &symbols);
-        factor(arena, roots, |base| !fixed.contains(&base), |base| fixed.contains(&base))
-    };
-    let fixed = fixed(arena, &factored, &symbols);
+    let factored = prepared(arena, roots, symbols);
+    let fixed = fixed(arena, &factored, symbols);
     let mut split = Split { arena, fixed, prefix, first, worth, found: Vec::new(), symbols: FxHashMap::default() };
     (split.split(&factored), split.found)
+}
+
+/// The expressions without what varies in the sums: what that leaves behind may be a sum of the given symbols.
+fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol]) -> Vec<Expr> {
+    let fixed = fixed(arena, roots, symbols);
+    factor(arena, roots, |base| !fixed.contains(&base), |base| fixed.contains(&base))
 }
 
 /// Whether computing the value takes more than a few operations.
@@ -203,21 +322,6 @@ fn is_dear(arena: &Arena, expr: Expr) -> bool {
 
 fn is_natural(exponent: &Rational) -> bool {
     exponent.is_integer() && !exponent.is_negative()
-}
-
-/// Every sub-expression that depends on nothing but parameters.
-fn fixed(arena: &Arena, roots: &[Expr], parameters: &BTreeSet<Symbol>) -> FxHashSet<Expr> {
-    let mut fixed = FxHashSet::default();
-    for expr in arena.postorder(roots) {
-        let is_fixed = match arena.node(expr) {
-            Node::Symbol(symbol) => parameters.contains(&symbol),
-            _ => arena.operands(expr).iter().all(|operand| fixed.contains(operand)),
-        };
-        if is_fixed {
-            fixed.insert(expr);
-        }
-    }
-    fixed
 }
 
 struct Split<'a, W> {
@@ -310,6 +414,11 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         if matches!(arena.node(value), Node::Number(_) | Node::Pi) || !(self.worth)(value) {
             return value;
         }
+        let (is_opposite, oriented) = oriented(arena, value);
+        if is_opposite {
+            return arena.scale(self.constant(oriented), &Rational::from(-1));
+        }
+        let value = oriented;
         if let Some(&known) = self.symbols.get(&value) {
             return known;
         }
@@ -319,26 +428,10 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         if let Some(known) = known {
             return arena.scale(known, &minus);
         }
-        if is_negative(arena, value) {
-            let known = self.constant(opposite);
-            return arena.scale(known, &minus);
-        }
         let symbol = arena.generated(&format!("{}{}", self.prefix, self.first + self.found.len()));
         self.found.push((symbol, value));
         let constant = arena.of_symbol(symbol);
         self.symbols.insert(value, constant);
         constant
-    }
-}
-
-/// Whether every summand bears a minus.
-fn is_negative(arena: &Arena, expr: Expr) -> bool {
-    match arena.node(expr) {
-        Node::Product(product) => product.coefficient.is_negative(),
-        Node::Sum(sum) => {
-            let all = sum.terms.iter().all(|term| term.1.is_negative());
-            all && (sum.constant.is_zero() || sum.constant.is_negative())
-        }
-        _ => false,
     }
 }

@@ -53,6 +53,8 @@ pub(crate) enum Operation {
     Power(Operand, Operand),
     /// `e^a - 1`, with all digits also where `a` is small.
     ExpM1(Operand),
+    /// `ln(1 + a)`, with all digits also where `a` is small.
+    Ln1P(Operand),
     /// A function of one argument, the square root among them.
     Unary(Function, Operand),
     /// A function of two arguments.
@@ -63,7 +65,7 @@ impl Operation {
     /// What the operation uses, in order.
     pub(crate) fn operands(self) -> impl Iterator<Item = Operand> {
         let (first, second) = match self {
-            Self::Neg(a) | Self::ExpM1(a) | Self::Unary(_, a) => (a, None),
+            Self::Neg(a) | Self::ExpM1(a) | Self::Ln1P(a) | Self::Unary(_, a) => (a, None),
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Mul(a, b)
@@ -93,6 +95,7 @@ impl Operation {
             Self::Div(a, b) => Self::Div(change(a), change(b)),
             Self::Power(a, b) => Self::Power(change(a), change(b)),
             Self::ExpM1(a) => Self::ExpM1(change(a)),
+            Self::Ln1P(a) => Self::Ln1P(change(a)),
             Self::Unary(function, a) => Self::Unary(function, change(a)),
             Self::Binary(function, a, b) => Self::Binary(function, change(a), change(b)),
         }

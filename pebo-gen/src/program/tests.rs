@@ -505,3 +505,29 @@ fn an_exponential_less_one_keeps_its_digits() {
         assert!((value / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{value:e}");
     }
 }
+
+#[test]
+fn a_logarithm_beside_one_keeps_its_digits() {
+    let arena = Arena::new();
+    let x = arena.symbol("x");
+    let argument = |constant: i64| arena.add(arena.of_symbol(x), arena.number(constant));
+    let values = [1, 2].map(|constant| arena.call(Function::Log, &[argument(constant)]));
+    let program = lower(&arena, &[x], &values).unwrap();
+    let beside = program.operations.iter().filter(|operation| matches!(operation, Operation::Ln1P(..)));
+    assert_eq!((beside.count(), program.operations.len()), (1, 3), "{program:?}");
+    let mut values = [0.0; 2];
+    Interpreter::new(&program).run(&[1e-9], &mut values);
+    // ln(1 + 1e-9) = 1e-9 - 5e-19, of which the logarithm of the sum has 7 digits.
+    assert!((values[0] / 9.999_999_995e-10 - 1.0).abs() < 4.0 * f64::EPSILON, "{:e}", values[0]);
+}
+
+#[test]
+fn harmonics_are_worked_out_once() {
+    let arena = Arena::new();
+    let q = arena.symbol("q");
+    let harmonic = |k: i64| arena.call(Function::Cos, &[arena.scale(arena.of_symbol(q), &Rational::from(k))]);
+    let sum = arena.sum((1..=40).map(harmonic));
+    let program = lower(&arena, &[q], &[sum]).unwrap();
+    // Six operations for each harmonic and one for its summand.
+    assert!(program.operations.len() <= 40 * 7, "{}", program.operations.len());
+}

@@ -69,6 +69,7 @@ impl Design {
         let regression = derivation.regression.result.as_ref()?;
         let settings = Settings::resolve(asked, derivation, (regression, inverse), period, problems)?;
         let arena = &plant.arena;
+        let regression = &regression.computed(arena, settings.output || settings.gate.is_some());
         let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {
             let outputs = arena.substitute_all(outputs, numbers);
             problems.keep(program(arena, &inputs.concat(), &outputs, span))

@@ -321,6 +321,12 @@ codes! {
          for the floating-point type: f32 holds magnitudes from 1.2e-38 to 3.4e38. Units in which quantities are near 1 \
          help accuracy too. What was written is read back and proved equal to what was derived; should that fail, it \
          is a defect of pebo-gen, and no code is better than wrong code."
+    LosesDigits "loses-digits" "the model's formulas lose digits at a place, and so does the code"
+        "The error of an emitted function, measured at places of the domain, is more than a hundred times what rounding of \
+         its arguments causes, and the model's own formulas lose as many digits there: they subtract what is nearly \
+         equal, or pass beyond the numbers that the floating-point type holds. The code is there all the same, and its \
+         documentation names each place. Write the formula in a form that keeps the digits, assume what keeps the plant \
+         away from the place, choose units in which quantities are near 1, or take f64."
 
     // Simulation.
 

@@ -50,7 +50,7 @@ pub(super) fn derive(
     let frame = frame(model, plant, derivation, problems)?;
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
-    let formulas = Formulas::of(plant, derivation)?;
+    let formulas = Formulas::of(plant, derivation, kind == Kind::Output || frame.gate.is_some())?;
     let said = Point::of(model, plant);
     let asked = model.observer.known();
     if let Some(lacking) = said.lacks(&formulas.needed(plant)) {
@@ -316,10 +316,11 @@ struct Formulas {
 }
 
 impl Formulas {
-    fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
+    /// Of the whole regression where all equations serve, else of those with an unknown.
+    fn of(plant: &Plant, derivation: &Derivation, all_serve: bool) -> Option<Self> {
         let arena = &plant.arena;
         let cascade = derivation.cascade.result.as_ref()?;
-        let regression = derivation.regression.result.as_ref()?;
+        let regression = &derivation.regression.result.as_ref()?.computed(arena, all_serve);
         let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let eta = regression.eta_symbols.clone();

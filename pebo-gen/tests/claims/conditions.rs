@@ -97,6 +97,12 @@ const LISTED: &[(&str, &str, Outcome, &[&str])] = &[
         &["q != 0", "r - 1 != 0"],
     ),
     (
+        "values of parameters at which an implicit rate tells nothing",
+        "parameters: {a: 1, b: 2}\nx: [p]\ny: [q]\nassume: [p > 0]\nf_x: {p: 0}\nf_y: {q: (p + a)/(1 + b*p)}\nphi: [p]",
+        Outcome::Accepted,
+        &["a*b - 1 != 0"],
+    ),
+    (
         "an excluded denominator is not listed",
         "x: [p]\ny: [q, r]\nu: [v, w]\nassume: [q < 0]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]",
         Outcome::Accepted,

@@ -52,4 +52,15 @@ pub(super) const IMPLICIT: &[Row] = &[
         "x: [x]\ny: [y, q]\nu: [u]\nf_x: {x: u}\nf_y: {y: x, q: exp(-x^2)}\nphi: [x]",
         Accepted("dynamic linear instant"),
     ),
+    (
+        "a rate without a usable form beside one in functions of theta",
+        "x: [x]\ny: [y, q]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2 + x, q: exp(sin(x))}\nphi: [x]",
+        Accepted("dynamic over-parameterised excitation"),
+    ),
+    (
+        "a light sensor on a unicycle",
+        "x: [a]\ny: [p, q, s]\nu: [v, w]\nangles: {a: 2*pi}\nassume: [v > 0]\nf_x: {a: w}\n\
+         f_y: {p: v*cos(a), q: v*sin(a), s: exp(cos(a)) - s}\nphi: [a]",
+        Accepted("dynamic over-parameterised instant"),
+    ),
 ];

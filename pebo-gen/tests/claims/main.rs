@@ -1,5 +1,6 @@
 //! Small plants for every verdict on every claim.
 
+mod bent;
 mod conditions;
 mod fundamental;
 mod implicit;

@@ -4,6 +4,7 @@ use pebo_gen::Derived;
 use pebo_gen::analysis::{Class, Outcome};
 use pebo_gen::source::Code;
 
+use super::bent::BENT;
 use super::derived;
 use super::implicit::IMPLICIT;
 use super::relations::RELATIONS;
@@ -99,37 +100,6 @@ const TABLE: &[Row] = &[
         Accepted("dynamic linear instant"),
     ),
     ("nothing to estimate from", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nphi: [x]", Rejected(Code::RegressionNonlinear)),
-    // Formulas that bend: what is seen at a point is seen in its part of the domain.
-    (
-        "Coulomb friction and a load, told apart once the speed has had both signs",
-        "x: [f, l]\ny: [w]\nu: [u]\nf_x: {f: 0, l: 0}\nf_y: {w: u - f*sign(w) - l}\nphi: [f, l]",
-        Accepted("dynamic linear excitation"),
-    ),
-    (
-        "a dead zone",
-        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x*(y - sat(y))}\nphi: [x]",
-        Accepted("dynamic linear excitation"),
-    ),
-    (
-        "a dead zone that the assumptions leave behind",
-        "x: [x]\ny: [y]\nu: [u]\nassume: [y > 1]\nf_x: {x: u}\nf_y: {y: x*(y - sat(y))}\nphi: [x]",
-        Accepted("dynamic linear instant"),
-    ),
-    (
-        "a regressor that vanishes on each side of another place",
-        "x: [a, b]\ny: [q, r]\nu: [u]\nf_x: {a: u, b: u*q}\nf_y: {q: a*(q - abs(q)), r: b*(q + abs(q))}\nphi: [a, b]",
-        Accepted("dynamic linear excitation"),
-    ),
-    (
-        "a regressor that vanishes on both sides",
-        "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x*(y + abs(y))*(y - abs(y)) + u}\nphi: [x]",
-        Rejected(Code::NeverIdentifiable),
-    ),
-    (
-        "one direction that no side sees",
-        "x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: u}\nf_y: {y: (a + b)*(2 + sign(y))}\nphi: [a, b]",
-        Rejected(Code::NeverIdentifiable),
-    ),
     // Definitions mean what they say wherever they stand: p' = u + x^2 is not free of x.
     (
         "a definition that uses a later one",
@@ -551,7 +521,7 @@ const TABLE: &[Row] = &[
 
 /// All of them.
 pub(super) fn rows() -> impl Iterator<Item = &'static Row> {
-    TABLE.iter().chain(IMPLICIT).chain(RELATIONS)
+    TABLE.iter().chain(BENT).chain(IMPLICIT).chain(RELATIONS)
 }
 
 #[test]

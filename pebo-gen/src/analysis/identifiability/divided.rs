@@ -4,16 +4,18 @@
 //! at a point, and a direction that is not seen there, are so almost everywhere in the part of the point alone: with
 //! `p*max(q, 0)` p is seen while q is positive; with `a + b*sign(w)` both are seen once w has had both signs.
 
+use std::collections::BTreeSet;
+
 use crate::cas::Expr;
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::parts::Part;
-use crate::cas::rank::full_rank_together;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
+use super::crossing::{Seen, all_shown};
 use super::motion::seen;
-use crate::analysis::design::{Blind, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
+use crate::analysis::design::{Blind, Cascade, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
 use crate::analysis::left_inverse::at_phi;
 
 /// An answer where all formulas are analytic.
@@ -62,21 +64,24 @@ impl Formulas {
 pub(super) fn decide(
     plant: &Plant,
     domain: &Domain,
-    regression: &Regression,
+    (cascade, regression): (&Cascade, &Regression),
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
     on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
     let mut told = Vec::new();
-    let whole = on_parts(plant, domain, regression, formulas, &mut told, &on)?;
+    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut told, &on)?;
     let identified =
         |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
     if identified(&whole) {
         let parts = domain.parts(arena, &formulas.all(), |expr| !varies(plant, expr))?;
         for part in parts.iter().filter(|part| !part.sides.is_empty()) {
-            let claim = on_parts(plant, &part.domain, regression, formulas, &mut Vec::new(), &on)?;
-            if !identified(&claim) {
+            let claim = on_parts(plant, &part.domain, (cascade, regression), formulas, &mut Vec::new(), &on)?;
+            let at_once = |claim: &Claim<Identifiability>| {
+                claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
+            };
+            if !identified(&claim) || at_once(&whole) && !at_once(&claim) {
                 found.push(depends_on_signs(plant, part));
                 return Ok(Claim { verdict: Verdict::Undecided, result: None });
             }
@@ -105,11 +110,25 @@ fn depends_on_signs(plant: &Plant, part: &Part) -> Diagnostic {
     .help("state the signs of the parameters under `assume`")
 }
 
+/// None of the parts shows all unknowns, and no motion was found that passes from one into another and shows them.
+fn parted(plant: &Plant, parts: &[Part]) -> Diagnostic {
+    let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
+    let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
+    Diagnostic::error(Code::IdentifiabilityUndecided, at_phi(plant), "no motion was found that identifies the unknowns")
+        .label(format!(
+            "while {} {} one sign, not all of them are seen",
+            dividers.join(", "),
+            if dividers.len() == 1 { "keeps" } else { "keep" }
+        ))
+        .note("and no motion was found that passes to another sign and shows them all")
+        .help("choose a phi of what is seen on one side alone, and state that side under `assume`")
+}
+
 /// Answers on a domain by the answers on its parts.
 fn on_parts(
     plant: &Plant,
     domain: &Domain,
-    regression: &Regression,
+    (cascade, regression): (&Cascade, &Regression),
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
     on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
@@ -138,7 +157,7 @@ fn on_parts(
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
-    let mut rows = Vec::new();
+    let mut shown = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
@@ -156,7 +175,7 @@ fn on_parts(
                 blind.push(Blind { place: Place::Part(part.sides.clone()), seen, hidden });
             }
         }
-        rows.extend(decided.rows);
+        shown.push(Seen { part, rows: decided.rows });
         if let Some(result) = decided.claim.result {
             parameters &= result.motion.is_none_or(|motion| motion.parameters);
             for constant in result.constants {
@@ -174,10 +193,14 @@ fn on_parts(
             return Ok(whole.claim);
         }
         // A fundamental matrix is another at every moment, so that rows of two moments do not compare.
-        let domains: Vec<Domain> = parts.into_iter().map(|part| part.domain).collect();
-        let by_psi = arena.symbols_of(&rows.concat()).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
-        if by_psi || !full_rank_together(arena, &domains, &rows, regression.eta.len()) {
+        let entries: Vec<Expr> = shown.iter().flat_map(|seen| seen.rows.concat()).collect();
+        let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
+        if by_psi {
             return Err(Obstacle::NoWitness);
+        }
+        if !all_shown(plant, cascade, varies, &shown, regression.eta.len())? {
+            found.push(parted(plant, &parts));
+            return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
     let motion = Motion { by_itself: None, at_rest: false, blind, everywhere: false, parameters };

@@ -6,7 +6,7 @@ use crate::analysis::affine;
 use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
-use crate::cas::tidy::{asking_less, shortest, shortest_equal};
+use crate::cas::tidy::{asking_less, functions, shortest, shortest_equal};
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
@@ -68,8 +68,17 @@ pub(super) fn linear(
             arena.add(row.known, arena.sum(row.factors.iter().zip(&chi).map(|(factor, chi)| arena.mul(*factor, *chi))));
         let written = plant.y[*output].rate.map(|rate| arena.substitute(rate.expr, &states));
         let written: Vec<Expr> = written.into_iter().filter(|w| !arena.depends_on(*w, &plant.hidden())).collect();
+        // In the author's own shape, if there is one, each state is a coordinate, and no function falls away.
+        let is_coordinate =
+            |symbol: &Symbol| states.get(symbol).is_none_or(|formula| arena.as_symbol(*formula).is_some());
+        let own = plant.y[*output].rate.filter(|rate| arena.symbols_of(&[rate.expr]).iter().all(is_coordinate));
+        let own = own.filter(|_| plant.class.is_none()).and_then(|_| written.first().copied());
         let candidates = [written.as_slice(), &[shortest(arena, domain, known)]].concat();
-        phi_0.push(asking_less(arena, domain, shortest_equal(arena, domain, known, &candidates), &written));
+        let short = asking_less(arena, domain, shortest_equal(arena, domain, known, &candidates), &written);
+        let calls = |form: Expr| functions(arena, &[form]).len();
+        let own = own.filter(|own| calls(*own) <= calls(short));
+        let own = own.filter(|own| decide(arena, arena.sub(*own, known), domain).is_zero());
+        phi_0.push(own.unwrap_or(short));
         // Of what is affine in z, the slopes are the factors.
         let factors: Vec<Expr> = row
             .factors

@@ -1,15 +1,16 @@
 //! Whether digits are lost that the author's own formulas lose too.
 //!
-//! In: an entry of a function, and a place at which it loses digits. Out: whether the loss is the author's. The entry loses
+//! In: an entry of a function, and a place at which it loses digits. Out: whose the loss is. The entry loses
 //! them where a part of it does whose own parts do not. That has to be a part of the author's formulas, and these have to
 //! lose as much there; or what they hide, by adding it to something large, has to be small beside what the entry is
 //! elsewhere. Where no part of the entry as it is written loses them, what its sums as the author wrote them lose is
-//! compared.
+//! compared. A loss that is not the author's is nobody's where it is a rounding of what the entry is elsewhere.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::definition::{Argument, Definitions};
 use super::super::literal::Scalar;
+use super::Cause;
 use super::core::cores;
 use super::exact::{MOST, exact};
 use super::places::Place;
@@ -21,6 +22,10 @@ use crate::program::lower;
 /// A loss up to so many times that of the author's formulas is theirs: a function that is made of several of them, as the
 /// rate of phi, adds up a few.
 const LIKE: f64 = 4.0;
+
+/// The error of a form that is not the author's may be so many roundings of what the value is elsewhere: as much as some
+/// operations cause there.
+const ROUNDINGS: f64 = 4.0;
 
 /// At one place the roundings of a formula may happen to cancel: as many others beside it are looked at,
 const BESIDE: u32 = 6;
@@ -70,8 +75,18 @@ impl<'a> Own<'a> {
         Self { arena, formulas: formulas.collect(), equations, written, places }
     }
 
-    /// Whether a loss of so many units is the author's.
-    pub(super) fn has(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> bool {
+    /// Whose a loss of so many units is.
+    pub(super) fn cause(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> Cause {
+        if self.is_authors(value, place, scalar, units) {
+            Cause::Model
+        } else if self.is_within(value, place, units, ROUNDINGS) {
+            Cause::Small
+        } else {
+            Cause::Form
+        }
+    }
+
+    fn is_authors(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> bool {
         let culprits = self.culprits(value, place, scalar);
         if culprits.is_empty() {
             // As it is written the value keeps its digits: it is the order of the program that adds up roundings.
@@ -89,7 +104,7 @@ impl<'a> Own<'a> {
             let mut places = (0..=BESIDE).map(|step| beside(scalar, place, step));
             places.any(|place| self.units(formulas, &place, scalar).iter().any(|lost| LIKE * lost >= units))
         };
-        formulas.iter().any(lose_as_much) || self.is_small(value, place, units)
+        formulas.iter().any(lose_as_much) || self.is_within(value, place, units, MOST)
     }
 
     /// The most units that the author's formulas lose together with those of their sums that the value holds.
@@ -101,13 +116,13 @@ impl<'a> Own<'a> {
         self.units(&own, place, scalar).into_iter().fold(0.0, f64::max)
     }
 
-    /// Whether the error is a few roundings of what the value is elsewhere.
-    fn is_small(&self, value: Expr, place: &Place, units: f64) -> bool {
+    /// Whether the error is at most so many roundings of what the value is elsewhere.
+    fn is_within(&self, value: Expr, place: &Place, units: f64, roundings: f64) -> bool {
         let size = |place: &Place| exact(self.arena, &[value], place).sizes().next().flatten();
         let mut sizes: Vec<f64> = self.places.iter().filter_map(size).collect();
         sizes.sort_by(f64::total_cmp);
         let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        size(place).is_some_and(|here| units * here <= MOST * usual)
+        size(place).is_some_and(|here| units * here <= roundings * usual)
     }
 
     /// The parts of a value that lose digits although their own parts lose none, by what they are.

@@ -1,8 +1,8 @@
 //! Where the accuracy is measured: points of the domain in numbers that every target holds.
 //!
 //! In: plant and derivation. Out: values of states, outputs, inputs and parameters: points spread over the domain, the
-//! values 0, 1 and -1, and both sides of every place where an assumption or a condition ends, as far as they are in
-//! the domain.
+//! values 0, 1 and -1, and both sides of 0 and of every place where an assumption or a condition ends, as far as they are
+//! in the domain.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub(super) type Place = BTreeMap<Symbol, f64>;
 const SPREAD: usize = 12;
 
 /// All points.
-const MOST: usize = 48;
+const MOST: usize = 72;
 
 /// How far beside a limit a value is taken, in parts of it: no powers of two, with which sums and squares would be exact in
 /// `f32` and hide what is lost.
@@ -67,6 +67,13 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
     for &symbol in signals.iter().chain(&states) {
         for value in [0.0, 1.0, -1.0] {
             beside(symbol, value);
+        }
+    }
+    // Where plants rest: `1 - cos(q)` has lost its digits beside 0, and has them at 0.
+    for &symbol in signals.iter().chain(&states) {
+        for part in BESIDE {
+            beside(symbol, part);
+            beside(symbol, -part);
         }
     }
     places

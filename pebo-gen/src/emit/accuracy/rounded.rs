@@ -38,6 +38,7 @@ pub(super) fn run(program: &Program, scalar: Scalar, inputs: &[f64]) -> Vec<f64>
             Operation::Div(a, b) => of(a) / of(b),
             Operation::Power(a, b) => of(a).powf(of(b)),
             Operation::ExpM1(a) => of(a).exp_m1(),
+            Operation::Ln1P(a) => of(a).ln_1p(),
             Operation::Unary(function, a) => unary(function, of(a)),
             Operation::Binary(function, a, b) => binary(function, of(a), of(b)),
         };

@@ -1,11 +1,12 @@
 //! What is measured of the emitted functions.
 
 use super::fixtures::{CUK, PENDULUM, Sketch, vanishes};
-use crate::emit::{Accuracy, EmitError, Scalar, emit};
+use crate::emit::{Accuracy, Cause, EmitError, Scalar, emit};
 
-/// `(1 - cos(v2))/v2` loses its digits where `v2` is small; another form, which is not found, does not.
-const LOSING: &str = "(1.0 - Real::cos(v2))/v2";
-const KEEPING: &str = "2.0*Real::sin(0.5*v2)*Real::sin(0.5*v2)/v2";
+/// This loses its digits where `v2` is small, and so does any form in functions that the tool has.
+const LOSING: &str = "(v2*Real::cos(v2) - Real::sin(v2))/(v2*v2)";
+/// This does not.
+const KEEPING: &str = "v2/(3.0 + v2*v2)";
 
 /// The outputs are not zero: both sides of 0 are looked at.
 fn with_h(formula: &'static str, rate: &'static str) -> Sketch {
@@ -25,11 +26,11 @@ fn a_form_that_loses_digits_is_refused_unless_the_author_wrote_it() {
         let refused = accuracy(with_h(LOSING, KEEPING), scalar).unwrap_err();
         let EmitError::Inaccurate { function, place, scalar: name, .. } = &refused else { panic!("{refused}") };
         assert_eq!((function.as_str(), *name), ("flow", scalar.name()));
-        assert!(place.contains("v2 = 0.0000610"), "{place}");
+        assert!(place.contains("v2 = 6.1016"), "{place}");
         assert!(refused.to_string().contains("write in another form what cancels there"), "{refused}");
         let own = accuracy(with_h(LOSING, LOSING), scalar).unwrap();
         let (_, worst) = own.of(scalar).find(|(function, _)| *function == "flow").unwrap();
-        assert!(worst.as_written && worst.units > 1e3, "{worst:?}");
+        assert!(worst.cause == Cause::Model && worst.units > 1e3, "{worst:?}");
         let kept = accuracy(with_h(KEEPING, KEEPING), scalar).unwrap();
         assert!(kept.of(scalar).all(|(_, worst)| worst.units < 4.0), "{kept:?}");
     }
@@ -63,42 +64,48 @@ fn functions_of_a_few_operations_lose_a_few_roundings() {
 #[test]
 fn a_loss_of_the_author_hides_no_other() {
     // The author's own rate loses digits beside v2 = 0, more than the second entry of h does beside v4 = 0.
-    let ours = "(1.0 - Real::cos(10.0*v4))/v4";
+    let ours = "(v4*Real::cos(v4) - Real::sin(v4))/(v4*v4)";
     let h: &'static [&'static str] = Box::leak(Box::new([LOSING, ours]));
     let x: &'static [(&str, &str)] = &[("i1", LOSING), ("i3", "0.0")];
     let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "v2", "v4"];
     let refused = accuracy(Sketch { x, assume, h, ..CUK }, Scalar::F64).unwrap_err();
     let EmitError::Inaccurate { place, .. } = &refused else { panic!("{refused}") };
-    assert!(place.contains("v4 = 0.0000610"), "{place}");
+    assert!(place.contains("v4 = 6.1016"), "{place}");
 }
 
 #[test]
 fn a_sum_that_the_author_wrote_may_lose_its_digits_alone() {
     // The author adds it to something large; h is the sum alone.
-    let sum = "1.0 - Real::cos(v2)";
-    let within = "1000000.0 + v4*(1.0 - Real::cos(v2))";
+    let sum = "v2*Real::cos(v2) - Real::sin(v2)";
+    let within = "1000000.0 + v4*(v2*Real::cos(v2) - Real::sin(v2))";
     let found = accuracy(with_h(sum, within), Scalar::F64).unwrap();
     let (_, worst) = found.of(Scalar::F64).find(|(function, _)| *function == "flow").unwrap();
-    assert!(worst.as_written && worst.units > 100.0, "{worst:?}");
-    assert!(accuracy(with_h(sum, "1000000.0 + v4"), Scalar::F64).is_err());
+    assert!(worst.cause == Cause::Model && worst.units > 100.0, "{worst:?}");
+    // Where the author has no such sum, its error is a rounding of what the sum is elsewhere.
+    let found = accuracy(with_h(sum, "1000000.0 + v4"), Scalar::F64).unwrap();
+    let (_, worst) = found.of(Scalar::F64).find(|(function, _)| *function == "flow").unwrap();
+    assert!(worst.cause == Cause::Small && worst.units > 100.0, "{worst:?}");
     // The error of a quotient by something small is not small beside what the quotient is elsewhere.
-    assert!(accuracy(with_h("(1.0 - Real::cos(v2))/(v2*v2)", within), Scalar::F64).is_err());
+    let quotient = "(v2*Real::cos(v2) - Real::sin(v2))/(v2*v2*v2)";
+    assert!(accuracy(with_h(quotient, "1000000.0 + v4"), Scalar::F64).is_err());
 }
 
 #[test]
 fn of_two_parts_that_lose_digits_at_a_place_each_has_to_be_the_authors() {
-    let other = "(1.0 - Real::cos(3.0*v2))/v2";
-    let h: &'static [&'static str] = Box::leak(Box::new([LOSING, other]));
+    const OTHER: &str = "(3.0*v2*Real::cos(3.0*v2) - Real::sin(3.0*v2))/(v2*v2)";
+    let h: &'static [&'static str] = Box::leak(Box::new([LOSING, OTHER]));
     let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "v2"];
     let sketch = |x| Sketch { x, assume, h, ..CUK };
     assert!(accuracy(sketch(&[("i1", LOSING), ("i3", "0.0")]), Scalar::F64).is_err());
-    assert!(accuracy(sketch(&[("i1", LOSING), ("i3", "(1.0 - Real::cos(3.0*v2))/v2")]), Scalar::F64).is_ok());
+    assert!(accuracy(sketch(&[("i1", LOSING), ("i3", OTHER)]), Scalar::F64).is_ok());
 }
 
 #[test]
 fn a_form_that_keeps_the_digits_is_found() {
     for losing in [
         "(Real::sqrt(1.0 + v2*v2) - 1.0)/v2",
+        "(1.0 - Real::cos(v2))/v2",
+        "Real::sqrt(1.0 + v2*v2) + Real::cosh(v2) - 2.0 + Real::ln(1.0 + v2*v2)",
         "(1.0 + v2)*(1.0 + v2) - 1.0 - 2.0*v2",
         "(Real::cos(v4) - Real::cos(v2)*Real::cos(v4 + v2))/(1.0 - Real::cos(v2)*Real::cos(v2))",
     ] {
@@ -108,7 +115,8 @@ fn a_form_that_keeps_the_digits_is_found() {
             let (plant, derivation) = Sketch { assume, ..with_h(losing, rate) }.build();
             for scalar in Scalar::ALL {
                 let emitted = emit(&plant, &derivation, None, scalar, vanishes).unwrap();
-                assert!(emitted.accuracy.of(scalar).all(|(_, worst)| worst.units < 8.0), "{:?}", emitted.accuracy);
+                // Up to ten operations, a rounding each.
+                assert!(emitted.accuracy.of(scalar).all(|(_, worst)| worst.units < 10.0), "{:?}", emitted.accuracy);
             }
         }
     }

@@ -194,7 +194,7 @@ fn a_number_out_of_range_is_an_error() {
 #[test]
 fn tampered_tokens_are_refused() {
     let (plant, derivation) = CUK.build();
-    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let definitions = Definitions::of(&plant, &derivation, None).unwrap();
     let asked = derivation.asked_of_parameters(&plant);
     let text = emitted(CUK);
     let confirm = |text: &str| {
@@ -235,7 +235,7 @@ fn an_unconfirmed_emission_is_refused() {
     // Equal to 1 only by sin^2 + cos^2 = 1.
     const ROWS: &[&str] = &["Real::sin(d)*Real::sin(d) + Real::cos(d)*Real::cos(d)", "0.0"];
     let (plant, derivation) = Sketch { phi_0: ROWS, ..CUK }.build();
-    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let definitions = Definitions::of(&plant, &derivation, None).unwrap();
     let tokens = emitted(Sketch { phi_0: &["1.0", "0.0"], ..CUK }).parse().unwrap();
     let asked = derivation.asked_of_parameters(&plant);
     let confirm = |is_zero: fn(&Arena, Expr) -> bool| {
@@ -287,4 +287,26 @@ fn linear_regressions_may_be_rebased() {
     }
     let wrong_sign = Sketch { phi_0: &["-((1.0 - d)*chi1 + d*chi2)/C2", "chi2/C4"], ..CUK };
     assert!(!emitted(wrong_sign).contains("impl Rebase"));
+}
+
+#[test]
+fn an_equation_without_an_unknown_is_left_out() {
+    // The rate of `v4` is known: chi2 is not in it.
+    let known = Sketch {
+        y: &[("v2", "((1.0 - d)*i1 + d*i3)/C2"), ("v4", "-G*v4/C4")],
+        phi_0: &["((1.0 - d)*chi1 + d*chi2)/C2", "-G*v4/C4"],
+        phi_1: &[&["(1.0 - d)/C2", "d/C2"], &["0.0", "0.0"]],
+        ..CUK
+    };
+    let text = emitted(known);
+    assert!(text.contains("pub const NR: usize = 1;"), "{text}");
+    assert!(text.contains("//! `v4'` holds nothing unknown: it is no part of the regression."), "{text}");
+    assert!(!text.contains("g_over_c4") && !text.contains("[0.0, 0.0]"), "{text}");
+    // A gate looks at the sample of each output.
+    let (plant, derivation) = known.build();
+    let whole = derivation.regression.result.as_ref().unwrap();
+    assert_eq!(whole.without_unknowns(&plant.arena), [1]);
+    assert_eq!(whole.computed(&plant.arena, true).rows, [0, 1]);
+    assert_eq!(whole.computed(&plant.arena, false).rows, [0]);
+    assert_eq!(emitted(CUK).matches("nothing unknown").count(), 0);
 }

@@ -43,7 +43,7 @@ fn tuned(settings: &Settings<Rational>) -> String {
 /// The module is what was given, and each change of its text is found out.
 fn refuse_changed(given: &Settings<Rational>, changes: &[(&str, &str)]) {
     let (plant, derivation) = CUK.build();
-    let definitions = Definitions::of(&plant, &derivation).unwrap();
+    let definitions = Definitions::of(&plant, &derivation, Some(given)).unwrap();
     let asked = derivation.asked_of_parameters(&plant);
     let confirm = |text: &str| {
         let tokens = text.parse().unwrap();
