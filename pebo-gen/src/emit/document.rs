@@ -81,6 +81,12 @@ fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
         format!("{name}{} {}", if symbols.len() == 1 { "" } else { "s" }, listed(arena, symbols.into_iter()))
     });
     lines.push(format!("{}.", signals.collect::<Vec<String>>().join("; ")));
+    lines.extend(plant.time.map(|time| {
+        format!(
+            "The input `{}` is the time in s, as the formulas count it: give each step the time of its middle.",
+            arena.name(time)
+        )
+    }));
     let states = plant.x.iter().map(|state| (state.symbol, Some(state.rate.expr)));
     let outputs = plant.y.iter().map(|o| (o.symbol, o.rate.as_ref().map(|rate| rate.expr)));
     let rates = states

@@ -89,10 +89,11 @@ const RESERVED: [&str; 62] = [
 ];
 
 /// What an emitted module declares or imports, and the names of the prelude and of the trait's items that it uses.
-pub(super) const TYPES: [&str; 57] = [
+pub(super) const TYPES: [&str; 58] = [
     "Bounded",
     "Default",
     "Drem",
+    "Drift",
     "E",
     "Err",
     "Extension",

@@ -12,7 +12,9 @@ use super::names::camel;
 use super::parameters::decimal;
 use super::permission;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Settings};
+use crate::plant::settings::{
+    Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings,
+};
 
 impl Module<'_> {
     /// The constructors, with the types that they name.
@@ -79,6 +81,7 @@ impl Module<'_> {
             Operator::Sampled(_) => "SampledRegression",
         });
         names.extend(settings.output.then_some("OutputForm"));
+        names.extend(matches!(settings.rebase, Some(Rebase::Above(_) | Rebase::Leak(_))).then_some("Drift"));
         names.extend(settings.gate.is_some().then_some("Gate"));
         names.extend(settings.limits.is_some().then_some("Limits"));
         names.extend((settings.lower.is_some() || settings.upper.is_some()).then_some("Bounded"));
@@ -200,11 +203,25 @@ impl Module<'_> {
             }
         };
         let built = match &settings.rebase {
-            Some(samples) => {
+            Some(Rebase::Samples(samples)) => {
                 let samples = syn::LitInt::new(&samples.to_string(), proc_macro2::Span::call_site());
                 quote! {
                     let observer = #built?;
                     observer.rebasing(#samples)
+                }
+            }
+            Some(Rebase::Above(bound)) => {
+                let bound = one(bound);
+                quote! {
+                    let observer = #built?;
+                    observer.without_drift(Drift::Above(#bound))
+                }
+            }
+            Some(Rebase::Leak(rate)) => {
+                let rate = one(rate);
+                quote! {
+                    let observer = #built?;
+                    observer.without_drift(Drift::Leak(#rate))
                 }
             }
             None => built,
@@ -450,13 +467,11 @@ impl Module<'_> {
         if !matches!(settings.operator, Operator::Sampled(_)) {
             parts.push(format!("{}-order hold", if settings.straight { "first" } else { "zero" }));
         }
-        parts.extend(settings.rebase.as_ref().map(|samples| {
-            let one_each = *samples == Rational::ONE;
-            if one_each {
-                "re-based at every sample".to_owned()
-            } else {
-                format!("re-based every {} samples", one(samples))
-            }
+        parts.extend(settings.rebase.as_ref().map(|rebase| match rebase {
+            Rebase::Samples(samples) if *samples == Rational::ONE => "re-based at every sample".to_owned(),
+            Rebase::Samples(samples) => format!("re-based every {} samples", one(samples)),
+            Rebase::Above(bound) => format!("re-based when the extension exceeds {}", one(bound)),
+            Rebase::Leak(rate) => format!("re-based by a leak of {}/s", one(rate)),
         }));
         if settings.chi_0.iter().any(|value| !value.is_zero()) {
             parts.push(format!("extension from {}", list(&settings.chi_0)));
@@ -472,12 +487,15 @@ fn is_within(settings: &Settings<Rational>) -> bool {
 
 /// All numbers of the settings but the length of a window.
 fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
-    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, limits, .. } = settings;
+    let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, limits, rebase, .. } =
+        settings;
     let mut numbers: Vec<&Rational> =
         [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().chain(gate).collect();
     if let Some(Limits { outputs, inputs, gap }) = limits {
         numbers.extend(outputs.iter().chain(inputs).flatten().flatten().chain(gap));
     }
+    // Samples are counted, not computed with.
+    numbers.extend(rebase.iter().filter(|rebase| !matches!(rebase, Rebase::Samples(_))).map(Rebase::number));
     match operator {
         Operator::Filter(alpha) => numbers.push(alpha),
         Operator::Window(_) => {}

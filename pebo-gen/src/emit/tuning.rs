@@ -11,7 +11,9 @@ use super::error::EmitError;
 use super::value::{self, Value, unreadable};
 use crate::cas::Arena;
 use crate::cas::rational::Rational;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Settings};
+use crate::plant::settings::{
+    Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings,
+};
 
 /// The constant with the length of a window.
 pub(super) const WINDOW: &str = "NW";
@@ -52,6 +54,7 @@ enum Made {
     Operator(Operator<Rational>, bool),
     Observer(Box<Settings<Rational>>),
     Gate(Rational),
+    Rebase(Rebase<Rational>),
     Limits(Limits<Rational>),
     /// A vector in which some entries are infinite.
     Open(Vec<Option<Rational>>, bool),
@@ -236,6 +239,8 @@ impl Reader<'_> {
             ("Gate::new", [Some(Number(limit)), Some(Number(patience)), None, None]) => {
                 (patience == Rational::from(i64::from(PATIENCE))).then_some(Made::Gate(limit))?
             }
+            ("Drift::Above", [Some(Number(bound)), None, None, None]) => Made::Rebase(Rebase::Above(bound)),
+            ("Drift::Leak", [Some(Number(rate)), None, None, None]) => Made::Rebase(Rebase::Leak(rate)),
             ("OutputForm::new", [Some(Model(Form::Own, [None, None])), None, None, None]) => {
                 Model(Form::Outputs(None), [None, None])
             }
@@ -307,7 +312,10 @@ fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
             Made::Estimator(Estimator::LeastSquares(Covariance { process_noise, ..covariance }))
         }
         ("rebasing", Made::Observer(settings), Some(Made::Number(samples)), None) => {
-            Made::Observer(Box::new(Settings { rebase: Some(samples), ..*settings }))
+            Made::Observer(Box::new(Settings { rebase: Some(Rebase::Samples(samples)), ..*settings }))
+        }
+        ("without_drift", Made::Observer(settings), Some(Made::Rebase(rebase)), None) => {
+            Made::Observer(Box::new(Settings { rebase: Some(rebase), ..*settings }))
         }
         ("outputs", Made::Limits(limits), Some(least), Some(most)) if limits.outputs.is_empty() => {
             Made::Limits(Limits { outputs: ranges(least, most)?, ..limits })

@@ -19,6 +19,7 @@ mod observer;
 mod recording;
 pub mod rust;
 mod spanned;
+mod time;
 mod written;
 #[cfg(feature = "yaml")]
 mod yaml;
@@ -31,7 +32,7 @@ pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
 pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub(crate) use names::derivative_of;
 pub use names::unknown_name;
-pub use observer::{Bounds, Estimator, Form, Hold, Observer};
+pub use observer::{Bounds, Estimator, Form, Hold, Observer, Rebase};
 pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
 pub use written::{
@@ -66,6 +67,6 @@ impl Model {
         }
         diagnostics.propagate()?;
         // Without a model there is an error, which was propagated.
-        model.map(Self::ordered).ok_or_else(Vec::new)
+        model.map(Self::ordered).map(Self::timed).ok_or_else(Vec::new)
     }
 }

@@ -1,6 +1,7 @@
 //! Names: which texts are names, which names are taken, and what to say about unknown ones.
 
 use super::formula::greek;
+use super::time::TIME;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 
 /// Whether `text` can be declared as a name; `simulated` if there is a simulation or a recording, in which `t` is time.
@@ -10,7 +11,7 @@ pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagn
     }
     let meaning = match coordinate(text) {
         Some(meaning) => meaning,
-        None if text == "t" && simulated => "time",
+        None if text == TIME && simulated => "time",
         None => return Ok(()),
     };
     let message = format!("`{text}` is reserved for {meaning}");
@@ -18,7 +19,14 @@ pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagn
         Some(at) => format!("{}_{}", &text[..at], &text[at..]),
         None => format!("{text}_0"),
     };
-    Err(Diagnostic::error(Code::ReservedName, span, message).help(format!("choose another name, as `{other}`")))
+    let help = if text == TIME {
+        format!(
+            "if it is the time, remove the declaration, which formulas do not need; if not, choose another name, as `{other}`"
+        )
+    } else {
+        format!("choose another name, as `{other}`")
+    };
+    Err(Diagnostic::error(Code::ReservedName, span, message).help(help))
 }
 
 fn is_identifier(text: &str) -> bool {

@@ -49,8 +49,8 @@ pub struct Observer {
     pub window: Option<Spanned<Decimal>>,
     /// How samples are joined to signals.
     pub hold: Option<Spanned<Hold>>,
-    /// Samples after which the extension starts again from the estimate; never if absent.
-    pub rebase: Option<Spanned<Decimal>>,
+    /// When the extension starts again from the estimate; never if none of it is there.
+    pub rebase: Rebase,
     /// The normalised square of an innovation beyond which a sample is an outlier; none if absent.
     pub gate: Option<Spanned<Decimal>>,
     /// The standard error that is wanted of each state.
@@ -73,6 +73,45 @@ pub struct Bounds {
     pub lower: Vec<Spanned<Decimal>>,
     /// From above.
     pub upper: Vec<Spanned<Decimal>>,
+}
+
+/// When the extension starts again from the estimate: one of these, or never.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Rebase {
+    /// After so many samples.
+    pub samples: Option<Spanned<Decimal>>,
+    /// When a component of it exceeds this, in units of phi.
+    pub above: Option<Spanned<Decimal>>,
+    /// All the time, at this rate in 1/s.
+    pub leak: Option<Spanned<Decimal>>,
+}
+
+impl Rebase {
+    /// Where it is written.
+    pub fn place(&self) -> Option<Span> {
+        self.written().next().map(|(_, number)| number.span)
+    }
+
+    /// What is written, with its key.
+    fn written(&self) -> impl Iterator<Item = (&'static str, &Spanned<Decimal>)> {
+        let keys = [("samples", &self.samples), ("above", &self.above), ("leak", &self.leak)];
+        keys.into_iter().filter_map(|(key, number)| Some((key, number.as_ref()?)))
+    }
+
+    /// Reports several of them at once.
+    fn check(&self, diagnostics: &mut Diagnostics) {
+        let mut written = self.written();
+        let (Some((first, place)), Some((second, other))) = (written.next(), written.next()) else { return };
+        let message = format!("`rebase` has both `{first}` and `{second}`");
+        diagnostics.push(
+            Diagnostic::error(Code::SettingConflict, other.span, message)
+                .also(place.span, format!("`{first}` is here"))
+                .help("keep one of them: each of the forms alone keeps the extension from running away"),
+        );
+    }
 }
 
 /// How samples are joined to signals.
@@ -250,6 +289,8 @@ impl Observer {
             (self.filter.as_slice(), "the filter frequency must be positive"),
             (self.gate.as_slice(), "the limit of the gate must be positive"),
             (self.gap.as_slice(), "the longest gap must be positive"),
+            (self.rebase.above.as_slice(), "the bound of the extension must be positive"),
+            (self.rebase.leak.as_slice(), "the rate of the leak must be positive"),
         ];
         for (numbers, message) in positive {
             for number in numbers {
@@ -278,7 +319,7 @@ impl Observer {
             within(clip, |value| value > 0.0 && value < 1.0, "the clip must be between 0 and 1", help);
         }
         let whole = |value: f64| value >= 1.0 && value.fract() == 0.0;
-        if let Some(rebase) = &self.rebase {
+        if let Some(rebase) = &self.rebase.samples {
             let countable = |value: f64| value >= 1.0 && value.fract() == 0.0 && value <= f64::from(u32::MAX);
             let help = "write 1 for every sample, and leave the key out for never";
             within(rebase, countable, "`rebase` is a number of samples", help);
@@ -302,6 +343,7 @@ impl Observer {
                 ),
             );
         }
+        self.rebase.check(diagnostics);
         self.limits.iter().for_each(|entry| limits(entry, diagnostics));
         if let (Some(filter), Some(window)) = (&self.filter, &self.window) {
             let message = "the observer has both a filter and a window";

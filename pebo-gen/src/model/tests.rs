@@ -3,6 +3,7 @@
 mod hostile;
 mod mistakes;
 mod settings;
+mod time;
 
 use super::{Baseline, CascadeClass, Estimator, Hold, Model, Scale};
 use crate::source::{Diagnostic, Source};

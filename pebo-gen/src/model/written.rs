@@ -12,6 +12,7 @@ use super::formula::{Comparison, Decimal, Formula};
 use super::observer::Observer;
 use super::recording::Recording;
 use super::spanned::{Entry, Spanned};
+use crate::source::Span;
 
 /// A model.
 ///
@@ -33,6 +34,8 @@ pub struct Model {
     pub y: Vec<Spanned<String>>,
     /// Inputs.
     pub u: Vec<Spanned<String>>,
+    /// Where the formulas use the time `t` first, if no declaration has that name: then it is the last input.
+    pub time: Option<Span>,
     /// Unmeasured signals that are not estimated: no result may depend on them.
     pub w: Vec<Spanned<String>>,
     /// Named sub-expressions, each of which uses only those before it.

@@ -105,10 +105,11 @@ fn rates(plant: &Plant) -> Vec<(Symbol, Expr)> {
 
 /// What each name is.
 fn signals(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
-    let groups: [(&str, Vec<Symbol>); 4] = [
+    let groups: [(&str, Vec<Symbol>); 5] = [
         ("states, not measured: x", plant.x.iter().map(|state| state.symbol).collect()),
         ("outputs, measured: y", plant.y.iter().map(|output| output.symbol).collect()),
-        ("inputs, known: u", plant.u.clone()),
+        ("inputs, known: u", plant.commanded().collect()),
+        ("time in s, an input: u", plant.time.into_iter().collect()),
         ("signals that are neither known nor estimated: w", plant.w.clone()),
     ];
     html.block("div", &[("class", "wide")], |html| {

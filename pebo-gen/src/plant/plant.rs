@@ -47,6 +47,8 @@ pub struct Plant {
     pub y: Vec<Output>,
     /// Inputs.
     pub u: Vec<Symbol>,
+    /// The input that is the time in seconds, where the formulas use it without a declaration.
+    pub time: Option<Symbol>,
     /// Signals that are neither measured nor estimated; no result may depend on them.
     pub w: Vec<Symbol>,
     /// The candidate transform z = phi(x, y), one formula a component; none where it is to be searched for.
@@ -207,6 +209,11 @@ impl Plant {
     /// The components of the transform.
     pub fn transform(&self) -> Vec<Expr> {
         self.phi.iter().map(|f| f.expr).collect()
+    }
+
+    /// The inputs but for the time.
+    pub fn commanded(&self) -> impl Iterator<Item = Symbol> + '_ {
+        self.u.iter().copied().filter(|input| self.time != Some(*input))
     }
 
     /// What no result may depend on: unmeasured states and signals.

@@ -114,6 +114,7 @@ impl Plant {
             parameters,
             x: states,
             y: outputs,
+            time: model.time.and(u.last().copied()),
             u,
             w,
             origin,

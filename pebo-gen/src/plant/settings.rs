@@ -2,7 +2,7 @@
 //!
 //! In: what was written, the sizes of the regression, and how a number is read: exactly for code, rounded for a run.
 
-use crate::model::{Bounds, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
+use crate::model::{self, Bounds, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Settings with which an observer can be built.
@@ -26,14 +26,43 @@ pub struct Settings<N> {
     pub upper: Option<Vec<N>>,
     /// Between what each recovered state is, from below and from above.
     pub within: [Option<Vec<N>>; 2],
-    /// Samples after which the extension starts again from the estimate, a whole number.
-    pub rebase: Option<N>,
+    /// When the extension starts again from the estimate, if it does.
+    pub rebase: Option<Rebase<N>>,
     /// The extension at the start.
     pub chi_0: Vec<N>,
     /// The normalised square of an innovation beyond which a sample is an outlier, if any is.
     pub gate: Option<N>,
     /// What samples may be beside numbers, if that is known.
     pub limits: Option<Limits<N>>,
+}
+
+/// When the extension starts again from the estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rebase<N> {
+    /// After so many samples, a whole number.
+    Samples(N),
+    /// When a component of it exceeds this (`Drift::Above` of the runtime).
+    Above(N),
+    /// All the time, at this rate in 1/s (`Drift::Leak` of the runtime).
+    Leak(N),
+}
+
+impl<N> Rebase<N> {
+    /// The number that belongs to it.
+    pub(crate) fn number(&self) -> &N {
+        let (Self::Samples(number) | Self::Above(number) | Self::Leak(number)) = self;
+        number
+    }
+
+    /// The same with another number.
+    #[cfg(feature = "simulate")]
+    pub(crate) fn map<M>(&self, other: impl Fn(&N) -> M) -> Rebase<M> {
+        match self {
+            Self::Samples(number) => Rebase::Samples(other(number)),
+            Self::Above(number) => Rebase::Above(other(number)),
+            Self::Leak(number) => Rebase::Leak(other(number)),
+        }
+    }
 }
 
 impl<N> Settings<N> {
@@ -185,10 +214,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             (None, filter) => Operator::Filter(section.number(filter.as_ref()?)?),
         };
         let ([lower, upper], within, zero) = (bounds?, within?, section.zero()?);
-        let rebase = match &written.rebase {
-            Some(samples) => Some(section.number(samples)?),
-            None => None,
-        };
+        let rebase = section.rebase().ok()?;
         Some(Self {
             operator,
             output: false,
@@ -215,8 +241,8 @@ pub(crate) struct Frame<N> {
     pub(crate) process_noise: Option<Vec<N>>,
     /// Between what each recovered state is, from below and from above.
     pub(crate) within: [Option<Vec<N>>; 2],
-    /// Samples after which the extension starts again.
-    pub(crate) rebase: Option<N>,
+    /// When the extension starts again, if that is written.
+    pub(crate) rebase: Option<Rebase<N>>,
     /// The limit of the gate.
     pub(crate) gate: Option<N>,
     /// Whether samples are joined by straight lines.
@@ -238,10 +264,7 @@ impl<N: Clone + PartialOrd> Frame<N> {
         let noise = section.list(&written.process_noise, coordinates, "process noise for each component of phi");
         let within = section.bounds(&written.within, states, "recovered state");
         let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
-        let rebase = match &written.rebase {
-            Some(samples) => Some(section.number(samples)?),
-            None => None,
-        };
+        let rebase = section.rebase().ok()?;
         Some(Self {
             covariance: covariance.ok()?,
             process_noise: noise.ok()?,
@@ -264,7 +287,7 @@ pub(crate) fn cannot_rebase(name: &str, rebase: Span) -> Diagnostic {
         .help("remove `rebase`: such an observer is restarted instead")
 }
 
-/// A list that has no value for each unknown.
+/// A list that has no value for each unknown, or a number that cannot be read.
 struct Unusable;
 
 struct Section<'a, F> {
@@ -322,6 +345,21 @@ impl<F> Section<'_, F> {
             Name::LeastSquaresDrem => Extension::LeastSquares(Covariance { start: start?, forgetting, process_noise }),
         };
         Some(Estimator::Drem { gain: gain?, extension })
+    }
+
+    /// When the extension starts again, if it does.
+    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, Unusable>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        let model::Rebase { samples, above, leak, .. } = &self.written.rebase;
+        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(Unusable);
+        Ok(match (samples, above, leak) {
+            (Some(samples), ..) => Some(Rebase::Samples(number(samples)?)),
+            (None, Some(bound), _) => Some(Rebase::Above(number(bound)?)),
+            (None, None, Some(rate)) => Some(Rebase::Leak(number(rate)?)),
+            (None, None, None) => None,
+        })
     }
 
     /// Bounds of so many quantities of a kind.

@@ -26,6 +26,8 @@ pub struct Report {
     /// The plant that a model by class stands for.
     expansion: Option<ExpansionReport>,
     phi: Option<TransformReport>,
+    /// The input that is the time in seconds, where the formulas use it without a declaration.
+    time: Option<String>,
     cascade: Option<CascadeReport>,
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
@@ -192,6 +194,7 @@ impl Report {
             }),
             phi: (!plant.phi.is_empty())
                 .then(|| TransformReport { origin: plant.origin.word(), z: printed(arena, &plant.transform()) }),
+            time: plant.time.map(|time| arena.name(time)),
             cascade: Some(cascade(arena, &derivation.cascade)),
             left_inverse: Some(left_inverse(plant, derivation)),
             regression: Some(regression(plant, &derivation.regression)),
@@ -222,6 +225,7 @@ impl Report {
             class: None,
             expansion: None,
             phi: None,
+            time: None,
             cascade: None,
             left_inverse: None,
             regression: None,

@@ -27,7 +27,8 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         }
         Equilibrium::Undecided(reason) => (Vec::new(), vec![format!("none was found: {reason}")]),
     });
-    let mut remarks = fundamental(plant, derivation);
+    let mut remarks: Vec<Remark> = plant.time.map(|time| remark("time", told(plant, time))).into_iter().collect();
+    remarks.extend(fundamental(plant, derivation));
     remarks.extend(rests.map(|(values, lines)| Remark { name: "operating point", values, lines }));
     remarks.extend(special(plant).map(|line| remark("values", vec![line])));
     remarks.extend(Growth::of(plant, derivation).and_then(long).map(|lines| remark("cost", lines)));
@@ -40,6 +41,17 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         );
     }
     remarks
+}
+
+/// That the time is an input.
+fn told(plant: &Plant, time: Symbol) -> Vec<String> {
+    let name = plant.arena.name(time);
+    vec![
+        format!(
+            "`{name}` is not declared: it is a known input, the time in s, and what is proved holds for every course of it"
+        ),
+        "the application hands it over with the other inputs, at the middle of each step".to_owned(),
+    ]
 }
 
 /// What becomes of a generalised cascade's fundamental matrix, what that means, and what would do without it.

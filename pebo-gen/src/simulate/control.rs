@@ -4,7 +4,7 @@ use crate::cas::Expr;
 use crate::model::Simulation;
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
-use super::layout::rival_estimates;
+use super::layout::{rival_estimates, time};
 use super::overrides::Overrides;
 use super::scope::{Estimates, Names, Sight, View};
 
@@ -51,8 +51,12 @@ fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
     }
 }
 
-/// The inputs in outputs, estimates and signals.
+/// The inputs in outputs, estimates and signals; the time, which is the last of them, is as it is.
 pub(super) fn law(names: &Names, feedback: &str, hats: &Estimates, problems: &mut Diagnostics) -> Vec<Expr> {
     let scope = names.scope(&View { sight: Sight::Outputs, hats: seen(names, feedback, hats), ..View::default() });
-    names.entries(&scope, &names.plant.u, ("control", &names.simulation.control), problems)
+    let (plant, arena) = (names.plant, &names.plant.arena);
+    let wanted: Vec<_> = plant.commanded().collect();
+    let mut inputs = names.entries(&scope, &wanted, ("control", &names.simulation.control), problems);
+    inputs.extend(plant.time.map(|_| arena.of_symbol(time(arena))));
+    inputs
 }

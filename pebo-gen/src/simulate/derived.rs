@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Limits, Model, Observer, Rebase, Regression, Sides,
+    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Limits, Model, Observer, Regression, Sides,
     Uncertain, Within,
 };
 
@@ -20,7 +20,7 @@ use crate::tuning::Prediction;
 
 use super::excitation::Said;
 use super::observer::Design;
-use super::settings::{self, Covariance, Estimator, Operator};
+use super::settings::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
 use super::uncertainty::{Interval, Told, Uncertainty};
 use super::watched::Watched;
@@ -312,7 +312,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
 }
 
 /// The promise is kept by those who ask for re-basing: a design has it only where it is proved.
-impl<X: Known<N>, K: Kind, const N: usize> Rebase<N, N, N, N, N> for Derived<X, K, N> {}
+impl<X: Known<N>, K: Kind, const N: usize> pebo_runtime::Rebase<N, N, N, N, N> for Derived<X, K, N> {}
 
 type Inner<X, K, const N: usize> =
     Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
@@ -352,7 +352,8 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
         let whole = settings.output && design.primitive.is_none();
         Ok(Self {
             observer: match settings.rebase {
-                Some(every) => observer.rebasing(every)?,
+                Some(Rebase::Samples(every)) => observer.rebasing(every)?,
+                Some(Rebase::Drift(form)) => observer.without_drift(form)?,
                 None => observer,
             },
             gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,

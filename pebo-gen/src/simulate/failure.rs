@@ -33,6 +33,17 @@ pub enum Failure {
         /// The steps that it has taken from one sample to the next.
         steps: u64,
     },
+    /// The integrator gets on, but the run would take it too long.
+    Slow {
+        /// When that was known, in seconds.
+        at: f64,
+        /// The steps that it has taken until then.
+        steps: u64,
+        /// The state that moves fastest there.
+        fastest: String,
+        /// Its time constant there, in seconds.
+        constant: f64,
+    },
     /// The observer refused a sample.
     Refused {
         /// When, in seconds.
@@ -63,12 +74,21 @@ impl Failure {
                 "a formula of the plant or of a baseline left its domain or jumps other than by `sign`, or something in it \
                  is much faster than the rest: leave that out, or let it be slower"
             }
+            Self::Slow { .. } => {
+                "leave what is so fast out of the model, in its steady state (set its rate to 0, and put what follows for it \
+                 into the other formulas), or simulate a shorter time"
+            }
             Self::Refused { fault: Fault::Estimate, .. } => {
                 "the estimate left the domain of `phi_left`: bound the states, as `within: {lower: 0}` under `observer`, or \
                  let it start nearer, by `extension`"
             }
             Self::Refused { fault: Fault::Output { .. } | Fault::Input { .. }, .. } => {
                 "a sample is no finite number: check `noise`, `bias` and the control law"
+            }
+            Self::Refused { fault: Fault::Singular, .. } => {
+                "something in the model settles far within a step, and the observer follows it from sample to sample: leave such \
+                 a state out of the model, in its steady state (set its rate to 0, and put what follows for it into the other \
+                 formulas), or take a shorter step"
             }
             Self::Refused { .. } => {
                 "the observer's equations have no finite value at this sample: check the domain of its formulas at the \
@@ -91,6 +111,13 @@ impl fmt::Display for Failure {
             Self::Stuck { at, steps } => {
                 write!(f, "the integration made no progress at t = {at} s in {steps} steps")
             }
+            Self::Slow { at, steps, fastest, constant } => write!(
+                f,
+                "the run would take minutes: {steps} steps of the integration led to t = {} s, as `{fastest}` moves with a time \
+                 constant of {} s there",
+                short(*at),
+                short(*constant)
+            ),
             Self::Refused { at, fault } => write!(f, "the observer refused the sample at t = {at} s: {fault}"),
             Self::Stopped { at } => write!(f, "the run reached its limit at t = {at} s"),
         }

@@ -1,42 +1,33 @@
 //! The plant, and the baselines that have equations, between two samples: one ordinary differential equation.
 //!
-//! Method: Dormand and Prince's explicit Runge-Kutta pair of order 5(4), from a library, started anew
-//! at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign in the rates
-//! changes (`switching`), which is found by halving the step in which it does.
-//! Holds when: the plant is not stiff at its sampling period. The first step tried is the whole
-//! interval: a loop that is sampled well needs one step a sample.
+//! It is started anew at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign
+//! in the rates changes (`switching`), which is found by halving the step in which it does. The method is explicit; from an
+//! interval on that needs very many steps, the one for stiff plants (`stiff`) is taken if it needs fewer.
 
 use std::cell::RefCell;
-use std::fmt;
 use std::ops::Range;
-
-use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
-use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 
 use crate::program::{Interpreter, Program};
 
+use super::equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solve, Stuck};
+use super::explicit::Explicit;
 use super::layout::TIME;
-use super::signal::{Course, Signal};
+use super::signal::Signal;
+use super::stiff::Stiff;
 use super::switching::{Switched, Switching};
-
-/// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
-const RELATIVE: f64 = 1e-10;
-
-/// For states that pass through zero: far below any value of interest in SI units.
-const ABSOLUTE: f64 = 1e-12;
-
-/// A rate this small is zero: over years it moves nothing by as much as [`ABSOLUTE`]. The library divides by the square
-/// of a step's error, which for a rate that fades away becomes too small to be divided by.
-const STILL: f64 = 1e-100;
+use super::timing::real;
 
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
+/// Explicit steps between two samples from which on the plant may be stiff.
+const MANY_STEPS: u64 = 1000;
+
 /// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
 const MOST_STEPS_IN_ALL: u64 = 400_000_000;
 
-/// A step that is this small a part of the interval will not get anywhere.
-const SHORTEST: f64 = 1e-12;
+/// Steps after which it is known how many a whole run takes; some seconds of computing at most.
+const ENOUGH_STEPS: u64 = 2_000_000;
 
 /// The largest state that is integrated.
 pub(super) const LARGEST: usize = 64;
@@ -53,22 +44,15 @@ const LOOKS: f64 = 1000.0;
 /// is one over the interval cubed, the rate errs by 2e-9 of itself.
 const ASIDE: f64 = 1e-4;
 
-/// The integration came to a stand.
-#[derive(Clone, Debug)]
-pub(super) struct Stuck {
-    /// The steps that it took.
-    pub(super) steps: u64,
-    /// When, in seconds.
-    pub(super) at: f64,
-    /// The last state that it came to.
-    pub(super) state: Vec<f64>,
-}
-
 /// The differential equation of a run.
 #[derive(Debug)]
 pub(super) struct Flow {
     rates: Equation,
     solver: Box<dyn Solve>,
+    /// The method for stiff plants, until it has shown that it needs as many steps.
+    stiff: Option<Box<dyn Solve>>,
+    /// Whether the plant has shown that it is stiff.
+    is_stiff: bool,
     state: Range<usize>,
     /// When the rates jump.
     jumps: Vec<f64>,
@@ -76,31 +60,15 @@ pub(super) struct Flow {
     slack: f64,
     /// The steps that may still be taken.
     left: u64,
-}
-
-/// The right side as the library calls it: through a shared reference.
-#[derive(Debug)]
-struct Equation(RefCell<Rates>);
-
-/// The right side, with the table that its formulas read.
-#[derive(Debug)]
-struct Rates {
-    table: Vec<f64>,
-    state: Range<usize>,
-    /// Where the integration began.
-    origin: f64,
-    /// Signals that the rates depend on, with their positions in the table.
-    signals: Vec<(usize, Course)>,
-    formulas: Interpreter,
-    switching: Option<Switching>,
-    /// How far to either side of an instant signals are looked at for their rates, in seconds.
-    aside: f64,
+    /// The end of the run in seconds, if it is known.
+    until: f64,
 }
 
 impl Flow {
-    /// The equation with the rates of the table's positions `state`; of the `signals`, those that it reads are followed.
+    /// The equation with the rates of the table's positions `state`, and their derivatives by these where it may be stiff; of
+    /// the `signals`, those that it reads are followed.
     pub(super) fn new(
-        rates: &Program,
+        (rates, slopes): (&Program, Option<&Program>),
         switches: Option<&Switched>,
         state: Range<usize>,
         signals: &[(usize, &Signal)],
@@ -118,18 +86,38 @@ impl Flow {
             origin: 0.0,
             signals: read.iter().map(|(position, signal)| (*position, signal.course())).collect(),
             formulas: Interpreter::new(rates),
+            slopes: slopes.map(Interpreter::new),
+            moves: !read.is_empty() || rates.reads(TIME),
             switching: switches.map(|switches| Switching::new(switches, (RELATIVE, ABSOLUTE))),
             aside: 0.0,
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
-        let solver: Box<dyn Solve> = match state.len() {
-            0..=4 => Box::new(Solver::<4>::new()),
-            5..=8 => Box::new(Solver::<8>::new()),
-            9..=16 => Box::new(Solver::<16>::new()),
-            _ => Box::new(Solver::<LARGEST>::new()),
+        let (solver, stiff): (Box<dyn Solve>, Box<dyn Solve>) = match state.len() {
+            0..=4 => (Box::new(Explicit::<4>::new()), Box::new(Stiff::<4>::new())),
+            5..=8 => (Box::new(Explicit::<8>::new()), Box::new(Stiff::<8>::new())),
+            9..=16 => (Box::new(Explicit::<16>::new()), Box::new(Stiff::<16>::new())),
+            _ => (Box::new(Explicit::<LARGEST>::new()), Box::new(Stiff::<LARGEST>::new())),
         };
         let rates = Equation(RefCell::new(inner));
-        Self { rates, solver, state, jumps, next_jump: 0, slack, left: MOST_STEPS_IN_ALL }
+        // Where signs change, steps are short for another reason.
+        let stiff = slopes.filter(|_| switches.is_none()).map(|_| stiff);
+        Self {
+            rates,
+            solver,
+            stiff,
+            is_stiff: false,
+            state,
+            jumps,
+            next_jump: 0,
+            slack,
+            left: MOST_STEPS_IN_ALL,
+            until: 0.0,
+        }
+    }
+
+    /// The same for a run that ends then: once it is known that this would take too many steps, it is given up.
+    pub(super) fn until(self, end: f64) -> Self {
+        Self { until: end, ..self }
     }
 
     /// Moves the state in `table` from the instant `from` to `to`, all other values held.
@@ -142,7 +130,14 @@ impl Flow {
                 at = jump;
             }
         }
-        self.integrate(table, at, to)
+        self.integrate(table, at, to)?;
+        let taken = MOST_STEPS_IN_ALL - self.left;
+        if taken > ENOUGH_STEPS && real(taken) * self.until > real(MOST_STEPS_IN_ALL) * to {
+            let state = table[self.state.clone()].to_vec();
+            let fast = self.rates.0.get_mut().fastest(&state);
+            return Err(Stuck { steps: taken, at: to, state, fast });
+        }
+        Ok(())
     }
 
     fn integrate(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
@@ -158,8 +153,36 @@ impl Flow {
             switching.begin(to - from);
             return self.switch(state, from, to);
         }
-        self.left -= self.solver.solve(&self.rates, state, to - from, self.left.min(MOST_STEPS), None)?;
+        self.left -= self.smooth(state, to - from)?;
         Ok(())
+    }
+
+    /// Moves the state on by `length` seconds of smooth rates; gives the number of steps.
+    fn smooth(&mut self, state: &mut [f64], length: f64) -> Result<u64, Stuck> {
+        let most = self.left.min(MOST_STEPS);
+        let Some(stiff) = &mut self.stiff else { return self.solver.solve(&self.rates, state, length, most, None) };
+        if self.is_stiff {
+            return stiff.solve(&self.rates, state, length, most, None);
+        }
+        let few = most.min(MANY_STEPS);
+        let mut begun = state.to_vec();
+        match self.solver.solve(&self.rates, &mut begun, length, few, None) {
+            Ok(steps) => {
+                state.copy_from_slice(&begun);
+                return Ok(steps);
+            }
+            // It will not get on with more steps.
+            Err(stuck) if stuck.steps < few => return Err(stuck),
+            Err(_) => {}
+        }
+        begun.copy_from_slice(state);
+        if let Ok(steps) = stiff.solve(&self.rates, &mut begun, length, few, None) {
+            state.copy_from_slice(&begun);
+            self.is_stiff = true;
+            return Ok(steps);
+        }
+        self.stiff = None;
+        self.solver.solve(&self.rates, state, length, most, None)
     }
 
     /// Moves the state on from one change of a sign to the next.
@@ -217,148 +240,5 @@ impl Flow {
         }
         self.left -= left - most;
         Ok(())
-    }
-}
-
-impl Rates {
-    /// Writes state, time and signals of an instant into the table, `t` seconds behind the origin.
-    fn place(&mut self, t: f64, state: &[f64]) {
-        let now = self.origin + t;
-        self.table[TIME] = now;
-        let (moving, aside) = (self.switching.iter().flat_map(|switching| &switching.moving), self.aside);
-        for (position, signal) in &mut self.signals {
-            self.table[*position] = signal.value(now);
-            for (_, rate) in moving.clone().filter(|(of, _)| of == position) {
-                self.table[*rate] = (signal.value(now + aside) - signal.value(now - aside)) / (2.0 * aside);
-            }
-        }
-        self.table[self.state.clone()].copy_from_slice(&state[..self.state.len()]);
-    }
-
-    /// Before an integration from this instant.
-    fn begin(&mut self, origin: f64, state: &[f64], reached: &[bool]) {
-        self.origin = origin;
-        self.place(0.0, state);
-        if let Some(switching) = &mut self.switching {
-            switching.decide(&mut self.table, reached);
-        }
-    }
-
-    /// Which switches can no longer do what they do.
-    fn reached(&mut self, t: f64, state: &[f64]) -> Option<Vec<bool>> {
-        self.place(t, state);
-        self.switching.as_mut()?.reached(&mut self.table)
-    }
-}
-
-/// Told of each step's end, in seconds since the start, with the state there; whether to end there.
-type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
-
-/// What moves a state on.
-trait Solve: fmt::Debug {
-    /// Moves the state on by `length` seconds in at most so many steps, or to where it is watched to end; gives the number of
-    /// steps.
-    fn solve(
-        &mut self,
-        rates: &Equation,
-        state: &mut [f64],
-        length: f64,
-        most: u64,
-        watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck>;
-}
-
-/// The method, made once for the run: its start sets all that a step changes but the count of its steps, which nothing
-/// depends on.
-struct Solver<const N: usize>(DormandPrinceOf<N>);
-
-type DormandPrinceOf<const N: usize> = ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>;
-
-impl<const N: usize> Solver<N> {
-    fn new() -> Self {
-        Self(ExplicitRungeKutta::dopri5().rtol(RELATIVE).atol(ABSOLUTE).max_steps(usize::MAX))
-    }
-}
-
-impl<const N: usize> fmt::Debug for Solver<N> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Solver<{N}>")
-    }
-}
-
-impl<const N: usize> Solve for Solver<N> {
-    fn solve(
-        &mut self,
-        rates: &Equation,
-        state: &mut [f64],
-        length: f64,
-        most: u64,
-        mut watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck> {
-        let mut start = [0.0; N];
-        start[..state.len()].copy_from_slice(state);
-        let method = &mut self.0;
-        let origin = rates.0.borrow().origin;
-        let stuck = |method: &DormandPrinceOf<N>, steps| Stuck {
-            steps,
-            at: origin + method.t(),
-            state: method.y()[..state.len()].to_vec(),
-        };
-        method.h0 = length;
-        let mut steps = 0;
-        if method.init(rates, 0.0, length, &start).is_err() {
-            return Err(Stuck { steps, at: origin, state: state.to_vec() });
-        }
-        loop {
-            let rest = length - method.t();
-            if rest <= SHORTEST * length {
-                break;
-            }
-            if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
-                return Err(stuck(method, steps));
-            }
-            if method.h() > rest {
-                method.set_h(rest);
-            }
-            let before = method.t();
-            if method.step(rates).is_err() {
-                return Err(stuck(method, steps));
-            }
-            steps += 1;
-            // A step that was refused has moved nothing.
-            if method.t() > before
-                && let Some(watch) = &mut watch
-                && watch(method.t(), &method.y()[..state.len()])
-            {
-                break;
-            }
-        }
-        state.copy_from_slice(&method.y()[..state.len()]);
-        Ok(steps)
-    }
-}
-
-impl<const N: usize> ODE<f64, [f64; N]> for Equation {
-    fn diff(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
-        let mut inner = self.0.borrow_mut();
-        if inner.switching.is_some() {
-            inner.place(t, state);
-            let Rates { table, switching, .. } = &mut *inner;
-            if let Some(switching) = switching {
-                switching.hold(table);
-            }
-        }
-        let Rates { table, state: place, origin, signals, formulas, .. } = &mut *inner;
-        let now = *origin + t;
-        table[TIME] = now;
-        for (position, signal) in signals {
-            table[*position] = signal.value(now);
-        }
-        let of =
-            |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
-        for (index, value) in formulas.evaluate(of).enumerate() {
-            rates[index] = if value.abs() < STILL { 0.0 } else { value };
-        }
-        rates[place.len()..].fill(0.0);
     }
 }

@@ -26,6 +26,8 @@ pub(super) struct Layout {
     /// The outputs as they are.
     pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,
+    /// The time as observers are told it, which then is the last of the inputs.
+    pub(super) told: Option<usize>,
     /// The observer's estimates.
     pub(super) hat: Range<usize>,
     /// The baselines' estimates, one baseline after the other.
@@ -61,7 +63,13 @@ impl Layout {
         let signals = add(signals.chain(courses).collect());
         let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
         let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
-        Self { symbols, state: x.start..own.end, x, y, u, hat, rivals, signals, shown }
+        let told = plant.time.map(|_| u.end - 1);
+        Self { symbols, state: x.start..own.end, x, y, u, told, hat, rivals, signals, shown }
+    }
+
+    /// The inputs but for the time.
+    pub(super) fn commanded(&self) -> Range<usize> {
+        self.u.start..self.told.unwrap_or(self.u.end)
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.
@@ -83,7 +91,7 @@ pub(super) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: 
     })
 }
 
-/// Time. No declared name is `t` where there is a simulation.
+/// Time as it is; what observers are told of it is an input. No declared name is `t` where there is a simulation.
 pub(super) fn time(arena: &Arena) -> Symbol {
     arena.generated("t")
 }

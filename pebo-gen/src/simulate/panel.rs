@@ -120,7 +120,7 @@ impl Pass<'_> {
         let named = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), arena.of_symbol(symbol));
         let measured = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), self.names.measured(symbol));
         let outputs = plant.y.iter().map(|output| measured(output.symbol)).collect();
-        let inputs = plant.u.iter().map(|input| named(*input)).collect();
+        let inputs = plant.commanded().map(named).collect();
         self.signals("Estimation errors", Scale::Log, errors);
         self.signals("Outputs", Scale::Linear, outputs);
         self.signals("Inputs", Scale::Linear, inputs);

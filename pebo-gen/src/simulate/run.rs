@@ -14,10 +14,11 @@ use crate::program::{Interpreter, Program};
 use super::certainty::Following;
 use super::curve::Curve;
 use super::derived::observer;
+use super::equation::Stuck;
 use super::excitation::Watch;
 use super::expected::Expected;
 use super::failure::Failure;
-use super::flow::{Flow, Stuck};
+use super::flow::Flow;
 use super::growth::Growth;
 use super::layout::TIME;
 use super::rival::Follower;
@@ -164,12 +165,13 @@ impl<'a> Machine<'a> {
             stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
             sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
-                &scenario.rates,
+                (&scenario.rates, Some(&scenario.slopes)),
                 scenario.switches.as_ref(),
                 layout.state.clone(),
                 &positions.collect::<Vec<_>>(),
                 scenario.timing.slack(),
-            ),
+            )
+            .until(scenario.timing.at(scenario.timing.samples)),
             growth: Growth::new(&[]),
             signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
             given: Formulas::new(&scenario.given.1),
@@ -210,6 +212,10 @@ impl<'a> Machine<'a> {
             self.table[*position] = *value;
         }
         let arrives = self.measure(sample);
+        if let Some(told) = self.scenario.layout.told {
+            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is told.
+            self.table[told] = timing.at(sample) - timing.step / 2.0;
+        }
         let state = self.scenario.layout.state.clone();
         self.admit(state.clone())
             .map_err(|failure| self.diverged(&self.table[state.clone()], to).unwrap_or(failure))?;
@@ -225,8 +231,14 @@ impl<'a> Machine<'a> {
     }
 
     /// Why the integration came to a stand.
-    fn stuck(&self, Stuck { steps, at, state }: Stuck) -> Failure {
-        self.diverged(&state, at).unwrap_or(Failure::Stuck { at, steps })
+    fn stuck(&self, Stuck { steps, at, state, fast }: Stuck) -> Failure {
+        let slow = fast.map(|(place, rate)| Failure::Slow {
+            at,
+            steps,
+            fastest: self.scenario.names[self.scenario.layout.state.start + place].clone(),
+            constant: 1.0 / rate,
+        });
+        self.diverged(&state, at).or(slow).unwrap_or(Failure::Stuck { at, steps })
     }
 
     /// The state that runs away, if one does.
@@ -336,7 +348,7 @@ impl<'a> Record<'a> {
         self.rows.push(table[TIME]);
         self.rows.extend(&table[layout.x.clone()]);
         self.rows.extend(self.measured.of(table));
-        self.rows.extend(&table[layout.u.clone()]);
+        self.rows.extend(&table[layout.commanded()]);
         // The errors of the observer's estimates are the first.
         for (hat, error) in table[layout.hat.clone()].iter().zip(errors) {
             self.rows.extend([*hat, *error]);

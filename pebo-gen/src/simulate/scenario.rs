@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::analysis::Derivation;
-use crate::cas::{Expr, Symbol};
+use crate::cas::{Arena, Expr, Symbol};
 use crate::model::{Model, Simulation};
 use crate::plant::Plant;
 use crate::program::{Interpreter, Program};
@@ -66,6 +66,8 @@ pub struct Scenario {
     moved: Option<String>,
     /// The rates of the state.
     pub(super) rates: Program,
+    /// Their derivatives by the state, by rows, with signs held.
+    pub(super) slopes: Program,
     /// The signs in them, if there are any.
     pub(super) switches: Option<Switched>,
     /// The baselines' estimates.
@@ -229,6 +231,7 @@ impl Resolution<'_> {
 
         let layout = Layout::new(plant, simulation, &design.recovered);
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
+        let state = &layout.symbols[layout.state.clone()];
         let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > flow::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());
@@ -265,6 +268,7 @@ impl Resolution<'_> {
             moved: moved(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
+            slopes: compile(&slopes(arena, &rates, state))?,
             switches: switches?,
             rivals: compile(&estimates)?,
             followers,
@@ -356,6 +360,11 @@ fn rates(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnost
     (!problems.has_errors()).then_some(found)
 }
 
+/// The derivatives of rates by the state, by rows.
+fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
+    rates.iter().flat_map(|rate| state.iter().map(|symbol| arena.derivative(*rate, *symbol))).collect()
+}
+
 /// The baselines that are fed samples, with where they write.
 fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range<usize>, Sampled)> {
     let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
@@ -441,7 +450,7 @@ pub(super) fn judged(
 fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String> {
     let arena = &plant.arena;
     let states = plant.x.iter().map(|state| state.symbol);
-    let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.u.iter().copied());
+    let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());
     let mut columns = vec!["t".to_owned()];
     columns.extend(signals.map(|symbol| arena.name(symbol)));
     for state in recovered.iter().map(|state| arena.name(*state)) {

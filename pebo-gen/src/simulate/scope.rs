@@ -109,7 +109,8 @@ impl<'a> Names<'a> {
             "an unmeasured state: use its estimate hat(..)",
         );
         show(plant.y.iter().map(|output| output.symbol).collect(), Sight::Outputs, "an output, which varies in time");
-        show(plant.u.clone(), Sight::Inputs, "an input, whose value is not known here");
+        // Time is not what was told at the last sample, but what it is.
+        show(plant.commanded().collect(), Sight::Inputs, "an input, whose value is not known here");
         // After the signals, which give w its course.
         show(plant.w.clone(), Sight::Everything, "not measured");
         for output in plant.y.iter().map(|output| output.symbol).filter(|_| view.sight >= Sight::Outputs) {

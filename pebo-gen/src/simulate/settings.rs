@@ -1,6 +1,6 @@
 //! The section `observer`, complete: what regression and estimator are run with.
 
-use pebo_runtime::Hold;
+use pebo_runtime::{Drift, Hold};
 
 use crate::analysis::{Derivation, LeftInverse, Regression};
 use crate::cas::rational::Rational;
@@ -28,8 +28,8 @@ pub(super) struct Settings {
     pub(super) bounds: [Vec<f64>; 2],
     /// Between what each recovered state is.
     pub(super) within: [Vec<f64>; 2],
-    /// Samples after which the extension starts again from the estimate.
-    pub(super) rebase: Option<u32>,
+    /// When the extension starts again from the estimate, if it does.
+    pub(super) rebase: Option<Rebase>,
     /// The extension at the start.
     pub(super) chi_0: Vec<f64>,
     /// The limit of the gate that refuses outliers.
@@ -55,6 +55,26 @@ pub(super) enum Operator {
 
 /// An estimator of the runtime library.
 pub(super) type Estimator = settings::Estimator<f64>;
+
+/// When the extension starts again from the estimate, as the runtime has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Rebase {
+    /// After so many samples.
+    Samples(u32),
+    /// In another form.
+    Drift(Drift<f64>),
+}
+
+impl Rebase {
+    /// That of a section whose numbers the model's own check has seen to.
+    fn of(written: settings::Rebase<f64>) -> Option<Self> {
+        Some(match written {
+            settings::Rebase::Samples(wanted) => Self::Samples(whole(wanted)?),
+            settings::Rebase::Above(bound) => Self::Drift(Drift::Above(bound)),
+            settings::Rebase::Leak(rate) => Self::Drift(Drift::Leak(rate)),
+        })
+    }
+}
 
 /// What samples may be.
 pub(super) type Limits = settings::Limits<f64>;
@@ -105,7 +125,7 @@ impl Settings {
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
-                Some(wanted) => Some(whole(wanted)?),
+                Some(written) => Some(Rebase::of(written)?),
                 None => None,
             },
             bounds: bounds([resolved.lower, resolved.upper], unknowns),
@@ -159,7 +179,7 @@ impl Settings {
             expected: settings.expected,
             hold: if settings.straight { Hold::First } else { Hold::Zero },
             rebase: match &settings.rebase {
-                Some(wanted) => Some(whole(wanted.to_f64())?),
+                Some(written) => Some(Rebase::of(written.map(Rational::to_f64))?),
                 None => None,
             },
             bounds: bounds([None, None], estimator.unknowns()),

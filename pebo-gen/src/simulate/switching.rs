@@ -18,7 +18,7 @@ use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::program::{Interpreter, Program};
 use crate::source::{Diagnostic, Span};
 
-use super::layout::{Layout, program};
+use super::layout::{Layout, program, time};
 
 /// Rounds in which switches that slide together are found: each is solved for with the others as they are.
 const ROUNDS: usize = 200;
@@ -53,7 +53,7 @@ impl Switches {
 
     /// Takes the signs out of the rates of a state; of what is held from sample to sample a sign is a number, and stays.
     pub(super) fn take(arena: &Arena, rates: &mut [Expr], state: &[Symbol], signals: &[Symbol]) -> Self {
-        let moving: BTreeSet<Symbol> = state.iter().chain(signals).copied().collect();
+        let moving: BTreeSet<Symbol> = state.iter().chain(signals).copied().chain([time(arena)]).collect();
         let (mut found, mut values) = (Self::default(), FxHashMap::default());
         for part in arena.postorder(rates) {
             let Node::Call(Function::Sign, arguments) = arena.node(part) else { continue };
@@ -72,6 +72,7 @@ impl Switches {
             *rate = arena.replace(*rate, &values);
         }
         let mut along: BTreeMap<Symbol, Expr> = state.iter().copied().zip(rates.iter().copied()).collect();
+        along.insert(time(arena), arena.one());
         let read = arena.symbols_of(&found.levels);
         for signal in signals.iter().filter(|signal| read.contains(signal)) {
             let rate = arena.generated(&format!("rate of {}", arena.name(*signal)));

@@ -9,13 +9,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::cas::{Expr, Symbol};
 use crate::source::{Code, Diagnostic, Diagnostics, listed};
 
-use super::layout::course;
+use super::layout::{course, time};
 use super::scope::Names;
 
 /// What is true of the plant.
 #[derive(Debug)]
 pub(super) struct Truth {
-    /// The values of the parameters.
+    /// The values of the parameters, and of an input that is the time.
     numbers: BTreeMap<Symbol, Expr>,
     /// States and outputs that have their values by a formula in the others, inputs and signals.
     given: BTreeMap<Symbol, Expr>,
@@ -25,6 +25,9 @@ impl Truth {
     /// The truth of a simulation; what cannot be true is reported.
     pub(super) fn resolve(names: &Names, problems: &mut Diagnostics) -> Self {
         let mut truth = Self { numbers: names.numbers(), given: BTreeMap::new() };
+        // The plant moves in time itself, not in the samples of it that observers are told.
+        let arena = &names.plant.arena;
+        truth.numbers.extend(names.plant.time.map(|told| (told, arena.of_symbol(time(arena)))));
         truth.courses(names, problems);
         truth.values(names, problems);
         for entry in &names.simulation.initial {

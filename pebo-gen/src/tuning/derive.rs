@@ -12,7 +12,7 @@ use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
 use crate::model::{Decimal, Form, Model};
 use crate::plant::Plant;
-use crate::plant::settings::{Covariance, Estimator, Frame, Operator, Settings};
+use crate::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::digits::rounded;
@@ -117,7 +117,7 @@ pub(super) fn derive(
         lower: None,
         upper: None,
         within: frame.within,
-        rebase: if can_rebase { Some(frame.rebase.unwrap_or(Rational::ONE)) } else { None },
+        rebase: if can_rebase { Some(frame.rebase.unwrap_or(Rebase::Samples(Rational::ONE))) } else { None },
         chi_0,
         gate: frame.gate,
         limits: None,

@@ -57,8 +57,8 @@ impl Tuned {
     ) -> Option<Self> {
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        if let Some(rebase) = model.observer.rebase.as_ref().filter(|_| !derivation.can_rebase(plant)) {
-            problems.push(cannot_rebase(&plant.name, rebase.span));
+        if let Some(rebase) = model.observer.rebase.place().filter(|_| !derivation.can_rebase(plant)) {
+            problems.push(cannot_rebase(&plant.name, rebase));
             return None;
         }
         let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();

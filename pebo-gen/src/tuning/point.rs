@@ -23,6 +23,7 @@ impl<'a> Point<'a> {
         let arena = &plant.arena;
         let given = plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.as_ref()?.to_f64())));
         let mut point = Self { plant, values: given.collect() };
+        point.values.extend(plant.time.map(|time| (time, 0.0)));
         let Some(simulation) = &model.simulation else { return point };
         let mut scope = Scope::new();
         for parameter in &plant.parameters {
@@ -61,10 +62,10 @@ impl<'a> Point<'a> {
                 scope.define(&entry.name.value, value);
             }
         }
-        for input in &plant.u {
-            let name = arena.name(*input);
+        for input in plant.commanded() {
+            let name = arena.name(input);
             let law = simulation.control.iter().find(|entry| entry.name.value == name);
-            point.set(*input, law.and_then(|entry| lower(arena, &scope, &entry.value).ok()));
+            point.set(input, law.and_then(|entry| lower(arena, &scope, &entry.value).ok()));
         }
         // Outputs that are given by their value may need inputs.
         for output in &plant.y {

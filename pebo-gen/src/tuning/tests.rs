@@ -4,7 +4,7 @@ use crate::analysis::Derivation;
 use crate::cas::rational::Rational;
 use crate::model::Model;
 use crate::plant::Plant;
-use crate::plant::settings::{Covariance, Estimator, Operator, Settings};
+use crate::plant::settings::{Covariance, Estimator, Operator, Rebase, Settings};
 use crate::source::{Diagnostic, Diagnostics, Source};
 
 use super::Tuned;
@@ -61,7 +61,7 @@ fn deviations_become_covariances_through_the_slopes_of_phi() {
     assert!(problems.is_empty(), "{problems:?}");
     let settings = settings.unwrap();
     let [start, noise, sensors] = numbers(&settings);
-    assert!(settings.output && settings.expected.is_none() && settings.rebase == Some(Rational::ONE));
+    assert!(settings.output && settings.expected.is_none() && settings.rebase == Some(Rebase::Samples(Rational::ONE)));
     assert!(close(&sensors, &[0.1, 0.2]), "{sensors:?}");
     // The outputs' first samples, then (2*5)^2 and 3^2.
     assert!(close(&start, &[0.01, 0.04, 100.0, 9.0]), "{start:?}");

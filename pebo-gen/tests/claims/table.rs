@@ -34,6 +34,11 @@ const TABLE: &[Row] = &[
     // Rates of the output as functions of z = x, with x' = u.
     ("affine", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 2*x + y}\nphi: [x]", Accepted("dynamic linear instant")),
     (
+        "rate that depends on time",
+        "x: [x]\ny: [y]\nf_x: {x: sin(3*t) - y}\nf_y: {y: (2 + cos(t))*x + t}\nphi: [x]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
         "product with an input",
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x}\nphi: [x]",
         Accepted("dynamic linear instant"),

@@ -272,3 +272,21 @@ fn what_is_set_of_a_loop_changes_nothing_that_was_derived() {
         .map(|derived| derived.scenario(&Overrides::default()).expect("a loop").run().expect("it runs").csv());
     assert_eq!(anew, again);
 }
+
+#[test]
+fn the_answer_says_that_time_is_an_input() {
+    let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v + sin(t) - q}\nf_y: {q: p}\nphi: [p]\n";
+    let found = asked(text, &Ask::new().emit(Scalar::F32));
+    assert_eq!(found.standing, Standing::Accepted);
+    let report = serde_json::to_value(&found.report).expect("it serialises");
+    assert_eq!(report["time"], "t");
+    assert!(found.summary.contains("\n  time                      `t` is not declared: "), "{}", found.summary);
+    let code = &found.emitted.expect("it was asked for").text;
+    assert!(
+        code.contains("    /// `t` in s.\n    pub t: f32,\n}") && code.contains("//! The input `t` is the time in s,"),
+        "{code}"
+    );
+    let declared = asked(&text.replace("sin(t)", "sin(w)").replace("[v]", "[v, w]"), &Ask::new());
+    assert!(serde_json::to_value(&declared.report).expect("it serialises")["time"].is_null());
+    assert!(!declared.summary.contains("  time  "));
+}

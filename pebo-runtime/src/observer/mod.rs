@@ -10,7 +10,7 @@ use crate::regression::{Outcome as _, Sides};
 use crate::sum::{all_finite, blemish};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator};
 pub use confidence::Innovation;
-use rebasing::End;
+use rebasing::Rebasing;
 
 /// A parameter-estimation-based observer.
 ///
@@ -60,9 +60,9 @@ pub struct Observer<
     state: State<M::Scalar, M::Extension, R, E, NY>,
     /// What the model's functions need of the last accepted sample; there if and only if that sample is.
     terms: Option<M::Terms>,
-    /// How often the extension starts again from the estimate, if it does, and the end of a step that does so. That end is
+    /// What makes the extension start again, if it does, and the end of a step that does so. That end is
     /// compiled where re-basing was asked for alone, and what remains of a step without it has no second caller.
-    rebasing: Option<(u32, End<Self, M, R, NX, NY, NU, NZ, NR, NE>)>,
+    rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
 }
 
 /// Everything that a step of an [`Observer`] changes, gains and filter included.
@@ -256,8 +256,8 @@ where
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         // Handed over as a copy, so that both may stay in registers where there is no re-basing.
-        if let Some((every, end)) = self.rebasing {
-            return end(self, every, (extension, regression), (terms, y), dt);
+        if let Some((turn, end)) = self.rebasing {
+            return end(self, turn, (extension, regression), (terms, y), dt);
         }
         let mut estimator = self.state.estimator.clone();
         estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;

@@ -10,9 +10,18 @@ use crate::regression::Outcome as _;
 use crate::sum::all_finite;
 use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator};
 
-/// The end of a step of an observer `O` that starts its extension again: from the samples between two starts, extension and
+/// What makes an observer move what its extension holds of `z`.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Turn<S: Real> {
+    /// So many samples since it did.
+    Samples(u32),
+    /// What the extension comes to.
+    Drift(Drift<S>),
+}
+
+/// The end of a step of an observer `O` that starts its extension again: from what makes it do so, extension and
 /// regression at the end of the interval, terms and output of the sample, and the interval's time.
-pub(super) type End<
+type End<
     O,
     M,
     R,
@@ -24,11 +33,27 @@ pub(super) type End<
     const NE: usize,
 > = fn(
     &mut O,
-    u32,
+    Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>,
     (<M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>),
     (<M as Model<NX, NY, NU, NZ, NR, NE>>::Terms, &SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY>),
     <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar,
 ) -> Result<SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NX>, Fault>;
+
+/// What makes an observer start its extension again, and the end of a step that does so.
+pub(super) type Rebasing<
+    O,
+    M,
+    R,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+> = (Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>, End<O, M, R, NX, NY, NU, NZ, NR, NE>);
+
+/// What an interval led to, if there was one.
+type Led<X, R, E, S, const NR: usize, const NE: usize> = Option<Next<X, StepOf<R, S, NR, NE>, E>>;
 
 type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
 
@@ -65,7 +90,17 @@ where
         if every == 0 {
             return Err(Fault::Gain);
         }
-        Ok(Self { rebasing: Some((every, Self::end_rebasing)), ..self })
+        Ok(Self { rebasing: Some((Turn::Samples(every), Self::end_rebasing)), ..self })
+    }
+
+    /// The same observer, each step of which is [`step_without_drift`](Self::step_without_drift); in place of
+    /// [`rebasing`](Self::rebasing).
+    ///
+    /// # Errors
+    /// [`Fault::Gain`] if the bound is not positive, or the rate of the leak negative, or either NaN.
+    pub fn without_drift(self, drift: Drift<M::Scalar>) -> Result<Self, Fault> {
+        drift.is_due(&SVector::<M::Scalar, NZ>::zeros())?;
+        Ok(Self { rebasing: Some((Turn::Drift(drift), Self::end_without_drift)), ..self })
     }
 
     /// Moves `shift` from the extension into the estimated `theta`; the estimate of the state, now and later, stays the
@@ -107,7 +142,7 @@ where
         self.advance_without_drift(&y, &u, dt, drift).map(M::X::from)
     }
 
-    /// Takes a good sample, and moves a shift where the form asks for one.
+    /// Takes a good sample without drift.
     fn advance_without_drift(
         &mut self,
         y: &SVector<M::Scalar, NY>,
@@ -125,6 +160,17 @@ where
             }
             None => None,
         };
+        self.move_by_drift(drift, next, (terms, y), dt)
+    }
+
+    /// Takes what a sample led to, and moves a shift where the form asks for one.
+    fn move_by_drift(
+        &mut self,
+        drift: Drift<M::Scalar>,
+        next: Led<M::Extension, R, E, M::Scalar, NR, NZ>,
+        (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let extension = next.as_ref().map_or(&self.state.extension, |next| &next.extension);
         if !drift.is_due(extension.offset())? {
             return match next {
@@ -143,15 +189,30 @@ where
         self.keep(moved, terms, y)
     }
 
+    /// The end of a step of an observer whose steps are all without drift.
+    fn end_without_drift(
+        &mut self,
+        turn: Turn<M::Scalar>,
+        (extension, regression): (M::Extension, StepOf<R, M::Scalar, NR, NZ>),
+        sample: (M::Terms, &SVector<M::Scalar, NY>),
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let Turn::Drift(drift) = turn else { return Err(Fault::Gain) };
+        let mut estimator = self.state.estimator.clone();
+        estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
+        self.move_by_drift(drift, Some(Next { extension, regression, estimator }), sample, dt)
+    }
+
     /// The end of a step of an observer that starts its extension again. The coordinates change before the estimator's step,
     /// so process noise is that of the moment.
     fn end_rebasing(
         &mut self,
-        every: u32,
+        turn: Turn<M::Scalar>,
         (extension, regression): (M::Extension, R::Step),
         (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let Turn::Samples(every) = turn else { return Err(Fault::Gain) };
         let mut moved = State { extension, since: self.state.since.saturating_add(1), ..self.state.clone() };
         moved.regression.take(regression);
         if moved.since >= every {

@@ -119,3 +119,29 @@ fn a_leak_takes_its_share_of_each_step() {
         before = after;
     }
 }
+
+#[test]
+fn an_observer_without_drift_steps_as_one_that_is_told_each_time() {
+    for form in [Drift::Above(0.3), Drift::Leak(50.0), Drift::Free] {
+        let new = || Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
+        let (mut told, mut built) = (new(), new().without_drift(form).unwrap());
+        let mut largest = 0.0_f64;
+        for k in 0..1000 {
+            let y = Vector2::new(30.0 + f64::from(k % 7), -20.0);
+            let one = told.step_without_drift(y, [0.7], 1e-5, form).unwrap();
+            let other = built.step(y, [0.7], 1e-5).unwrap();
+            // The same operations: bit for bit.
+            assert_eq!((one, told.extension().chi()), (other, built.extension().chi()), "{form:?} {k}");
+            largest = largest.max(other.norm());
+        }
+        assert!(largest > 0.0);
+    }
+}
+
+#[test]
+fn a_form_that_is_none_is_refused_when_it_is_chosen() {
+    for form in [Drift::Above(0.0), Drift::Above(f64::NAN), Drift::Leak(-1.0), Drift::Leak(f64::NAN)] {
+        let observer = Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
+        assert_eq!(observer.without_drift(form).err(), Some(Fault::Gain), "{form:?}");
+    }
+}

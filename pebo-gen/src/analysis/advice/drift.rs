@@ -32,7 +32,7 @@ impl Drift {
         };
         let rates: Vec<Expr> = open.iter().map(|row| cascade.h[*row]).collect();
         let read = arena.symbols_of(&rates);
-        let signals = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied());
+        let signals = plant.y.iter().map(|output| output.symbol).chain(plant.commanded());
         Some(Self {
             integrators: open.iter().map(|row| extension[*row]).collect(),
             integrated: signals.filter(|signal| read.contains(signal)).collect(),

@@ -5,7 +5,7 @@
 //!
 //! Elimination proposes points; what comes out is checked by the zero test within the assumed domain.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
@@ -74,6 +74,11 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
     let rates = plant.rates();
+    if let Some(time) = plant.time
+        && rates.values().any(|rate| arena.depends_on(*rate, &BTreeSet::from([time])))
+    {
+        return Ok(Equilibrium::Undecided(format!("the rates depend on the time `{}`", arena.name(time))));
+    }
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
     let inputs = plant.u.iter().chain(&plant.w).copied().collect();
     let mut doubtful = None;

@@ -210,6 +210,7 @@ impl Sketch {
                 })
                 .collect(),
             u: self.u.iter().map(|u| arena.symbol(u)).collect(),
+            time: None,
             w: Vec::new(),
             phi: self.phi.iter().map(|text| at(text)).collect(),
             phi_left: None,

@@ -2,7 +2,7 @@
 
 use super::fixtures::{CUK, vanishes};
 use super::*;
-use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator};
+use crate::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, Rebase};
 
 fn number(text: &str) -> Rational {
     Rational::from_decimal(text).unwrap()
@@ -152,7 +152,7 @@ fn the_output_form_may_expect_its_outputs() {
         output: true,
         expected: Some(vec![0, 1]),
         chi_0: vec![number("0"); 4],
-        rebase: Some(number("1")),
+        rebase: Some(Rebase::Samples(number("1"))),
         ..settings(Estimator::LeastSquares(covariance))
     };
     let text = tuned(&given);
@@ -194,9 +194,25 @@ fn what_samples_may_be_is_emitted_beside_the_observer() {
 }
 
 #[test]
+fn an_extension_is_kept_bounded_in_the_form_that_is_asked_for() {
+    for (form, call, words, other) in [
+        (Rebase::Above(number("100")), "without_drift(Drift::Above(100.0))", "exceeds 100", "Drift::Leak(100.0)"),
+        (Rebase::Leak(number("0.5")), "without_drift(Drift::Leak(0.5))", "a leak of 0.5/s", "Drift::Leak(0.25)"),
+    ] {
+        let given = Settings { rebase: Some(form), ..gradient() };
+        let text = tuned(&given);
+        assert!(text.contains(&format!("observer.{call}")) && text.contains(words), "{text}");
+        assert!(text.contains("Drift, Fault"), "{text}");
+        let inner = call.trim_start_matches("without_drift(").trim_end_matches(')').to_owned() + ")";
+        refuse_changed(&given, &[(inner.as_str(), other)]);
+    }
+}
+
+#[test]
 fn a_constructor_with_other_settings_is_refused() {
     let within = [None, Some(numbers(["7", "8"]))];
-    let given = Settings { within, upper: Some(numbers(["5", "6"])), rebase: Some(number("3")), ..gradient() };
+    let given =
+        Settings { within, upper: Some(numbers(["5", "6"])), rebase: Some(Rebase::Samples(number("3"))), ..gradient() };
     let changes = [
         ("from([0.001, 2e-6])", "from([0.001, 2e-5])"),
         ("Filter::new(0.5", "Filter::new(0.6"),

@@ -99,6 +99,7 @@ pub(super) fn read(
         x,
         y,
         u,
+        time: None,
         w,
         define,
         assume,

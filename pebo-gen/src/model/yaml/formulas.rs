@@ -34,6 +34,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         x: document.x,
         y: document.y,
         u: document.u,
+        time: None,
         w: document.w,
         asked: document.class,
         relation_form: document.regression,

@@ -340,9 +340,9 @@ const OBSERVER: &[Key] = &[
     ),
     optional(
         "rebase",
-        Shape::Number,
+        Shape::NumberOr(REBASE),
         "rebase: 1",
-        "Samples after which the extension starts again from the estimate, with all memory carried over: 1 is the form without drift; never if left out",
+        "When the extension starts again from the estimate, with all memory carried over: after so many samples (1 is the form without drift), or as the map says; never if left out",
     ),
     optional(
         "gate",
@@ -373,6 +373,22 @@ const OBSERVER: &[Key] = &[
         NUMBERS,
         "extension: [0, 0]",
         "The dynamic extension at the start: one number for each component; if left out, zeros, or phi of a state that the plant can have where phi_left has no value at zero",
+    ),
+];
+
+const REBASE: &[Key] = &[
+    optional("samples", Shape::Number, "samples: 1", "After so many samples; the same as the number alone"),
+    optional(
+        "above",
+        Shape::Number,
+        "above: 100",
+        "When a component of the extension exceeds this, in units of phi: cheap, as it seldom does",
+    ),
+    optional(
+        "leak",
+        Shape::Number,
+        "leak: 5",
+        "All the time, at this rate in 1/s: what leaks from the extension goes into theta",
     ),
 ];
 

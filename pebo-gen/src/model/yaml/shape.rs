@@ -84,7 +84,12 @@ impl<'a> Fitter<'a> {
                 let start = self.number(&key.text, key.span)?;
                 Some(piece(start, self.fit(node, &Shape::Formula)?))
             }))),
-            (Shape::Record(keys), Content::Map(entries)) => Some(self.record(entries, keys, node.span)),
+            (Shape::Record(keys) | Shape::NumberOr(keys), Content::Map(entries)) => {
+                Some(self.record(entries, keys, node.span))
+            }
+            (Shape::NumberOr([first, ..]), Content::Scalar(text)) => {
+                Some(fields([(first.name, self.number(text, node.span)?)]))
+            }
             (Shape::Matrix, Content::Scalar(text)) => {
                 Some(matrix(node.span, 0, sequence([Some(sequence([Some(spanned(text, node.span))]))])))
             }
@@ -272,6 +277,9 @@ fn describe(shape: &Shape) -> String {
         Shape::Signal => "a formula, or a map from start times to formulas".to_owned(),
         Shape::Record(keys) => {
             format!("a map with keys of {}", listed(keys.iter().map(|key| key.name)))
+        }
+        Shape::NumberOr(keys) => {
+            format!("a number, or a map with keys of {}", listed(keys.iter().map(|key| key.name)))
         }
         Shape::Matrix => "a matrix, as a list of rows".to_owned(),
     }

@@ -16,7 +16,7 @@ const STYLES: &[(&str, &str)] = &[
     ("#009e73", "1.5 2.5"),
     ("#cc79a7", "8 2.5 1.5 2.5"),
     ("#000000", "3 1.5"),
-    ("#e69f00", "10 3"),
+    ("#c48800", "10 3"),
 ];
 
 /// Length of a legend's line, with the space behind it.
@@ -131,4 +131,27 @@ pub(super) fn time_axis(drawing: &mut Drawing, time: &Axis, y: f64, name: &Label
 
 fn style(number: usize) -> (&'static str, &'static str) {
     STYLES[number % STYLES.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::STYLES;
+
+    /// How bright a colour is (WCAG 2.2, relative luminance).
+    fn luminance(colour: &str) -> f64 {
+        let part = |at: usize| {
+            let value = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).expect("two digits")) / 255.0;
+            if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5)
+    }
+
+    #[test]
+    fn lines_stand_out_from_the_sheet() {
+        for (colour, _) in STYLES {
+            let contrast = 1.05 / (luminance(colour) + 0.05);
+            // WCAG 2.2, 1.4.11: what graphics are read by.
+            assert!(contrast >= 3.0, "{colour}: {contrast}");
+        }
+    }
 }

@@ -15,6 +15,8 @@ pub(super) struct Layout {
     pub(super) x: Range<usize>,
     pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,
+    /// The time as the observer is told it, which then is the last of the inputs.
+    pub(super) told: Option<usize>,
     pub(super) hat: Range<usize>,
     /// The states that the observer recovers, with the symbols of their estimates.
     pub(super) estimated: Vec<(Symbol, Symbol)>,
@@ -34,8 +36,9 @@ impl Layout {
         let x = add(measured.iter().map(|place| plant.x[*place].symbol).collect());
         let y = add(plant.y.iter().map(|output| output.symbol).collect());
         let u = add(plant.u.clone());
+        let told = plant.time.map(|_| u.end - 1);
         let hat = add(estimated.iter().map(|(_, hat)| *hat).collect());
-        Self { symbols, x, y, u, hat, estimated }
+        Self { symbols, x, y, u, told, hat, estimated }
     }
 
     /// The number of values.

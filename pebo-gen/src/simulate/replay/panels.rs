@@ -62,7 +62,7 @@ impl Panels {
         };
         let outputs = plant.y.iter().map(|output| output.symbol).collect();
         panels.add(plant, "Outputs", Scale::Linear, signals(outputs, layout.y.clone()));
-        panels.add(plant, "Inputs", Scale::Linear, signals(plant.u.clone(), layout.u.clone()));
+        panels.add(plant, "Inputs", Scale::Linear, signals(plant.commanded().collect(), layout.u.clone()));
         panels
     }
 

@@ -212,8 +212,11 @@ impl<'a, 'w> Machine<'a, 'w> {
             return false;
         }
         let layout = &self.replay.layout;
+        // An input holds for an interval: of one that moves on, the mean does. Residuals are of the instant.
+        layout.told.into_iter().for_each(|told| self.table[told] = t - dt / 2.0);
         let (given, hat) = self.table.split_at_mut(layout.hat.start);
         let taken = self.stepping.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
+        layout.told.into_iter().for_each(|told| self.table[told] = t);
         if taken.is_err() {
             return false;
         }

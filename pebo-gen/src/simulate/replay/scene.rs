@@ -104,7 +104,7 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
             columns: signals.wanted.iter().map(|column| log.columns()[*column].clone()).collect(),
             y: plant.y.iter().map(|output| name(output.symbol)).collect(),
             units: plant.y.iter().map(|output| plant.units.get(&output.symbol).cloned()).collect(),
-            u: plant.u.iter().map(|input| name(*input)).collect(),
+            u: plant.commanded().map(name).collect(),
         },
         signals,
         design,

@@ -21,7 +21,8 @@ use super::log::Log;
 pub(super) struct Signals {
     /// The columns that are read.
     pub(super) wanted: Vec<usize>,
-    /// From their cells to the time if rows say it, to the states that were measured, to outputs and inputs.
+    /// From their cells to the time if rows say it, to the states that were measured, to outputs and to inputs but for
+    /// the time.
     pub(super) program: Program,
     /// The period as a fraction, if rows do not say their time.
     pub(super) period: Option<(f64, f64)>,
@@ -45,7 +46,7 @@ impl Signals {
         let states: Vec<Option<Expr>> = plant.x.iter().map(|state| pass.measured(&arena.name(state.symbol))).collect();
         let measured = (0..states.len()).filter(|place| states[*place].is_some()).collect();
         formulas.extend(states.into_iter().flatten().map(Some));
-        let needed = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied());
+        let needed = plant.y.iter().map(|output| output.symbol).chain(plant.commanded());
         formulas.extend(needed.map(|signal| pass.needed(&arena.name(signal))));
         let formulas = formulas.into_iter().collect::<Option<Vec<Expr>>>()?;
         let period = match period {
@@ -55,7 +56,8 @@ impl Signals {
         let used = arena.symbols_of(&formulas);
         let used = pass.columns.symbols.iter().enumerate().filter(|(_, symbol)| used.contains(symbol));
         let (wanted, symbols): (Vec<usize>, Vec<Symbol>) = used.map(|(place, symbol)| (place, *symbol)).unzip();
-        let (before, inputs) = (formulas.len() - plant.y.len() - plant.u.len(), formulas.len() - plant.u.len());
+        let inputs = formulas.len() - plant.commanded().count();
+        let before = inputs - plant.y.len();
         let others = arena.symbols_of(&[&formulas[..before], &formulas[inputs..]].concat());
         let of_outputs = symbols.iter().map(|symbol| !others.contains(symbol)).collect();
         let program = problems.keep(program(arena, &symbols, &formulas, asked.section))?;
@@ -148,7 +150,8 @@ impl Pass<'_> {
         if let Some(entry) = &self.written.t {
             return self.formula(&entry.value);
         }
-        let declared = self.asked.model.names().any(|name| name.value == Recording::T);
+        let declared =
+            self.asked.plant.time.is_none() && self.asked.model.names().any(|name| name.value == Recording::T);
         if let Some(column) = self.column(Recording::T).filter(|_| !declared) {
             return Some(column);
         }

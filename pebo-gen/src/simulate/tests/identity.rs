@@ -11,7 +11,7 @@ use std::path::Path;
 
 use crate::analysis::Derivation;
 use crate::cas::{Expr, Symbol};
-use crate::model::Model;
+use crate::model::{Model, Rebase};
 use crate::plant::Plant;
 use crate::program::{Interpreter, lower};
 use crate::simulate::flow::Flow;
@@ -47,7 +47,7 @@ impl Loop {
     /// which no transform knows, and without baselines and what shows them.
     fn of(text: &str) -> Self {
         let mut model = read(text).unwrap();
-        model.observer.rebase = None;
+        model.observer.rebase = Rebase::default();
         if let Some(simulation) = &mut model.simulation {
             simulation.baselines.clear();
             simulation.panels.clear();
@@ -119,7 +119,7 @@ impl Loop {
         let inputs = state.end..state.end + layout.u.len();
         let signals: Vec<_> = (inputs.end..).zip(&scenario.signals).collect();
         let rates = lower(arena, &symbols, &self.at_values(&rates)).unwrap();
-        let mut flow = Flow::new(&rates, None, state.clone(), &signals, scenario.timing.slack());
+        let mut flow = Flow::new((&rates, None), None, state.clone(), &signals, scenario.timing.slack());
 
         let z_of = lower(arena, &symbols, &self.at_values(&plant.transform())).unwrap();
         let (mut z_of, n) = (Interpreter::new(&z_of), plant.phi.len());

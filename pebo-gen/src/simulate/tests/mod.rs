@@ -11,6 +11,7 @@ mod rival;
 mod run;
 mod sensor;
 mod switching;
+mod time;
 mod truth;
 
 use crate::analysis::Derivation;

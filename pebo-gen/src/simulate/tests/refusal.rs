@@ -177,3 +177,43 @@ fn a_start_without_a_left_inverse_is_refused_with_one_that_has_it() {
         resolve(&with(exchanger, "observer: {extension: [0, 0]}\n", ""), &Overrides::default()).unwrap().run().is_ok()
     );
 }
+
+/// A motor whose driver settles within a nanosecond.
+const DRIVEN: &str = "
+model: driven
+parameters: {R: 1, L: 5e-3, K: 0.1, J: 1e-3, tau: 1e-9}
+x: [i, e]
+y: [omega]
+u: [v]
+f_x: {i: (e - R*i - K*omega)/L, e: (v - e)/tau}
+f_y: {omega: K*i/J}
+simulation: {duration: 1, step: 1e-3, initial: {i: 1, e: 0, omega: 0}, control: {v: 12*sin(10*t)}}
+";
+
+#[test]
+fn a_state_that_settles_within_a_step_is_to_be_left_out_of_the_model() {
+    let derived = |text: &str| {
+        let source = crate::source::Source::new("test", text).expect("a text");
+        let derived = crate::derive(&source).expect("a plant");
+        derived.scenario(&Overrides::default()).expect("a scenario")
+    };
+    let scenario = derived(DRIVEN);
+    let failure = scenario.run().expect_err("the observer's step is too long");
+    let help = scenario.explain(&failure).help.expect("what to do");
+    assert!(help.contains("in its steady state"), "{failure}: {help}");
+    let mended = DRIVEN.replace("x: [i, e]", "x: [i]").replace("(e - R*i", "(v - R*i").replace(", e: (v - e)/tau", "");
+    let mended = mended.replace(", e: 0", "").replace(", tau: 1e-9", "");
+    let trace = derived(&mended).run().expect("it runs");
+    assert!(trace.summary().unsettled().is_empty(), "{}", trace.summary().text());
+}
+
+#[test]
+fn a_run_that_would_take_minutes_is_given_up_within_seconds() {
+    // Two million radians a second for 100 s: each takes some steps.
+    let text =
+        super::with(&super::with(SPRING, "k: 4", "k: 4e12"), "duration: 10, step: 0.01", "duration: 100, step: 1e-3");
+    let failure = resolve(&text, &Overrides::default()).expect("a scenario").run().expect_err("it is too fast");
+    let said = failure.to_string();
+    assert!(said.starts_with("the run would take minutes: 2") && said.contains("time constant of 5.00e-7 s"), "{said}");
+    assert!(failure.help().contains("in its steady state"), "{}", failure.help());
+}

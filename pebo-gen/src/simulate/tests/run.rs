@@ -264,10 +264,10 @@ fn rebasing_changes_no_estimate_of_a_relation_under_the_derivative() {
     };
     let plain = estimates("");
     assert!(plain.first() != plain.last(), "nothing was estimated");
-    for every in [1, 100] {
+    for form in ["1", "100", "{samples: 7}", "{above: 0.05}", "{leak: 5}"] {
         // Thirty thousand steps round by 2^-53 each, of which the sum is 3e-12 and the root of the sum of squares 2e-14.
-        for (one, other) in plain.iter().zip(estimates(&format!("  rebase: {every}\n"))) {
-            assert!((one - other).abs() < 1e-12, "{every}: {one} {other}");
+        for (one, other) in plain.iter().zip(estimates(&format!("  rebase: {form}\n"))) {
+            assert!((one - other).abs() < 1e-12, "{form}: {one} {other}");
         }
     }
 }

@@ -34,7 +34,7 @@ fn states(begin: &[f64], rates: impl Fn(&Arena, &[Expr], Expr) -> Vec<Expr>, sig
     let signal = course(&arena, signal);
     let program = lower(&arena, &symbols, &rates).unwrap();
     let end = 1 + begin.len();
-    let mut flow = Flow::new(&program, switched.as_ref(), 1..end, &[(end, &signal)], 1e-9);
+    let mut flow = Flow::new((&program, None), switched.as_ref(), 1..end, &[(end, &signal)], 1e-9);
     let mut table = vec![0.0; symbols.len()];
     table[1..end].copy_from_slice(begin);
     let step = |sample: u32| {

@@ -27,6 +27,8 @@ pub(crate) enum Shape {
     Kinds(&'static [Key], &'static Shape),
     /// A map with these keys.
     Record(&'static [Key]),
+    /// A map with these keys, or a number, which stands for the first of them.
+    NumberOr(&'static [Key]),
     /// A matrix of formulas: rows, or a plain list, or a single one; what these stand for depends on
     /// the size that is wanted.
     Matrix,

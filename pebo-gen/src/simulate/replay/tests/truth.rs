@@ -48,11 +48,24 @@ fn apart(trace: &Trace, csv: &str) -> f64 {
     worst
 }
 
-const RUNS: [(&str, &str, (f64, f64)); 4] = [
+/// A mass that a force pushes to and fro whose course over time is known.
+const SHAKEN: &str = "
+model: shaken
+x: [v]
+y: [q]
+f_x: {v: 3*sin(2*t) - q}
+f_y: {q: v}
+phi: [v]
+observer: {sensors: {q: 0.001}, start: {v: 5}}
+simulation: {duration: 10, step: 0.01, initial: {v: 2, q: 1}}
+";
+
+const RUNS: [(&str, &str, (f64, f64)); 5] = [
     ("cuk", CUK, (0.05, 1e-5)),
     ("motor", MOTOR, (0.1, 1e-5)),
     ("battery", BATTERY, (2000.0, 1.0)),
     ("drive", DRIVE, (1.0, 1e-3)),
+    ("shaken", SHAKEN, (10.0, 0.01)),
 ];
 
 /// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two instants
