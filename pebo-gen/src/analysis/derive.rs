@@ -268,13 +268,14 @@ fn without_others(
     if is_given || plant.arena.budget().is_exhausted() {
         return given;
     }
-    let affine = |_: &mut Vec<Diagnostic>| regression::of_affine_rates(plant, domain, cascade, inverse);
-    let separable = |said: &mut Vec<Diagnostic>| regression::of_separable_rates(plant, domain, cascade, inverse, said);
-    let ways: [&dyn Fn(&mut Vec<Diagnostic>) -> Option<Claim<Regression>>; 2] = [&affine, &separable];
-    for way in ways {
+    for affine in [true, false] {
         let mut said = Vec::new();
-        let both =
-            way(&mut said).and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
+        let other = if affine {
+            regression::of_affine_rates(plant, domain, cascade, inverse)
+        } else {
+            regression::of_separable_rates(plant, domain, cascade, inverse, &mut said)
+        };
+        let both = other.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
         if let Some(both) = both {
             found.truncate(before);
             found.extend(said);

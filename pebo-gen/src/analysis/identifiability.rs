@@ -192,9 +192,10 @@ fn where_analytic(
     let Some(direction) = unseen.directions.first().cloned() else {
         return open(plant, &Obstacle::NoWitness, found).into();
     };
-    // What is constant along every motion and holds what moves may be another constant elsewhere: the quotient of v and
-    // |v|.
-    if cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
+    // What is constant along every motion and holds what moves may be another constant elsewhere if it can bend: the quotient
+    // of v and |v|.
+    let bends = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
+    if bends && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
         return open(plant, &Obstacle::NoWitness, found).into();
     }
     // What does not identify functions of theta may identify theta.

@@ -121,6 +121,18 @@ fn is_separable(plant: &Plant, domain: &Domain, rate: Expr) -> bool {
     matches!(separation::separate(plant, domain, &[rate]), Ok(Some(_)))
 }
 
+/// A rate that is not affine: its output, itself, its place, and why it was not decided.
+type Curved = (usize, Expr, Span, Option<Obstacle>);
+
+/// Leaves the rates that are no sums of functions of theta either: it is these that stand in the way.
+fn formless(plant: &Plant, domain: &Domain, in_z: &BTreeMap<usize, Expr>, curved: &mut Vec<Curved>) {
+    let has_form = |row: &Curved| in_z.get(&row.0).is_some_and(|rate| is_separable(plant, domain, *rate));
+    let others: Vec<Curved> = curved.iter().filter(|row| !has_form(row)).cloned().collect();
+    if !others.is_empty() {
+        *curved = others;
+    }
+}
+
 /// Proves or refutes the regression.
 pub(super) fn prove(
     plant: &Plant,
@@ -189,13 +201,8 @@ pub(super) fn prove(
                 if let Some(claim) = claim {
                     return claim;
                 }
-                // It is the others that have no form.
-                let usable = |row: &(usize, Expr, Span, Option<Obstacle>)| {
-                    cascade.lambda.is_none() && in_z.get(&row.0).is_some_and(|rate| is_separable(plant, domain, *rate))
-                };
-                let usable: BTreeSet<usize> = obstacles.iter().filter(|row| usable(row)).map(|row| row.0).collect();
-                if usable.len() < obstacles.len() {
-                    obstacles.retain(|row| !usable.contains(&row.0));
+                if cascade.lambda.is_none() {
+                    formless(plant, domain, &in_z, &mut obstacles);
                 }
             }
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),

@@ -112,7 +112,7 @@ impl Domain {
 
     /// The domain without what is assumed of radicands as they are written, which would be kept for it: that a root has a
     /// value says nothing of where it bends.
-    fn but_for_radicands(&self, arena: &Arena, exprs: &[Expr]) -> Self {
+    pub(crate) fn but_for_radicands(&self, arena: &Arena, exprs: &[Expr]) -> Self {
         let is_root = |(base, power): &(Expr, Rational)| (!power.is_integer()).then_some(*base);
         let radicands: Vec<Expr> = arena
             .postorder(exprs)
@@ -216,7 +216,7 @@ impl Arena {
     }
 
     /// The expressions that hold roots or logarithms: what these make together may be a magnitude.
-    fn branched(&self, exprs: &[Expr]) -> Vec<Expr> {
+    pub(crate) fn branched(&self, exprs: &[Expr]) -> Vec<Expr> {
         let is_one = |expr: Expr| match self.node(expr) {
             Node::Product(product) => product.factors.iter().any(|(_, power)| !power.is_integer()),
             Node::Call(function, _) => matches!(function, Function::Log | Function::Acosh),

@@ -81,7 +81,8 @@ pub(super) fn read(
             let constants = body
                 .strip_prefix("parameters.check()?;letmodel=Self::new(parameters);letconstants=[")
                 .and_then(|rest| rest.strip_suffix("];Fault::of_constants(constants)?;Ok(model)"));
-            let are_fields = |list: &str| list.split(',').all(|value| value.starts_with("model."));
+            let are_fields =
+                |list: &str| list.trim_end_matches(',').split(',').all(|value| value.starts_with("model."));
             if body != "parameters.check()?;Ok(Self::new(parameters))" && !constants.is_some_and(are_fields) {
                 return Err(unreadable(&function.block));
             }

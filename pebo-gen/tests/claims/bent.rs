@@ -116,4 +116,14 @@ pub(super) const BENT: &[Row] = &[
          f_y: {r: p*sqrt(v - 2*sqrt(v - 1)) + s*(1 - sqrt(v - 1))}\nphi: [p, s]",
         Undecided(Code::IdentifiabilityUndecided),
     ),
+    (
+        "two unknowns, told apart once a difference of outputs has had both signs",
+        "x: [p, s]\ny: [q, r, m]\nu: [v]\nf_x: {p: 0, s: 0}\nf_y: {q: v, r: 1, m: p*sqrt((q - r)^2) + s*(q - r)}\nphi: [p, s]",
+        Accepted("dynamic linear excitation"),
+    ),
+    (
+        "a direction that is constant along every motion",
+        "x: [p, s]\ny: [q, w, r]\nf_x: {p: 0, s: 0}\nf_y: {q: w, w: -q, r: p + s*(q^2 + w^2)}\nphi: [p, s]",
+        Rejected(Code::NeverIdentifiable),
+    ),
 ];

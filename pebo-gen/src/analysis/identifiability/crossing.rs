@@ -16,6 +16,7 @@ use crate::cas::field::{Field, Obstacle};
 use crate::cas::manifold::Manifold;
 use crate::cas::parts::{Part, Side};
 use crate::cas::rank::full_rank_at;
+use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
@@ -123,7 +124,7 @@ fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&Seen<'_>; 2], unknown
 
 /// Formulas as they are on a part, which have values at its border too.
 fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
-    let field = Field::on(arena, domain, exprs)?;
+    let field = Field::on(arena, &domain.but_for_radicands(arena, exprs), exprs)?;
     exprs.iter().map(|expr| Ok(field.show(&field.fraction(*expr)?))).collect()
 }
 
@@ -131,19 +132,20 @@ fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Ob
 fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
     let arena = &plant.arena;
     let assumed = plant.assumed();
-    let mut facts = Facts::new();
-    for (fact, relation) in part.facts.iter() {
-        // That the border is not met is what makes it one, unless the author says so.
-        let is_border = fact == border || fact == arena.neg(border);
-        let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
-        if is_own || !is_border || relation == Relation::NonNegative {
-            facts.assume(fact, relation);
-        }
-    }
     let equations: Vec<Expr> = assumed.manifold.equations().iter().copied().chain([border]).collect();
     let symbols: BTreeSet<Symbol> = arena.symbols_of(&equations);
     let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let signals = symbols.difference(&parameters).copied().collect();
-    let manifold = Manifold::new(arena, &facts, equations, vec![signals, parameters]);
+    let manifold = Manifold::new(arena, &assumed.facts, equations, vec![signals, parameters]);
+    let met = Domain { manifold: manifold.clone(), ..assumed.clone() };
+    let mut facts = Facts::new();
+    for (fact, relation) in part.facts.iter() {
+        // That the border is not met is what makes it one, unless the author says so.
+        let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
+        let is_border = relation != Relation::NonNegative && decide(arena, fact, &met).is_zero();
+        if is_own || !is_border {
+            facts.assume(fact, relation);
+        }
+    }
     Domain { facts, manifold, ..part.clone() }
 }
