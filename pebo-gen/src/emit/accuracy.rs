@@ -6,6 +6,7 @@
 //! the rounding of the result. Exact values are enclosures. Holds after: a function that loses more than
 //! [`MOST`] units, or is not finite where the exact value exists, is found out at the places looked at.
 
+mod cause;
 mod core;
 mod exact;
 mod moved;
@@ -26,6 +27,7 @@ use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Program, Staged};
+pub use cause::Cause;
 use exact::{MOST, exact};
 use moved::BITS;
 use own::Own;
@@ -71,20 +73,6 @@ pub struct Worst {
     pub place: String,
     /// Whose loss it is.
     pub cause: Cause,
-}
-
-/// Whose loss of digits it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
-#[non_exhaustive]
-pub enum Cause {
-    /// The emitted form's.
-    #[default]
-    Form,
-    /// The author's: a part of the model's own formulas loses digits there, and these lose as much.
-    Model,
-    /// Nobody's: the error is that of rounding what the value is elsewhere.
-    Small,
 }
 
 impl Accuracy {

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use crate::analysis::design::Cascade;
 use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
-use crate::cas::facts::{Facts, Relation};
+use crate::cas::facts::Facts;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::manifold::Manifold;
 use crate::cas::parts::{Part, Side};
@@ -142,7 +142,7 @@ fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
     for (fact, relation) in part.facts.iter() {
         // That the border is not met is what makes it one, unless the author says so.
         let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
-        let is_border = relation != Relation::NonNegative && decide(arena, fact, &met).is_zero();
+        let is_border = decide(arena, fact, &met).is_zero();
         if is_own || !is_border {
             facts.assume(fact, relation);
         }

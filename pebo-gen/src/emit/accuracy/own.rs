@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::definition::{Argument, Definitions};
 use super::super::literal::Scalar;
-use super::Cause;
+use super::cause::Cause;
 use super::core::cores;
 use super::exact::{MOST, exact};
 use super::places::Place;

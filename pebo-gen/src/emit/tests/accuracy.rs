@@ -70,7 +70,8 @@ fn a_loss_of_the_author_hides_no_other() {
     let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "v2", "v4"];
     let refused = accuracy(Sketch { x, assume, h, ..CUK }, Scalar::F64).unwrap_err();
     let EmitError::Inaccurate { place, .. } = &refused else { panic!("{refused}") };
-    assert!(place.contains("v4 = 6.1016"), "{place}");
+    // Beside v4 = 0, be it alone or with all others.
+    assert!(["v4 = 6.1016", "v4 = 9.8726"].iter().any(|small| place.contains(small)), "{place}");
 }
 
 #[test]

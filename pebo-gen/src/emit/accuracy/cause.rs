@@ -1,0 +1,15 @@
+//! Who loses digits: the emitted form, the author, or nobody.
+
+/// Whose loss of digits it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum Cause {
+    /// The emitted form's.
+    #[default]
+    Form,
+    /// The author's: a part of the model's own formulas loses digits there, and these lose as much.
+    Model,
+    /// Nobody's: the error is that of rounding what the value is elsewhere.
+    Small,
+}
