@@ -95,7 +95,7 @@ impl Rates {
             |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
         let slopes: Vec<f64> = slopes.evaluate(of).collect();
         let count = state.len();
-        // By itself, or to and fro with another.
+        // By itself, or together with another, back and forth.
         let rate = |row: usize| {
             (0..count)
                 .map(|other| (slopes[row * count + other] * slopes[other * count + row]).abs().sqrt())

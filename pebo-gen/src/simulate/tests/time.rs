@@ -4,7 +4,7 @@ use crate::simulate::Overrides;
 
 use super::run;
 
-/// A mass that a known force pushes to and fro; its position is measured.
+/// A mass that a known force pushes back and forth; its position is measured.
 const SHAKEN: &str = "
 model: shaken
 x: [v]

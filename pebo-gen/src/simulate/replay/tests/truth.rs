@@ -48,7 +48,7 @@ fn apart(trace: &Trace, csv: &str) -> f64 {
     worst
 }
 
-/// A mass that a force pushes to and fro whose course over time is known.
+/// A mass that a force pushes back and forth whose course over time is known.
 const SHAKEN: &str = "
 model: shaken
 x: [v]
