@@ -138,7 +138,7 @@ impl Derived {
     }
 
     /// What the emitted code loses because the model's own formulas lose it, said of the model's name.
-    pub(crate) fn cautions(&self, emitted: &Emitted, scalar: Scalar) -> Vec<Diagnostic> {
+    pub fn cautions(&self, emitted: &Emitted, scalar: Scalar) -> Vec<Diagnostic> {
         let losses = emitted.accuracy.cautions(scalar).into_iter().map(|(function, worst)| {
             let (scalar, place) = (scalar.name(), &worst.place);
             let how_much = if worst.is_finite() {

@@ -77,7 +77,7 @@ pub struct Worst {
 
 impl Accuracy {
     /// What the author's formulas lose in this scalar wherever they are computed, worst first.
-    pub(crate) fn cautions(&self, scalar: Scalar) -> Vec<(&'static str, &Worst)> {
+    pub fn cautions(&self, scalar: Scalar) -> Vec<(&'static str, &Worst)> {
         let mut found: Vec<(&'static str, &Worst)> =
             self.of(scalar).filter(|(_, worst)| worst.is_loss() && worst.cause == Cause::Model).collect();
         found.sort_by(|(_, a), (_, b)| b.units.total_cmp(&a.units));
@@ -92,7 +92,7 @@ impl Accuracy {
 
 impl Worst {
     /// Whether the value itself is a number there.
-    pub(crate) fn is_finite(&self) -> bool {
+    pub fn is_finite(&self) -> bool {
         self.units.is_finite()
     }
 

@@ -19,6 +19,7 @@ mod observer;
 mod recording;
 pub mod rust;
 mod spanned;
+#[cfg(feature = "yaml")]
 mod time;
 mod written;
 #[cfg(feature = "yaml")]

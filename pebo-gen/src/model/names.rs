@@ -1,8 +1,10 @@
 //! Names: which texts are names, which names are taken, and what to say about unknown ones.
 
 use super::formula::greek;
-use super::time::TIME;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
+
+/// The name of time in formulas.
+pub(super) const TIME: &str = "t";
 
 /// Whether `text` can be declared as a name; `simulated` if there is a simulation or a recording, in which `t` is time.
 pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagnostic> {

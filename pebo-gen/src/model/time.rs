@@ -6,16 +6,13 @@
 
 use super::class::Class;
 use super::formula::Formula;
+use super::names::TIME;
 use super::spanned::{Entry, Spanned};
 use super::written::Model;
-
-/// The name of time in formulas.
-pub(super) const TIME: &str = "t";
 
 /// Its unit.
 const SECOND: &str = "s";
 
-#[cfg(feature = "yaml")]
 impl Model {
     /// The model with time among its inputs, where its formulas use it.
     #[must_use]
