@@ -8,9 +8,7 @@ use crate::counted::arm::TUNING;
 const M1: f32 = 0.8;
 const L1: f32 = 0.5;
 const L2: f32 = 0.35;
-const M1_G: f32 = M1 * 9.81;
-const M1_L2_G: f32 = M1_G * L2;
-const INV_L1: f32 = 1.0 / L1;
+const M1_L1_G: f32 = M1 * L1 * 9.81;
 const INV_L1_L2: f32 = 1.0 / (L1 * L2);
 const INV_M1_L1: f32 = 1.0 / (M1 * L1);
 const INV_M1_L1_L2: f32 = 1.0 / (M1 * L1 * L2);
@@ -22,11 +20,12 @@ struct Posture {
     first: [f32; 2],
     /// Of the sum of both.
     both: [f32; 2],
-    /// The torques of gravity.
-    gravity: [f32; 2],
-    /// The columns of T but for `1/sin(y2)`, by rows of z.
-    turned: [[f32; 2]; 2],
-    inv_sine: f32,
+    /// The first link, and the first coordinate of the second.
+    link: [f32; 2],
+    reach: f32,
+    /// What gravity leaves of both torques.
+    weight: f32,
+    scale: f32,
     /// By rows.
     regressor: [[f32; 2]; 2],
 }
@@ -35,9 +34,10 @@ impl Posture {
     const NONE: Self = Self {
         first: [0.0; 2],
         both: [0.0; 2],
-        gravity: [0.0; 2],
-        turned: [[0.0; 2]; 2],
-        inv_sine: 0.0,
+        link: [0.0; 2],
+        reach: 0.0,
+        weight: 0.0,
+        scale: 0.0,
         regressor: [[0.0; 2]; 2],
     };
 
@@ -45,15 +45,18 @@ impl Posture {
         let (sin_1, cos_1) = Real::sin_cos(y1);
         let (sin_2, cos_2) = Real::sin_cos(y2);
         let both = [cos_1 * cos_2 - sin_1 * sin_2, sin_1 * cos_2 + cos_1 * sin_2];
+        let link = [cos_1 * L1, sin_1 * L1];
+        let reach = both[0] * L2;
         // From the shoulder to the tip.
-        let tip = [both[0] * L2 + cos_1 * L1, both[1] * L2 + sin_1 * L1];
+        let tip = [reach + link[0], both[1] * L2 + link[1]];
         let inv_sine = 1.0 / sin_2;
         Self {
             first: [cos_1, sin_1],
             both,
-            gravity: [tip[0] * M1_G, both[0] * M1_L2_G],
-            turned: [[both[0] * INV_L1, -(tip[0] * INV_L1_L2)], [both[1] * INV_L1, -(tip[1] * INV_L1_L2)]],
-            inv_sine,
+            link,
+            reach,
+            weight: sin_2 * M1_L1_G,
+            scale: INV_L1_L2 * inv_sine,
             regressor: [
                 [INV_M1_L1 * both[0] * inv_sine, INV_M1_L1 * both[1] * inv_sine],
                 [-(INV_M1_L1_L2 * tip[0] * inv_sine), -(INV_M1_L1_L2 * tip[1] * inv_sine)],
@@ -62,9 +65,10 @@ impl Posture {
     }
 
     fn h(&self, u: [f32; 2]) -> [f32; 2] {
-        let [a, b] = [u[0] - self.gravity[0], u[1] - self.gravity[1]];
-        let [first, second] = self.turned;
-        [(a * first[0] + b * first[1]) * self.inv_sine, (a * second[0] + b * second[1]) * self.inv_sine]
+        let [_, elbow] = u;
+        let rest = u[0] - elbow;
+        let upright = L2 * (rest * self.both[1] - self.weight) - elbow * self.link[1];
+        [self.scale * (rest * self.reach - elbow * self.link[0]), self.scale * upright]
     }
 
     fn phi_0(&self, chi: [f32; 2]) -> [f32; 2] {

@@ -10,7 +10,7 @@ const INV_C4: f32 = 1.0 / 22.9e-6;
 const G: f32 = 0.0447;
 const E: f32 = 12.0;
 const G_OVER_C4: f32 = G * INV_C4;
-const L3_G_OVER_C4: f32 = G_OVER_C4 * 10e-3;
+const L3_G_OVER_C4: f32 = G * 10e-3 * INV_C4;
 
 /// The observer.
 #[derive(Clone, Copy)]
@@ -57,7 +57,7 @@ impl ByHand {
         let [start, end] = self.extension.integrate(h_start, h_end, dt);
 
         let phi_0 = |chi: [f32; 2], [v2, i3]: [f32; 2]| {
-            [(chi[0] + d * (i3 - chi[0])) * INV_C2, -((chi[1] + v2 * d) * INV_L3 + i3 * G_OVER_C4)]
+            [(i3 * d + chi[0] * (1.0 - d)) * INV_C2, -((chi[1] + v2 * d) * INV_L3 + i3 * G_OVER_C4)]
         };
         let (known_start, known_end) = (phi_0(start, before), phi_0(end, y));
         let phi_1 = [[(1.0 - d) * INV_C2, 0.0], [0.0, -INV_L3]];

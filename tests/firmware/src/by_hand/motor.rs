@@ -1,4 +1,5 @@
-//! The observer of the motor with currents and speed measured.
+//! The observer of the motor with currents and speed measured. What it needs of a sample is kept for the interval that
+//! begins there.
 
 use pebo_runtime::Real;
 
@@ -15,12 +16,55 @@ const INV_J: f32 = 1.0 / 60e-6;
 const INV_N_P: f32 = 1.0 / N_P;
 const N_P_OVER_L: f32 = N_P * INV_L;
 const N_P_OVER_J: f32 = N_P * INV_J;
+const L_N_P: f32 = L * N_P;
+const F_OVER_J: f32 = F * INV_J;
+const TAU_OVER_J: f32 = TAU * INV_J;
+
+/// A sample of currents and speed, with what depends on it alone.
+#[derive(Clone, Copy)]
+struct Sample {
+    y: [f32; 3],
+    /// The voltages that the resistance and the turning coils take.
+    taken: [f32; 2],
+    /// What friction and load take of the acceleration.
+    braked: f32,
+}
+
+impl Sample {
+    const NONE: Self = Self { y: [0.0; 3], taken: [0.0; 2], braked: 0.0 };
+
+    fn new(y: [f32; 3]) -> Self {
+        let [i1, i2, omega] = y;
+        let turning = omega * L_N_P;
+        let taken = [i1 * R + turning * i2, turning * i1 - i2 * R];
+        Self { y, taken, braked: omega * F_OVER_J + TAU_OVER_J }
+    }
+
+    fn h(&self, [v1, v2]: [f32; 2]) -> [f32; 2] {
+        [v1 - self.y[0] * R, v2 - self.y[1] * R]
+    }
+
+    fn phi_1(&self) -> [[f32; 2]; 3] {
+        let [i1, i2, omega] = self.y;
+        let coupling = omega * N_P_OVER_L;
+        [[0.0, coupling], [-coupling, 0.0], [i2 * N_P_OVER_J, -(i1 * N_P_OVER_J)]]
+    }
+
+    fn phi_0(&self, [chi1, chi2]: [f32; 2], [v1, v2]: [f32; 2]) -> [f32; 3] {
+        let [[_, coupling], _, [t2, minus_t3]] = self.phi_1();
+        [
+            chi2 * coupling + INV_L * (v1 - self.taken[0]),
+            INV_L * (v2 + self.taken[1]) - chi1 * coupling,
+            chi1 * t2 + chi2 * minus_t3 - self.braked,
+        ]
+    }
+}
 
 /// The observer.
 #[derive(Clone, Copy)]
 pub struct ByHand {
     sampled: bool,
-    y: [f32; 3],
+    sample: Sample,
     extension: Extension,
     regression: Regression<3>,
 }
@@ -28,7 +72,7 @@ pub struct ByHand {
 impl ByHand {
     /// Before the first sample.
     pub fn new() -> Self {
-        Self { sampled: false, y: [0.0; 3], extension: Extension::START, regression: Regression::START }
+        Self { sampled: false, sample: Sample::NONE, extension: Extension::START, regression: Regression::START }
     }
 
     /// One sample: outputs at the end of an interval, the voltages during it, its length. None for a bad sample.
@@ -37,12 +81,13 @@ impl ByHand {
         if !(blemish == 0.0 && dt > 0.0) {
             return None;
         }
+        let sample = Sample::new(y);
         let mut next = *self;
         if next.sampled {
-            next.advance(y, u, dt);
+            next.advance(&sample, u, dt);
         }
         next.sampled = true;
-        next.y = y;
+        next.sample = sample;
         if next.extension.blemish() + next.regression.blemish() != 0.0 {
             return None;
         }
@@ -55,30 +100,16 @@ impl ByHand {
         Some(estimate)
     }
 
-    fn advance(&mut self, y: [f32; 3], [v1, v2]: [f32; 2], dt: f32) {
-        let before = self.y;
-        let h = |[i1, i2, _]: [f32; 3]| [v1 - i1 * R, v2 - i2 * R];
-        let (h_start, h_end) = (h(before), h(y));
-        let [start, end] = self.extension.integrate(h_start, h_end, dt);
+    fn advance(&mut self, sample: &Sample, u: [f32; 2], dt: f32) {
+        let before = self.sample;
+        let [start, end] = self.extension.integrate(before.h(u), sample.h(u), dt);
 
-        let phi_0 = |[chi1, chi2]: [f32; 2], h: [f32; 2], [i1, i2, omega]: [f32; 3]| {
-            let electrical = omega * N_P;
-            [
-                (h[0] + electrical * (chi2 - i2 * L)) * INV_L,
-                (h[1] + electrical * (i1 * L - chi1)) * INV_L,
-                ((i2 * chi1 - i1 * chi2) * N_P - (omega * F + TAU)) * INV_J,
-            ]
-        };
-        let phi_1 = |[i1, i2, omega]: [f32; 3]| {
-            let coupling = omega * N_P_OVER_L;
-            [[0.0, coupling], [-coupling, 0.0], [i2 * N_P_OVER_J, -(i1 * N_P_OVER_J)]]
-        };
-        let (known_start, known_end) = (phi_0(start, h_start, before), phi_0(end, h_end, y));
-        let (factor_start, factor_end) = (phi_1(before), phi_1(y));
+        let (known_start, known_end) = (before.phi_0(start, u), sample.phi_0(end, u));
+        let (factor_start, factor_end) = (before.phi_1(), sample.phi_1());
         let regression = &mut self.regression;
         regression.use_sample_time(TUNING.alpha, dt);
         for row in 0..3 {
-            let rate = (y[row] - before[row]) / dt;
+            let rate = (sample.y[row] - before.y[row]) / dt;
             let known = [rate - known_start[row], rate - known_end[row]];
             regression.filter(row, known, [factor_start[row], factor_end[row]]);
         }
