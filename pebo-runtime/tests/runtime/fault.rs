@@ -173,3 +173,12 @@ proptest! {
         survives::<f32, CaseTwoGeneralised<f32>>(&samples)?;
     }
 }
+
+#[test]
+fn a_constant_that_is_not_finite_is_a_fault_with_its_place() {
+    // 1/(I1 I2 - I12^2) of moments of inertia of 1e-20 kg m^2: the product has no digits left in f32, and all in f64.
+    let divided = 1.0 / (2e-20_f32 * 3e-20 - 1e-20 * 1e-20);
+    assert_eq!(Fault::of_constants([1.0, divided]), Err(Fault::Constant { index: 1 }));
+    assert_eq!(Fault::of_constants([f32::NAN, divided]), Err(Fault::Constant { index: 0 }));
+    assert_eq!(Fault::of_constants([1.0, 1.0 / (2e-20_f64 * 3e-20 - 1e-20 * 1e-20)]), Ok(()));
+}
