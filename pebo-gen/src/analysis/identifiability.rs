@@ -71,7 +71,7 @@ fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Ex
         let symbols = rate.map(|rate| arena.symbols_of(&[*rate])).unwrap_or_default();
         open.extend(symbols.into_iter().filter(|symbol| reached.insert(*symbol)));
     }
-    let needs_all = plant.u.iter().any(|input| reached.contains(input));
+    let needs_all = plant.commanded().any(|input| reached.contains(&input));
     let own = rates.into_iter().filter(|(symbol, _)| needs_all || reached.contains(symbol)).map(|(_, rate)| rate);
     own.chain(lambda).collect()
 }

@@ -1,8 +1,7 @@
 //! Time in the formulas of a plant: a known input that nobody has to declare.
 //!
 //! In: a model whose declarations are consistent. Out: the same; where its formulas use `t` and no declaration has that
-//! name, `t` is the last of its inputs, in seconds. Inputs are arbitrary known signals, so what is proved of the plant is
-//! proved of time too.
+//! name, `t` is the last of its inputs, in seconds, and the only one whose rate is known: 1.
 
 use super::class::Class;
 use super::formula::Formula;

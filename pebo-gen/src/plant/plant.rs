@@ -227,11 +227,11 @@ impl Plant {
         extension.into_iter().any(|own| *own == symbol)
     }
 
-    /// The time derivatives of the states and outputs that have one.
+    /// The time derivatives of the states, of the outputs that have one, and of the time.
     pub fn rates(&self) -> BTreeMap<Symbol, Expr> {
         let states = self.x.iter().map(|s| (s.symbol, s.rate.expr));
         let outputs = self.y.iter().filter_map(|o| Some((o.symbol, o.rate?.expr)));
-        states.chain(outputs).collect()
+        states.chain(outputs).chain(self.time.map(|time| (time, self.arena.one()))).collect()
     }
 
     /// `d(phi)/dx f_x + d(phi)/dy f_y`, a component each.

@@ -76,7 +76,8 @@ impl Plant {
             problems.all(model.identities.iter().map(|f| within(f, &with(&[&x, &y, &u]), "an identity in x, y and u")));
         values::confine(&arena, &outputs, &with(&[&x, &y, &u]), &mut problems);
         identities.extend(values::identities(&arena, &outputs));
-        values::move_along(&arena, &states, &mut outputs, &constants);
+        let time = model.time.and(u.last().copied());
+        values::move_along(&arena, &states, &mut outputs, time, &constants);
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
             super::period::positive(&arena, &domain, period)?;
@@ -114,7 +115,7 @@ impl Plant {
             parameters,
             x: states,
             y: outputs,
-            time: model.time.and(u.last().copied()),
+            time,
             u,
             w,
             origin,

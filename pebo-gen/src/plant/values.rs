@@ -42,9 +42,16 @@ pub(super) fn identities(arena: &Arena, outputs: &[Output]) -> Vec<Formula> {
 }
 
 /// Gives outputs without a rate that of their value along the plant, where all that the value depends on has one.
-pub(super) fn move_along(arena: &Arena, states: &[State], outputs: &mut [Output], constants: &BTreeSet<Symbol>) {
+pub(super) fn move_along(
+    arena: &Arena,
+    states: &[State],
+    outputs: &mut [Output],
+    time: Option<Symbol>,
+    constants: &BTreeSet<Symbol>,
+) {
     let mut rates: BTreeMap<Symbol, Expr> = states.iter().map(|state| (state.symbol, state.rate.expr)).collect();
     rates.extend(outputs.iter().filter_map(|output| Some((output.symbol, output.rate?.expr))));
+    rates.extend(time.map(|time| (time, arena.one())));
     // A value may depend on outputs that are themselves given by their value: each pass gives at least one a rate.
     loop {
         let known = |symbol: &Symbol| rates.contains_key(symbol) || constants.contains(symbol);

@@ -47,9 +47,7 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
 fn told(plant: &Plant, time: Symbol) -> Vec<String> {
     let name = plant.arena.name(time);
     vec![
-        format!(
-            "`{name}` is not declared: it is a known input, the time in s, and what is proved holds for every course of it"
-        ),
+        format!("`{name}` is not declared: it is a known input, the time in s"),
         "the application hands it over with the other inputs, at the middle of each step".to_owned(),
     ]
 }

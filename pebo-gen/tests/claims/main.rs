@@ -8,6 +8,7 @@ mod refusals;
 mod relations;
 mod shapes;
 mod table;
+mod timed;
 
 use pebo_gen::report::summary;
 use pebo_gen::source::Source;

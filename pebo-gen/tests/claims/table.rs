@@ -8,6 +8,7 @@ use super::bent::BENT;
 use super::derived;
 use super::implicit::IMPLICIT;
 use super::relations::RELATIONS;
+use super::timed::TIMED;
 
 /// What is expected of a plant: every claim proved, or the code of the first refusal.
 pub(super) enum Answer {
@@ -521,7 +522,7 @@ const TABLE: &[Row] = &[
 
 /// All of them.
 pub(super) fn rows() -> impl Iterator<Item = &'static Row> {
-    TABLE.iter().chain(BENT).chain(IMPLICIT).chain(RELATIONS)
+    TABLE.iter().chain(BENT).chain(IMPLICIT).chain(RELATIONS).chain(TIMED)
 }
 
 #[test]

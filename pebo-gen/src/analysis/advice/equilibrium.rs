@@ -73,14 +73,14 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     if let Some(output) = plant.y.iter().find(|output| output.rate.is_none() && output.value.is_none()) {
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
-    let rates = plant.rates();
+    let rates = resting(plant);
     if let Some(time) = plant.time
         && rates.values().any(|rate| arena.depends_on(*rate, &BTreeSet::from([time])))
     {
         return Ok(Equilibrium::Undecided(format!("the rates depend on the time `{}`", arena.name(time))));
     }
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
-    let inputs = plant.u.iter().chain(&plant.w).copied().collect();
+    let inputs = plant.commanded().chain(plant.w.iter().copied()).collect();
     let mut doubtful = None;
     let mut rests = |values: &BTreeMap<Symbol, Expr>| match checked(plant, domain, values) {
         Ok(there) => Some((values.clone(), there)),
@@ -116,7 +116,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     };
     let still = flow(plant, cascade).into_iter().all(|rate| vanishes(arena, rate, &values, &there));
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
-    let order = order.chain(plant.u.iter().copied()).chain(plant.w.iter().copied());
+    let order = order.chain(plant.commanded()).chain(plant.w.iter().copied());
     let orientation = Orientation::new(arena, &there);
     let shown = |value: Expr| match operations(arena, value) {
         // Its normal form would be longer than anybody reads, and take longer than all claims.
@@ -127,6 +127,13 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
 }
 
+/// The rates of all that can rest: time does not.
+fn resting(plant: &Plant) -> BTreeMap<Symbol, Expr> {
+    let mut rates = plant.rates();
+    rates.retain(|symbol, _| plant.time != Some(*symbol));
+    rates
+}
+
 /// The domain of the symbols that stay free, with the proof that every rate and identity vanishes there; else the
 /// reason.
 fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
@@ -134,7 +141,7 @@ fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> R
     let there = domain
         .restricted(arena, values)
         .ok_or_else(|| "no rest point that was looked at lies within the assumptions and conditions".to_owned())?;
-    match plant.rates().iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
+    match resting(plant).iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
         None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
             Err("the identities were not shown to hold where the plant rests".to_owned())

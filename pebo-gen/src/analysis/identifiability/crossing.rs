@@ -78,7 +78,7 @@ fn passes(
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
     let arena = &plant.arena;
-    let inputs: BTreeSet<Symbol> = plant.u.iter().copied().collect();
+    let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     if arena.symbols_of(&[border]).difference(&parameters).all(|symbol| inputs.contains(symbol)) {
         return Ok(jumps(arena, &inputs, pair, unknowns));

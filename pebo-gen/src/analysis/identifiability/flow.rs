@@ -61,7 +61,7 @@ impl Flow {
             }
         }
         let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
-        let free = plant.u.iter().copied().chain(plant.w.iter().copied()).chain(unruled);
+        let free = plant.commanded().chain(plant.w.iter().copied()).chain(unruled);
         let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
         for rate in rates.values_mut() {
             *rate = arena.substitute(*rate, equal);

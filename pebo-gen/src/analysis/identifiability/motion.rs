@@ -42,7 +42,7 @@ const MOST_VALUES: usize = 8;
 pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: &Regression) -> (Motion, Vec<Expr>) {
     let arena = &plant.arena;
     let question = Question { plant, domain, cascade, regression, unknowns: regression.eta.len() };
-    let inputs: BTreeSet<Symbol> = plant.u.iter().copied().collect();
+    let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let held = question.shown(&Restriction { held: inputs.clone(), ..Restriction::default() });
     let by_itself = held.as_ref().ok().map(|shown| shown.hidden.is_empty()).or(inputs.is_empty().then_some(true));
     // Where all signals rest, so does z, and with it what a plain extension integrates.
@@ -63,7 +63,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
     };
     match by_itself {
         Some(true) => note(Place::Rest, &rest),
-        Some(false) | None => note(Place::Constant(plant.u.clone()), &held),
+        Some(false) | None => note(Place::Constant(plant.commanded().collect()), &held),
     }
     let free;
     let shown = if let Some(shown) = [&rest, &held].into_iter().flatten().find(|shown| shown.hidden.is_empty()) {
@@ -80,7 +80,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
     let (constants, parameters) = (special.clone().unwrap_or_default(), special.is_some());
     let parts = held.as_ref().map_or(usize::MAX, |shown| arena.postorder(&shown.stack.concat()).len());
     let mut everywhere = false;
-    if parts <= MOST_PARTS && plant.u.len() <= MOST_INPUTS {
+    if parts <= MOST_PARTS && inputs.len() <= MOST_INPUTS {
         let stack = held.as_ref().map_or(&[][..], |shown| shown.stack.as_slice());
         let mut tried: Vec<(Symbol, Expr)> = Vec::new();
         for (place, restriction) in question.candidates(by_itself == Some(true), stack) {
@@ -96,8 +96,8 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             note(place, &shown);
         }
         if by_itself == Some(true) {
-            for input in plant.u.iter().filter(|input| !tried.contains(&(**input, arena.zero()))) {
-                let alone = plant.u.len() == 1;
+            for input in inputs.iter().filter(|input| !tried.contains(&(**input, arena.zero()))) {
+                let alone = inputs.len() == 1;
                 let place = if alone { Place::Value } else { Place::Steady };
                 note(place(*input, arena.zero()), &question.steady(*input, arena.zero()));
             }
@@ -126,7 +126,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
 impl Question<'_> {
     /// Motions that are worth a look.
     fn candidates(&self, by_itself: bool, stack: &[Vec<Expr>]) -> Vec<(Place, Restriction)> {
-        let inputs = &self.plant.u;
+        let inputs: Vec<Symbol> = self.plant.commanded().collect();
         let arena = &self.plant.arena;
         let mut found = Vec::new();
         if !by_itself && inputs.len() > 1 {
@@ -171,12 +171,12 @@ fn at_rest(plant: &Plant, domain: &Domain, cascade: &Cascade) -> BTreeMap<Symbol
         if arena.depends_on(rate, &hidden) {
             continue;
         }
-        let solved = plant.u.iter().find_map(|input| {
-            let slope = arena.derivative(rate, *input);
+        let solved = plant.commanded().find_map(|input| {
+            let slope = arena.derivative(rate, input);
             let steep =
                 arena.symbols_of(&[slope]).is_subset(&constants) && domain.implies(arena, slope, Relation::NonZero);
-            let rest = arena.substitute(rate, &BTreeMap::from([(*input, arena.zero())]));
-            steep.then(|| (*input, arena.neg(arena.div(rest, slope))))
+            let rest = arena.substitute(rate, &BTreeMap::from([(input, arena.zero())]));
+            steep.then(|| (input, arena.neg(arena.div(rest, slope))))
         });
         let Some((input, value)) = solved else { continue };
         let value = BTreeMap::from([(input, shortest(arena, domain, value))]);

@@ -45,8 +45,8 @@ impl Question<'_> {
         let volume = Volume::of(arena, domain, stack);
         let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-        let known: BTreeSet<Symbol> = constants.iter().chain(&plant.u).copied().collect();
-        let held = plant.u.iter().copied().collect();
+        let held: BTreeSet<Symbol> = plant.commanded().collect();
+        let known: BTreeSet<Symbol> = constants.union(&held).copied().collect();
         let flow = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new());
         let mut found = Vec::new();
         let mut all = places.all;
@@ -66,7 +66,7 @@ impl Question<'_> {
                 }
                 continue;
             }
-            let Some((input, value)) = plant.u.iter().find_map(|input| Some((*input, solved(arena, zero, *input)?)))
+            let Some((input, value)) = plant.commanded().find_map(|input| Some((input, solved(arena, zero, input)?)))
             else {
                 found.push(unshown());
                 continue;
@@ -142,10 +142,11 @@ impl Question<'_> {
         let volume = Volume::of(arena, domain, stack);
         let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+        let commanded: BTreeSet<Symbol> = plant.commanded().collect();
         // What is of inputs alone is looked at on all motions.
         let of_outputs = |zero: &Expr| {
             let symbols = arena.symbols_of(&[*zero]);
-            symbols.difference(&constants).any(|signal| !plant.u.contains(signal))
+            symbols.difference(&constants).any(|signal| !commanded.contains(signal))
         };
         (places.zeros.into_iter().filter(of_outputs).collect(), places.all)
     }
@@ -154,6 +155,7 @@ impl Question<'_> {
     pub(super) fn values(&self, stack: &[Vec<Expr>]) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
         let arena = &self.plant.arena;
         let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
+        let commanded: BTreeSet<Symbol> = self.plant.commanded().collect();
         let entries: Vec<Expr> = stack.concat();
         let field = Field::over(arena, &self.domain.facts, &entries)?;
         let mut found = Vec::new();
@@ -169,7 +171,7 @@ impl Question<'_> {
                     };
                     let value = field.show(&field.quotient(&-&rest, &slope)?);
                     let plain = arena.symbols_of(&[value]).is_subset(&constants);
-                    if plain && self.plant.u.contains(&input) && !found.contains(&(input, value)) {
+                    if plain && commanded.contains(&input) && !found.contains(&(input, value)) {
                         found.push((input, value));
                     }
                 }

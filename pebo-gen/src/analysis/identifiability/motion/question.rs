@@ -95,7 +95,7 @@ impl Question<'_> {
 
     /// What is shown where all inputs are constant, and an input or parameter has a value.
     pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Shown, Obstacle> {
-        let held = self.plant.u.iter().copied().filter(|input| *input != symbol).collect();
+        let held = self.plant.commanded().filter(|input| *input != symbol).collect();
         self.shown(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
     }
 }

@@ -59,7 +59,7 @@ impl Blind {
         let arena = &plant.arena;
         match &self.place {
             Place::Rest => "the plant rests".to_owned(),
-            Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.u.len() => {
+            Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
                 "all inputs are constant".to_owned()
             }
             Place::Constant(inputs) => {
@@ -68,7 +68,7 @@ impl Blind {
             }
             Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
             Place::Steady(symbol, value) => {
-                let others = match (plant.u.contains(symbol), plant.u.len()) {
+                let others = match (plant.u.contains(symbol), plant.commanded().count()) {
                     (true, 0 | 1) | (false, 0) => "",
                     (true, 2) => "the other input is constant and ",
                     (true, _) => "the other inputs are constant and ",
