@@ -63,6 +63,26 @@ impl Echelon {
         Ok((Self { rows: done, columns }, rest))
     }
 
+    /// Eliminates on the first columns, and on the others what they leave.
+    pub(crate) fn in_order(
+        field: &Field<'_>,
+        rows: Vec<Vec<Fraction>>,
+        (first, columns): (usize, usize),
+    ) -> Result<Self, Obstacle> {
+        let (before, rest) = Self::of(field, rows, first)?;
+        let (behind, _) = Self::of(field, rest, columns)?;
+        let mut rows = before.rows;
+        for (column, pivot) in &behind.rows {
+            for (_, row) in &mut rows {
+                let factor = row[*column].clone();
+                subtract(field, row, &factor, pivot)?;
+            }
+        }
+        rows.extend(behind.rows);
+        rows.sort_by_key(|(column, _)| *column);
+        Ok(Self { rows, columns })
+    }
+
     /// The number of pivots.
     pub(crate) fn rank(&self) -> usize {
         self.rows.len()

@@ -20,9 +20,9 @@ use crate::cas::poly::Poly;
 const MOST_ROUNDS: usize = 24;
 
 /// More functions than this are not completed.
-const MOST_FUNCTIONS: usize = 10;
+const MOST_FUNCTIONS: usize = 24;
 
-type Row = Vec<Fraction>;
+pub(super) type Row = Vec<Fraction>;
 
 /// Differentiation of the elements of a field by some symbols.
 #[derive(Debug)]
@@ -72,6 +72,8 @@ pub(super) struct System<'a> {
     by: &'a Derivations<'a>,
     /// How many functions there are.
     functions: usize,
+    /// So many of the first are to be given in terms of the others.
+    given: usize,
     /// A row has a column for each derivative, those of one function together, and then one for each function.
     rows: Vec<Row>,
     /// What was asked for, in terms of the functions.
@@ -85,6 +87,8 @@ pub(super) struct Completed {
     pub(super) lift: Vec<Row>,
     /// How many functions are left.
     pub(super) functions: usize,
+    /// Where each derivative of these is given: for each function and symbol, its coefficients in terms of the functions.
+    pub(super) slopes: Vec<Vec<Row>>,
     pub(super) solutions: Solutions,
 }
 
@@ -102,7 +106,12 @@ pub(super) enum Solutions {
 impl<'a> System<'a> {
     /// The equations; what is asked for are the first of the functions.
     pub(super) fn new(by: &'a Derivations<'a>, (asked, functions): (usize, usize), rows: Vec<Row>) -> Self {
-        Self { by, functions, rows, lift: (0..asked).map(|index| unit(functions, index)).collect() }
+        Self { by, functions, given: 0, rows, lift: (0..asked).map(|index| unit(functions, index)).collect() }
+    }
+
+    /// The same, with so many of the first functions to be given in terms of the others where that can be.
+    pub(super) fn giving(self, given: usize) -> Self {
+        Self { given, ..self }
     }
 
     /// The same equations for solutions of which all that is asked for vanishes.
@@ -110,7 +119,7 @@ impl<'a> System<'a> {
         let padding = vec![Fraction::zero(); self.functions * self.by.count()];
         let vanishes = self.lift.iter().map(|row| [padding.as_slice(), row].concat());
         let rows = self.rows.iter().cloned().chain(vanishes).collect();
-        Self { by: self.by, functions: self.functions, rows, lift: Vec::new() }
+        Self { rows, lift: Vec::new(), ..*self }
     }
 
     /// Adds all that follows.
@@ -119,7 +128,7 @@ impl<'a> System<'a> {
             let width = self.functions * self.by.count();
             let (slopes, rest) = Echelon::of(self.by.field, std::mem::take(&mut self.rows), width)?;
             let rest = rest.into_iter().map(|row| row[width..].to_vec()).collect();
-            let (values, _) = Echelon::of(self.by.field, rest, self.functions)?;
+            let values = Echelon::in_order(self.by.field, rest, (self.given, self.functions))?;
             if values.rank() > 0 {
                 self.solve(&slopes, &values)?;
                 continue;
@@ -127,7 +136,10 @@ impl<'a> System<'a> {
             let is_given = slopes.rank() == width;
             let equations = self.mixed(&slopes)?;
             if is_given && equations.is_empty() {
-                return Ok(self.ended(Solutions::AsFunctions));
+                let count = self.by.count();
+                let of = |column: usize| self.rows[column][width..].iter().map(Fraction::opposite).collect();
+                let slopes = (0..self.functions).map(|f| (0..count).map(|by| of(f * count + by)).collect()).collect();
+                return Ok(Completed { slopes, ..self.ended(Solutions::AsFunctions) });
             }
             // There is nothing with which derivatives by one symbol could disagree.
             if self.by.count() == 1 {
@@ -142,7 +154,7 @@ impl<'a> System<'a> {
     }
 
     fn ended(self, solutions: Solutions) -> Completed {
-        Completed { lift: self.lift, functions: self.functions, solutions }
+        Completed { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
     }
 
     /// Replaces functions by those in terms of which they are given.
@@ -177,6 +189,8 @@ impl<'a> System<'a> {
         for row in &mut self.lift {
             *row = basis.iter().map(|vector| dot(field, row.iter(), vector)).collect::<Result<_, _>>()?;
         }
+        let is_given = |column: &usize| values.rows().any(|(pivot, _)| pivot == *column);
+        self.given = (0..self.given).filter(|column| !is_given(column)).count();
         (self.rows, self.functions) = (rows, basis.len());
         Ok(())
     }

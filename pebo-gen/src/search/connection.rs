@@ -107,9 +107,10 @@ impl Connection {
         let arena = question.arena;
         let mut found = Vec::new();
         for (state, slopes) in self.gamma.iter().enumerate() {
-            let own: Option<Vec<Expr>> = slopes.iter().map(|row| row.as_ref().map(|row| row[state])).collect();
+            let own = slopes.iter().zip(&question.y).map(|(row, y)| row.as_ref().map(|row| (*y, row[state])));
+            let own: Option<Vec<(Symbol, Expr)>> = own.collect();
             if let Some(gradient) = own
-                && gradient.iter().any(|e| !arena.is_zero(*e))
+                && gradient.iter().any(|(_, e)| !arena.is_zero(*e))
                 && let Some(potential) = potential(question, &gradient)
             {
                 found.push(exponential(question, potential));
@@ -185,12 +186,18 @@ fn root(question: &Question<'_>, square: Expr) -> Expr {
     tidied().unwrap_or(root)
 }
 
-/// A function of the outputs with that gradient, as far as it is found.
-fn potential(question: &Question<'_>, gradient: &[Expr]) -> Option<Expr> {
+/// A function with these derivatives by outputs, as far as it is found.
+pub(super) fn potential(question: &Question<'_>, gradient: &[(Symbol, Expr)]) -> Option<Expr> {
     let arena = question.arena;
     let mut total = arena.zero();
-    for (symbol, slope) in question.y.iter().zip(gradient) {
-        let missing = arena.sub(*slope, arena.derivative(total, *symbol));
+    for (symbol, slope) in gradient {
+        let known = arena.derivative(total, *symbol);
+        let mut missing = arena.sub(*slope, known);
+        if !arena.is_zero(known) {
+            // What the first integrals give along this output cancels in a normal form.
+            let field = Field::over(arena, &question.domain.facts, &[missing]).ok()?;
+            missing = field.show(&field.fraction(missing).ok()?);
+        }
         if !arena.is_zero(missing) {
             total = arena.add(total, antiderivative(arena, &question.domain, missing, *symbol)?);
         }
@@ -199,7 +206,7 @@ fn potential(question: &Question<'_>, gradient: &[Expr]) -> Option<Expr> {
 }
 
 /// `exp` of a sum, with powers in place of multiples of logarithms.
-fn exponential(question: &Question<'_>, expr: Expr) -> Expr {
+pub(super) fn exponential(question: &Question<'_>, expr: Expr) -> Expr {
     let arena = question.arena;
     let (mut powers, mut rest) = (Vec::new(), Vec::new());
     for term in summands(question, expr) {

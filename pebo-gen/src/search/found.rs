@@ -64,6 +64,8 @@ pub struct Tried {
 pub enum Form {
     /// Constant combinations of the states, and functions of y to this degree.
     Affine(usize),
+    /// `T(y) x + s(y)`, where the equations for T and the gradient of s are solved by integrals.
+    Integrals,
     /// Products of functions of x to the first degree with functions of y to the second.
     Nonlinear(usize, usize),
     /// The states themselves, with rates affine in them.

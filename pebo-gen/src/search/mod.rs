@@ -22,18 +22,23 @@ mod connection;
 mod constants;
 mod decision;
 mod driven;
+mod flat;
 mod found;
 mod frame;
 mod functions;
+mod integration;
 mod largest;
 mod parts;
+mod posed;
 mod products;
 mod quadrature;
 mod question;
+mod rational;
 mod sample;
 mod series;
 #[cfg(all(test, feature = "yaml"))]
 mod tests;
+mod trigonometric;
 pub(crate) mod words;
 
 use std::collections::BTreeSet;
@@ -225,6 +230,13 @@ impl Hunt<'_> {
             }
             if self.affine.as_ref().is_some_and(Bound::excludes) {
                 break;
+            }
+            if degree == 2 {
+                let integrated = arena.budget().share(3, || integration::integrated(question));
+                self.judge(Form::Integrals, 0, integrated);
+                if self.is_over() {
+                    return;
+                }
             }
             // What the formulas do not hold comes in where they were not enough.
             if degree == 2 {

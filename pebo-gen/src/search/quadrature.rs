@@ -1,7 +1,8 @@
 //! Antiderivatives of simple functions.
 //!
 //! In: a formula and a symbol. Out: a function whose derivative it is, proved; none where the rules end: sums, powers and
-//! functions of affine arguments, products of these with polynomials, and `c g' g^n`.
+//! functions of affine arguments, products of these with polynomials, `c g' g^n`, and quotients of
+//! polynomials, or of sines and cosines.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +10,11 @@ use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Field;
 use crate::cas::rational::Rational;
+use crate::cas::tidy;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
+
+use super::{rational, trigonometric};
 
 /// Derivatives of a polynomial part that are taken before it is given up.
 const MOST_PARTS: usize = 8;
@@ -21,7 +25,13 @@ const MOST_TERMS: usize = 64;
 /// An antiderivative by the symbol.
 pub(super) fn antiderivative(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> Option<Expr> {
     let rules = Rules { arena, domain, symbol };
-    let found = rules.of(expr).or_else(|| rules.expanded(expr))?;
+    let found = rules.of(expr).or_else(|| rules.expanded(expr));
+    // Terms may have arcs and logarithms that their sum has not.
+    let has_calls = found.is_some_and(|e| !tidy::functions(arena, &[e]).is_subset(&tidy::functions(arena, &[expr])));
+    let found = match (found, if has_calls || found.is_none() { rules.quotient(expr) } else { None }) {
+        (Some(first), Some(other)) => tidy::shorter(arena, first, other),
+        (first, other) => first.or(other)?,
+    };
     let difference = arena.sub(arena.derivative(found, symbol), expr);
     decide(arena, difference, domain).is_zero().then_some(found)
 }
@@ -69,7 +79,7 @@ impl Rules<'_> {
             }
             Node::Product(product) => {
                 let (fixed, moving): (Vec<_>, Vec<_>) =
-                    product.factors.iter().cloned().partition(|(base, _)| self.is_free(*base));
+                    product.factors.iter().map(|factor| self.raised(factor)).partition(|(base, _)| self.is_free(*base));
                 let factor = arena.multiply(&product.coefficient, fixed);
                 let integral = match moving.as_slice() {
                     [(base, exponent)] => self.power(*base, exponent),
@@ -77,9 +87,20 @@ impl Rules<'_> {
                 };
                 let rest = arena.multiply(&Rational::ONE, moving.iter().cloned());
                 let integral = integral.or_else(|| self.by_parts(&moving)).or_else(|| self.chain(&moving, rest));
-                Some(arena.mul(factor, integral.or_else(|| self.term_by_term(&moving))?))
+                let integral = integral.or_else(|| self.term_by_term(&moving)).or_else(|| self.quotient(rest));
+                Some(arena.mul(factor, integral?))
             }
             _ => self.power(expr, &Rational::ONE),
+        }
+    }
+
+    /// A factor, a power of an exponential as the exponential of a multiple.
+    fn raised(&self, (base, exponent): &(Expr, Rational)) -> (Expr, Rational) {
+        match self.arena.node(*base) {
+            Node::Call(Function::Exp, arguments) => {
+                (self.arena.call(Function::Exp, &[self.arena.scale(arguments[0], exponent)]), Rational::ONE)
+            }
+            _ => (*base, exponent.clone()),
         }
     }
 
@@ -181,6 +202,13 @@ impl Rules<'_> {
         let others = arena.multiply(&Rational::ONE, others.map(|(_, factor)| factor.clone()));
         let products = sum.terms.iter().map(|(term, c)| arena.scale(arena.mul(*term, others), c));
         self.of(arena.sum(products.chain([arena.mul(arena.number(sum.constant.clone()), others)])))
+    }
+
+    /// A quotient of polynomials in the symbol, or in sine and cosine of an angle.
+    fn quotient(&self, expr: Expr) -> Option<Expr> {
+        let &Self { arena, domain, symbol } = self;
+        let found = rational::antiderivative(arena, domain, expr, symbol).ok()?;
+        found.or_else(|| trigonometric::antiderivative(arena, domain, expr, symbol).ok()?)
     }
 
     fn tidied(&self, expr: Expr) -> Option<Expr> {

@@ -29,6 +29,7 @@ impl Form {
         match self {
             Self::Affine(0) => "combinations of the states with constant coefficients".to_owned(),
             Self::Affine(degree) => format!("T(y) x + s(y) with functions of y to degree {degree}"),
+            Self::Integrals => "T(y) x + s(y) by integrals of the equations for T and s".to_owned(),
             Self::Nonlinear(x, y) => format!("functions of x to degree {x} times functions of y to degree {y}"),
             Self::States => "the states themselves, with rates affine in x".to_owned(),
             Self::Frame(degree) => {

@@ -166,8 +166,8 @@ impl<'a> Volume<'a> {
         Ok(())
     }
 
-    /// A signal, or a function of it, and the value at which a factor vanishes, if it is linear in that and nothing else
-    /// in it varies.
+    /// A signal, or a function of it, and the one value at which a factor vanishes, if it is linear in that and nothing
+    /// else in it varies.
     fn solved(&self, factor: &Poly, plant: &Plant) -> Result<Option<(Expr, Expr)>, Obstacle> {
         let constants = constants(plant);
         let varies = |v: &u32| !self.arena.symbols_of(&[self.field.kernel(*v)]).is_subset(&constants);
@@ -180,6 +180,10 @@ impl<'a> Volume<'a> {
         let mut rest = Poly::zero();
         for (power, coefficient) in factor.coefficients_in(*variable) {
             if power == 1 { slope = coefficient } else { rest = coefficient }
+        }
+        // Where the slope vanishes, the factor may be zero at every value.
+        if !self.field.signs().never_zero(&slope) {
+            return Ok(None);
         }
         Ok(Some((self.field.kernel(*variable), self.field.show(&self.field.quotient(&-&rest, &slope)?))))
     }

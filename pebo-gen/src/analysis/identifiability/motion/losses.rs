@@ -66,8 +66,11 @@ impl Question<'_> {
                 }
                 continue;
             }
-            let Some((input, value)) = plant.commanded().find_map(|input| Some((input, solved(arena, zero, input)?)))
-            else {
+            let one = |input: Symbol| {
+                let steep = domain.implies(arena, arena.derivative(zero, input), Relation::NonZero);
+                solved(arena, zero, input).filter(|_| steep)
+            };
+            let Some((input, value)) = plant.commanded().find_map(|input| Some((input, one(input)?))) else {
                 found.push(unshown());
                 continue;
             };
@@ -169,6 +172,9 @@ impl Question<'_> {
                         [(_, slope)] => (slope.clone(), Poly::zero()),
                         _ => continue,
                     };
+                    if !field.signs().never_zero(&slope) {
+                        continue;
+                    }
                     let value = field.show(&field.quotient(&-&rest, &slope)?);
                     let plain = arena.symbols_of(&[value]).is_subset(&constants);
                     if plain && commanded.contains(&input) && !found.contains(&(input, value)) {
