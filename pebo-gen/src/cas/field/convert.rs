@@ -68,20 +68,17 @@ impl Field<'_> {
         let mut others: Vec<(Poly, Vec<Poly>)> = Vec::new();
         for (term, coefficient) in &sum.terms {
             let term = self.get(*term)?;
-            match term.den.to_constant() {
-                Some(below) => {
-                    let below = &below * &coefficient.denominator();
-                    common = common.lcm(&below);
-                    parts.push((term.num, coefficient.numerator(), below));
-                }
-                None => {
-                    let below = coefficient.denominator();
-                    let below = if below.is_one() { term.den } else { term.den.scale(&below) };
-                    let above = term.num.scale(&coefficient.numerator());
-                    match others.iter_mut().find(|(known, _)| *known == below) {
-                        Some((_, above_it)) => above_it.push(above),
-                        None => others.push((below, vec![above])),
-                    }
+            if let Some(below) = term.den.to_constant() {
+                let below = &below * &coefficient.denominator();
+                common = common.lcm(&below);
+                parts.push((term.num, coefficient.numerator(), below));
+            } else {
+                let below = coefficient.denominator();
+                let below = if below.is_one() { term.den } else { term.den.scale(&below) };
+                let above = term.num.scale(&coefficient.numerator());
+                match others.iter_mut().find(|(known, _)| *known == below) {
+                    Some((_, above_it)) => above_it.push(above),
+                    None => others.push((below, vec![above])),
                 }
             }
         }
