@@ -88,6 +88,70 @@ def arm(n):
     )
 
 
+def spatial(n):
+    """An arm in space of n joints whose axes are turned by a right angle each, to one side and the other, as those of an
+    industrial robot: masses at the ends of the links and rotors at the joints, momenta for the transform. The momentum of
+    the base alone is of use.
+
+    Joint k turns about the third axis of frame k - 1; M = sum of m_k J_k'J_k and the rotors, with J_k the Jacobian of the
+    position of mass k from axes and levers.
+    """
+    joints, define = range(1, n + 1), {}
+
+    def named(name, formula):
+        """A formula under a name; zero and one as they are."""
+        if formula in ("0", "1", "-1"):
+            return formula
+        define[name] = formula
+        return name
+
+    def total(*products):
+        """The sum of products of factors."""
+        kept = [[f"({factor})" for factor in product if factor != "1"] or ["1"] for product in products if "0" not in product]
+        return " + ".join("*".join(product) for product in kept) or "0"
+
+    axes, origins = [[list(axis) for axis in ("100", "010", "001")]], [["0"] * 3]
+    for k in joints:
+        x, y, z = axes[-1]
+        turned = [named(f"x{k}_{i}", total((a, f"cos(q{k})"), (b, f"sin(q{k})"))) for i, (a, b) in enumerate(zip(x, y))]
+        across = [named(f"y{k}_{i}", total(("-1", a, f"sin(q{k})"), (b, f"cos(q{k})"))) for i, (a, b) in enumerate(zip(x, y))]
+        side = "1" if k % 2 else "-1"
+        opposite = "-1" if k % 2 else "1"
+        second = [total((side, entry)) for entry in z]
+        third = [total((opposite, entry)) for entry in across]
+        axes.append([turned, second, third])
+        origins.append([named(f"p{k}_{i}", total((a,), (f"l{k}", b))) for i, (a, b) in enumerate(zip(origins[-1], turned))])
+
+    def column(i, k):
+        """How mass k moves with joint i: axis times lever."""
+        axis = axes[i - 1][2]
+        lever = [total((a,), ("-1", b)) for a, b in zip(origins[k], origins[i - 1])]
+        cross = [(1, 2), (2, 0), (0, 1)]
+        return [named(f"J{i}_{k}_{c}", total((axis[a], lever[b]), ("-1", axis[b], lever[a]))) for c, (a, b) in enumerate(cross)]
+
+    columns = {(i, k): column(i, k) for k in joints for i in range(1, k + 1)}
+
+    def inertia(i, j):
+        moved = range(max(i, j), n + 1)
+        products = [(f"m{k}", a, b) for k in moved for a, b in zip(columns[i, k], columns[j, k])]
+        return total(*products, *[(f"I{i}",)] * (i == j))
+
+    parts = [f"{letter}{k}" for letter in "mlI" for k in joints]
+    unit = _list(_list(str(int(i == j)) for j in joints) for i in joints)
+    matrix = {"M": _list(_list(inertia(min(i, j), max(i, j)) for j in joints) for i in joints), "T": unit, "G": unit}
+    matrix |= {"V": total(*[(f"m{k}", "g", origins[k][2]) for k in joints])}
+    return _model(
+        f"spatial{n}",
+        parameters=_list([*parts, "g"]),
+        x=_list(f"p{k}" for k in joints),
+        y=_list(f"q{k}" for k in joints),
+        u=_list(f"t{k}" for k in joints),
+        assume=_list(f"{part} > 0" for part in parts),
+        define=_map(define),
+        mechanical=_map(matrix),
+    )
+
+
 def chain(n):
     """A planar chain of n links that moves point masses, one at the end of each second link; a last one without a partner is
     a rotor about its joint. Angles are relative to the link before.
@@ -219,7 +283,7 @@ def terms(n):
     return _model(f"terms{n}", parameters=names, x="[x]", y="[y]", f_x=_map({"x": total}), f_y="{y: x}", phi="[x]")
 
 
-FAMILIES = {family.__name__: family for family in (cuk, lti, symbolic, arm, chain, phases, compartments, grid, terms)}
+FAMILIES = {family.__name__: family for family in (cuk, lti, symbolic, arm, spatial, chain, phases, compartments, grid, terms)}
 
 
 def _model(name, **keys):

@@ -19,7 +19,8 @@ use crate::cas::frozen::as_written;
 use crate::cas::interval::Precision;
 use crate::cas::zero::{Answer, decide, point_of};
 use crate::cas::{Expr, Symbol};
-use crate::plant::{self, Formula, Plant};
+use crate::plant::class::Mechanical;
+use crate::plant::{self, Formula, Plant, TransformOrigin};
 use crate::source::{Code, Diagnostic, listed};
 
 use crate::analysis::affine;
@@ -128,7 +129,10 @@ impl Component {
 /// One component, by what the class knows of it where it knows.
 fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Component {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
-    match killing::is_killing(&plant.arena, domain, mechanical, index) {
+    if plant.origin == TransformOrigin::Found {
+        return component_found(plant, domain, mechanical, (plant.phi[index].expr, rate));
+    }
+    match killing::is_killing(&plant.arena, domain, mechanical, &mechanical.frame.column(index)) {
         Ok(true) => Component::Free(proved_shortest(&plant.arena, domain, mechanical.h[index])),
         Ok(false) => match &mechanical.in_velocities {
             // The rate has no normal form that could be looked at; that it varies, points show.
@@ -141,6 +145,25 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
         },
         Err(obstacle) => Component::Open(obstacle),
     }
+}
+
+/// A component that was searched for, and its rate: the class knows of its own T alone, not of this one. Of momenta along
+/// a Killing field the rate is what it is at rest.
+fn component_found(
+    plant: &Plant,
+    domain: &Domain,
+    mechanical: &Mechanical,
+    (momentum, rate): (Expr, Expr),
+) -> Component {
+    let (arena, hidden) = (&plant.arena, plant.hidden());
+    let rest: BTreeMap<Symbol, Expr> = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
+    let field: Vec<Expr> = plant.x.iter().map(|state| arena.derivative(momentum, state.symbol)).collect();
+    let is_linear = !field.iter().any(|entry| arena.depends_on(*entry, &hidden))
+        && decide(arena, arena.substitute(momentum, &rest), domain).is_zero();
+    if is_linear && killing::is_killing(arena, domain, mechanical, &field) == Ok(true) {
+        return Component::Free(proved_shortest(arena, domain, arena.substitute(rate, &rest)));
+    }
+    component(plant, domain, rate)
 }
 
 fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
@@ -315,6 +338,9 @@ fn is_implicit(plant: &Plant) -> bool {
 /// For a mechanical plant, the entries of Assumption 3 that do not vanish.
 fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) -> Diagnostic {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return refusal };
+    if plant.origin == TransformOrigin::Found {
+        return refusal;
+    }
     let arena = &plant.arena;
     let name = index + 1;
     if mechanical.in_velocities.is_some() {

@@ -24,6 +24,9 @@ use super::{Arena, Expr, Node};
 /// Terms of a numerator that may be a product of sums worth looking for, as `(p - 1)*(q - 1)`.
 const PRODUCT_TERMS: std::ops::RangeInclusive<usize> = 4..=12;
 
+/// Terms of a normal form up to which it is written out in any case: what its factors have in common may save more.
+const LONG: usize = 500;
+
 /// The shortest of an expression and the ways to write its normal form.
 pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     shortest_turned(arena, &Orientation::new(arena, domain), expr)
@@ -81,9 +84,14 @@ pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
     found
 }
 
-/// The ways to write the normal form.
+/// The ways to write the normal form; none where it is long and has more terms than the expression has operations, as a
+/// determinant that is written by its minors: each term is an operation at least.
 fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
     let Ok(fraction) = field.fraction(expr) else { return Vec::new() };
+    let terms = fraction.weight();
+    if terms > LONG && terms > operations(field.arena(), expr) {
+        return Vec::new();
+    }
     let few = PRODUCT_TERMS.contains(&fraction.numerator().term_count());
     let factored = few.then(|| field.show_factored(&fraction));
     let forms =

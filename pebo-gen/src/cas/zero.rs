@@ -82,6 +82,16 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     }
 }
 
+/// Whether all of the expressions are proved to be zero, over the kernels of all at once: what they share is brought to
+/// normal form once. If not, nothing is said of any.
+pub fn all_zero(arena: &Arena, exprs: &[Expr], domain: &Domain) -> bool {
+    let values = |point: Point| arena.enclose_all(exprs, &point, Precision::new(64));
+    let Some(values) = domain.points(arena, exprs).take(GLIMPSES).find_map(values) else { return false };
+    values.iter().all(Interval::contains_zero)
+        && Field::of_long_sums(arena, &domain.facts, exprs)
+            .is_ok_and(|field| exprs.iter().all(|e| field.fraction(*e).is_ok_and(|fraction| fraction.is_zero())))
+}
+
 /// Looks for a point of the domain at which the expression provably is not zero.
 pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
     domain.points(arena, &[expr]).take(MOST_POINTS).find_map(|point| {

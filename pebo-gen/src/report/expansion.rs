@@ -2,7 +2,7 @@
 
 use crate::cas::{Expr, Symbol};
 use crate::plant::class::InVelocities;
-use crate::plant::{Class, Output, Plant};
+use crate::plant::{Class, Output, Plant, TransformOrigin};
 
 /// What a class was expanded to, as formulas.
 pub(super) struct Expansion {
@@ -39,18 +39,20 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
         let momenta = mechanical.q.iter().zip(&plant.x);
         momentum.extend(momenta.map(|(q, state)| (arena.name(*q), arena.name(state.symbol))));
     }
+    // The velocities are of the author's T: of another one that was found the class knows none.
+    let is_own = plant.origin != TransformOrigin::Found;
     let origin = match class {
         Class::Linear(linear) => vec![("T1", matrix(linear.t1.rows())), ("T2", matrix(linear.t2.rows()))],
         Class::Mechanical(mechanical) => match &mechanical.in_velocities {
             None => {
-                let velocities = mechanical.q.iter().zip(&mechanical.velocities);
+                let velocities = mechanical.q.iter().zip(&mechanical.velocities).filter(|_| is_own);
                 velocity.extend(velocities.map(|(q, formula)| (arena.name(*q), arena.print(*formula))));
                 vec![("H", arena.print(mechanical.energy))]
             }
             Some(shown) => {
                 rates = in_velocities(plant, shown);
                 let row = |(index, q): (usize, &Symbol)| (arena.name(*q), format!("row {} of (T' M)^-1 z", index + 1));
-                velocity.extend(mechanical.q.iter().enumerate().map(row));
+                velocity.extend(mechanical.q.iter().enumerate().filter(|_| is_own).map(row));
                 vec![("H", arena.print(shown.energy))]
             }
         },

@@ -144,6 +144,29 @@ fn a_mechanical_plant_needs_no_frame() {
     assert_eq!(found.candidates[0].plant.phi.len(), 2);
 }
 
+/// The class knows whether the columns of its own T are Killing fields, which says nothing of a transform that was found.
+#[test]
+fn a_frame_that_is_found_is_not_judged_by_the_authors() {
+    let model = |metric: &str| {
+        format!(
+            "x: [p1, p2]\ny: [q1, q2]\nu: [a, b]\n\
+             mechanical: {{M: {metric}, V: 'cos(q2)', G: [[1, 0], [0, 1]], T: [[1, 0], [0, 1]]}}"
+        )
+    };
+    // z1 = p2 comes first; the other component moves with a, the input of the first joint.
+    let (plant, found) = search(&model("[['(2 + sin(q1))^2', 0], [0, 1]]"), None);
+    let candidate = &found.candidates[0];
+    let rates = candidate.derivation.cascade.result.as_ref().expect("a cascade").h.clone();
+    let formulas: Vec<String> = rates.iter().map(|rate| candidate.plant.arena.print(*rate)).collect();
+    for (component, rate) in candidate.formulas().iter().zip(&formulas) {
+        assert_eq!(component.contains("p1"), rate.contains('a'), "{component}: {rate}");
+        assert_eq!(component.contains("p2"), rate.contains('b'), "{component}: {rate}");
+    }
+    assert_eq!(plant.x.len(), candidate.recovered());
+    // A generalised one has more components than T has columns.
+    search(&model("[['1 + cos(q2)^2', 0], [0, 1]]"), Some(Class::Gpebo));
+}
+
 #[test]
 fn coils_have_their_fluxes_where_nothing_better_is_found() {
     // The speed is not measured, and only a relation among the fluxes, which no affine output is, identifies them.

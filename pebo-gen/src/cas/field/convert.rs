@@ -59,21 +59,27 @@ impl Field<'_> {
         }
     }
 
-    /// A sum: what has a number for a denominator over the common one first, all at once, so that a long sum is not
-    /// brought to lowest terms at each step.
+    /// A sum: what has a number for a denominator over the common one first, all at once, and so what has the same
+    /// denominator, so that a long sum is not brought to lowest terms at each step.
     fn of_sum(&self, sum: &Sum) -> Result<Fraction, Obstacle> {
         let mut common = sum.constant.denominator();
         let mut parts = Vec::with_capacity(sum.terms.len() + 1);
-        let mut others = Vec::new();
+        // By their denominators.
+        let mut others: Vec<(Poly, Vec<Poly>)> = Vec::new();
         for (term, coefficient) in &sum.terms {
             let term = self.get(*term)?;
-            match term.den.to_constant() {
-                Some(below) => {
-                    let below = &below * &coefficient.denominator();
-                    common = common.lcm(&below);
-                    parts.push((term.num, coefficient.numerator(), below));
+            if let Some(below) = term.den.to_constant() {
+                let below = &below * &coefficient.denominator();
+                common = common.lcm(&below);
+                parts.push((term.num, coefficient.numerator(), below));
+            } else {
+                let below = coefficient.denominator();
+                let below = if below.is_one() { term.den } else { term.den.scale(&below) };
+                let above = term.num.scale(&coefficient.numerator());
+                match others.iter_mut().find(|(known, _)| *known == below) {
+                    Some((_, above_it)) => above_it.push(above),
+                    None => others.push((below, vec![above])),
                 }
-                None => others.push((term, coefficient)),
             }
         }
         parts.push((Poly::one(), sum.constant.numerator(), sum.constant.denominator()));
@@ -83,11 +89,11 @@ impl Field<'_> {
         };
         let num = total(parts.iter().map(over).collect());
         self.work().spend(steps(num.term_count()))?;
-        let mut total = self.fraction_of(&num, &Poly::constant(common))?;
-        for (term, coefficient) in others {
-            total = self.add(&total, &self.scale(&term, coefficient)?)?;
+        let mut result = self.fraction_of(&num, &Poly::constant(common))?;
+        for (below, above) in others {
+            result = self.add(&result, &self.fraction_of(&total(above), &below)?)?;
         }
-        Ok(total)
+        Ok(result)
     }
 
     /// A function of the table at an argument.

@@ -116,20 +116,54 @@ impl Layout {
         (0..self.variables.len()).map(|index| self.get(key, index)).collect()
     }
 
+    /// The exponents of a key that are not zero, each with the index of its variable, ascending: of many variables a term
+    /// has few.
+    pub(super) fn powers<'a>(&'a self, key: &'a [u64]) -> impl Iterator<Item = (usize, u32)> + 'a {
+        key.iter().enumerate().flat_map(move |(word, &bits)| {
+            let mut rest = bits;
+            std::iter::from_fn(move || {
+                let within = rest.leading_zeros() >> self.log_width;
+                let index = (word << (6 - self.log_width)) + within as usize;
+                let (_, shift) = (rest != 0).then(|| self.place(index))?;
+                let field = self.mask() << shift;
+                #[expect(clippy::cast_possible_truncation, reason = "a field has at most 32 bits")]
+                let exponent = ((rest & field) >> shift) as u32;
+                rest &= !field;
+                Some((index, exponent))
+            })
+        })
+    }
+
     /// The monomial of a key.
     pub(super) fn monomial(&self, key: &[u64]) -> Monomial {
-        Monomial::new(self.variables.iter().enumerate().map(|(index, v)| (*v, self.get(key, index))))
+        Monomial::new(self.powers(key).map(|(index, exponent)| (self.variables[index], exponent)))
     }
 
     /// The largest exponent of each variable.
     pub(super) fn degrees(&self, keys: &[u64]) -> Exponents {
-        let mut degrees = Exponents::from_elem(0, self.variables.len());
-        for key in keys.chunks_exact(self.words) {
-            for (index, degree) in degrees.iter_mut().enumerate() {
-                *degree = (*degree).max(self.get(key, index));
+        self.folded(keys, |largest, other, kept| largest & kept | other & !kept)
+    }
+
+    /// The smallest exponent of each variable.
+    pub(super) fn least(&self, keys: &[u64]) -> Exponents {
+        self.folded(keys, |least, other, left| other & left | least & !left)
+    }
+
+    /// The exponents of all keys joined into one, all fields of a word at a time: the third word has all bits of the fields
+    /// in which the first is at least as large as the second.
+    fn folded(&self, keys: &[u64], join: impl Fn(u64, u64, u64) -> u64) -> Exponents {
+        let guard = self.guard();
+        let mut keys = keys.chunks_exact(self.words);
+        let Some(first) = keys.next() else { return Exponents::from_elem(0, self.variables.len()) };
+        let mut joined = SmallVec::<[u64; 8]>::from_slice(first);
+        for key in keys {
+            for (word, other) in joined.iter_mut().zip(key) {
+                let at_least = ((*word | guard) - other) & guard;
+                let fields = at_least | (at_least - (at_least >> ((1 << self.log_width) - 1)));
+                *word = join(*word, *other, fields);
             }
         }
-        degrees
+        self.exponents(&joined)
     }
 
     /// The same keys in the layout `to`, which must have room for every exponent that is not zero.
@@ -137,16 +171,15 @@ impl Layout {
         if self == to {
             return keys.to_vec();
         }
-        let moves: SmallVec<[_; 8]> = self
-            .variables
-            .iter()
-            .enumerate()
-            .filter_map(|(index, v)| Some((self.place(index), to.place(to.position(*v)?))))
-            .collect();
+        // Where the field of a variable goes; one without a place has only zeros.
+        let places: SmallVec<[_; 8]> =
+            self.variables.iter().map(|v| to.position(*v).map(|index| to.place(index))).collect();
         let mut converted = vec![0; keys.len() / self.words * to.words];
         for (old, new) in keys.chunks_exact(self.words).zip(converted.chunks_exact_mut(to.words)) {
-            for ((from, right), (into, left)) in &moves {
-                new[*into] |= (old[*from] >> right & self.mask()) << left;
+            for (index, exponent) in self.powers(old) {
+                if let Some((word, shift)) = places[index] {
+                    new[word] |= u64::from(exponent) << shift;
+                }
             }
         }
         converted

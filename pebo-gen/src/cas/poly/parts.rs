@@ -32,15 +32,7 @@ impl Poly {
 
     /// The product of the powers of variables that divide every term; 1 of zero.
     pub fn monomial_content(&self) -> Monomial {
-        let mut keys = self.keys();
-        let first = keys.next().map(|key| self.layout.exponents(key)).unwrap_or_default();
-        let least = keys.fold(first, |mut least, key| {
-            for (index, exponent) in least.iter_mut().enumerate() {
-                *exponent = (*exponent).min(self.layout.get(key, index));
-            }
-            least
-        });
-        Monomial::new(self.variables().iter().copied().zip(least))
+        Monomial::new(self.variables().iter().copied().zip(self.layout.least(&self.keys)))
     }
 
     /// The coefficient of a power product, if it is among the terms: found by bisection.

@@ -8,6 +8,7 @@
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::linear::solve_each;
+use crate::cas::poly::Poly;
 use crate::cas::{Expr, Symbol};
 use crate::model::{Formula as Written, Lti};
 use crate::plant::Matrix;
@@ -96,13 +97,21 @@ pub(super) fn expand(
     } else {
         Vec::new()
     };
-    let (t1, t2, unsolved) = if written.t1.is_some() {
-        (t1, t2, Vec::new())
+    let given = written.t1.is_some();
+    let is_long = !given && nx == ny && a21.is_long_to_invert(arena, facts).map_err(open)?;
+    let nonzero = |expr: Expr| Assumption { expr, relation: Relation::NonZero, span: first.span };
+    let (t1, t2, unsolved, conditions) = if given {
+        let conditions = denominators(place, &t2).map_err(open)?;
+        (t1, t2, Vec::new(), conditions)
+    } else if is_long && a21.rank(arena, facts).map_err(open)? == nx {
+        let (t2, determinant) = by_cofactors(place, &a11, &a21);
+        (Matrix::identity(arena, nx), t2, Vec::new(), vec![determinant])
     } else {
         let (t2, unsolved) = transform(place, &a11, &a21).map_err(open)?;
-        (Matrix::identity(arena, nx), t2, unsolved)
+        let conditions = denominators(place, &t2).map_err(open)?;
+        (Matrix::identity(arena, nx), t2, unsolved, conditions)
     };
-    let conditions = denominators(place, &t2, first.span).map_err(open)?;
+    let conditions = conditions.into_iter().map(nonzero).collect();
     let symbols = |list: &[crate::cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (x, y, u) = (symbols(names.x), symbols(names.y), symbols(names.u));
     let rate = |row: usize, [a, b, c]: [&Matrix; 3]| {
@@ -127,23 +136,14 @@ pub(super) fn expand(
         expr: arena.add(dot(arena, &t1.rows()[i], &x), dot(arena, &t2.rows()[i], &y)),
         span: span(written.t1.as_ref().unwrap_or(first), i),
     });
-    let proposal = propose(place, [&t1, &t2], [&a21, &a22, &b2], names).map_err(open)?;
+    let proposal = propose(place, [&t1, &t2], [&a21, &a22, &b2], names, is_long).map_err(open)?;
     Ok(Expansion {
         x: states.collect(),
         y: outputs.collect(),
         phi: phi.collect(),
         proposal,
         conditions,
-        class: Some(Class::Linear(Linear {
-            a11,
-            a21,
-            t1,
-            t2,
-            given: written.t1.is_some(),
-            special,
-            unsolved,
-            span: first.span,
-        })),
+        class: Some(Class::Linear(Linear { a11, a21, t1, t2, given, special, unsolved, span: first.span })),
     })
 }
 
@@ -172,36 +172,54 @@ fn transform(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, V
     Ok((Matrix::new(rows), unsolved))
 }
 
+/// `T2 = -A11 adj(A21) / det(A21)` and the determinant, which is not zero: as expressions that share their minors, where
+/// their normal forms are too long to be written out.
+fn by_cofactors(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> (Matrix, Expr) {
+    let arena = place.arena;
+    let (adjugate, determinant) = a21.adjugate(arena);
+    let over_determinant = |entry: Expr| arena.neg(arena.div(entry, determinant));
+    (a11.mul(arena, &adjugate).map(over_determinant), determinant)
+}
+
 /// What must not vanish for the entries to have values: a rank that holds in general falls there.
-fn denominators(place: &Place<'_>, matrix: &Matrix, span: Span) -> Result<Vec<Assumption>, Obstacle> {
+fn denominators(place: &Place<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacle> {
     let arena = place.arena;
     let field = Field::over(arena, &place.domain.facts, &matrix.entries())?;
-    let mut found: Vec<Assumption> = Vec::new();
+    let mut seen: Vec<Poly> = Vec::new();
+    let mut found: Vec<Expr> = Vec::new();
     for entry in matrix.entries() {
-        let below = field.show(&field.of_polynomial(field.fraction(entry)?.denominator())?);
-        if arena.as_number(below).is_none() && found.iter().all(|other| other.expr != below) {
-            found.push(Assumption { expr: below, relation: Relation::NonZero, span });
+        let fraction = field.fraction(entry)?;
+        // Entries have few different ones: showing a long one takes longer than comparing it.
+        if seen.contains(fraction.denominator()) {
+            continue;
+        }
+        seen.push(fraction.denominator().clone());
+        let below = field.show(&field.of_polynomial(fraction.denominator())?);
+        if arena.as_number(below).is_none() && !found.contains(&below) {
+            found.push(below);
         }
     }
     Ok(found)
 }
 
 /// `x = T1^+ (z - T2 y)` with `T1^+ = (T1' T1)^-1 T1'`, and the regression of claim C3:
-/// `y' = (A22 - A21 T1^+ T2) y + B2 u + A21 T1^+ z`.
+/// `y' = (A22 - A21 T1^+ T2) y + B2 u + A21 T1^+ z`. Where T2 is too long for normal forms, so is what is made of it.
 fn propose(
     place: &Place<'_>,
     [t1, t2]: [&Matrix; 2],
     [a21, a22, b2]: [&Matrix; 3],
     names: &Names<'_>,
+    is_long: bool,
 ) -> Result<Proposal, Obstacle> {
     let (arena, facts) = (place.arena, &place.domain.facts);
     let transposed = t1.transpose();
     let Some(gram) = transposed.mul(arena, t1).inverse(arena, facts)? else { return Ok(Proposal::default()) };
     let left = gram.mul(arena, &transposed).normal(arena, facts)?;
     let minus = |matrix: &Matrix| matrix.map(|entry| arena.neg(entry));
-    let on_y = minus(&left.mul(arena, t2)).normal(arena, facts)?;
+    let short = |matrix: Matrix| if is_long { Ok(matrix) } else { matrix.normal(arena, facts) };
+    let on_y = short(minus(&left.mul(arena, t2)))?;
     let factors = a21.mul(arena, &left).normal(arena, facts)?;
-    let rest = a22.add(arena, &a21.mul(arena, &on_y)).normal(arena, facts)?;
+    let rest = short(a22.add(arena, &a21.mul(arena, &on_y)))?;
     let symbols = |list: &[crate::cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (y, u) = (symbols(names.y), symbols(names.u));
     let z = symbols(place.z);

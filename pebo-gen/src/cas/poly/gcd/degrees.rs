@@ -73,20 +73,23 @@ impl Tables {
     fn images(&self, field: &PrimeField, poly: &Poly) -> Vec<Vec<Residue>> {
         let image = |degree: &u32| vec![Residue::ZERO; *degree as usize + 1];
         let mut images: Vec<_> = poly.degrees().iter().map(image).collect();
+        // The values of all terms: a term without a variable is part of the constant term of the image in it.
+        let mut total = Residue::ZERO;
         for (key, coefficient) in poly.keys().zip(&poly.coefficients) {
-            let exponents = poly.layout.exponents(key);
             let mut value = field.from_integer(coefficient);
-            for (exponent, table) in exponents.iter().zip(&self.powers) {
-                if *exponent > 0 {
-                    value = field.mul(value, table[*exponent as usize]);
-                }
+            for (index, exponent) in poly.layout.powers(key) {
+                value = field.mul(value, self.powers[index][exponent as usize]);
             }
-            let columns = exponents.iter().zip(&self.reciprocals).zip(&mut images);
-            for ((exponent, table), image) in columns {
-                let part = if *exponent > 0 { field.mul(value, table[*exponent as usize]) } else { value };
-                let sum = &mut image[*exponent as usize];
-                *sum = field.add(*sum, part);
+            total = field.add(total, value);
+            for (index, exponent) in poly.layout.powers(key) {
+                let (image, table) = (&mut images[index], &self.reciprocals[index]);
+                let sum = &mut image[exponent as usize];
+                *sum = field.add(*sum, field.mul(value, table[exponent as usize]));
+                image[0] = field.sub(image[0], value);
             }
+        }
+        for image in &mut images {
+            image[0] = field.add(image[0], total);
         }
         images
     }
