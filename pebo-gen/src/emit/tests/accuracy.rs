@@ -137,21 +137,3 @@ fn a_left_inverse_that_loses_digits_beside_a_limit_of_its_state_is_written_anoth
         assert!(emitted.text.contains("+ 9.0) + 3.0)"), "{}", emitted.text);
     }
 }
-
-#[test]
-fn a_derived_root_is_written_so_that_it_keeps_its_digits_and_its_loss_is_not_the_authors() {
-    let phi_left = &[("i1", "(z1 - Real::sqrt(z1*z1 - 4.0*z2))/2.0"), ("i3", "(z1 + Real::sqrt(z1*z1 - 4.0*z2))/2.0")];
-    let ordered = |assume| Sketch { assume, phi: &["i1 + i3", "i1*i3"], phi_left, ..CUK };
-    // The smaller of two roots: their sum is positive where both are.
-    let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "i1", "i3 - i1"];
-    for scalar in Scalar::ALL {
-        let kept = accuracy(ordered(assume), scalar).unwrap();
-        let (_, worst) = kept.of(scalar).find(|(function, _)| *function == "recover").unwrap();
-        // Ten operations, a rounding each.
-        assert!(worst.units < 10.0, "{worst:?}");
-    }
-    // Of roots of any sign neither form keeps its digits everywhere, and the author wrote neither.
-    let assume = &["L1", "C2", "L3", "C4", "d", "1.0 - d", "i3 - i1"];
-    let refused = accuracy(ordered(assume), Scalar::F64).unwrap_err();
-    assert!(matches!(&refused, EmitError::Inaccurate { function, .. } if function == "recover"), "{refused}");
-}
