@@ -12,8 +12,6 @@ use super::definition::{Definitions, GROUPS};
 use super::literal::Scalar;
 use super::tasks;
 use crate::analysis::Derivation;
-use crate::cas::domain::Domain;
-use crate::cas::facts::Relation;
 use crate::cas::tidy::{operations, others};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
@@ -21,6 +19,9 @@ use crate::program::{Staged, Undeclared};
 
 /// Ways to write an entry that are tried.
 const MOST_WAYS: usize = 12;
+
+/// A form may take so many times the operations of the entry: what takes more is not looked at, as each is measured.
+const MOST_LONGER: usize = 4;
 
 /// The part of the work that is left which these may take.
 const SHARE: u64 = 2;
@@ -69,7 +70,7 @@ pub(super) fn choose<'a>(
         let Some(other) = other.filter(|_| !cheaper.losing.is_empty()) else { return Ok(cheaper) };
         Ok(cheaper.or_better(of(definitions, other)))
     };
-    let domain = with_signs(plant, derivation.domain(plant));
+    let domain = derivation.domain(plant);
     let mut choice = measured(definitions)?;
     for (function, entries) in choice.losing.clone() {
         if arena.budget().is_exhausted() {
@@ -83,9 +84,10 @@ pub(super) fn choose<'a>(
             let other = rewritten(before.clone(), function, |place, entry| {
                 // What keeps its digits may be written shorter beside what does not: they share their work.
                 let is_losing = entries.contains(&place);
-                let is_better = |form: Expr| is_losing || operations(arena, form) < operations(arena, entry);
+                let own = operations(arena, entry);
+                let most = if is_losing { MOST_LONGER * own } else { own.saturating_sub(1) };
                 let forms = others(arena, &domain, entry).into_iter().take(MOST_WAYS);
-                forms.filter(|form| is_better(*form)).find(|form| keeps(entry, *form))
+                forms.filter(|form| operations(arena, *form) <= most).find(|form| keeps(entry, *form))
             });
             let Some(other) = other else { return Ok(None) };
             let other = measured(&other)?;
@@ -98,20 +100,6 @@ pub(super) fn choose<'a>(
     }
     let accuracy = ground.measure(&choice.definitions, &choice.staged);
     Ok((choice, accuracy))
-}
-
-/// The domain, with the signs that the coordinates have there: `z2` is positive where `a + b` is.
-fn with_signs(plant: &Plant, mut domain: Domain) -> Domain {
-    let arena = &plant.arena;
-    for (&z, value) in plant.z.iter().zip(plant.transform()) {
-        let z = arena.of_symbol(z);
-        for (z, value) in [(z, value), (arena.neg(z), arena.neg(value))] {
-            if domain.implies(arena, value, Relation::Positive) {
-                domain.facts.assume(z, Relation::Positive);
-            }
-        }
-    }
-    domain
 }
 
 /// The definitions with the entries of a function written as `better` says; none if it does not say of any.

@@ -3,9 +3,8 @@
 //! In: an entry of a function, and a place at which it loses digits. Out: whose the loss is. The entry loses
 //! them where a part of it does whose own parts do not. That has to be a part of the author's formulas, and these have to
 //! lose as much there; or what they hide, by adding it to something large, has to be small beside what the entry is
-//! elsewhere. A left inverse that the tool derived is no formula of the author. Where no part of the entry as it is
-//! written loses them, what its sums as the author wrote them lose is compared. A loss that is not the author's is nobody's
-//! where it is a rounding of what the entry is elsewhere.
+//! elsewhere. Where no part of the entry as it is written loses them, what its sums as the author wrote them lose is
+//! compared. A loss that is not the author's is nobody's where it is a rounding of what the entry is elsewhere.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -68,20 +67,14 @@ impl<'a> Own<'a> {
             states.iter().map(|(&state, &value)| (state, arena.substitute(value, &coordinates))).collect()
         };
         let parts = |formulas: &[Expr]| cores(arena, formulas).into_values().collect::<BTreeSet<Expr>>();
-        let mut composed = Vec::new();
         for coordinates in [&definitions.symbols(Argument::Z), &definitions.chi] {
-            let states = at(coordinates);
-            let is_given = |state: &Symbol| plant.phi_left.iter().flatten().any(|(given, _)| given == state);
-            let derived: Vec<Expr> = states.iter().filter(|(s, _)| !is_given(s)).map(|(_, &value)| value).collect();
-            // What the tool derived is not what the author wrote.
-            let derived = parts(&derived);
-            let there = arena.substitute_all(&equations[..plant.rates().len()], &states);
-            composed.extend(there.into_iter().map(|formula| (formula, &parts(&[formula]) - &derived)));
+            let there = arena.substitute_all(&equations[..plant.rates().len()], &at(coordinates));
+            formulas.extend(there);
         }
         formulas.extend(slopes);
         formulas.extend(plant.phi_left.iter().flatten().map(|(_, formula)| formula.expr));
-        let written_so = formulas.into_iter().map(|formula| (formula, parts(&[formula])));
-        Self { arena, formulas: written_so.chain(composed).collect(), equations, written, spots }
+        let formulas = formulas.into_iter().map(|formula| (formula, parts(&[formula])));
+        Self { arena, formulas: formulas.collect(), equations, written, spots }
     }
 
     /// Whose a loss of so many units is.
