@@ -67,11 +67,17 @@ pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
     let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) else { return Vec::new() };
     let orientation = Orientation::new(arena, domain);
     let own = functions(arena, &[expr]);
-    let mut ways = written(&field, expr);
-    if let Ok(fraction) = field.fraction(expr) {
-        ways.extend(field.show_without_sines(&fraction));
-        ways.extend(field.show_rationalised(&fraction));
-    }
+    let in_kernels_of = |field: &Field<'_>| {
+        let mut ways = written(field, expr);
+        if let Ok(fraction) = field.fraction(expr) {
+            ways.extend(field.show_without_sines(&fraction));
+            ways.extend(field.show_rationalised(&fraction));
+        }
+        ways
+    };
+    let mut ways = in_kernels_of(&field);
+    // In absolute angles a divisor `sin(q)` is none.
+    ways.extend(Field::over(arena, &domain.facts, &[expr]).iter().flat_map(in_kernels_of));
     ways.extend(in_own_functions(&field, &domain.facts, expr, &own, |form| functions(arena, &[form]).is_subset(&own)));
     ways.extend([expr].iter().chain(&ways).filter_map(|form| near_zero(arena, *form)).collect::<Vec<Expr>>());
     let mut found: Vec<Expr> = Vec::new();

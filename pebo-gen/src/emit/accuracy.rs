@@ -13,9 +13,10 @@ mod moved;
 mod own;
 mod places;
 mod rounded;
+mod spot;
 
 use std::cell::OnceCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::definition::{Argument, Definitions, Group, VELOCITY};
 use super::literal::Scalar;
@@ -26,13 +27,14 @@ use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
-use crate::program::{Program, Staged};
+use crate::program::{Program, Staged, Task, stage};
 pub use cause::Cause;
-use exact::{MOST, exact};
+use exact::MOST;
 use moved::BITS;
 use own::Own;
 use places::{Place, places};
 use rounded::{round, run};
+use spot::Spot;
 
 /// Steps of work that a measurement may take: beyond, fewer places are looked at.
 const MOST_VALUES: usize = 100_000;
@@ -142,60 +144,82 @@ impl Loss {
 /// Where the functions of a plant are measured.
 pub(super) struct Ground<'a> {
     plant: &'a Plant,
-    places: Vec<Place>,
+    spots: Vec<Spot>,
 }
 
+/// The entries of functions that lose digits somewhere, by function.
+pub(super) type Losing = BTreeMap<&'static str, BTreeSet<usize>>;
+
 impl<'a> Ground<'a> {
-    /// Places of the plant's domain.
-    pub(super) fn of(plant: &'a Plant, derivation: &Derivation) -> Self {
-        Self { plant, places: places(plant, derivation) }
+    /// Places of the plant's domain, with values of the arguments that the definitions name.
+    pub(super) fn of(plant: &'a Plant, derivation: &Derivation, definitions: &Definitions) -> Self {
+        let places = places(plant, derivation);
+        let spots = places.iter().filter_map(|place| Some(Spot::new(extended(plant, definitions, place)?)));
+        Self { plant, spots: spots.collect() }
     }
 
-    /// The functions that lose digits somewhere in this scalar, the author's losses among them.
-    pub(super) fn losing(&self, definitions: &Definitions, staged: &Staged, scalar: Scalar) -> Vec<&'static str> {
+    /// What loses digits somewhere in this scalar, the author's losses among it.
+    pub(super) fn losing(&self, definitions: &Definitions, staged: &Staged, scalar: Scalar) -> Losing {
+        let arena = &self.plant.arena;
         let groups = definitions.groups();
-        let mut losing: Vec<&'static str> = Vec::new();
-        for place in self.places(definitions, &groups) {
-            let there = in_all_digits(scalar, &place);
-            let computed = computed(self.plant, definitions, staged, scalar, &there);
+        let mut losing = Losing::new();
+        for spot in self.spots(&groups) {
+            let there = spot.there(scalar);
+            there.prepare(arena, &measured(&groups));
+            let computed = by_groups(self.plant, definitions, staged, scalar, &there.place);
             for (group, found) in groups.iter().zip(computed).filter(|(group, _)| is_measured(group)) {
-                let is_new = !losing.contains(&group.name);
-                if is_new
-                    && exact(&self.plant.arena, &values(group), &there).units(&found, scalar).iter().any(|u| *u > MOST)
-                {
-                    losing.push(group.name);
+                let units = there.exact(arena, &values(group)).units(&found, scalar);
+                for (entry, _) in units.iter().enumerate().filter(|(_, units)| **units > MOST) {
+                    losing.entry(group.name).or_default().insert(entry);
                 }
             }
         }
         losing
     }
 
+    /// Whether a formula, computed by itself, keeps its digits wherever the value that it is equal to exists.
+    pub(super) fn keeps(&self, form: Expr, value: Expr, definitions: &Definitions, scalar: Scalar) -> bool {
+        let arena = &self.plant.arena;
+        let parameters: Vec<Symbol> = self.plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let sampled = definitions.symbols(Argument::Y);
+        let is_argument = |symbol: &Symbol| !parameters.contains(symbol) && !sampled.contains(symbol);
+        let arguments: Vec<Symbol> = arena.symbols_of(&[form]).into_iter().filter(is_argument).collect();
+        let task = Task { arguments: arguments.clone(), parts: Vec::new(), outputs: vec![form], is_regular: true };
+        let Ok(staged) = stage(arena, &parameters, &sampled, &[task]) else { return false };
+        self.spots(&definitions.groups()).iter().all(|spot| {
+            let there = spot.there(scalar);
+            let found = &computed(self.plant, &staged, (&sampled, &[arguments.clone()]), scalar, &there.place)[0];
+            there.exact(arena, &[value]).units(found, scalar).iter().all(|units| *units <= MOST)
+        })
+    }
+
     /// Measures the functions that run with every sample.
     pub(super) fn measure(&self, definitions: &Definitions, staged: &Staged) -> Accuracy {
         let Self { plant, .. } = *self;
         let groups = definitions.groups();
-        let places = self.places(definitions, &groups);
+        let spots = self.spots(&groups);
         let functions = groups.iter().filter(|group| is_measured(group));
         let mut losses: Vec<Loss> = functions
             .map(|group| Loss { function: group.name, single: Worst::default(), double: Worst::default() })
             .collect();
         let own = OnceCell::new();
         let cause = |value: Expr, place: &Place, scalar: Scalar, units: f64| {
-            own.get_or_init(|| Own::of(plant, definitions, &places)).cause(value, place, scalar, units)
+            own.get_or_init(|| Own::of(plant, definitions, spots)).cause(value, place, scalar, units)
         };
-        for place in &places {
+        for spot in spots {
             for scalar in [Scalar::F32, Scalar::F64] {
-                let there = &in_all_digits(scalar, place);
-                let computed = computed(plant, definitions, staged, scalar, there);
+                let there = spot.there(scalar);
+                there.prepare(&plant.arena, &measured(&groups));
+                let computed = by_groups(plant, definitions, staged, scalar, &there.place);
                 for (group, found) in groups.iter().zip(computed).filter(|(group, _)| is_measured(group)) {
                     let values = values(group);
                     let Some(loss) = losses.iter_mut().find(|loss| loss.function == group.name) else { continue };
                     let worst = loss.worst_mut(scalar);
-                    for (&value, units) in values.iter().zip(exact(&plant.arena, &values, there).units(&found, scalar))
-                    {
+                    let units = there.exact(&plant.arena, &values).units(&found, scalar);
+                    for (&value, units) in values.iter().zip(units) {
                         // A loss that the author does not have is not to hide behind a larger one that he has.
-                        let cause = if units > MOST { cause(value, there, scalar, units) } else { Cause::Form };
-                        let place = || told(&plant.arena, &values, place);
+                        let cause = if units > MOST { cause(value, &there.place, scalar, units) } else { Cause::Form };
+                        let place = || told(&plant.arena, &values, &spot.place);
                         let found = Worst { units, place: String::new(), cause };
                         if found.rank() > worst.rank() {
                             *worst = Worst { place: place(), ..found };
@@ -204,16 +228,19 @@ impl<'a> Ground<'a> {
                 }
             }
         }
-        Accuracy { places: places.len(), losses }
+        Accuracy { places: spots.len(), losses }
     }
 
-    /// The places with values of all arguments; the fewer, the longer the formulas are.
-    fn places(&self, definitions: &Definitions, groups: &[Group]) -> Vec<Place> {
-        let exprs: Vec<Expr> = groups.iter().filter(|group| is_measured(group)).flat_map(values).collect();
-        let size = self.plant.arena.postorder(&exprs).len().max(1);
-        let places = self.places.iter().take((MOST_VALUES / size).max(4));
-        places.filter_map(|place| extended(self.plant, definitions, place)).collect()
+    /// The places that are looked at; the fewer, the longer the formulas are.
+    fn spots(&self, groups: &[Group]) -> &[Spot] {
+        let size = self.plant.arena.postorder(&measured(groups)).len().max(1);
+        &self.spots[..self.spots.len().min((MOST_VALUES / size).max(4))]
     }
+}
+
+/// The formulas that are measured.
+fn measured(groups: &[Group]) -> Vec<Expr> {
+    groups.iter().filter(|group| is_measured(group)).flat_map(values).collect()
 }
 
 /// Whether a function runs with every sample.
@@ -251,40 +278,41 @@ fn extended(plant: &Plant, definitions: &Definitions, place: &Place) -> Option<P
     Some(extended)
 }
 
-/// The place in numbers with all digits of the scalar, but for 0, 1 and -1: sums and products of numbers of `f32` are exact
-/// in `f64`, so that these would hide what is lost there.
-fn in_all_digits(scalar: Scalar, place: &Place) -> Place {
-    /// Beyond the last digit of `f32`.
-    const BEYOND: f64 = 1.0 / 33_554_432.0;
-    /// No two numbers move alike.
-    const TURN: f64 = 0.618_033_988_749_894_9;
-    if scalar == Scalar::F32 {
-        return place.clone();
-    }
-    let mut part = 0.0;
-    let moved = place.iter().map(|(&symbol, &value)| {
-        part = (part + TURN) % 1.0;
-        (symbol, if [1.0, -1.0].contains(&value) { value } else { value * (1.0 + BEYOND * part) })
-    });
-    moved.collect()
+/// What the functions of groups give at a place, group by group.
+fn by_groups(
+    plant: &Plant,
+    definitions: &Definitions,
+    staged: &Staged,
+    scalar: Scalar,
+    place: &Place,
+) -> Vec<Vec<f64>> {
+    let groups = definitions.groups();
+    let arguments = groups.iter().map(|group| varying(&group.arguments).flat_map(|a| definitions.symbols(a)).collect());
+    let arguments: Vec<Vec<Symbol>> = arguments.collect();
+    computed(plant, staged, (&definitions.symbols(Argument::Y), &arguments), scalar, place)
 }
 
-/// What the programs give at a place, group by group.
-fn computed(plant: &Plant, definitions: &Definitions, staged: &Staged, scalar: Scalar, place: &Place) -> Vec<Vec<f64>> {
+/// What programs give at a place, for the sampled symbols and the arguments of each.
+fn computed(
+    plant: &Plant,
+    staged: &Staged,
+    (sampled, arguments): (&[Symbol], &[Vec<Symbol>]),
+    scalar: Scalar,
+    place: &Place,
+) -> Vec<Vec<f64>> {
     let of = |symbols: &[Symbol]| symbols.iter().map(|symbol| place.get(symbol).copied().unwrap_or(1.0)).collect();
     let parameters: Vec<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let parameters: Vec<f64> = of(&parameters);
     let mut inputs = run(&staged.setup, scalar, &parameters);
-    let outputs: Vec<f64> = of(&definitions.symbols(Argument::Y));
+    let outputs: Vec<f64> = of(sampled);
     inputs.extend(outputs);
     let terms = run(&staged.sample, scalar, &inputs);
     inputs.extend(terms);
-    let program = |(group, program): (&Group, &Program)| {
-        let symbols: Vec<Symbol> = varying(&group.arguments).flat_map(|a| definitions.symbols(a)).collect();
-        let arguments: Vec<f64> = of(&symbols);
+    let program = |(symbols, program): (&Vec<Symbol>, &Program)| {
+        let arguments: Vec<f64> = of(symbols);
         run(program, scalar, &[inputs.as_slice(), &arguments].concat())
     };
-    definitions.groups().iter().zip(&staged.programs).map(program).collect()
+    arguments.iter().zip(&staged.programs).map(program).collect()
 }
 
 /// Values as intervals.

@@ -1,22 +1,27 @@
 //! Of equal forms of the functions, the cheapest that keeps its digits.
 //!
 //! In: the definitions as derived. Out: the definitions that are emitted, their programs, and the accuracy measured of
-//! these; of the others only which functions lose digits. What was derived comes first. Only for a function that loses
-//! digits that way, also where its author's formulas do, other ways to write it are tried; the first that keeps them is
-//! taken. If none does, it stays as it was derived.
+//! these; of the others only which entries lose digits. What was derived comes first. Only for an entry that loses digits
+//! that way, also where its author's formulas do, other ways to write it are tried; the first that keeps them by itself is
+//! taken, if fewer entries lose digits then. If none does, it stays as it was derived.
 
-use super::accuracy::{Accuracy, Ground};
+use std::collections::BTreeSet;
+
+use super::accuracy::{Accuracy, Ground, Losing};
 use super::definition::{Definitions, GROUPS};
 use super::literal::Scalar;
 use super::tasks;
 use crate::analysis::Derivation;
-use crate::cas::tidy::others;
+use crate::cas::tidy::{operations, others};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 use crate::program::{Staged, Undeclared};
 
-/// Ways to write a function that are tried.
-const MOST_WAYS: usize = 4;
+/// Ways to write an entry that are tried.
+const MOST_WAYS: usize = 12;
+
+/// A form may take so many times the operations of the entry: what takes more is not looked at, as each is measured.
+const MOST_LONGER: usize = 4;
 
 /// The part of the work that is left which these may take.
 const SHARE: u64 = 2;
@@ -26,14 +31,19 @@ const SHARE: u64 = 2;
 pub(super) struct Choice<'a> {
     pub(super) definitions: Definitions<'a>,
     pub(super) staged: Staged,
-    /// The functions that lose digits.
-    losing: Vec<&'static str>,
+    /// What loses digits.
+    losing: Losing,
 }
 
 impl Choice<'_> {
-    /// This, or the other if fewer functions lose digits in it.
+    /// This, or the other if fewer entries lose digits in it.
     fn or_better(self, other: Self) -> Self {
-        if other.losing.len() < self.losing.len() { other } else { self }
+        if other.lost() < self.lost() { other } else { self }
+    }
+
+    /// How many entries lose digits.
+    fn lost(&self) -> usize {
+        self.losing.values().map(BTreeSet::len).sum()
     }
 }
 
@@ -49,7 +59,7 @@ pub(super) fn choose<'a>(
     is_zero: impl Fn(&Arena, Expr) -> bool,
 ) -> Result<(Choice<'a>, Accuracy), Undeclared> {
     let arena = &plant.arena;
-    let ground = Ground::of(plant, derivation);
+    let ground = Ground::of(plant, derivation, definitions);
     let of = |definitions: &Definitions<'a>, staged: Staged| {
         let losing = ground.losing(definitions, &staged, scalar);
         Choice { definitions: definitions.clone(), staged, losing }
@@ -60,24 +70,29 @@ pub(super) fn choose<'a>(
         let Some(other) = other.filter(|_| !cheaper.losing.is_empty()) else { return Ok(cheaper) };
         Ok(cheaper.or_better(of(definitions, other)))
     };
+    let domain = derivation.domain(plant);
     let mut choice = measured(definitions)?;
-    for function in choice.losing.clone() {
+    for (function, entries) in choice.losing.clone() {
         if arena.budget().is_exhausted() {
             break;
         }
         let before = choice.definitions.clone();
         let better = arena.budget().share(SHARE, || -> Result<Option<Choice<'a>>, Undeclared> {
-            for other in rewritten(plant, derivation, &before, function, &is_zero) {
-                let other = measured(&other)?;
-                // What was not measured to the end may lose digits all the same.
-                if arena.budget().is_exhausted() {
-                    break;
-                }
-                if !other.losing.contains(&function) {
-                    return Ok(Some(other));
-                }
-            }
-            Ok(None)
+            let keeps = |entry: Expr, form: Expr| {
+                ground.keeps(form, entry, &before, scalar) && is_zero(arena, arena.sub(form, entry))
+            };
+            let other = rewritten(before.clone(), function, |place, entry| {
+                // What keeps its digits may be written shorter beside what does not: they share their work.
+                let is_losing = entries.contains(&place);
+                let own = operations(arena, entry);
+                let most = if is_losing { MOST_LONGER * own } else { own.saturating_sub(1) };
+                let forms = others(arena, &domain, entry).into_iter().take(MOST_WAYS);
+                forms.filter(|form| operations(arena, *form) <= most).find(|form| keeps(entry, *form))
+            });
+            let Some(other) = other else { return Ok(None) };
+            let other = measured(&other)?;
+            // What was not measured to the end may lose digits all the same.
+            Ok((!arena.budget().is_exhausted()).then_some(other))
         })?;
         if let Some(better) = better {
             choice = choice.or_better(better);
@@ -87,36 +102,20 @@ pub(super) fn choose<'a>(
     Ok((choice, accuracy))
 }
 
-/// The definitions with what a function computes written in other ways.
+/// The definitions with the entries of a function written as `better` says; none if it does not say of any.
 fn rewritten<'a>(
-    plant: &Plant,
-    derivation: &Derivation,
-    definitions: &Definitions<'a>,
+    mut definitions: Definitions<'a>,
     function: &str,
-    is_zero: impl Fn(&Arena, Expr) -> bool,
-) -> impl Iterator<Item = Definitions<'a>> {
-    let arena = &plant.arena;
-    let domain = derivation.domain(plant);
+    better: impl Fn(usize, Expr) -> Option<Expr>,
+) -> Option<Definitions<'a>> {
     let members = GROUPS.iter().find(|(name, ..)| *name == function).map_or(&[][..], |group| group.2);
-    let entries = |definitions: &Definitions| -> Vec<Expr> {
-        let members = definitions.functions.iter().filter(|definition| members.contains(&definition.name));
-        members.flat_map(|definition| definition.rows.concat()).collect()
-    };
-    let ways: Vec<(Expr, Vec<Expr>)> =
-        entries(definitions).into_iter().map(|entry| (entry, others(arena, &domain, entry))).collect();
-    let most = ways.iter().map(|(_, forms)| forms.len()).max().unwrap_or(0).min(MOST_WAYS);
-    let definitions = definitions.clone();
-    (0..most).map(move |way| {
-        let mut forms = ways.iter().map(|(entry, forms)| {
-            let form = forms.get(way).copied().filter(|form| is_zero(arena, arena.sub(*form, *entry)));
-            form.unwrap_or(*entry)
-        });
-        let mut other = definitions.clone();
-        for definition in other.functions.iter_mut().filter(|definition| members.contains(&definition.name)) {
-            for entry in definition.rows.iter_mut().flatten() {
-                *entry = forms.next().unwrap_or(*entry);
-            }
+    let functions = definitions.functions.iter_mut().filter(|definition| members.contains(&definition.name));
+    let mut changed = false;
+    for (place, entry) in functions.flat_map(|definition| definition.rows.iter_mut().flatten()).enumerate() {
+        if let Some(form) = better(place, *entry) {
+            *entry = form;
+            changed = true;
         }
-        other
-    })
+    }
+    changed.then_some(definitions)
 }

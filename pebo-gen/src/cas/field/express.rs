@@ -84,9 +84,19 @@ impl Field<'_> {
     /// The fraction as a sum over the denominators that are left when each term of the numerator cancels
     /// on its own: `(a + b)/L - G*c/C` rather than everything over `L*C`.
     pub fn show_apart(&self, fraction: &Fraction) -> Expr {
+        self.show_apart_over(fraction, &Monomial::one())
+    }
+
+    /// The same of the fraction over these powers of kernels.
+    pub(super) fn show_apart_over(&self, fraction: &Fraction, also: &Monomial) -> Expr {
         self.count(fraction);
         let (below, den) = primitive(&fraction.den);
-        let content = den.monomial_content();
+        let own = den.monomial_content();
+        let mut powers: BTreeMap<u32, u32> = own.powers().iter().copied().collect();
+        for (variable, times) in also.powers() {
+            *powers.entry(*variable).or_default() += times;
+        }
+        let content = Monomial::new(powers);
         let mut groups: BTreeMap<Vec<(u32, u32)>, Terms> = BTreeMap::new();
         for (monomial, coefficient) in fraction.num.terms() {
             let cancelled = common(&monomial, &content);
@@ -94,7 +104,7 @@ impl Field<'_> {
             let group = groups.entry(left.powers().to_vec()).or_default();
             group.push((divided(&monomial, &cancelled), coefficient.clone()));
         }
-        let rest: Terms = den.terms().map(|(m, c)| (divided(&m, &content), c.clone())).collect();
+        let rest: Terms = den.terms().map(|(m, c)| (divided(&m, &own), c.clone())).collect();
         let rest = self.grouped(rest, &|variable| self.kernel(variable));
         let scale = Rational::new(Integer::ONE, below).unwrap_or(Rational::ONE);
         self.arena.sum(groups.into_iter().map(|(left, terms)| {

@@ -5,36 +5,36 @@
 //! `-cos(p + q)/sin(q)`. With `s^2 = 1 - c^2` a polynomial is `A(c) + B(c) s`, and `s` divides it where `1 - c^2`
 //! divides `A`; the normal form sees `A + B s` and `1 - c^2` without a factor in common.
 
-use crate::cas::expr::{Expr, Node};
-use crate::cas::function::Function;
-use crate::cas::poly::Poly;
+use crate::cas::expr::Expr;
+use crate::cas::poly::{Monomial, Poly};
 use crate::cas::rational::Rational;
 
 use super::Field;
 use super::fraction::Fraction;
 use super::obstacle::Obstacle;
 
-/// Bases with their exponents.
-type Powers = Vec<(Expr, Rational)>;
-
 impl Field<'_> {
-    /// The ways to write the fraction without common sines; none where there are none.
+    /// The ways to write the fraction without common sines, the last with each term over the sines that it does not hold; none
+    /// where there are none.
     pub fn show_without_sines(&self, fraction: &Fraction) -> Vec<Expr> {
         let Ok(Some((rest, sines))) = self.without_sines(fraction) else { return Vec::new() };
+        let below = sines.powers().iter().map(|&(sine, times)| (self.kernel(sine), Rational::from(-i64::from(times))));
+        let below: Vec<(Expr, Rational)> = below.collect();
         let over =
-            |shown: Expr| self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], sines.clone()].concat());
-        [Some(self.show(&rest)), self.show_by_angles(&rest)].into_iter().flatten().map(over).collect()
+            |shown: Expr| self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], below.clone()].concat());
+        let whole = [Some(self.show(&rest)), self.show_by_angles(&rest)].into_iter().flatten().map(over);
+        whole.chain([self.show_apart_over(&rest, &sines)]).collect()
     }
 
     /// The rest of the fraction, and the powers of sines that are left below, if any cancelled.
-    fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Powers)>, Obstacle> {
+    fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Monomial)>, Obstacle> {
         let Fraction { mut num, mut den } = fraction.clone();
         let mut left = Vec::new();
         let mut cancelled = false;
         for variable in den.variables().to_vec() {
             let Some(sine) = self.sine_beside(variable) else { continue };
             let square = &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?;
-            let mut times = 0_i64;
+            let mut times = 0_u32;
             while let Some(rest) = den.div_exact(&square, self.limit())? {
                 den = rest;
                 times += 2;
@@ -46,14 +46,12 @@ impl Field<'_> {
                 times -= 1;
                 cancelled = true;
             }
-            if let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) {
-                left.push((self.arena.call(Function::Sin, &arguments), Rational::from(-times)));
-            }
+            left.push((sine, times));
         }
         if den.leading_coefficient().is_negative() {
             (num, den) = (-&num, -&den);
         }
-        Ok(cancelled.then_some((Fraction { num, den }, left)))
+        Ok(cancelled.then(|| (Fraction { num, den }, Monomial::new(left))))
     }
 }
 
@@ -63,6 +61,7 @@ mod tests {
     use crate::cas::Arena;
     use crate::cas::domain::Domain;
     use crate::cas::facts::Facts;
+    use crate::cas::function::Function;
     use crate::cas::zero::decide;
 
     #[test]
@@ -79,6 +78,11 @@ mod tests {
             (arena.div(arena.mul(a, sum), square(below)), Some("-a*cos(p + q)/sin(q)^3")),
             (arena.div(arena.sub(a, cos(q)), arena.mul(below, a)), None),
             (arena.div(sum, a), None),
+            // What has a sine is not divided by it.
+            (
+                arena.div(arena.mul(sin(q), arena.add(cos(arena.add(p, q)), arena.mul(a, cos(p)))), below),
+                Some("cos(p)*(a + cos(q))/sin(q) - sin(p)"),
+            ),
         ];
         for (written, expected) in cases {
             let field = Field::over(&arena, &Facts::default(), &[written]).unwrap();

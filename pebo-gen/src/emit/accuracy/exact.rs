@@ -17,9 +17,12 @@ use crate::cas::{Arena, Expr, Symbol};
 /// More units are a loss that no author expects.
 pub(super) const MOST: f64 = 100.0;
 
-/// Exact values at a place, and how much they move when all that they depend on is rounded.
+/// An exact value, and how much it moves when all that it depends on is rounded; none where it does not exist.
+pub(super) type Value = Option<(Interval, f64)>;
+
+/// Exact values at a place.
 pub(super) struct Exact {
-    values: Vec<Option<(Interval, f64)>>,
+    pub(super) values: Vec<Value>,
 }
 
 /// The values of expressions; where they do not all exist, of each by itself.
@@ -32,7 +35,7 @@ pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
 }
 
 /// The same in one pass, none if one of them has no value.
-fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Vec<Option<(Interval, f64)>>> {
+pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Vec<Value>> {
     let still = at(arena, exprs, place, None)?;
     let parts = arena.postorder(exprs);
     let values = arena.enclose_over(&parts, &still, Precision::new(BITS))?;
@@ -67,7 +70,7 @@ fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], place: &Pla
         };
         for (index, moved) in reached.iter().zip(moved) {
             let difference = moved.and_then(|moved| moved.sub(&still[*index], Precision::new(BITS)));
-            effects[*index] += difference.map_or(0.0, |difference| magnitude(&difference) / MOVE);
+            effects[*index] += difference.map_or(0.0, |difference| surely(&difference) / MOVE);
         }
     }
     effects
@@ -96,7 +99,7 @@ impl Exact {
             Scalar::F32 => f64::from(f32::MAX),
             Scalar::F64 => f64::MAX,
         };
-        let units = |(exact, &found): (&Option<(Interval, f64)>, &f64)| {
+        let units = |(exact, &found): (&Value, &f64)| {
             let Some((value, condition)) = exact else { return 0.0 };
             if magnitude(value) > largest / 4.0 {
                 // Nothing that the scalar could hold.
@@ -106,7 +109,7 @@ impl Exact {
             let error = Interval::from_rational(&found, Precision::new(BITS))
                 .and_then(|found| found.sub(value, Precision::new(BITS)))
                 .map_or(f64::INFINITY, |error| magnitude(&error));
-            let unit = roundoff * (condition + magnitude(value));
+            let unit = roundoff * (condition + surely(value));
             // Without a unit the value is 0 and stays so, whatever the arguments: what is left is the rounding of numbers
             // in the formula.
             if error > least && unit > 0.0 { error / unit } else { 0.0 }
@@ -122,6 +125,11 @@ impl Exact {
 
 fn magnitude(value: &Interval) -> f64 {
     value.hi().abs().max(value.lo().abs())
+}
+
+/// The magnitude that a value has at least: what an enclosure of zero is wide is no size.
+fn surely(value: &Interval) -> f64 {
+    if value.lo() <= 0.0 && value.hi() >= 0.0 { 0.0 } else { value.hi().abs().min(value.lo().abs()) }
 }
 
 #[cfg(test)]
@@ -160,6 +168,24 @@ mod tests {
             let close = effect.is_some_and(|effect| (effect - difference).abs() <= 1e-6 * difference);
             assert!(close, "{}: {effect:?}, {difference}", arena.print(expr));
         }
+    }
+
+    #[test]
+    fn a_zero_that_is_enclosed_has_no_unit() {
+        // At b = 0 no argument moves it, and the enclosure of `sin(a) - sin(a)*(1 + b)` is as wide as its digits are.
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let sine = arena.call(Function::Sin, &[a]);
+        let third = arena.scale(sine, &Rational::new(1, 3).unwrap());
+        let vanishing = arena
+            .sub(arena.call(Function::Sin, &[arena.add(a, arena.mul(b, b))]), arena.scale(third, &Rational::from(3)));
+        let parts = arena.add(arena.div(vanishing, a), arena.mul(b, b));
+        let place: Place = [(arena.symbol("a"), 0.3), (arena.symbol("b"), 0.0)].into();
+        let units = exact(&arena, &[parts], &place).units(&[1e-17], Scalar::F64);
+        assert_eq!(units, [0.0]);
+        // Beside it there is one.
+        let place: Place = [(arena.symbol("a"), 0.3), (arena.symbol("b"), 0.1)].into();
+        assert!(exact(&arena, &[parts], &place).units(&[1.0], Scalar::F64)[0] > MOST);
     }
 
     #[test]

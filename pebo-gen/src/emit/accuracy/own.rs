@@ -12,9 +12,10 @@ use super::super::definition::{Argument, Definitions};
 use super::super::literal::Scalar;
 use super::cause::Cause;
 use super::core::cores;
-use super::exact::{MOST, exact};
+use super::exact::{Exact, MOST, exact};
 use super::places::Place;
 use super::rounded::{round, run};
+use super::spot::Spot;
 use crate::cas::{Arena, Expr, Node, Symbol};
 use crate::plant::Plant;
 use crate::program::lower;
@@ -40,13 +41,13 @@ pub(super) struct Own<'a> {
     /// The rates and the transform, and all parts of these.
     equations: Vec<Expr>,
     written: BTreeSet<Expr>,
-    places: &'a [Place],
+    spots: &'a [Spot],
 }
 
 impl<'a> Own<'a> {
     /// The plant's equations and its transform, their slopes in the states, which they lose the digits of where the other
     /// terms are small, and the equations at the states that the coordinates give.
-    pub(super) fn of(plant: &'a Plant, definitions: &Definitions, places: &'a [Place]) -> Self {
+    pub(super) fn of(plant: &'a Plant, definitions: &Definitions, spots: &'a [Spot]) -> Self {
         let arena = &plant.arena;
         let mut formulas: Vec<Expr> = plant.rates().into_values().chain(plant.transform()).collect();
         let equations = formulas.clone();
@@ -65,14 +66,15 @@ impl<'a> Own<'a> {
                 plant.z.iter().copied().zip(symbols.iter().map(|&symbol| arena.of_symbol(symbol))).collect();
             states.iter().map(|(&state, &value)| (state, arena.substitute(value, &coordinates))).collect()
         };
+        let parts = |formulas: &[Expr]| cores(arena, formulas).into_values().collect::<BTreeSet<Expr>>();
         for coordinates in [&definitions.symbols(Argument::Z), &definitions.chi] {
-            let there = arena.substitute_all(&formulas[..plant.rates().len()], &at(coordinates));
+            let there = arena.substitute_all(&equations[..plant.rates().len()], &at(coordinates));
             formulas.extend(there);
         }
         formulas.extend(slopes);
         formulas.extend(plant.phi_left.iter().flatten().map(|(_, formula)| formula.expr));
-        let formulas = formulas.into_iter().map(|formula| (formula, cores(arena, &[formula]).into_values().collect()));
-        Self { arena, formulas: formulas.collect(), equations, written, places }
+        let formulas = formulas.into_iter().map(|formula| (formula, parts(&[formula])));
+        Self { arena, formulas: formulas.collect(), equations, written, spots }
     }
 
     /// Whose a loss of so many units is.
@@ -118,11 +120,12 @@ impl<'a> Own<'a> {
 
     /// Whether the error is at most so many roundings of what the value is elsewhere.
     fn is_within(&self, value: Expr, place: &Place, units: f64, roundings: f64) -> bool {
-        let size = |place: &Place| exact(self.arena, &[value], place).sizes().next().flatten();
-        let mut sizes: Vec<f64> = self.places.iter().filter_map(size).collect();
+        let first = |exact: Exact| exact.sizes().next().flatten();
+        let there = self.spots.iter().map(|spot| spot.there(Scalar::F32));
+        let mut sizes: Vec<f64> = there.filter_map(|there| first(there.exact(self.arena, &[value]))).collect();
         sizes.sort_by(f64::total_cmp);
         let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        size(place).is_some_and(|here| units * here <= roundings * usual)
+        first(exact(self.arena, &[value], place)).is_some_and(|here| units * here <= roundings * usual)
     }
 
     /// The parts of a value that lose digits although their own parts lose none, by what they are.
