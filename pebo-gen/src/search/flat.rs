@@ -276,7 +276,7 @@ impl<'a> Flat<'a> {
         Some(exponential(self.question, potential(self.question, slopes)?))
     }
 
-    pub(super) fn tidied(&self, expr: Expr) -> Result<Expr, Obstacle> {
+    fn tidied(&self, expr: Expr) -> Result<Expr, Obstacle> {
         let field = Field::over(self.question.arena, &self.question.domain.facts, &[expr])?;
         Ok(field.show(&field.fraction(expr)?))
     }

@@ -9,6 +9,7 @@
 //! proved of the domain.
 
 use crate::cas::field::{Fraction, Obstacle};
+use crate::cas::tidy::shortest;
 use crate::cas::{Expr, Symbol};
 
 use super::completion::{Derivations, Solutions, System};
@@ -43,8 +44,8 @@ pub(super) fn integrated(question: &Question<'_>) -> Result<Vec<Expr>, Obstacle>
     let lift: Vec<Vec<Expr>> = completed.lift.iter().map(shown).collect();
     let mut found = Vec::new();
     for solution in flat.solutions()? {
-        let value = |row: &Vec<Expr>| flat.tidied(dot(arena, row, &solution));
-        let values = lift.iter().map(value).collect::<Result<Vec<Expr>, _>>()?;
+        let values: Vec<Expr> =
+            lift.iter().map(|row| shortest(arena, &question.domain, dot(arena, row, &solution))).collect();
         let (gradient, frame) = values.split_at(values.len() - states);
         if frame.iter().all(|e| arena.is_zero(*e)) {
             continue;

@@ -231,7 +231,8 @@ impl Hunt<'_> {
             if self.affine.as_ref().is_some_and(Bound::excludes) {
                 break;
             }
-            if degree == 2 {
+            // Products of the functions in the formulas read better than what is integrated.
+            if degree == 3 {
                 let integrated = arena.budget().share(3, || integration::integrated(question));
                 self.judge(Form::Integrals, 0, integrated);
                 if self.is_over() {

@@ -9,6 +9,7 @@ use crate::cas::combination::equations;
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::linear::solve;
+use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
 
@@ -26,21 +27,23 @@ pub(super) fn antiderivative(
 ) -> Result<Option<Expr>, Obstacle> {
     let moving = BTreeSet::from([symbol]);
     let field = Field::over(arena, &domain.facts, &[expr])?;
-    let kernels: Vec<Expr> = field.kernels_of(&moving).into_iter().map(|kernel| field.kernel(kernel)).collect();
+    let fraction = field.fraction(expr)?;
+    let held: Vec<u32> =
+        fraction.variables().filter(|kernel| arena.depends_on(field.kernel(*kernel), &moving)).collect();
     let angle = |kernel: &Expr| match arena.node(*kernel) {
         Node::Call(Function::Sin | Function::Cos, arguments) => Some(arguments[0]),
         _ => None,
     };
-    let Some(angles) = kernels.iter().map(angle).collect::<Option<BTreeSet<Expr>>>() else { return Ok(None) };
+    let angles: Option<BTreeSet<Expr>> = held.iter().map(|kernel| angle(&field.kernel(*kernel))).collect();
+    let Some(angles) = angles else { return Ok(None) };
     let mut angles = angles.into_iter();
     let (Some(angle), None) = (angles.next(), angles.next()) else { return Ok(None) };
     if arena.depends_on(arena.derivative(angle, symbol), &moving) {
         return Ok(None);
     }
-    let below = field.fraction(expr)?;
-    let below = below.denominator();
-    let degree = |kernel: &u32| below.degree(*kernel);
-    let degree: u32 = field.kernels_of(&moving).iter().map(degree).sum();
+    let below = fraction.denominator();
+    let degree = |poly: &Poly| held.iter().map(|kernel| poly.degree(*kernel)).sum::<u32>();
+    let degree = degree(fraction.numerator()).max(degree(below));
     if degree > MOST_DEGREE {
         return Ok(None);
     }

@@ -112,6 +112,24 @@ const CASES: &[Case] = &[
         class: Class::Gpebo,
         most: 2,
     },
+    Case {
+        from: "made from its transform: x1 + (c*q^3 + 4*p*q)*x2 and x2 + c*sqrt(p^2 + 1), which are integrals over both outputs",
+        lines: "parameters: [b, c]\nx: [x1, x2]\ny: [p, q]\nu: [u]\n\
+                define: {dp: (1 + u^2)*x1 - p, dq: u + (1 + u^2)*(x1 + x2), r: u*p - c*p - c*p*dp/sqrt(p^2 + 1)}\n\
+                f_x: {x1: u - b - 4*x2*q*dp - x2*(3*c*q^2 + 4*p)*dq - (c*q^3 + 4*p*q)*r, x2: r}\n\
+                f_y: {p: dp, q: dq}",
+        class: Class::Pebo,
+        most: 2,
+    },
+    Case {
+        from: "made from its transform: a frame that turns with q, and quotients of p beside it",
+        lines: "parameters: [a]\nx: [x1, x2]\ny: [p, q]\nu: [u, v]\nassume: [a > 0]\n\
+                define: {dp: x1*u + x2, dq: x1 + v*x2, f: u - dp*(1/(1 + p^2) + (a - p^2)/(a + p^2)^2), g: v*q - a*dp*cos(p)}\n\
+                f_x: {x1: f*cos(q) - g*sin(q) - x2*dq, x2: f*sin(q) + g*cos(q) + x1*dq}\n\
+                f_y: {p: dp, q: dq}",
+        class: Class::Pebo,
+        most: 2,
+    },
 ];
 
 #[test]

@@ -8,6 +8,7 @@
 //! seen at a point; less, exact algebra gives the directions that no derivative shows. What could not be decided is not
 //! said; that there are no other such motions is said only where each of them was seen to end at once.
 
+mod coinciding;
 mod losses;
 mod question;
 #[cfg(test)]
@@ -77,7 +78,8 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
         let worked_out = || question.constants(&shown.stack).ok();
         if few { worked_out() } else { arena.budget().share(FOR_PARAMETERS, worked_out) }
     });
-    let (constants, parameters) = (special.clone().unwrap_or_default(), special.is_some());
+    let coincide = || shown.is_some_and(|shown| question.may_coincide(&shown.stack));
+    let (constants, parameters) = (special.clone().unwrap_or_default(), special.is_some() && !coincide());
     let parts = held.as_ref().map_or(usize::MAX, |shown| arena.postorder(&shown.stack.concat()).len());
     let mut everywhere = false;
     if parts <= MOST_PARTS && inputs.len() <= MOST_INPUTS {
