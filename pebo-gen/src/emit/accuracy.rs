@@ -188,7 +188,8 @@ impl<'a> Ground<'a> {
         let Ok(staged) = stage(arena, &parameters, &sampled, &[task]) else { return false };
         self.spots(&definitions.groups()).iter().all(|spot| {
             let there = spot.there(scalar);
-            let found = &computed(self.plant, &staged, (&sampled, &[arguments.clone()]), scalar, &there.place)[0];
+            let found =
+                &computed(self.plant, &staged, (&sampled, std::slice::from_ref(&arguments)), scalar, &there.place)[0];
             there.exact(arena, &[value]).units(found, scalar).iter().all(|units| *units <= MOST)
         })
     }

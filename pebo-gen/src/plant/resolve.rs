@@ -35,10 +35,7 @@ impl Plant {
         // In this order, so that results print parameters before states before inputs.
         let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
         let names = |list: &[Spanned<String>]| -> Vec<Symbol> {
-            list.iter()
-                .map(|name| arena.as_symbol(arena.variable(&name.value)))
-                .collect::<Option<_>>()
-                .unwrap_or_default()
+            list.iter().filter_map(|name| arena.as_symbol(arena.variable(&name.value))).collect()
         };
         let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
         let own = Own::of(&arena, class::components(model));

@@ -8,7 +8,7 @@ use crate::cas::field::Obstacle;
 use crate::cas::rational::{Rational, half};
 use crate::cas::{Expr, Function, Node, Symbol};
 
-use super::quadrature::logarithm;
+use super::logarithm::logarithm;
 use super::question::Question;
 use super::sample::independent;
 

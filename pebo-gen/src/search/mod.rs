@@ -28,6 +28,7 @@ mod frame;
 mod functions;
 mod integration;
 mod largest;
+mod logarithm;
 mod parts;
 mod posed;
 mod products;

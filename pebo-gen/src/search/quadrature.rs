@@ -7,13 +7,13 @@
 use std::collections::BTreeMap;
 
 use crate::cas::domain::Domain;
-use crate::cas::facts::Relation;
 use crate::cas::field::Field;
 use crate::cas::rational::Rational;
 use crate::cas::tidy;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
 
+use super::logarithm::logarithm;
 use super::{rational, trigonometric};
 
 /// Derivatives of a polynomial part that are taken before it is given up.
@@ -34,19 +34,6 @@ pub(super) fn antiderivative(arena: &Arena, domain: &Domain, expr: Expr, symbol:
     };
     let difference = arena.sub(arena.derivative(found, symbol), expr);
     decide(arena, difference, domain).is_zero().then_some(found)
-}
-
-/// The logarithm of the magnitude, without a sign to it where the domain tells.
-pub(super) fn logarithm(arena: &Arena, domain: &Domain, base: Expr) -> Expr {
-    let opposite = arena.neg(base);
-    let argument = if domain.implies(arena, base, Relation::Positive) {
-        base
-    } else if domain.implies(arena, opposite, Relation::Positive) {
-        opposite
-    } else {
-        arena.call(Function::Abs, &[base])
-    };
-    arena.call(Function::Log, &[argument])
 }
 
 struct Rules<'a> {

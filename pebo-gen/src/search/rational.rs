@@ -12,7 +12,7 @@ use crate::cas::poly::Poly;
 use crate::cas::rational::{Rational, half};
 use crate::cas::{Arena, Expr, Function, Symbol};
 
-use super::quadrature::logarithm;
+use super::logarithm::logarithm;
 
 /// Quotients of a higher degree are not integrated.
 const MOST_DEGREE: u32 = 16;

@@ -13,7 +13,7 @@ use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
 
-use super::quadrature::logarithm;
+use super::logarithm::logarithm;
 
 /// Quotients of a higher degree are not integrated.
 const MOST_DEGREE: u32 = 6;
