@@ -57,7 +57,7 @@ fn natural_models_that_take_long_are_undecided_and_name_the_phase() {
         ("long powers", plant(powers, "p + q", "p"), &["the cascade"][..]),
         ("nested tangents", plant(&tangents, "p", "p"), &["the cascade"]),
         ("nested roots", plant("v", &roots, "p"), &["the regression", "identifiability"]),
-        ("a matrix of parameters", matrices(8), &["the expansion of the class", "the cascade"]),
+        ("a matrix of parameters", matrices(8), &["the expansion of the class"]),
     ] {
         let outcome = derived(&text, Budget::of_seconds(SECONDS));
         let phase = phase(&outcome).unwrap_or_default();

@@ -10,8 +10,9 @@ use std::collections::BTreeSet;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::rational::half;
-use crate::cas::{Arena, Expr, Function, Symbol};
+use crate::cas::{Expr, Function, Symbol};
 use crate::plant::Matrix;
+use crate::plant::matrix::dot;
 
 use super::connection::{exponential, potential};
 use super::question::Question;
@@ -280,8 +281,4 @@ impl<'a> Flat<'a> {
         let field = Field::over(self.question.arena, &self.question.domain.facts, &[expr])?;
         Ok(field.show(&field.fraction(expr)?))
     }
-}
-
-pub(super) fn dot(arena: &Arena, left: &[Expr], right: &[Expr]) -> Expr {
-    arena.sum(left.iter().zip(right).map(|(a, b)| arena.mul(*a, *b)).collect::<Vec<Expr>>())
 }

@@ -11,10 +11,11 @@
 use crate::cas::field::{Fraction, Obstacle};
 use crate::cas::tidy::shortest;
 use crate::cas::{Expr, Symbol};
+use crate::plant::matrix::dot;
 
 use super::completion::{Derivations, Solutions, System};
 use super::connection::potential;
-use super::flat::{Flat, dot};
+use super::flat::Flat;
 use super::posed::{Posed, Rows};
 use super::question::Question;
 

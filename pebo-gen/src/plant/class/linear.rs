@@ -41,6 +41,10 @@ pub struct Linear {
     pub span: Span,
 }
 
+/// States up to which T2 is written by minors: there are twice as many of them with each further row, and every claim goes
+/// through all of them.
+const MOST_BY_MINORS: usize = 6;
+
 pub(super) fn expand(
     place: &Place<'_>,
     written: &Lti<Written>,
@@ -98,7 +102,8 @@ pub(super) fn expand(
         Vec::new()
     };
     let given = written.t1.is_some();
-    let is_long = !given && nx == ny && a21.is_long_to_invert(arena, facts).map_err(open)?;
+    let few = !given && nx == ny && nx <= MOST_BY_MINORS;
+    let is_long = few && a21.is_long_to_invert(arena, facts).map_err(open)?;
     let nonzero = |expr: Expr| Assumption { expr, relation: Relation::NonZero, span: first.span };
     let (t1, t2, unsolved, conditions) = if given {
         let conditions = denominators(place, &t2).map_err(open)?;
