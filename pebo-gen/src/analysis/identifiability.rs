@@ -264,12 +264,12 @@ fn of_theta(
 fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
     let arena = &plant.arena;
     let found = || Volume::of(arena, domain, rows)?.places(plant, domain);
-    let Places { signals, zeros, constants, all } = arena.budget().share(8, found).unwrap_or_default();
+    let Places { signals, zeros, constants, all, together } = arena.budget().share(8, found).unwrap_or_default();
     let hidden = plant.hidden();
     let (known, other): (Vec<_>, Vec<_>) =
         signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));
     let (signals, zeros) = known.into_iter().unzip();
-    Places { signals, zeros, constants, all: all && other.is_empty() }
+    Places { signals, zeros, constants, all: all && other.is_empty(), together }
 }
 
 /// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.

@@ -79,7 +79,8 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
         if few { worked_out() } else { arena.budget().share(FOR_PARAMETERS, worked_out) }
     });
     let coincide = || shown.is_some_and(|shown| question.may_coincide(&shown.stack));
-    let (constants, parameters) = (special.clone().unwrap_or_default(), special.is_some() && !coincide());
+    let (constants, all) = special.unwrap_or_default();
+    let parameters = all && !coincide();
     let parts = held.as_ref().map_or(usize::MAX, |shown| arena.postorder(&shown.stack.concat()).len());
     let mut everywhere = false;
     if parts <= MOST_PARTS && inputs.len() <= MOST_INPUTS {

@@ -30,6 +30,8 @@ pub(super) struct Places {
     pub constants: Vec<Expr>,
     /// Whether there is no other place.
     pub all: bool,
+    /// Whether values of the parameters are not excluded that make a factor vanish at all signals, by several equations.
+    pub together: bool,
 }
 
 impl Places {
@@ -155,6 +157,7 @@ impl<'a> Volume<'a> {
             }
             return Ok(());
         }
+        places.together |= self.may_be_nothing(factor, plant);
         let place = match self.solved(factor, plant)? {
             Some((kernel, value)) => format!("{} = {}", self.arena.print(kernel), self.arena.print(value)),
             None => format!("{} = 0", self.arena.print(formula)),
@@ -164,6 +167,14 @@ impl<'a> Volume<'a> {
             places.zeros.push(formula);
         }
         Ok(())
+    }
+
+    /// Whether parameters may make all coefficients of a factor, as a polynomial in what varies, zero.
+    fn may_be_nothing(&self, factor: &Poly, plant: &Plant) -> bool {
+        let constants = constants(plant);
+        let varies = |v: &u32| !self.arena.symbols_of(&[self.field.kernel(*v)]).is_subset(&constants);
+        let moving: Vec<u32> = factor.variables().iter().copied().filter(varies).collect();
+        !factor.collect(&moving).iter().any(|(_, coefficient)| self.field.signs().never_zero(coefficient))
     }
 
     /// A signal, or a function of it, and the one value at which a factor vanishes, if it is linear in that and nothing

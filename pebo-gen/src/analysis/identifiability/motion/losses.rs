@@ -186,24 +186,42 @@ impl Question<'_> {
         Ok(found)
     }
 
-    /// Combinations of the parameters at which rows that have full rank on some motions lose it on all.
-    pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Result<Vec<Expr>, Obstacle> {
+    /// Combinations of the parameters at which rows that have full rank on some motions lose it on all, and whether there
+    /// are no other such values.
+    pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Result<(Vec<Expr>, bool), Obstacle> {
         let arena = &self.plant.arena;
         let own: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
         if arena.symbols_of(&stack.concat()).is_disjoint(&own) {
-            return Ok(Vec::new());
+            return Ok((Vec::new(), true));
         }
         let places = Volume::of(arena, self.domain, stack)?.places(self.plant, self.domain)?;
-        // Not where other motions show them all the same.
-        let lost = |formula: &Expr| {
+        let mut all = places.all && !places.together;
+        let mut lost = Vec::new();
+        for formula in places.constants {
             let solved = arena
-                .symbols_of(&[*formula])
+                .symbols_of(&[formula])
                 .into_iter()
-                .find_map(|parameter| Some((parameter, solved(arena, *formula, parameter)?)));
+                .find_map(|parameter| Some((parameter, solved(arena, formula, parameter)?)));
             let there = solved.map(|solved| Restriction { equal: BTreeMap::from([solved]), ..Restriction::default() });
-            there.is_none_or(|there| self.shown(&there).map_or(true, |shown| !shown.hidden.is_empty()))
+            match there.and_then(|there| self.shown_with(&there)) {
+                // Other motions show them all the same, but perhaps not for further values.
+                Some(further) => all &= !further,
+                None => lost.push(formula),
+            }
+        }
+        Ok((lost, all))
+    }
+
+    /// Whether further values of the parameters may hide unknowns that are shown with a restriction; none if they are not
+    /// shown.
+    fn shown_with(&self, restriction: &Restriction) -> Option<bool> {
+        let &Self { plant, domain, .. } = self;
+        let shown = self.shown(restriction).ok().filter(|shown| shown.hidden.is_empty())?;
+        let places = || {
+            let domain = domain.restricted(&plant.arena, &restriction.equal)?;
+            Volume::of(&plant.arena, &domain, &shown.stack).and_then(|volume| volume.places(plant, &domain)).ok()
         };
-        Ok(places.constants.into_iter().filter(lost).collect())
+        Some(places().is_none_or(|places| !places.all || places.together || !places.constants.is_empty()))
     }
 }
 
