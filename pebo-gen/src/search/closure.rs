@@ -3,13 +3,20 @@
 //! In: formulas, those of the outputs' rates or the states. Out: the functions of x that they consist of, with those that the
 //! rates of these consist of, and so on until nothing is added; none if that does not end soon. Coefficients are functions
 //! of y and u, so that the cascade is a generalised one, and what the functions were taken from is affine in them.
+//!
+//! A function is what multiplies one function of y and u in a formula: `2*v*p + 2*s - p^2` consists of p and `2*s - p^2`,
+//! as no other part of it is seen. Functions that are combinations of others with constant coefficients are left out, so
+//! that of a closure that begins with the outputs nothing stays hidden because of its size.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cas::field::{Field, Obstacle};
-use crate::cas::rational::Rational;
+use crate::cas::combination::equations;
+use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::linear::Echelon;
+use crate::cas::poly::{Monomial, Poly};
 use crate::cas::{Expr, Symbol};
 
+use super::products::apart;
 use super::question::Question;
 use super::sample::is_affine_in;
 
@@ -26,7 +33,7 @@ pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<
     while let Some(formula) = open.pop() {
         let Some(functions) = functions_of(question, formula)? else { return Ok(None) };
         for function in functions {
-            if found.contains(&function) {
+            if !is_new(question, &found, function)? {
                 continue;
             }
             if found.len() == MOST
@@ -40,6 +47,7 @@ pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<
             open.push(question.rate(function));
         }
     }
+    let mut found = plainest(question, &found)?;
     found.sort_by_key(|e| (question.arena.print(*e).len(), *e));
     Ok(Some(found))
 }
@@ -77,33 +85,87 @@ fn is_long(question: &Question<'_>, function: Expr) -> bool {
     question.arena.postorder(&[function]).len() > MOST_PARTS
 }
 
-/// The functions of x of which a formula is a combination with coefficients that are free of x; none where they are not
-/// seen, as x stands in a denominator that is a sum.
+/// The functions of x of which a formula is a combination with coefficients that are free of x, independent of each other;
+/// none where they are not seen, as x stands together with what is known in a factor of the denominator.
 fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Expr>>, Obstacle> {
     let arena = question.arena;
     let field = Field::over(arena, &question.domain.facts, &[formula])?;
     let fraction = field.fraction(formula)?;
-    let hidden: Vec<u32> = field.kernels_of(&question.hidden).into_iter().collect();
-    let power = |powers: &[(u32, u32)], sign: i64| {
-        let factors = powers
-            .iter()
-            .map(|(kernel, exponent)| (field.kernel(*kernel), Rational::from(sign * i64::from(*exponent))));
-        arena.multiply(&Rational::ONE, factors)
-    };
-    let below = fraction.denominator().collect(&hidden);
-    let [(divisor, _)] = below.as_slice() else { return Ok(None) };
-    let divisor = power(divisor.powers(), -1);
+    let hidden = field.kernels_of(&question.hidden);
+    let known: BTreeSet<Symbol> = question.signals.difference(&question.hidden).copied().collect();
+    let known = field.kernels_of(&known);
+    let parts = apart(&field, fraction.denominator(), [&hidden, &known])?;
+    let Some([divisor, _]) = parts else { return Ok(None) };
+    // Kernels of x and y together may be coefficients times one another: only those of x alone are told apart.
+    let numerator = fraction.numerator();
+    if numerator.variables().iter().any(|kernel| hidden.contains(kernel) && known.contains(kernel)) {
+        return Ok(None);
+    }
+    let known: Vec<u32> = known.into_iter().collect();
     let mut found = Vec::new();
-    for (monomial, _) in fraction.numerator().collect(&hidden) {
-        let function = arena.mul(power(monomial.powers(), 1), divisor);
-        // Functions of x and y together may be coefficients times one another: only those of x alone are told apart.
-        let symbols = arena.symbols_of(&[function]);
-        if symbols.iter().any(|s| question.signals.contains(s) && !question.hidden.contains(s)) {
-            return Ok(None);
-        }
-        if !symbols.is_disjoint(&question.hidden) {
-            found.push(function);
+    // What is known stays out, unless it is divided by what is not.
+    let parts = numerator.collect(&known).into_iter().map(|(_, part)| part);
+    for function in combinations(&field, parts, (&hidden, divisor.is_one()))? {
+        let function = field.div(&function, &field.of_polynomial(&divisor)?)?;
+        if function.variables().any(|kernel| hidden.contains(&kernel)) {
+            found.push(field.show(&function));
         }
     }
     Ok(Some(found))
+}
+
+/// What polynomials in hidden kernels span with constant coefficients: where that is all of their monomials, these.
+fn combinations(
+    field: &Field<'_>,
+    parts: impl Iterator<Item = Poly>,
+    (hidden, but_for_constants): (&BTreeSet<u32>, bool),
+) -> Result<Vec<Fraction>, Obstacle> {
+    let hidden: Vec<u32> = hidden.iter().copied().collect();
+    let is_kept = |(monomial, _): &(Monomial, Poly)| !(but_for_constants && monomial.is_one());
+    let parts: Vec<BTreeMap<Monomial, Poly>> =
+        parts.map(|part| part.collect(&hidden).into_iter().filter(is_kept).collect()).collect();
+    // Low ones first: they are pivots, and the others are reduced by them.
+    let monomials: BTreeSet<&Monomial> = parts.iter().flat_map(BTreeMap::keys).collect();
+    let mut monomials: Vec<&Monomial> = monomials.into_iter().collect();
+    monomials.sort_by_key(|monomial| monomial.degree());
+    let entry = |part: &BTreeMap<Monomial, Poly>, monomial: &Monomial| {
+        part.get(monomial).map_or(Ok(Fraction::zero()), |coefficient| field.of_polynomial(coefficient))
+    };
+    let row = |part| monomials.iter().map(|monomial| entry(part, monomial)).collect::<Result<Vec<_>, _>>();
+    let rows = parts.iter().map(row).collect::<Result<Vec<_>, Obstacle>>()?;
+    let (echelon, _) = Echelon::of(field, rows, monomials.len())?;
+    let of_row = |(_, row): (usize, &[Fraction])| {
+        row.iter().zip(&monomials).filter(|(c, _)| !c.is_zero()).try_fold(Fraction::zero(), |sum, (c, monomial)| {
+            let power = Poly::from_terms([((*monomial).clone(), 1.into())])?;
+            field.add(&sum, &field.mul(c, &field.of_polynomial(&power)?)?)
+        })
+    };
+    echelon.rows().map(of_row).collect()
+}
+
+/// Whether a function is no combination of 1 and those that were found with constant coefficients.
+fn is_new(question: &Question<'_>, found: &[Expr], function: Expr) -> Result<bool, Obstacle> {
+    let arena = question.arena;
+    let all = [&[arena.one()], found, &[function]].concat();
+    let field = Field::over(arena, &question.domain.facts, &all)?;
+    let matrix = equations(&field, &[all], &question.signals)?;
+    let (echelon, _) = Echelon::of(&field, matrix, found.len() + 2)?;
+    Ok(echelon.rank() == found.len() + 2)
+}
+
+/// Functions with the same span, each as plain as it can be.
+fn plainest(question: &Question<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let arena = question.arena;
+    let field = Field::over(arena, &question.domain.facts, found)?;
+    let fractions = found.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
+    let mut common = Poly::one();
+    for fraction in &fractions {
+        common = common.lcm(fraction.denominator(), field.limit())?;
+    }
+    let parts = fractions.iter().map(|fraction| field.over_denominator(fraction, &common));
+    let parts = parts.collect::<Result<Vec<Poly>, _>>()?.into_iter();
+    let functions = combinations(&field, parts, (&field.kernels_of(&question.hidden), common.is_one()))?;
+    // A factor that is a number is not part of a function.
+    let common = field.of_polynomial(&common.primitive().1)?;
+    functions.iter().map(|function| Ok(field.show(&field.div(function, &common)?))).collect()
 }

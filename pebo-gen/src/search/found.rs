@@ -64,6 +64,8 @@ pub struct Tried {
 pub enum Form {
     /// Constant combinations of the states, and functions of y to this degree.
     Affine(usize),
+    /// Constant combinations of the states, and polynomials in y to this degree.
+    Shifted(usize),
     /// `T(y) x + s(y)`, where the equations for T and the gradient of s are solved by integrals.
     Integrals,
     /// Products of functions of x to the first degree with functions of y to the second.
@@ -90,6 +92,8 @@ pub enum Start {
     States,
     /// The identities and the states; the value of an output is an identity.
     Identities,
+    /// The states divided by a polynomial that divides its own rate.
+    Quotients,
     /// The outputs' rates, where unknown constants are taken for known.
     Constants,
     /// The outputs' rates, where what unknown constants multiply is integrated by parts.

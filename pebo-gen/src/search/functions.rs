@@ -15,6 +15,9 @@ use super::sample::independent;
 /// More products than this are not made of one pool.
 const MOST_PRODUCTS: usize = 80;
 
+/// Nor more power products than this of the outputs alone: the null space of as many columns is found in no time.
+const MOST_MONOMIALS: usize = 290;
+
 /// Functions of outputs and constants alone: the outputs, what the rates hold of them, and derivatives of it.
 pub(super) fn of_outputs(question: &Question<'_>) -> Vec<Expr> {
     let outputs: BTreeSet<Symbol> = question.y.iter().copied().collect();
@@ -73,11 +76,11 @@ pub(super) fn waves(question: &Question<'_>) -> Vec<Expr> {
     cyclic.flat_map(|y| [Function::Sin, Function::Cos].map(|f| arena.call(f, &[arena.of_symbol(*y)]))).collect()
 }
 
-/// Logarithms of signals, and of what the rates divide by: of states where their sign is known.
+/// Logarithms of signals, of sums, and of factors: of states where their sign is known.
 pub(super) fn logarithms(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
     let arena = question.arena;
     let bases = of.iter().flat_map(|e| match arena.node(*e) {
-        Node::Symbol(_) => vec![*e],
+        Node::Symbol(_) | Node::Sum(_) => vec![*e],
         Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
         _ => Vec::new(),
     });
@@ -132,6 +135,38 @@ fn add_atoms(question: &Question<'_>, formulas: &[Expr], admits: &impl Fn(Expr) 
             _ => {}
         }
     }
+}
+
+/// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are too
+/// many, or where a rate is no polynomial in the outputs.
+pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize) -> Option<Vec<(Expr, usize)>> {
+    let arena = question.arena;
+    let moving: BTreeSet<Symbol> = question.y.iter().copied().collect();
+    let rates: Vec<Expr> = question.rates.values().copied().collect();
+    let is_whole = |part: Expr| match arena.node(part) {
+        Node::Call(..) => !arena.depends_on(part, &moving),
+        Node::Product(product) => product.factors.iter().all(|(base, exponent)| {
+            exponent.is_integer() && !exponent.is_negative() || !arena.depends_on(*base, &moving)
+        }),
+        _ => true,
+    };
+    if !arena.postorder(&rates).into_iter().all(is_whole) {
+        return None;
+    }
+    let mut found = vec![(arena.one(), 0)];
+    let mut last: Vec<(Expr, usize)> = vec![(arena.one(), 0)];
+    for weight in 1..=degree {
+        let next = last.iter().flat_map(|(product, first)| {
+            let with = |(index, factor): (usize, &Expr)| (arena.mul(*product, *factor), index);
+            outputs.iter().enumerate().skip(*first).map(with).collect::<Vec<_>>()
+        });
+        last = next.collect();
+        found.extend(last.iter().map(|(product, _)| (*product, weight)));
+        if found.len() > MOST_MONOMIALS {
+            return None;
+        }
+    }
+    Some(found)
 }
 
 /// The products of at most so many of the functions, each with that number as its weight, beginning with 1; without those

@@ -20,6 +20,7 @@ mod closure;
 mod completion;
 mod connection;
 mod constants;
+mod darboux;
 mod decision;
 mod driven;
 mod flat;
@@ -29,6 +30,7 @@ mod functions;
 mod integration;
 mod largest;
 mod logarithm;
+mod observable;
 mod parts;
 mod posed;
 mod products;
@@ -88,6 +90,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         generalised: None,
         later: Vec::new(),
         seen: BTreeSet::new(),
+        invariant: None,
     };
     if class != Some(Class::Gpebo) {
         hunt.plain();
@@ -171,6 +174,12 @@ fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Cand
 /// The order of series that costs less than another form of transforms.
 const LOW_ORDER: usize = 2;
 
+/// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
+const MOST_SHIFTED: usize = 5;
+
+/// The part of what is left that polynomials with undetermined coefficients may take.
+const FOR_INVARIANT: u64 = 8;
+
 struct Hunt<'a> {
     question: &'a Question<'a>,
     candidates: Vec<Candidate>,
@@ -185,6 +194,8 @@ struct Hunt<'a> {
     later: Vec<Vec<Expr>>,
     /// The transforms that were met.
     seen: BTreeSet<Vec<Expr>>,
+    /// The polynomials in the states that divide their own rates, once they were looked for.
+    invariant: Option<Vec<Expr>>,
 }
 
 impl Hunt<'_> {
@@ -226,6 +237,10 @@ impl Hunt<'_> {
         let mut outputs = functions::of_outputs(question);
         self.attempt(Form::Affine(0), |_| Ok(Ansatz { of_x: states.clone(), of_y: vec![(arena.one(), 0)], weight: 1 }));
         for degree in 1..=3 {
+            // Found in no time where there is one, while completions of long formulas take long.
+            if degree == 2 && !self.is_over() {
+                self.shifted();
+            }
             if self.is_over() || (degree == 2 && self.is_excluded()) {
                 return;
             }
@@ -267,7 +282,8 @@ impl Hunt<'_> {
             });
         }
         let mut of_states = functions::of_states(question);
-        let logarithms = functions::logarithms(question, &[of_states.as_slice(), &outputs].concat());
+        let bases = [of_states.as_slice(), &outputs, self.invariant()].concat();
+        let logarithms = functions::logarithms(question, &bases);
         for logarithm in logarithms {
             let list = if arena.depends_on(logarithm, &question.hidden) { &mut of_states } else { &mut outputs };
             if !list.contains(&logarithm) {
@@ -284,6 +300,23 @@ impl Hunt<'_> {
                 let of_y = functions::products(question, &of_y, second)?;
                 Ok(Ansatz { of_x, of_y, weight: first + second })
             });
+        }
+    }
+
+    /// Constant combinations of the states with polynomials in the outputs, where the formulas are polynomials in all that
+    /// moves: of a few columns for a state, up to a high degree.
+    fn shifted(&mut self) {
+        let question = self.question;
+        let arena = question.arena;
+        let symbols: Vec<Expr> = question.y.iter().map(|y| arena.of_symbol(*y)).collect();
+        for degree in 3..=MOST_SHIFTED {
+            let Some(of_y) = functions::monomials(question, &symbols, degree) else { return };
+            let states = question.x.iter().map(|x| (arena.of_symbol(*x), degree));
+            let of_x = [(arena.one(), 0)].into_iter().chain(states).collect();
+            self.attempt(Form::Shifted(degree), |_| Ok(Ansatz { of_x, of_y, weight: degree }));
+            if self.is_over() {
+                return;
+            }
         }
     }
 
@@ -317,6 +350,10 @@ impl Hunt<'_> {
         if self.is_over() {
             return;
         }
+        self.of_quotients();
+        if self.is_over() {
+            return;
+        }
         self.with_constants();
         if self.is_over() {
             return;
@@ -344,12 +381,39 @@ impl Hunt<'_> {
         }
     }
 
+    /// Quotients of the states by a polynomial that divides its own rate: in these the rates may be affine, as that of `1/p`
+    /// is for `p' = a*p + b*p^2`.
+    fn of_quotients(&mut self) {
+        let question = self.question;
+        let arena = question.arena;
+        for polynomial in self.invariant().to_vec() {
+            let states = question.x.iter().map(|x| arena.of_symbol(*x));
+            let quotients: Vec<Expr> =
+                [arena.one()].into_iter().chain(states).map(|above| arena.div(above, polynomial)).collect();
+            let closed = closure::closure(question, &quotients).map(Option::unwrap_or_default);
+            self.judge(Form::Closure(Start::Quotients), 0, closed);
+            if self.is_over() {
+                return;
+            }
+        }
+    }
+
+    /// The polynomials in the states that divide their own rates.
+    fn invariant(&mut self) -> &[Expr] {
+        let question = self.question;
+        self.invariant.get_or_insert_with(|| {
+            let found = question.arena.budget().share(FOR_INVARIANT, || darboux::invariant(question));
+            found.unwrap_or_default()
+        })
+    }
+
     /// A transform by way of one that there is if the unknown constants are measured.
     fn with_constants(&mut self) {
         let question = self.question;
         let unknown = constants::constants(question);
         if !unknown.is_empty() {
             let by_parts = parts::by_parts(question, &unknown).map(Option::unwrap_or_default);
+            let by_parts = by_parts.and_then(|functions| observable::observable(question, &functions));
             self.judge(Form::Closure(Start::Parts), 0, by_parts);
         }
         if self.is_over() {
@@ -363,6 +427,7 @@ impl Hunt<'_> {
         };
         if let Some(candidate) = search.candidates.iter().find(proved) {
             let closed = constants::closure(question, candidate).map(Option::unwrap_or_default);
+            let closed = closed.and_then(|functions| observable::observable(question, &functions));
             self.judge(Form::Closure(Start::Constants), 0, closed);
         }
     }
@@ -375,7 +440,9 @@ impl Hunt<'_> {
     fn attempt_with(&mut self, form: Form, rate: Rate, ansatz: Result<Ansatz, Obstacle>) {
         let question = self.question;
         let columns = ansatz.as_ref().map_or(0, |ansatz| ansatz.width(question));
-        let solutions = ansatz.and_then(|ansatz| ansatz.solutions(question, rate));
+        // A large null space does not keep other forms from being tried.
+        let of = |ansatz: Ansatz| question.arena.budget().share(2, || ansatz.solutions(question, rate));
+        let solutions = ansatz.and_then(of);
         self.judge(form, columns, solutions);
     }
 

@@ -8,13 +8,14 @@
 //! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply measured
 //! signals alone (Marino and Tomei 1992).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
-use crate::cas::{Expr, Symbol};
+use crate::cas::{Expr, Node, Symbol};
 
-use super::products::{Term, terms};
+use super::products::{Term, apart, terms};
 use super::quadrature::antiderivative;
 use super::question::Question;
 
@@ -124,8 +125,9 @@ impl ByParts<'_, '_> {
         let outputs = question.y.iter().map(|symbol| (arena.of_symbol(*symbol), Some(*symbol)));
         let functions = self.components.iter().map(|component| (component.function, None));
         let candidates: Vec<(Expr, Option<Symbol>)> = outputs.chain(functions).collect();
-        for constant in self.constants.iter().filter(|constant| held.contains(constant)) {
-            let factor = arena.of_symbol(*constant);
+        // A constant, or all that is constant: `1/(1 + c)` is a factor as a whole.
+        let single = self.constants.iter().filter(|constant| held.contains(constant)).map(|c| arena.of_symbol(*c));
+        for factor in single.chain(self.constant_part(term.product)) {
             let remaining = arena.div(term.product, factor);
             if arena.symbols_of(&[remaining]).is_subset(self.constants) {
                 continue;
@@ -151,6 +153,15 @@ impl ByParts<'_, '_> {
         Ok(None)
     }
 
+    /// The factors that are constant, where there are any.
+    fn constant_part(&self, product: Expr) -> Option<Expr> {
+        let arena = self.question.arena;
+        let Node::Product(product) = arena.node(product) else { return None };
+        let is_constant = |factor: &&(Expr, Rational)| arena.symbols_of(&[factor.0]).is_subset(self.constants);
+        let part: Vec<(Expr, Rational)> = product.factors.iter().filter(is_constant).cloned().collect();
+        (!part.is_empty()).then(|| arena.multiply(&Rational::ONE, part))
+    }
+
     fn is_constant(&self, product: Expr) -> bool {
         self.question.arena.symbols_of(&[product]).is_subset(self.constants)
     }
@@ -166,16 +177,13 @@ impl ByParts<'_, '_> {
         let fraction = field.fraction(formula)?;
         let others: BTreeSet<Symbol> =
             question.signals.iter().copied().filter(|signal| !question.hidden.contains(signal)).collect();
-        let known: Vec<u32> = field.kernels_of(&others).into_iter().collect();
+        let (known, constants) = (field.kernels_of(&others), field.kernels_of(self.constants));
+        let Some([divisor, _]) = apart(&field, fraction.denominator(), [&constants, &known])? else {
+            return Ok(Vec::new());
+        };
+        let divisor = field.show_factored(&field.quotient(&Poly::one(), &divisor)?);
+        let known: Vec<u32> = known.into_iter().collect();
         let mut found = Vec::new();
-        let constants: Vec<u32> = field.kernels_of(self.constants).into_iter().collect();
-        // Below stand products of the constants at most, as in the terms.
-        let [(below, _)] = &fraction.denominator().collect(&constants)[..] else { return Ok(found) };
-        let divisor: BTreeMap<u32, u32> = below.powers().iter().copied().collect();
-        let divisor = arena.multiply(
-            &Rational::ONE,
-            divisor.into_iter().map(|(kernel, times)| (field.kernel(kernel), Rational::from(-i64::from(times)))),
-        );
         for (_, polynomial) in fraction.numerator().collect(&known) {
             let formula = arena.mul(field.show(&field.of_polynomial(&polynomial)?), divisor);
             if arena.depends_on(formula, self.constants) {

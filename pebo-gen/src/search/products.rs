@@ -1,20 +1,22 @@
-//! Formulas as sums of products of hidden symbols, with coefficients in what is known.
+//! Formulas as sums of products of hidden symbols, and reciprocals of sums of them, with coefficients in what is known.
 
 use std::collections::BTreeSet;
 
 use crate::cas::field::{Field, Obstacle};
+use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 use crate::cas::{Expr, Symbol};
 
 use super::question::Question;
 
-/// A product of hidden symbols with its coefficient.
+/// A product of hidden symbols, perhaps divided by polynomials in them, with its coefficient.
 pub(super) struct Term {
     pub(super) product: Expr,
     pub(super) coefficient: Expr,
 }
 
-/// The terms of a formula; none where hidden symbols stand in functions or in a sum below a fraction bar.
+/// The terms of a formula; none where hidden symbols stand in functions, or together with what is known in a factor of the
+/// denominator.
 pub(super) fn terms(
     question: &Question<'_>,
     formula: Expr,
@@ -27,18 +29,35 @@ pub(super) fn terms(
     if kernels.iter().any(|kernel| arena.as_symbol(field.kernel(*kernel)).is_none()) {
         return Ok(None);
     }
-    let [(below, rest)] = &fraction.denominator().collect(&kernels)[..] else { return Ok(None) };
-    let power = |powers: &[(u32, u32)], sign: i64| {
-        let factors = powers
-            .iter()
-            .map(|(kernel, exponent)| (field.kernel(*kernel), Rational::from(sign * i64::from(*exponent))));
-        arena.multiply(&Rational::ONE, factors)
-    };
-    let divisor = power(below.powers(), -1);
+    let known = field.kernels_of(&question.signals.difference(hidden).copied().collect());
+    let hidden = kernels.iter().copied().collect();
+    let Some([divisor, rest]) = apart(&field, fraction.denominator(), [&hidden, &known])? else { return Ok(None) };
+    let divisor = field.show_factored(&field.quotient(&Poly::one(), &divisor)?);
     let mut terms = Vec::new();
     for (monomial, coefficient) in fraction.numerator().collect(&kernels) {
-        let product = arena.mul(power(monomial.powers(), 1), divisor);
-        terms.push(Term { product, coefficient: field.show(&field.quotient(&coefficient, rest)?) });
+        let powers = monomial.powers().iter().map(|(kernel, power)| (field.kernel(*kernel), i64::from(*power).into()));
+        let product = arena.mul(arena.multiply(&Rational::ONE, powers), divisor);
+        terms.push(Term { product, coefficient: field.show(&field.quotient(&coefficient, &rest)?) });
     }
     Ok(Some(terms))
+}
+
+/// A polynomial as a product: of the factors that hold hidden kernels, and of the others; none where a factor holds known ones
+/// too.
+pub(super) fn apart(
+    field: &Field<'_>,
+    polynomial: &Poly,
+    [hidden, known]: [&BTreeSet<u32>; 2],
+) -> Result<Option<[Poly; 2]>, Obstacle> {
+    let (work, mut of_hidden) = (field.limit(), Poly::one());
+    for (factor, power) in polynomial.factored(work)?.factors {
+        let holds = |kernels: &BTreeSet<u32>| factor.variables().iter().any(|kernel| kernels.contains(kernel));
+        match (holds(hidden), holds(known)) {
+            (true, true) => return Ok(None),
+            (true, false) => of_hidden = of_hidden.mul(&factor.pow(power, work)?, work)?,
+            (false, _) => {}
+        }
+    }
+    let rest = polynomial.div_exact(&of_hidden, work)?;
+    Ok(rest.map(|rest| [of_hidden, rest]))
 }

@@ -29,6 +29,9 @@ impl Form {
         match self {
             Self::Affine(0) => "combinations of the states with constant coefficients".to_owned(),
             Self::Affine(degree) => format!("T(y) x + s(y) with functions of y to degree {degree}"),
+            Self::Shifted(degree) => {
+                format!("combinations of the states with constant coefficients and polynomials in y to degree {degree}")
+            }
             Self::Integrals => "T(y) x + s(y) by integrals of the equations for T and s".to_owned(),
             Self::Nonlinear(x, y) => format!("functions of x to degree {x} times functions of y to degree {y}"),
             Self::States => "the states themselves, with rates affine in x".to_owned(),
@@ -50,6 +53,7 @@ impl Start {
             Self::Both => "the functions in the outputs' rates and the states",
             Self::Identities => "the functions in the identities and the states",
             Self::States => "the states",
+            Self::Quotients => "the states divided by a polynomial that divides its own rate",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
             Self::Parts => "the outputs' rates, by parts where unknown constants multiply them",
         }

@@ -130,7 +130,65 @@ const CASES: &[Case] = &[
         class: Class::Pebo,
         most: 2,
     },
+    Case {
+        from: "Kermack, McKendrick 1927 with unknown rates of contact and of recovery: what is seen of b*S, b and g",
+        lines: "x: [S, b, g]\ny: [I]\nassume: [S > 0, I > 0, b > 0, g > 0]\n\
+                f_x: {S: -b*S*I, b: 0, g: 0}\nf_y: {I: b*S*I - g*I}",
+        class: Class::Gpebo,
+        most: 3,
+    },
+    Case {
+        from: "Verhulst 1838, harvested: the reciprocal of a population from its yield",
+        lines: "x: [p]\ny: [q]\nu: [v]\nassume: [0 < p < 1]\nf_x: {p: p*(1 - p) - v*p}\nf_y: {q: v*p}",
+        class: Class::Gpebo,
+        most: 1,
+    },
+    Case {
+        from: "Riccati's equation with a constant solution, written out: a quotient by p - 1 or p - 2",
+        lines: "x: [p]\ny: [q]\nu: [v]\nassume: [p > 2]\nf_x: {p: v*(p^2 - 3*p + 2)}\nf_y: {q: p}",
+        class: Class::Gpebo,
+        most: 1,
+    },
+    Case {
+        from: "lift with an unknown load below a fraction bar, with friction: by parts with 1/(3 + m)",
+        lines: "x: [v, m]\ny: [h]\nu: [F]\nassume: [m > 0]\n\
+                f_x: {v: (F - 9.81*m*cos(h) - 2*v)/(3 + m), m: 0}\nf_y: {h: v}",
+        class: Class::Gpebo,
+        most: 2,
+    },
+    Case {
+        from: "made from its transform: p and 2*s - p^2, of which the rates of s and p^2 alone do not close",
+        lines: "x: [p, s]\ny: [q]\nu: [v]\n\
+                f_x: {p: v - q*p + 2*s - p^2, s: v*p + 2*s*p - p^3 - 2*q*s}\nf_y: {q: 2*v*p + 2*s - p^2}",
+        class: Class::Gpebo,
+        most: 2,
+    },
+    Case {
+        from: "made from its transform: x1 + a polynomial of the fourth degree in three outputs",
+        lines: "x: [x1]\ny: [p, q, r]\nu: [v]\n\
+                define: {dp: x1*q + v, dq: 2*x1 - p, dr: x1*p*r + 1}\n\
+                f_x: {x1: v*p - (3*p^2*q + r^2)*dp - p^3*dq - (2*p*r - 4*r^3)*dr}\nf_y: {p: dp, q: dq, r: dr}",
+        class: Class::Pebo,
+        most: 1,
+    },
 ];
+
+/// A polynomial that no formula shows divides its own rate.
+#[test]
+fn logarithms_of_polynomials_that_stay_zero_are_found() {
+    for (lines, phi) in [
+        ("x: [p]\ny: [q]\nu: [v]\nassume: [p + q > 0]\nf_x: {p: (p + q)*v - p}\nf_y: {q: p}", "log(q + p)"),
+        (
+            "x: [p]\ny: [q]\nu: [v]\nassume: [p^2 + q > 0, p > 0]\nf_x: {p: v*(p^2 + q)/(2*p) - 1/2}\nf_y: {q: p}",
+            "log(q + p^2)",
+        ),
+    ] {
+        let (_, found) = search(lines, Some(Class::Pebo));
+        let tried: Vec<String> = found.tried.iter().map(pebo_gen::search::Tried::sentence).collect();
+        let phis: Vec<Vec<String>> = found.candidates.iter().map(pebo_gen::search::Candidate::formulas).collect();
+        assert!(phis.contains(&vec![phi.to_owned()]), "{phis:?}: {}", tried.join("\n"));
+    }
+}
 
 #[test]
 fn plants_have_their_transform_found_and_proved() {
