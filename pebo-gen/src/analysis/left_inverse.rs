@@ -360,8 +360,17 @@ fn refuted(plant: &Plant, domain: &Domain, state: Symbol, span: Span, witness: &
         .label(format!("at z = phi(x, y) this formula is not equal to {name}"))
         .note(witness.sentence(arena));
     if let Some(period) = plant.period(state) {
-        diagnostic = diagnostic
-            .note(format!("this is not zero, so the two differ by more than whole periods of {}", arena.print(period)));
+        let shown = arena.print(period);
+        if unlike_after(plant, domain, state, period).is_some() {
+            return diagnostic
+                .note(format!(
+                    "this is how a rate of the plant differs between {name} + {shown} and {name}: {shown} is no period of \
+                     {name}, and to know {name} up to multiples of it is not to know {name}"
+                ))
+                .help(format!("declare a period of {name} under `angles` with which all rates repeat"));
+        }
+        diagnostic =
+            diagnostic.note(format!("this is not zero, so the two differ by more than whole periods of {shown}"));
     }
     let mend = derived(plant, domain).ok().and_then(|all| {
         let (_, formula, _) = all.into_iter().find(|(s, ..)| *s == state)?;

@@ -92,13 +92,23 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         seen: BTreeSet::new(),
         invariant: None,
     };
-    if class != Some(Class::Gpebo) {
-        hunt.plain();
+    let own = of_class(plant);
+    let mut look = || {
+        if class != Some(Class::Gpebo) {
+            hunt.plain();
+        }
+        if class != Some(Class::Pebo) && !hunt.is_over() {
+            hunt.generalised();
+        }
+    };
+    if own.as_ref().is_some_and(Candidate::is_full) {
+        plant.arena.budget().share(FOR_BETTER, look);
+    } else {
+        look();
     }
-    if class != Some(Class::Pebo) && !hunt.is_over() {
-        hunt.generalised();
+    if !hunt.candidates.iter().any(Candidate::is_full) {
+        hunt.candidates.extend(own);
     }
-    hunt.of_class();
     hunt.rest();
     let (mut candidates, tried) = (std::mem::take(&mut hunt.candidates), std::mem::take(&mut hunt.tried));
     if let Some(class) = class {
@@ -146,6 +156,12 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     Search { verdict, candidates, assumed, bound, affine, generalised, tried }
 }
 
+/// The transform of the plant's class, for where nothing better recovers the states: coils have their fluxes.
+fn of_class(plant: &Plant) -> Option<Candidate> {
+    let is_own = plant.origin == TransformOrigin::Class && !plant.phi.is_empty();
+    is_own.then(|| Candidate { plant: plant.clone(), derivation: Derivation::derive(plant) })
+}
+
 /// The bound of the transforms affine in x with a plain or generalised cascade, at a point that is found after so many.
 fn affine_rates(question: &Question<'_>, others: usize) -> Option<Bound> {
     bound::bound(question, BoundClass::AffineRate, (LARGEST_ORDER, others))
@@ -173,6 +189,9 @@ fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Cand
 
 /// The order of series that costs less than another form of transforms.
 const LOW_ORDER: usize = 2;
+
+/// The part of what is left that a search for something better than the transform of a class may take.
+const FOR_BETTER: u64 = 4;
 
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;
@@ -214,18 +233,6 @@ impl Hunt<'_> {
             .or_else(|| largest::smooth_to(self.question, LOW_ORDER, 0))
             .filter(Bound::excludes);
         self.bound.is_some()
-    }
-
-    /// The transform of the plant's class, where nothing better recovers the states: coils have their fluxes.
-    fn of_class(&mut self) {
-        let plant = self.question.plant;
-        if plant.origin == TransformOrigin::Class
-            && !plant.phi.is_empty()
-            && !self.candidates.iter().any(Candidate::is_full)
-        {
-            let derivation = Derivation::derive(plant);
-            self.candidates.push(Candidate { plant: plant.clone(), derivation });
-        }
     }
 
     /// Transforms with a plain cascade.

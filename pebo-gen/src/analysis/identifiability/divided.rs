@@ -160,6 +160,7 @@ fn on_parts(
     let mut shown = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
+    let (mut by_itself, mut at_rest) = (Some(true), true);
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     for part in &parts {
         let mut told = Vec::new();
@@ -169,7 +170,13 @@ fn on_parts(
                 found.extend(told);
                 return Ok(decided.claim);
             }
-            Some(Excitation::Instant | Excitation::Excitation) => {}
+            Some(Excitation::Instant) => {}
+            Some(Excitation::Excitation) => {
+                let motion = decided.claim.result.as_ref().and_then(|result| result.motion.as_ref());
+                let also = motion.and_then(|motion| motion.by_itself);
+                by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
+                at_rest &= motion.is_some_and(|motion| motion.at_rest);
+            }
             Some(Excitation::Never) => {
                 let (seen, hidden) = (seen(arena, symbols, &decided.hidden), decided.hidden.clone());
                 blind.push(Blind { place: Place::Part(part.sides.clone()), seen, hidden });
@@ -203,7 +210,10 @@ fn on_parts(
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
-    let motion = Motion { by_itself: None, at_rest: false, blind, everywhere: false, parameters };
+    // What several parts show together, they show while the plant moves from one to the other.
+    let by_itself = by_itself.filter(|_| blind.len() < parts.len());
+    let at_rest = at_rest && by_itself == Some(true);
+    let motion = Motion { by_itself, at_rest, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,
         result: Some(Identifiability {

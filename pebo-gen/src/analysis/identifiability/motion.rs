@@ -81,6 +81,9 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
     let coincide = || shown.is_some_and(|shown| question.may_coincide(&shown.stack));
     let (constants, all) = special.unwrap_or_default();
     let parameters = all && !coincide();
+    let kept = shown.filter(|_| by_itself != Some(true)).map(|shown| question.kept(&shown.stack));
+    let unshown = |zero| Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() };
+    let kept: Vec<Blind> = kept.into_iter().flatten().map(unshown).collect();
     let parts = held.as_ref().map_or(usize::MAX, |shown| arena.postorder(&shown.stack.concat()).len());
     let mut everywhere = false;
     if parts <= MOST_PARTS && inputs.len() <= MOST_INPUTS {
@@ -112,6 +115,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             everywhere = all;
         }
     }
+    blind.extend(kept);
     if let Some(shown) = rest.as_ref().ok().filter(|_| at_rest) {
         let known: Vec<Expr> = blind.iter().filter_map(|other| unshown_zero(&other.place)).collect();
         let (doubtful, all) = question.doubtful_at_rest(&shown.stack);

@@ -6,6 +6,7 @@ use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Ve
 use crate::analysis::left_inverse::is_whole_turns;
 use crate::analysis::regression::separation::{self, Recovered, Separated};
 use crate::cas::domain::Domain;
+use crate::cas::facts::Relation;
 use crate::cas::tidy::shortest;
 use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
@@ -94,7 +95,9 @@ pub(super) fn steps(
             let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index], step), domain).is_zero());
             let bounded = domain.facts.iter().any(|(fact, _)| arena.symbols_of(&[fact]).contains(&state));
             if blind && !bounded && constant && plant.period(state).is_none() {
-                // The state may well be an angle: nothing that the outputs tell distinguishes it from one.
+                // The state may well be an angle: nothing that the outputs tell distinguishes it from one. A period is positive.
+                let opposite = arena.neg(shift);
+                let shift = if domain.implies(arena, opposite, Relation::Positive) { opposite } else { shift };
                 found.push(up_to_steps(plant, index, (state, shift)));
                 steps.push((state, shift));
                 continue;

@@ -11,7 +11,7 @@ use crate::cas::field::{Field, Obstacle};
 use crate::cas::poly::Poly;
 use crate::cas::{Arena, Expr, Symbol};
 
-use super::question::{Question, Restriction, seen};
+use super::question::{Question, Restriction, Shown, seen};
 
 /// Parts of the rows up to which their determinant is worked out.
 pub(super) const MOST_OF_DETERMINANT: usize = 150;
@@ -48,6 +48,11 @@ impl Question<'_> {
         let held: BTreeSet<Symbol> = plant.commanded().collect();
         let known: BTreeSet<Symbol> = constants.union(&held).copied().collect();
         let flow = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new());
+        let blind = |place: Place, shown: Shown| Blind {
+            place,
+            seen: seen(arena, symbols, &shown.hidden),
+            hidden: shown.hidden,
+        };
         let mut found = Vec::new();
         let mut all = places.all;
         for zero in places.zeros {
@@ -83,18 +88,38 @@ impl Question<'_> {
             }
             let equal = BTreeMap::from([(input, value)]);
             match self.shown(&Restriction { equal, ..Restriction::default() }) {
-                Ok(shown) if shown.hidden.is_empty() => {}
-                Ok(shown) => found.push(Blind {
-                    place: Place::Value(input, value),
-                    seen: seen(arena, symbols, &shown.hidden),
-                    hidden: shown.hidden,
-                }),
+                // What the inputs show there by their variation they may not show as constants.
+                Ok(shown) if shown.hidden.is_empty() => match self.steady(input, value) {
+                    Ok(shown) if shown.hidden.is_empty() => {}
+                    Ok(shown) => found.push(blind(Place::Steady(input, value), shown)),
+                    Err(Obstacle::NoPoint) => {}
+                    Err(_) => found.push(unshown()),
+                },
+                Ok(shown) => found.push(blind(Place::Value(input, value), shown)),
                 // Where the domain holds no such motion, there is nothing to say.
                 Err(Obstacle::NoPoint) => {}
                 Err(_) => found.push(unshown()),
             }
         }
         (found, all)
+    }
+
+    /// What no input moves away from zero, of all that makes rows lose their rank: an output that stays constant, or one that
+    /// multiplies its own rate.
+    pub(super) fn kept(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
+        let &Self { plant, domain, .. } = self;
+        let arena = &plant.arena;
+        if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
+            return Vec::new();
+        }
+        let inputs: BTreeSet<Symbol> = plant.commanded().collect();
+        let found = || -> Result<Vec<Expr>, Obstacle> {
+            let zeros = Volume::of(arena, domain, stack)?.places(plant, domain)?.zeros;
+            let flow = Flow::along(plant, domain, self.cascade, &BTreeSet::new(), &BTreeMap::new())?;
+            let is_kept = |zero: &Expr| !arena.depends_on(*zero, &inputs) && self.stays(*zero, flow.rate(arena, *zero));
+            Ok(zeros.into_iter().filter(is_kept).collect())
+        };
+        found().unwrap_or_default()
     }
 
     /// Whether the rows are the same on all motions.

@@ -30,6 +30,20 @@ fn inputs_that_are_equal_or_constant_may_hide_unknowns() {
         "while `e = 0`, only `z1` is identified",
     ];
     assert_eq!(of(&anywhere), expected);
+    // Their variation shows what they hide as constants.
+    let cells = |outputs: &str| {
+        of(&format!(
+            "x: [p, s]\ny: [q]\nu: [v, w]\nassume: [v > 0, w > 0]\nf_x: {{p: -v*p, s: -w*s}}\n{outputs}\nphi: [p, s]"
+        ))
+    };
+    for outputs in ["f_y: {q: v*p + s}", "g_y: {q: v*p + s}"] {
+        let lines = cells(outputs);
+        assert!(
+            lines.iter().any(|line| line.starts_with("while the other input is constant and `v = w`, only")),
+            "{lines:?}"
+        );
+    }
+    assert!(cells("f_y: {q: p/w + s}").iter().any(|line| line.contains("is constant and `v = w`")));
     // Assumptions exclude the rest.
     assert_eq!(of(&format!("{phases}, d > 0, e > d]")), expected[..2]);
 }
@@ -147,7 +161,40 @@ fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of
     }
     // k = m = 0, which no single equation says.
     assert!(told("p*v + (k + m*q)*s"));
+    let both = "parameters: [k, m]\nx: [p, s, r]\ny: [q, w]\nu: [v]\nf_x: {p: s, s: 0, r: 0}\nphi: [p, s, r]";
+    for rates in ["{q: m*r, w: p + w*k*r}", "{q: m*r, w: p + v*k*r}", "{q: (m + k)*r, w: p + w*k*r}"] {
+        let lines = of(&format!("{both}\nf_y: {rates}"));
+        assert!(lines.iter().any(|line| line == open), "{rates}: {lines:?}");
+    }
     for rate in ["p*sin(v) + s*cos(v)", "p*k*v + s*sin(v)", "p*tanh(v + k) + s*v"] {
         assert!(!told(rate), "{rate}");
     }
+}
+
+/// At r = 0, which stays, no input shows s.
+#[test]
+fn outputs_that_no_input_moves_from_a_blind_value_are_listed() {
+    let of_rate = |rate: &str| {
+        of(&format!(
+            "x: [p, s]\ny: [q, r]\nu: [v]\nf_x: {{p: 0, s: 0}}\nf_y: {{q: p*v^2 + s*r*v, r: {rate}}}\nphi: [p, s]"
+        ))
+    };
+    let open = "while `r = 0`, it was not decided what is identified".to_owned();
+    for stays in ["0", "-r", "r*(v - q)"] {
+        let lines = of_rate(stays);
+        assert!(lines.contains(&open), "{stays}: {lines:?}");
+    }
+    assert!(of_rate("0")[0].contains("keep the inputs varying"));
+    assert!(!of_rate("v").contains(&open));
+}
+
+/// A part of the domain in which all unknowns are seen needs its excitation there too.
+#[test]
+fn parts_of_the_domain_say_what_has_to_move_in_them() {
+    let of_rate = |rate: &str, other: &str| {
+        of(&format!("x: [p, s]\ny: [q]\nu: [v]\nf_x: {{p: 0, s: {other}}}\nf_y: {{q: \"{rate}\"}}\nphi: [p, s]"))[0]
+            .clone()
+    };
+    assert!(of_rate("p*max(v, 1) + s", "0").ends_with("keep the inputs varying"));
+    assert!(of_rate("p*max(q, 1) + s", "v").contains("neither rests nor stays"));
 }

@@ -14,9 +14,7 @@ impl Motion {
     /// What has to move, in a line, and where the regression is blind, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
-            _ if self.is_divided() => {
-                "the unknowns are identified on almost every motion that does not stay where one of these holds"
-            }
+            _ if self.is_divided() => self.of_parts(),
             (Some(true), true, true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
@@ -45,6 +43,26 @@ impl Motion {
         let parameters = (!self.parameters && !plant.parameters.is_empty())
             .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
         std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
+    }
+
+    /// The first line where there are parts of the domain in which not all unknowns are seen.
+    fn of_parts(&self) -> &'static str {
+        match (self.by_itself, self.at_rest) {
+            (Some(true), true) => {
+                "the unknowns are identified on almost every motion that does not stay where one of these holds"
+            }
+            (Some(true), false) => {
+                "the unknowns are identified on almost every motion that neither rests nor stays where one of these holds"
+            }
+            (Some(false), _) => {
+                "the unknowns are identified under excitation that does not stay where one of these holds: keep the inputs \
+                 varying"
+            }
+            (None, _) => {
+                "the unknowns are identified on almost every motion that does not stay where one of these holds; it was not \
+                 decided whether the inputs have to vary"
+            }
+        }
     }
 }
 
