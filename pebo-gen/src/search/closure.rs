@@ -14,7 +14,8 @@ use crate::cas::combination::equations;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::linear::Echelon;
 use crate::cas::poly::{Monomial, Poly};
-use crate::cas::{Expr, Symbol};
+use crate::cas::rational::Rational;
+use crate::cas::{Expr, Node, Symbol};
 
 use super::products::apart;
 use super::question::Question;
@@ -102,26 +103,23 @@ fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Exp
         return Ok(None);
     }
     let known: Vec<u32> = known.into_iter().collect();
-    let mut found = Vec::new();
-    // What is known stays out, unless it is divided by what is not.
     let parts = numerator.collect(&known).into_iter().map(|(_, part)| part);
-    for function in combinations(&field, parts, (&hidden, divisor.is_one()))? {
-        let function = field.div(&function, &field.of_polynomial(&divisor)?)?;
-        if function.variables().any(|kernel| hidden.contains(&kernel)) {
-            found.push(field.show(&function));
-        }
-    }
+    let mut found = combinations(&field, parts, (&hidden, &divisor))?;
+    found.retain(|function| arena.depends_on(*function, &question.hidden));
     Ok(Some(found))
 }
 
-/// What polynomials in hidden kernels span with constant coefficients: where that is all of their monomials, these.
+/// What polynomials in hidden kernels, divided by another, span with constant coefficients: where that is all of their
+/// monomials, these. A sum is divided term by term where it can be: `exp(p) + exp(-p)` rather than one fraction.
 fn combinations(
     field: &Field<'_>,
     parts: impl Iterator<Item = Poly>,
-    (hidden, but_for_constants): (&BTreeSet<u32>, bool),
-) -> Result<Vec<Fraction>, Obstacle> {
+    (hidden, divisor): (&BTreeSet<u32>, &Poly),
+) -> Result<Vec<Expr>, Obstacle> {
+    let arena = field.arena();
     let hidden: Vec<u32> = hidden.iter().copied().collect();
-    let is_kept = |(monomial, _): &(Monomial, Poly)| !(but_for_constants && monomial.is_one());
+    // A constant is no part of a function, unless it is divided by what is hidden.
+    let is_kept = |(monomial, _): &(Monomial, Poly)| !(divisor.is_one() && monomial.is_one());
     let parts: Vec<BTreeMap<Monomial, Poly>> =
         parts.map(|part| part.collect(&hidden).into_iter().filter(is_kept).collect()).collect();
     // Low ones first: they are pivots, and the others are reduced by them.
@@ -134,13 +132,22 @@ fn combinations(
     let row = |part| monomials.iter().map(|monomial| entry(part, monomial)).collect::<Result<Vec<_>, _>>();
     let rows = parts.iter().map(row).collect::<Result<Vec<_>, Obstacle>>()?;
     let (echelon, _) = Echelon::of(field, rows, monomials.len())?;
+    let divisor = field.show(&field.of_polynomial(divisor)?);
+    let reciprocal = arena.div(arena.one(), divisor);
     let of_row = |(_, row): (usize, &[Fraction])| {
-        row.iter().zip(&monomials).filter(|(c, _)| !c.is_zero()).try_fold(Fraction::zero(), |sum, (c, monomial)| {
-            let power = Poly::from_terms([((*monomial).clone(), 1.into())])?;
-            field.add(&sum, &field.mul(c, &field.of_polynomial(&power)?)?)
-        })
+        let terms = row.iter().zip(&monomials).filter(|(coefficient, _)| !coefficient.is_zero());
+        let terms = terms.map(|(coefficient, monomial)| {
+            let powers = monomial.powers().iter();
+            let powers = powers.map(|(kernel, power)| (field.kernel(*kernel), i64::from(*power).into()));
+            arena.mul(field.show(coefficient), arena.multiply(&Rational::ONE, powers))
+        });
+        let terms: Vec<Expr> = terms.collect();
+        match arena.node(divisor) {
+            Node::Sum(_) => arena.div(arena.sum(terms), divisor),
+            _ => arena.sum(terms.into_iter().map(|term| arena.mul(term, reciprocal)).collect::<Vec<Expr>>()),
+        }
     };
-    echelon.rows().map(of_row).collect()
+    Ok(echelon.rows().map(of_row).collect())
 }
 
 /// Whether a function is no combination of 1 and those that were found with constant coefficients.
@@ -164,8 +171,8 @@ fn plainest(question: &Question<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstac
     }
     let parts = fractions.iter().map(|fraction| field.over_denominator(fraction, &common));
     let parts = parts.collect::<Result<Vec<Poly>, _>>()?.into_iter();
-    let functions = combinations(&field, parts, (&field.kernels_of(&question.hidden), common.is_one()))?;
-    // A factor that is a number is not part of a function.
-    let common = field.of_polynomial(&common.primitive().1)?;
-    functions.iter().map(|function| Ok(field.show(&field.div(function, &common)?))).collect()
+    let hidden = field.kernels_of(&question.hidden);
+    // A constant factor is not part of a function.
+    let Some([divisor, _]) = apart(&field, &common, [&hidden, &BTreeSet::new()])? else { return Ok(found.to_vec()) };
+    combinations(&field, parts, (&hidden, &divisor))
 }

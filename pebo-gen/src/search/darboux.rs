@@ -150,16 +150,25 @@ fn solved(question: &Question<'_>, shape: &Shape) -> Result<Vec<Expr>, Obstacle>
     Ok(found)
 }
 
-/// The factors with states in them.
+/// The factors with states in them that divide their own rates: coefficients that stay free may leave another.
 fn factors(question: &Question<'_>, polynomial: Expr) -> Result<Vec<Expr>, Obstacle> {
-    let field = Field::over(question.arena, &question.domain.facts, &[polynomial])?;
+    let (arena, facts) = (question.arena, &question.domain.facts);
+    let field = Field::over(arena, facts, &[polynomial])?;
     let fraction = field.fraction(polynomial)?;
     let mut found = Vec::new();
     for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
         let factor = field.show(&field.of_polynomial(&factor)?);
-        if question.arena.depends_on(factor, &question.hidden) {
+        if arena.depends_on(factor, &question.hidden) && divides(question, factor)? {
             found.push(factor);
         }
     }
     Ok(found)
+}
+
+/// Whether a polynomial divides its own rate.
+fn divides(question: &Question<'_>, polynomial: Expr) -> Result<bool, Obstacle> {
+    let rate = question.rate(polynomial);
+    let field = Field::over(question.arena, &question.domain.facts, &[polynomial, rate])?;
+    let [polynomial, rate] = [field.fraction(polynomial)?, field.fraction(rate)?];
+    Ok(rate.numerator().div_exact(polynomial.numerator(), field.limit())?.is_some())
 }

@@ -395,8 +395,8 @@ impl Hunt<'_> {
         let arena = question.arena;
         for polynomial in self.invariant().to_vec() {
             let states = question.x.iter().map(|x| arena.of_symbol(*x));
-            let quotients: Vec<Expr> =
-                [arena.one()].into_iter().chain(states).map(|above| arena.div(above, polynomial)).collect();
+            // The last is begun with: of functions of one span the reciprocal is the plainest.
+            let quotients: Vec<Expr> = states.chain([arena.one()]).map(|above| arena.div(above, polynomial)).collect();
             let closed = closure::closure(question, &quotients).map(Option::unwrap_or_default);
             self.judge(Form::Closure(Start::Quotients), 0, closed);
             if self.is_over() {

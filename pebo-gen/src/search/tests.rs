@@ -3,8 +3,11 @@
 use proptest::prelude::*;
 
 use super::bound::{Bound, BoundClass};
+use super::closure::closure;
+use super::darboux::invariant;
 use super::decision::decided;
 use super::largest;
+use super::observable::observable;
 use super::question::Question;
 use crate::model::Model;
 use crate::plant::Plant;
@@ -142,4 +145,58 @@ fn ball_and_beam_has_one_killing_field() {
         let bounds = both(lines, class);
         assert!(bounds.len() == 2 && bounds.iter().all(|bound| bound.excludes() && bound.transforms() == Some(1)));
     }
+}
+
+/// Formulas of a plant, in the order in which they are found.
+fn printed(plant: &Plant, formulas: &[crate::cas::Expr]) -> Vec<String> {
+    formulas.iter().map(|formula| plant.arena.print(*formula)).collect()
+}
+
+#[test]
+fn polynomials_that_divide_their_own_rates_are_found() {
+    for (lines, expected) in [
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: p^2 - v*p}\nf_y: {q: p}", &["p"][..]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*(p^2 - 3*p + 2)}\nf_y: {q: p}", &["p - 1", "p - 2"]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: (p + q)*v - p}\nf_y: {q: p}", &["q + p"]),
+        ("parameters: [a]\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v*(p - a)}\nf_y: {q: p}", &["p - a"]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*(p^2 + q)/(2*p) - 1/2}\nf_y: {q: p}", &["q + p^2"]),
+        // Kept for one value of v only.
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: p^2 - v}\nf_y: {q: p}", &[]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*sin(p)}\nf_y: {q: p}", &[]),
+    ] {
+        let plant = plant(lines);
+        let found = invariant(&Question::of(&plant)).expect("no obstacle");
+        assert_eq!(printed(&plant, &found), expected, "{lines}");
+    }
+}
+
+#[test]
+fn closures_take_what_formulas_show_and_leave_it_as_it_is() {
+    for (lines, expected) in [
+        ("f_x: {p: v - q*p, s: v*p - 2*q*s}\nf_y: {q: 2*v*p + 2*s - p^2}", Some(&["p", "s - p^2/2"][..])),
+        ("f_x: {p: v - q*p, s: v}\nf_y: {q: p + v*s}", Some(&["p", "s"])),
+        ("f_x: {p: v*sinh(p)/cosh(p), s: 0}\nf_y: {q: v*sinh(p) + 1}", Some(&["sinh(p)"])),
+        ("f_x: {p: v*p*(1 + p), s: 0}\nf_y: {q: 1/(1 + p)}", Some(&["1/(p + 1)"])),
+        // x and y together below the bar.
+        ("f_x: {p: v, s: 0}\nf_y: {q: 1/(q + p)}", None),
+    ] {
+        let plant = plant(&format!("x: [p, s]\ny: [q]\nu: [v]\n{lines}"));
+        let question = Question::of(&plant);
+        let found = closure(&question, &question.output_rates()).expect("no obstacle");
+        let expected = expected.map(|formulas| formulas.iter().map(|f| (*f).to_owned()).collect::<Vec<_>>());
+        assert_eq!(found.map(|found| printed(&plant, &found)), expected, "{lines}");
+    }
+}
+
+#[test]
+fn what_no_output_sees_is_left_out() {
+    let plant = plant(
+        "x: [S, b, g]\ny: [I]\nf_x: {S: -b*S*I, b: 0, g: 0}\nf_y: {I: b*S*I - g*I}\nphi: [b*S + b*I, b, g, b*g, S]",
+    );
+    let question = Question::of(&plant);
+    let all = plant.transform();
+    let seen = observable(&question, &all[..4]).expect("no obstacle");
+    assert_eq!(printed(&plant, &seen), ["S*b - g + I*b", "b", "b*g"]);
+    // The rate of S is not affine in these.
+    assert_eq!(observable(&question, &all[1..]).expect("no obstacle"), all[1..]);
 }

@@ -112,11 +112,16 @@ impl Question<'_> {
         if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
             return Vec::new();
         }
-        let inputs: BTreeSet<Symbol> = plant.commanded().collect();
+        // What has no rate of its own is as free as an input is.
+        let constants = plant.parameters.iter().map(|p| p.symbol);
+        let determined: BTreeSet<Symbol> =
+            constants.chain(plant.rates().into_keys()).chain(plant.chi.clone()).collect();
         let found = || -> Result<Vec<Expr>, Obstacle> {
             let zeros = Volume::of(arena, domain, stack)?.places(plant, domain)?.zeros;
             let flow = Flow::along(plant, domain, self.cascade, &BTreeSet::new(), &BTreeMap::new())?;
-            let is_kept = |zero: &Expr| !arena.depends_on(*zero, &inputs) && self.stays(*zero, flow.rate(arena, *zero));
+            let is_kept = |zero: &Expr| {
+                arena.symbols_of(&[*zero]).is_subset(&determined) && self.stays(*zero, flow.rate(arena, *zero))
+            };
             Ok(zeros.into_iter().filter(is_kept).collect())
         };
         found().unwrap_or_default()
