@@ -14,12 +14,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::angles::halved;
 use super::factor::factor;
 use super::fixed::fixed;
+use super::guards::{Guarded, guarded};
 use super::lower::{Undeclared, lower, lower_with};
 use super::oriented::oriented;
 use super::product::magnitude_together;
 use super::reuse::with_values;
 use super::spread::spread;
 use super::straight::{Operand, Operation, Program};
+use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
 
@@ -191,6 +193,12 @@ impl Stages {
 }
 
 impl Staged {
+    /// A program that compares parameters with zero, with what the constants and the functions ask of them besides.
+    pub(crate) fn guarded(&self, arena: &Arena, checked: &Program, asked: &[Option<Relation>]) -> Guarded {
+        let users: Vec<&Program> = self.programs.iter().chain([&self.sample]).collect();
+        guarded(arena, &self.setup, &users, (checked, asked))
+    }
+
     /// The constants and terms whose opposite is used, or that of a product with them.
     fn negated(&self) -> BTreeSet<Symbol> {
         let named: BTreeSet<Symbol> = self.constants.iter().chain(&self.terms).map(|part| part.0).collect();
