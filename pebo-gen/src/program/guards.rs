@@ -81,7 +81,9 @@ pub(super) fn guarded(
         let known = compared(Operand::Result(index)).or_else(|| values.of(operation));
         values.of_results.push(known);
     }
-    for (user, operation) in users.iter().flat_map(|user| user.operations.iter().map(move |operation| (user, operation))) {
+    for (user, operation) in
+        users.iter().flat_map(|user| user.operations.iter().map(move |operation| (user, operation)))
+    {
         if let Some((Operand::Input(input), asked)) = operation.demand(user)
             && let Some(&value) = setup.outputs.get(input)
         {
@@ -170,9 +172,10 @@ impl Values<'_> {
     fn of(&self, operation: Operation) -> Option<Known> {
         use Relation::{NonNegative, NonZero, Positive};
         match operation {
-            Operation::Neg(value) => {
-                self.known(value).filter(|known| known.relation != NonNegative).map(|known| Known { relation: NonZero, ..known })
-            }
+            Operation::Neg(value) => self
+                .known(value)
+                .filter(|known| known.relation != NonNegative)
+                .map(|known| Known { relation: NonZero, ..known }),
             Operation::Add(a, b) => {
                 let (a, b) = (self.known(a)?, self.known(b)?);
                 let is_sure = |known: Known| known.relation == Positive && !known.may_vanish;
@@ -200,9 +203,10 @@ impl Values<'_> {
             }
             Operation::Unary(Function::Sqrt, value) => self.known(value).filter(|known| known.relation != NonZero),
             Operation::Unary(Function::Exp, _) => Some(Known { relation: Positive, may_vanish: true }),
-            Operation::Power(value, _) => {
-                self.known(value).filter(|known| known.relation == Positive).map(|known| Known { may_vanish: true, ..known })
-            }
+            Operation::Power(value, _) => self
+                .known(value)
+                .filter(|known| known.relation == Positive)
+                .map(|known| Known { may_vanish: true, ..known }),
             _ => None,
         }
     }

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::lower::{Lowering, Signed};
-use super::sharing::{denominators, with_number};
+use super::sharing::denominators;
 use super::straight::{Operand, Operation};
 use crate::cas::rational::Rational;
 use crate::cas::scaled::is_short;
@@ -38,13 +38,17 @@ impl Lowering<'_> {
             denominator.push(divisor);
             factor = factor.numerator().into();
         }
+        if !factor.is_one() {
+            let coefficient = self.number(&factor);
+            numerator.push(coefficient);
+        }
         for power in &together {
             let (value, is_below) = self.raised(power);
             negative ^= value.negative;
             if is_below { &mut denominator } else { &mut numerator }.push(value.operand);
         }
-        for (base, exponent) in self.sharing.arranged(&with_number(self.arena, &factor, &apart.factors)) {
-            let value = self.known.get(&base).copied().unwrap_or_else(|| self.value(base));
+        for (base, exponent) in self.sharing.arranged(&apart.factors) {
+            let value = self.known[&base];
             negative ^= value.negative && exponent.is_integer() && is_odd(&exponent);
             let base = if exponent.is_integer() { value.operand } else { self.plain(value) };
             match self.power(base, &exponent) {

@@ -1,9 +1,9 @@
 //! What several products have in common: denominators, and pairs of factors.
 //!
 //! In: the expressions that are lowered together. Out: an order of the factors of each product in
-//! which a pair that others have too comes first, a number among them. Common pairs are then one value.
+//! which a pair that others have too comes first. Common pairs are then one value.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::product::is_half;
 use crate::cas::rational::Rational;
@@ -26,24 +26,20 @@ impl Sharing {
     /// Counts in all products that the roots consist of.
     pub(super) fn of(arena: &Arena, roots: &[Expr]) -> Self {
         let mut sharing = Self::default();
-        let all = arena.postorder(roots);
-        for expr in &all {
-            if let Node::Product(product) = arena.node(*expr) {
-                let below = denominators(&product);
-                if !below.is_empty() {
-                    *sharing.denominators.entry(below).or_insert(0) += 1;
-                }
-            }
-        }
-        for (expr, coefficient) in with_numbers(arena, &all, roots) {
-            let factors = match arena.node(expr) {
-                Node::Product(product) => with_number(arena, &(coefficient * &product.coefficient), &product.factors),
-                _ => with_number(arena, &coefficient, &[(expr, Rational::ONE)]),
+        for expr in arena.postorder(roots) {
+            let Node::Product(product) = arena.node(expr) else {
+                continue;
             };
+            let below = denominators(&product);
+            if !below.is_empty() {
+                *sharing.denominators.entry(below).or_insert(0) += 1;
+            }
+            let factors = &product.factors;
             if factors.len() <= MOST_FACTORS {
                 for (index, first) in factors.iter().enumerate() {
                     for second in &factors[index + 1..] {
-                        *sharing.pairs.entry((first.clone(), second.clone())).or_insert(0) += 1;
+                        let pair = (first.clone(), second.clone());
+                        *sharing.pairs.entry(pair).or_insert(0) += 1;
                     }
                 }
             }
@@ -75,28 +71,6 @@ impl Sharing {
         }
         arranged
     }
-}
-
-/// The values that are computed, each with the number that it is multiplied by, up to signs.
-fn with_numbers(arena: &Arena, all: &[Expr], roots: &[Expr]) -> BTreeSet<(Expr, Rational)> {
-    let plain = |expr: Expr| (expr, Rational::ONE);
-    let mut values: BTreeSet<(Expr, Rational)> = roots.iter().copied().map(plain).collect();
-    for expr in all {
-        match arena.node(*expr) {
-            Node::Number(_) | Node::Pi | Node::Symbol(_) => {}
-            Node::Sum(sum) => values.extend(sum.terms.iter().map(|(term, number)| (*term, number.abs()))),
-            Node::Product(product) => values.extend(product.factors.iter().map(|factor| plain(factor.0))),
-            Node::Call(_, arguments) => values.extend(arguments.iter().copied().map(plain)),
-        }
-    }
-    values
-}
-
-/// The factors with the magnitude of the number in front, unless that is one.
-pub(super) fn with_number(arena: &Arena, number: &Rational, factors: &[Factor]) -> Vec<Factor> {
-    let number = number.abs();
-    let number = (!number.is_one()).then(|| (arena.number(number), Rational::ONE));
-    number.into_iter().chain(factors.iter().cloned()).collect()
 }
 
 /// The powers that a product divides by; a general power takes its sign along instead.

@@ -241,7 +241,8 @@ fn merged(
         factor(arena, &formulas.chain(varying).collect::<Vec<Expr>>(), |_| true, is_constant(arena, constants));
     for _ in 0..ROUNDS {
         let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
-        let (split, found) = split(arena, &all, (&stored, &stored), ("$", stored.len()), |expr| arena.as_symbol(expr).is_none());
+        let (split, found) =
+            split(arena, &all, (&stored, &stored), ("$", stored.len()), |expr| arena.as_symbol(expr).is_none());
         if found.is_empty() {
             break;
         }

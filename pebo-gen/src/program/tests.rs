@@ -410,6 +410,27 @@ fn sampled(regular: &[&str], seldom: &str, name: impl Fn(&Arena, &str) -> Expr) 
 }
 
 #[test]
+fn what_is_kept_is_not_kept_a_second_time_with_a_number() {
+    let formula = |a: &Arena, text: &str| {
+        let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
+        let both = a.sum([a.mul(q, r), a.power(q, &Rational::from(2)), r]);
+        match text {
+            "B" => both,
+            // As a rate with its regressor: five times what could leave, and B.
+            "5*u + 5*r^3 + u^2*B" => {
+                let [five, two] = [5, 2].map(Rational::from);
+                let rest = a.combine(&Rational::ZERO, [(u, five.clone()), (a.power(r, &Rational::from(3)), five)]);
+                a.add(rest, a.mul(a.power(u, &two), both))
+            }
+            other => panic!("{other}"),
+        }
+    };
+    let (terms, cost) = sampled(&["5*u + 5*r^3 + u^2*B", "B"], "B", formula);
+    assert_eq!(terms, ["5*r^3", "r + q^2 + q*r"]);
+    assert_eq!(cost, ["2 add, 4 mul", "2 add, 3 mul", "none"]);
+}
+
+#[test]
 fn what_a_sample_decides_is_kept_if_it_takes_more_than_a_few_operations() {
     let formula = |a: &Arena, text: &str| {
         let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
