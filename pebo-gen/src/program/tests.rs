@@ -416,18 +416,18 @@ fn what_is_kept_is_not_kept_a_second_time_with_a_number() {
         let both = a.sum([a.mul(q, r), a.power(q, &Rational::from(2)), r]);
         match text {
             "B" => both,
-            // As a rate with its regressor: five times what could leave, and B.
-            "5*u + 5*r^3 + u^2*B" => {
-                let [five, two] = [5, 2].map(Rational::from);
-                let rest = a.combine(&Rational::ZERO, [(u, five.clone()), (a.power(r, &Rational::from(3)), five)]);
-                a.add(rest, a.mul(a.power(u, &two), both))
+            // As a rate with its regressor: five times most of it, and B.
+            "5*u + 5*exp(u) + tanh(u)*B" => {
+                let [exp, tanh] = [Function::Exp, Function::Tanh].map(|function| a.call(function, &[u]));
+                let five = Rational::from(5);
+                a.add(a.combine(&Rational::ZERO, [(u, five.clone()), (exp, five)]), a.mul(tanh, both))
             }
             other => panic!("{other}"),
         }
     };
-    let (terms, cost) = sampled(&["5*u + 5*r^3 + u^2*B", "B"], "B", formula);
-    assert_eq!(terms, ["5*r^3", "r + q^2 + q*r"]);
-    assert_eq!(cost, ["2 add, 4 mul", "2 add, 3 mul", "none"]);
+    let (terms, cost) = sampled(&["5*u + 5*exp(u) + tanh(u)*B", "B"], "B", formula);
+    assert_eq!(terms, ["r + q*(q + r)"]);
+    assert_eq!(cost, ["2 add, 1 mul", "2 add, 3 mul, 2 call", "none"]);
 }
 
 #[test]
