@@ -53,8 +53,8 @@ pub(super) fn guarded(
         Operand::Constant(_) | Operand::Input(_) => operand,
     };
     let compared = |operand: Operand| {
-        let found = checked.outputs.iter().zip(asked).filter(|(output, _)| **output == place(operand));
-        found.filter_map(|(_, relation)| *relation).next().map(Known::sure)
+        let mut same = checked.outputs.iter().zip(asked).filter(|(output, _)| **output == place(operand));
+        same.find_map(|(_, relation)| *relation).map(Known::sure)
     };
     let formulas = setup.formulas(arena);
     let mut values = Values { setup, of_inputs: Vec::new(), of_results: Vec::new() };
