@@ -113,6 +113,20 @@ fn parameters_beside_the_proofs_are_refused() {
     }
 }
 
+/// The leakage inductance is `L_s - L_m^2/L_r` and what is assumed `L_s*L_r - L_m^2 > 0`: rounded, one can be 0 where the
+/// other is positive.
+#[test]
+fn parameters_that_divide_by_zero_as_they_are_rounded_are_refused() {
+    use pebo_runtime::Fault;
+    use tests::emitted::induction_motor_f64::{InductionMotor, Parameters};
+    let given = Parameters::default();
+    assert_eq!(given.check(), Ok(()));
+    let rounded = Parameters { l_s: 0.003_235_690_235_690_236, l_r: 0.297, l_m: 0.031, ..given };
+    assert!(rounded.l_s * rounded.l_r - rounded.l_m * rounded.l_m > 0.0);
+    assert_eq!(rounded.check(), Err(Fault::Parameter { index: 9 }));
+    assert_eq!(InductionMotor::try_new(&rounded), Err(Fault::Parameter { index: 9 }));
+}
+
 /// What the model files say of their observers is what `observer` builds.
 #[test]
 fn an_observer_with_the_settings_of_the_model_runs() {

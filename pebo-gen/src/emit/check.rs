@@ -13,8 +13,10 @@ use super::module::{Module, Scope, numbers};
 use super::permission;
 use super::value::{self, Value, expression, unreadable};
 use crate::analysis::Sign;
+use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::{Arena, Expr, Node};
+use crate::program::{Guarded, Program, Staged};
 
 /// A condition on values: one is finite, one compares so with zero, or both.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -50,6 +52,43 @@ impl Condition {
         let alone = matches!(arena.node(expr), Node::Symbol(_)) && sign != Sign::Zero;
         Self { finite: alone.then_some(expr), compared: compared.map(|comparison| (expr, comparison)) }
     }
+}
+
+/// What is asked of the parameters, with what the divisors, roots and logarithms of the code ask as they are computed.
+pub(super) fn with_guards(
+    arena: &Arena,
+    mut asked: Vec<(Expr, Sign)>,
+    checked: &Program,
+    staged: &Staged,
+) -> (Vec<(Expr, Sign)>, Program) {
+    let mut domain = Domain::default();
+    for (expr, sign) in &asked {
+        match *sign {
+            Sign::Is(relation) => domain.facts.assume(*expr, relation),
+            Sign::Opposite(relation) => domain.facts.assume(arena.neg(*expr), relation),
+            Sign::Any | Sign::Zero => {}
+        }
+    }
+    let relations: Vec<Option<Relation>> = asked
+        .iter()
+        .map(|(_, sign)| match *sign {
+            Sign::Is(relation) => Some(relation),
+            Sign::Opposite(Relation::Positive | Relation::NonZero) => Some(Relation::NonZero),
+            Sign::Opposite(Relation::NonNegative) | Sign::Any | Sign::Zero => None,
+        })
+        .collect();
+    let Guarded { program, guards } = staged.guarded(arena, checked, &relations);
+    asked.extend(guards.into_iter().map(|(expr, relation)| {
+        let sign = match relation {
+            Relation::NonZero if domain.implies(arena, expr, Relation::Positive) => Sign::Is(Relation::Positive),
+            Relation::NonZero if domain.implies(arena, arena.neg(expr), Relation::Positive) => {
+                Sign::Opposite(Relation::Positive)
+            }
+            relation => Sign::Is(relation),
+        };
+        (expr, sign)
+    }));
+    (asked, program)
 }
 
 impl Module<'_> {

@@ -113,6 +113,7 @@ pub fn emit(
     let asked = derivation.asked_of_parameters(plant);
     let values: Vec<Expr> = asked.iter().map(|(value, _)| *value).collect();
     let checked = lower(arena, &parameters, &values).map_err(undeclared)?;
+    let (asked, checked) = check::with_guards(arena, asked, &checked, &staged);
     let rebase = derivation.can_rebase(plant);
     let definitions = &definitions;
     let (staged, asked_of) = (&staged, &asked);

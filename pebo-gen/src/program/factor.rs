@@ -19,17 +19,22 @@ struct Term {
     factors: Vec<(Expr, Rational)>,
 }
 
-/// Takes common factors out of every sum, as far as `may_leave` lets a base go. A number beside a base that `is_stored`
-/// costs nothing.
+/// Takes common factors out of every sum, as far as `may_leave` lets a base go. A number beside a base that `is_stored`,
+/// as it stands in so many places, costs nothing.
 pub(super) fn factor(
     arena: &Arena,
     exprs: &[Expr],
     may_leave: impl Fn(Expr) -> bool,
-    is_stored: impl Fn(Expr) -> bool,
+    is_stored: impl Fn(Expr, usize) -> bool,
 ) -> Vec<Expr> {
-    let numbers = Numbers { arena, is_stored };
+    let mut numbers = Numbers { arena, is_stored, uses: FxHashMap::default() };
+    let all = arena.postorder(exprs);
+    let mut uses: FxHashMap<Expr, usize> = FxHashMap::default();
+    for operand in all.iter().flat_map(|expr| arena.operands(*expr)).chain(exprs.iter().copied()) {
+        *uses.entry(operand).or_insert(0) += 1;
+    }
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
-    for expr in arena.postorder(exprs) {
+    for expr in all {
         let factored = match arena.node(expr) {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => expr,
             Node::Sum(sum) => {
@@ -46,12 +51,13 @@ pub(super) fn factor(
                 arena.call(function, &arguments)
             }
         };
+        *numbers.uses.entry(factored).or_insert(0) += uses.get(&expr).copied().unwrap_or(0);
         known.insert(expr, factored);
     }
     exprs.iter().map(|expr| known[expr]).collect()
 }
 
-fn factor_sum<S: Fn(Expr) -> bool>(
+fn factor_sum<S: Fn(Expr, usize) -> bool>(
     arena: &Arena,
     expr: Expr,
     may_leave: &impl Fn(Expr) -> bool,

@@ -55,7 +55,7 @@ pub(super) fn lower_with(
     if let Some(symbol) = undeclared(&values, &[]).or_else(|| undeclared(outputs, parts)) {
         return Err(Undeclared(symbol));
     }
-    let all = factor(arena, &[&values, outputs].concat(), |_| true, |_| false);
+    let all = factor(arena, &[&values, outputs].concat(), |_| true, |_, _| false);
     let (values, outputs) = all.split_at(parts.len());
     let mut lowering = Lowering {
         arena,

@@ -11,6 +11,7 @@ mod angles;
 mod cost;
 mod factor;
 mod fixed;
+mod guards;
 mod interpret;
 mod lower;
 mod numbers;
@@ -27,6 +28,7 @@ mod straight;
 mod tests;
 
 pub use cost::Cost;
+pub(crate) use guards::Guarded;
 pub(crate) use interpret::Interpreter;
 pub(crate) use lower::{Undeclared, lower};
 pub(crate) use stage::{Staged, Task, stage};

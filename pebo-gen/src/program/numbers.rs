@@ -1,20 +1,25 @@
 //! Numbers where they cost the fewest multiplications: `(2*a + 2*b - c*p)*p/2` becomes `(a + b - c*p/2)*p`.
 //!
 //! In: a sum, or a product with sums in it. Out: an equal one. A sum may be divided by a number that then multiplies the
-//! whole. Beside something stored, as a parameter, a number is a part of what is stored. Of equal costs a product has its
+//! whole. Beside something stored, as a parameter, a number is a part of what is stored: it costs nothing, unless the same
+//! is stored without it too. Of equal costs a product has its
 //! sum with whole numbers that have no divisor in common, so that `y*(10 - 2*x)` and `2*y*(5 - x)` are one.
+
+use rustc_hash::FxHashMap;
 
 use crate::cas::rational::Rational;
 use crate::cas::scaled::{divided, is_short};
 use crate::cas::{Arena, Expr, Node, Product, Sum};
 
-/// The arrangement, with what is stored.
+/// The arrangement, with what is stored for an expression that stands in so many places.
 pub(super) struct Numbers<'a, S> {
     pub(super) arena: &'a Arena,
     pub(super) is_stored: S,
+    /// In how many places an expression stands; in one, if it is not known.
+    pub(super) uses: FxHashMap<Expr, usize>,
 }
 
-impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
+impl<S: Fn(Expr, usize) -> bool> Numbers<'_, S> {
     /// The expression with its outermost numbers arranged.
     pub(super) fn arranged(&self, expr: Expr) -> Expr {
         let arena = self.arena;
@@ -30,7 +35,7 @@ impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
 
     fn arranged_product(&self, product: &Product) -> Expr {
         let arena = self.arena;
-        let is_free = product.factors.iter().any(|(base, _)| (self.is_stored)(*base));
+        let is_free = product.factors.iter().any(|(base, _)| self.takes_numbers(*base));
         let mut coefficient = product.coefficient.clone();
         let factors: Vec<(Expr, Rational)> = product
             .factors
@@ -91,9 +96,13 @@ impl<S: Fn(Expr) -> bool> Numbers<'_, S> {
 
     /// Whether a number beside it is a part of what is stored.
     fn has_stored(&self, term: Expr) -> bool {
-        (self.is_stored)(term)
+        self.takes_numbers(term)
             || matches!(self.arena.node(term), Node::Product(product)
-                if product.factors.iter().any(|(base, _)| (self.is_stored)(*base)))
+                if product.factors.iter().any(|(base, _)| self.takes_numbers(*base)))
+    }
+
+    fn takes_numbers(&self, base: Expr) -> bool {
+        (self.is_stored)(base, self.uses.get(&base).copied().unwrap_or(1))
     }
 }
 
@@ -110,7 +119,7 @@ mod tests {
     fn arranged(build: impl Fn(&Arena, [Expr; 5]) -> Expr) -> String {
         let arena = Arena::new();
         let symbols = ["a", "b", "c", "d", "p"].map(|name| arena.variable(name));
-        let numbers = Numbers { arena: &arena, is_stored: |base| base == symbols[4] };
+        let numbers = Numbers { arena: &arena, is_stored: |base, _| base == symbols[4], uses: FxHashMap::default() };
         arena.print(numbers.arranged(build(&arena, symbols)))
     }
 

@@ -14,12 +14,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::angles::halved;
 use super::factor::factor;
 use super::fixed::fixed;
+use super::guards::{Guarded, guarded};
 use super::lower::{Undeclared, lower, lower_with};
 use super::oriented::oriented;
 use super::product::magnitude_together;
 use super::reuse::with_values;
 use super::spread::spread;
 use super::straight::{Operand, Operation, Program};
+use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
 
@@ -63,20 +65,20 @@ pub(crate) fn stage(
 ) -> Result<Staged, Undeclared> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
-    let roots = spread(arena, &prepared(arena, &halved(arena, &roots), parameters), parameters);
-    let (mut varying, mut constants) = split(arena, &roots, parameters, ("$", 0), |_| true);
+    let roots = spread(arena, &prepared(arena, &halved(arena, &roots), parameters, parameters), parameters);
+    let (mut varying, mut constants) = split(arena, &roots, (parameters, parameters), ("$", 0), |_| true);
     let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
     let regular: Vec<bool> = tasks.iter().flat_map(|task| values(task).into_iter().map(|_| task.is_regular)).collect();
     let steady: Vec<Expr> = varying.iter().zip(&regular).filter_map(|(value, &is)| is.then_some(*value)).collect();
     let (steady, mut terms) =
-        split(arena, &steady, &[&stored, sampled].concat(), ("%", 0), |expr| is_dear(arena, expr));
+        split(arena, &steady, (&[&stored, sampled].concat(), &stored), ("%", 0), |expr| is_dear(arena, expr));
     let mut steady = steady.into_iter();
     for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| **regular) {
         *value = steady.next().unwrap_or(*value);
     }
     let inputs = [stored.as_slice(), sampled].concat();
     let seldom: Vec<Expr> = varying.iter().zip(&regular).filter_map(|(value, &is)| (!is).then_some(*value)).collect();
-    let mut seldom = with_values(arena, &prepared(arena, &seldom, &inputs), &terms).into_iter();
+    let mut seldom = with_values(arena, &prepared(arena, &seldom, &inputs, &stored), &terms).into_iter();
     for (value, _) in varying.iter_mut().zip(&regular).filter(|(_, regular)| !**regular) {
         *value = seldom.next().unwrap_or(*value);
     }
@@ -191,6 +193,12 @@ impl Stages {
 }
 
 impl Staged {
+    /// A program that compares parameters with zero, with what the constants and the functions ask of them besides.
+    pub(crate) fn guarded(&self, arena: &Arena, checked: &Program, asked: &[Option<Relation>]) -> Guarded {
+        let users: Vec<&Program> = self.programs.iter().chain([&self.sample]).collect();
+        guarded(arena, &self.setup, &users, (checked, asked))
+    }
+
     /// The constants and terms whose opposite is used, or that of a product with them.
     fn negated(&self) -> BTreeSet<Symbol> {
         let named: BTreeSet<Symbol> = self.constants.iter().chain(&self.terms).map(|part| part.0).collect();
@@ -233,7 +241,8 @@ fn merged(
         factor(arena, &formulas.chain(varying).collect::<Vec<Expr>>(), |_| true, is_constant(arena, constants));
     for _ in 0..ROUNDS {
         let stored: Vec<Symbol> = constants.iter().map(|constant| constant.0).collect();
-        let (split, found) = split(arena, &all, &stored, ("$", stored.len()), |expr| arena.as_symbol(expr).is_none());
+        let (split, found) =
+            split(arena, &all, (&stored, &stored), ("$", stored.len()), |expr| arena.as_symbol(expr).is_none());
         if found.is_empty() {
             break;
         }
@@ -249,9 +258,9 @@ fn merged(
 }
 
 /// Whether an expression is one of the constants.
-fn is_constant(arena: &Arena, constants: &[(Symbol, Expr)]) -> impl Fn(Expr) -> bool {
+fn is_constant(arena: &Arena, constants: &[(Symbol, Expr)]) -> impl Fn(Expr, usize) -> bool {
     let stored: FxHashSet<Expr> = constants.iter().map(|constant| arena.of_symbol(constant.0)).collect();
-    move |expr| stored.contains(&expr)
+    move |expr, _| stored.contains(&expr)
 }
 
 /// Terms that are computed as another before them, or as its opposite, and what they are then: two shapes of a formula
@@ -283,24 +292,28 @@ fn same(arena: &Arena, inputs: &[Symbol], terms: &[(Symbol, Expr)]) -> Result<BT
 }
 
 /// The expressions with each maximal sub-expression of the given symbols that is worth it replaced by a symbol, and
-/// these symbols with their formulas.
+/// these symbols with their formulas. Of `constants` among the symbols each formula is computed once for all.
 fn split(
     arena: &Arena,
     roots: &[Expr],
-    symbols: &[Symbol],
+    (symbols, constants): (&[Symbol], &[Symbol]),
     (prefix, first): (&'static str, usize),
     worth: impl Fn(Expr) -> bool,
 ) -> (Vec<Expr>, Vec<(Symbol, Expr)>) {
-    let factored = prepared(arena, roots, symbols);
+    let factored = prepared(arena, roots, symbols, constants);
     let fixed = fixed(arena, &factored, symbols);
     let mut split = Split { arena, fixed, prefix, first, worth, found: Vec::new(), symbols: FxHashMap::default() };
     (split.split(&factored), split.found)
 }
 
-/// The expressions without what varies in the sums: what that leaves behind may be a sum of the given symbols.
-fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol]) -> Vec<Expr> {
-    let fixed = fixed(arena, roots, symbols);
-    factor(arena, roots, |base| !fixed.contains(&base), |base| fixed.contains(&base))
+/// The expressions without what varies in the sums: what that leaves behind may be a sum of the given symbols. A number
+/// beside what is of `constants` alone is a part of another constant. Beside other formulas of the symbols it is a part of
+/// these where they stand in no other place.
+fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol], constants: &[Symbol]) -> Vec<Expr> {
+    let known = fixed(arena, roots, symbols);
+    let stored = fixed(arena, roots, constants);
+    let is_own = |base: Expr, uses: usize| uses < 2 && arena.as_symbol(base).is_none() && known.contains(&base);
+    factor(arena, roots, |base| !known.contains(&base), |base, uses| stored.contains(&base) || is_own(base, uses))
 }
 
 /// Whether computing the value takes more than a few operations.

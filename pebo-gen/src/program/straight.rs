@@ -4,7 +4,7 @@
 //! are the same, and each operation and constant is used.
 
 use crate::cas::rational::Rational;
-use crate::cas::{Function, Symbol};
+use crate::cas::{Arena, Expr, Function, Symbol};
 
 /// Where a value comes from.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -128,6 +128,57 @@ impl Program {
         uses
     }
 
+    /// The value of each operation as a formula in the inputs.
+    pub(super) fn formulas(&self, arena: &Arena) -> Vec<Expr> {
+        let mut formulas: Vec<Expr> = Vec::with_capacity(self.operations.len());
+        for &operation in &self.operations {
+            let formula = |operand| match operand {
+                Operand::Input(input) => arena.of_symbol(self.inputs[input]),
+                Operand::Result(result) => formulas[result],
+                Operand::Constant(index) => match &self.constants[index] {
+                    Constant::Number(value) => arena.number(value.clone()),
+                    Constant::Pi => arena.pi(),
+                },
+            };
+            formulas.push(match operation {
+                Operation::Neg(a) => arena.neg(formula(a)),
+                Operation::Add(a, b) => arena.add(formula(a), formula(b)),
+                Operation::Sub(a, b) => arena.sub(formula(a), formula(b)),
+                Operation::Mul(a, b) => arena.mul(formula(a), formula(b)),
+                Operation::Div(a, b) => arena.div(formula(a), formula(b)),
+                Operation::Power(a, b) => match arena.as_number(formula(b)) {
+                    Some(exponent) => arena.power(formula(a), &exponent),
+                    None => unreachable!("the exponent of a power is a number"),
+                },
+                Operation::ExpM1(a) => arena.sub(arena.call(Function::Exp, &[formula(a)]), arena.one()),
+                Operation::Ln1P(a) => arena.call(Function::Log, &[arena.add(arena.one(), formula(a))]),
+                Operation::Unary(function, a) => arena.call(function, &[formula(a)]),
+                Operation::Binary(function, a, b) => arena.call(function, &[formula(a), formula(b)]),
+            });
+        }
+        formulas
+    }
+
+    /// The program with the operations of another on the same inputs, and where the results of these are in it.
+    pub(super) fn joined(&self, other: &Self) -> (Self, Vec<Operand>) {
+        let mut joined = self.clone();
+        let constants: Vec<Operand> = other
+            .constants
+            .iter()
+            .map(|constant| Operand::Constant(position(&mut joined.constants, constant.clone())))
+            .collect();
+        let mut places: Vec<Operand> = Vec::with_capacity(other.operations.len());
+        for operation in &other.operations {
+            let moved = operation.map(|operand| match operand {
+                Operand::Input(_) => operand,
+                Operand::Constant(index) => constants[index],
+                Operand::Result(index) => places[index],
+            });
+            places.push(Operand::Result(position(&mut joined.operations, moved)));
+        }
+        (joined, places)
+    }
+
     /// Whether the value of the input matters.
     pub(crate) fn reads(&self, input: usize) -> bool {
         let operands = self.operations.iter().flat_map(|operation| operation.operands());
@@ -164,6 +215,14 @@ impl Program {
             outputs: self.outputs.into_iter().map(moved).collect(),
         }
     }
+}
+
+/// The place of an entry, which is added if it is not there.
+fn position<T: PartialEq>(entries: &mut Vec<T>, entry: T) -> usize {
+    entries.iter().position(|other| *other == entry).unwrap_or_else(|| {
+        entries.push(entry);
+        entries.len() - 1
+    })
 }
 
 /// The position of each kept entry among the kept ones.

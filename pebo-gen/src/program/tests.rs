@@ -410,6 +410,27 @@ fn sampled(regular: &[&str], seldom: &str, name: impl Fn(&Arena, &str) -> Expr) 
 }
 
 #[test]
+fn what_is_kept_is_not_kept_a_second_time_with_a_number() {
+    let formula = |a: &Arena, text: &str| {
+        let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
+        let both = a.sum([a.mul(q, r), a.power(q, &Rational::from(2)), r]);
+        match text {
+            "B" => both,
+            // As a rate with its regressor: five times most of it, and B.
+            "5*u + 5*exp(u) + tanh(u)*B" => {
+                let [exp, tanh] = [Function::Exp, Function::Tanh].map(|function| a.call(function, &[u]));
+                let five = Rational::from(5);
+                a.add(a.combine(&Rational::ZERO, [(u, five.clone()), (exp, five)]), a.mul(tanh, both))
+            }
+            other => panic!("{other}"),
+        }
+    };
+    let (terms, cost) = sampled(&["5*u + 5*exp(u) + tanh(u)*B", "B"], "B", formula);
+    assert_eq!(terms, ["r + q*(q + r)"]);
+    assert_eq!(cost, ["2 add, 1 mul", "2 add, 3 mul, 2 call", "none"]);
+}
+
+#[test]
 fn what_a_sample_decides_is_kept_if_it_takes_more_than_a_few_operations() {
     let formula = |a: &Arena, text: &str| {
         let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
