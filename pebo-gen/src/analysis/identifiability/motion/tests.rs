@@ -136,7 +136,9 @@ fn outputs_at_which_the_plant_rests_unseen_are_listed() {
 fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of() {
     let open = "it was not worked out for which special values of the parameters this is not so";
     let told = |rate: &str| {
-        let lines = format!("parameters: [k, m]\nx: [p, s]\ny: [q]\nu: [v]\nf_x: {{p: 0, s: 0}}\nf_y: {{q: {rate}}}\nphi: [p, s]");
+        let lines = format!(
+            "parameters: [k, m]\nx: [p, s]\ny: [q]\nu: [v]\nf_x: {{p: 0, s: 0}}\nf_y: {{q: {rate}}}\nphi: [p, s]"
+        );
         of(&lines).iter().any(|line| line == open)
     };
     for rate in ["p*sin(k*v) + s*sin(m*v)", "p*tanh(k*v) + s*v", "p*sqrt(1 + k*v^2) + s", "p*exp(k*v) + s*exp(m*v)"] {
@@ -150,6 +152,8 @@ fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of
 /// A slope that vanishes with two parameters leaves no value of the output: the place is told as an equation.
 #[test]
 fn a_place_whose_slope_may_vanish_is_told_as_an_equation() {
-    let lines = of("parameters: [k, m]\nx: [p, s]\ny: [q, r]\nu: [v]\nf_x: {p: 0, s: 0}\nf_y: {q: v, r: p*v + (k + m*q)*s}\nphi: [p, s]");
+    let lines = of(
+        "parameters: [k, m]\nx: [p, s]\ny: [q, r]\nu: [v]\nf_x: {p: 0, s: 0}\nf_y: {q: v, r: p*v + (k + m*q)*s}\nphi: [p, s]",
+    );
     assert!(lines.iter().any(|line| line.contains("k + m*q = 0") || line.contains("m*q + k = 0")), "{lines:?}");
 }
