@@ -132,6 +132,7 @@ impl Arena {
             terms.push((run[0].0, Rational::total_of_products(products)));
         }
         terms.retain(|entry| !entry.1.is_zero());
+        self.count_words(terms.iter().map(|entry| &entry.1));
         match terms.as_slice() {
             [] => self.number(constant),
             [(term, coefficient)] if constant.is_zero() => self.scale(*term, coefficient),
@@ -204,6 +205,12 @@ impl Arena {
     /// would make more of them.
     fn count(&self, operands: usize) {
         self.budget().take(STEPS_OF_A_NODE.saturating_add(STEPS_OF_AN_OPERAND.saturating_mul(operands as u64)));
+    }
+
+    /// What numbers take that are longer than a word: products, and their common divisors.
+    fn count_words<'a>(&self, numbers: impl Iterator<Item = &'a Rational>) {
+        let words = numbers.map(|number| number.bits() / 64).filter(|words| *words > 2);
+        self.budget().take(words.map(|words| words.saturating_mul(words)).sum());
     }
 
     /// `-base`: the sign goes into a sum, so that `-(a - b)` is `b - a`.

@@ -5,7 +5,7 @@
 //! determinant of hundreds of terms, and multiplies minors that are no shorter: little of what is asked of it has to open
 //! them. What has to is not seen this way.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 
@@ -17,6 +17,9 @@ use super::field::Field;
 /// Subexpressions of a formula up to which its normal form costs no more than looking for another.
 const SHORT: usize = 200;
 
+/// How often sums that are held several times are opened down to those that they hold.
+const MOST_LAYERS: usize = 2;
+
 /// A formula over symbols for the sums that it held several times.
 pub(super) struct Shared {
     pub expr: Expr,
@@ -26,25 +29,19 @@ pub(super) struct Shared {
 impl Shared {
     /// None of a formula that is short, that holds functions or roots, or that holds no sum twice.
     pub(super) fn of(arena: &Arena, expr: Expr) -> Option<Self> {
-        let parts = arena.postorder(&[expr]);
-        if parts.len() <= SHORT || !parts.iter().all(|part| is_rational(arena, *part)) {
-            return None;
-        }
-        let mut holders: FxHashMap<Expr, usize> = FxHashMap::default();
-        for operand in parts.iter().flat_map(|part| arena.operands(*part)) {
-            *holders.entry(operand).or_default() += 1;
-        }
-        let is_shared = |part: &Expr| {
-            holders.get(part).is_some_and(|times| *times > 1) && matches!(arena.node(*part), Node::Sum(_))
-        };
+        let sums = shared_sums(arena, expr);
+        (!sums.is_empty()).then(|| Self::over(arena, expr, &sums))
+    }
+
+    fn over(arena: &Arena, expr: Expr, sums: &[Expr]) -> Self {
         let mut values = BTreeMap::new();
         let mut symbols = FxHashMap::default();
-        for sum in parts.into_iter().filter(is_shared) {
+        for sum in sums {
             let symbol = arena.generated(&format!("shared{}", values.len() + 1));
-            values.insert(symbol, sum);
-            symbols.insert(sum, arena.of_symbol(symbol));
+            values.insert(symbol, *sum);
+            symbols.insert(*sum, arena.of_symbol(symbol));
         }
-        (!values.is_empty()).then(|| Self { expr: arena.replace(expr, &symbols), values })
+        Self { expr: arena.replace(expr, &symbols), values }
     }
 
     /// A formula in the symbols with what they stand for.
@@ -53,12 +50,39 @@ impl Shared {
     }
 }
 
-/// Whether it is zero whatever the sums stand for that it holds several times.
+/// Whether it is zero whatever the sums stand for that it holds several times: the outermost, or those that these hold.
 pub(super) fn vanishes_over_shared_sums(arena: &Arena, facts: &Facts, expr: Expr) -> bool {
-    Shared::of(arena, expr).is_some_and(|shared| {
+    let mut sums = shared_sums(arena, expr);
+    for _ in 0..MOST_LAYERS {
+        if sums.is_empty() {
+            return false;
+        }
+        let shared = Shared::over(arena, expr, &sums);
         let field = Field::of_long_sums(arena, facts, &[shared.expr]);
-        field.and_then(|field| field.fraction(shared.expr)).is_ok_and(|fraction| fraction.is_zero())
-    })
+        if field.and_then(|field| field.fraction(shared.expr)).is_ok_and(|fraction| fraction.is_zero()) {
+            return true;
+        }
+        let outermost = arena.symbols_of(&[shared.expr]);
+        let opened: BTreeSet<Expr> =
+            shared.values.iter().filter(|(symbol, _)| outermost.contains(symbol)).map(|(_, sum)| *sum).collect();
+        sums.retain(|sum| !opened.contains(sum));
+    }
+    false
+}
+
+/// The sums that a long rational formula holds several times; none of another.
+fn shared_sums(arena: &Arena, expr: Expr) -> Vec<Expr> {
+    let parts = arena.postorder(&[expr]);
+    if parts.len() <= SHORT || !parts.iter().all(|part| is_rational(arena, *part)) {
+        return Vec::new();
+    }
+    let mut holders: FxHashMap<Expr, usize> = FxHashMap::default();
+    for operand in parts.iter().flat_map(|part| arena.operands(*part)) {
+        *holders.entry(operand).or_default() += 1;
+    }
+    let is_shared =
+        |part: &Expr| holders.get(part).is_some_and(|times| *times > 1) && matches!(arena.node(*part), Node::Sum(_));
+    parts.into_iter().filter(is_shared).collect()
 }
 
 /// Whether the last operation of an expression is one of rational functions.
