@@ -112,8 +112,7 @@ fn where_analytic(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Decided {
-    let arena = &plant.arena;
-    let unknowns = regression.eta.len();
+    let (arena, unknowns) = (&plant.arena, regression.eta.len());
     // Of an implicit regression the rates are part of what multiplies the unknowns.
     let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
     let flow = Flow::new(plant, domain, cascade);
