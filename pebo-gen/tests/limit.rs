@@ -48,6 +48,20 @@ fn matrices(size: usize) -> String {
     )
 }
 
+/// Functions times polynomials, of which each derivative is many times as long as the one before.
+fn products() -> String {
+    [
+        "model: m",
+        "x: [a, b, c]",
+        "y: [v, q]",
+        "u: [d, m, n]",
+        "f_x: {a: 3*sin(v)*sin(d) + exp(d), b: m*m^2, c: sin(q)}",
+        "g_y: {v: m^2*sin(d + d)*exp(2*a) - cos(a)*sin(c)*b, q: cos(2*d)*n^3 + exp(c)*n*m^2}",
+        "phi: [a, b, c]",
+    ]
+    .join("\n")
+}
+
 #[test]
 fn natural_models_that_take_long_are_undecided_and_name_the_phase() {
     let powers = "(q + v + 1)^60*(q - v + 2)^60*(q*v + 3)^60";
@@ -58,6 +72,7 @@ fn natural_models_that_take_long_are_undecided_and_name_the_phase() {
         ("nested tangents", plant(&tangents, "p", "p"), &["the cascade"]),
         ("nested roots", plant("v", &roots, "p"), &["the regression", "identifiability"]),
         ("a matrix of parameters", matrices(8), &["the expansion of the class"]),
+        ("products of functions", products(), &["identifiability"]),
     ] {
         let outcome = derived(&text, Budget::of_seconds(SECONDS));
         let phase = phase(&outcome).unwrap_or_default();

@@ -196,6 +196,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
                 .unwrap_or(Component::Open(obstacle));
         }
     };
+    // Of a number there is no other form.
+    if arena.as_number(tidied).is_some() {
+        return match point_of(arena, rate, domain) {
+            Some(_) => Component::Free(tidied),
+            None => Component::Open(Obstacle::NoPoint),
+        };
+    }
     if !arena.depends_on(tidied, &hidden) {
         // The normal form is free of x; that it equals the rate is what the zero test confirms.
         return match decide(arena, arena.sub(rate, tidied), domain) {

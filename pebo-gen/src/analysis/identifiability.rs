@@ -112,8 +112,7 @@ fn where_analytic(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Decided {
-    let arena = &plant.arena;
-    let unknowns = regression.eta.len();
+    let (arena, unknowns) = (&plant.arena, regression.eta.len());
     // Of an implicit regression the rates are part of what multiplies the unknowns.
     let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
     let flow = Flow::new(plant, domain, cascade);
@@ -172,7 +171,10 @@ fn where_analytic(
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     for _ in 1..unknowns {
-        latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
+        latest = match flow.rates(arena, &latest) {
+            Ok(rates) => rates,
+            Err(obstacle) => return open(plant, &obstacle, found).into(),
+        };
         stack.extend(latest.iter().cloned());
         if full_rank(arena, domain, &stack, unknowns) {
             return excited().into();
@@ -279,7 +281,8 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
     let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
     let mut rank = rank_seen(arena, domain, &stack, unknowns);
     for _ in 1..unknowns {
-        latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
+        let Ok(rates) = flow.rates(arena, &latest) else { return false };
+        latest = rates;
         stack.extend(latest.iter().cloned());
         let next = rank_seen(arena, domain, &stack, unknowns);
         // No derivative adds to a rank that one derivative did not raise.

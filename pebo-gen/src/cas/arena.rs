@@ -13,8 +13,8 @@ use super::budget::Budget;
 use super::expr::{Expr, Node, Symbol};
 use super::rational::Rational;
 
-/// Steps that looking at a node takes, with its operands.
-const STEPS_OF_A_NODE: u64 = 8;
+/// Steps that looking at a node takes, or at one that was seen before as an operand of another.
+const STEPS_OF_A_LOOK: u64 = 2;
 
 /// Which walk through the graph came to each node last: a set of nodes that takes no time to empty.
 #[derive(Default, Debug)]
@@ -184,6 +184,17 @@ impl Arena {
         operands
     }
 
+    /// How many operands an expression has.
+    pub(super) fn operand_count(&self, expr: Expr) -> u64 {
+        let count = match &self.nodes.borrow()[expr.0 as usize] {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,
+            Node::Sum(sum) => sum.terms.len(),
+            Node::Product(product) => product.factors.len(),
+            Node::Call(_, arguments) => arguments.len(),
+        };
+        count as u64
+    }
+
     /// Every expression that the roots consist of, operands before what uses them.
     pub fn postorder(&self, roots: &[Expr]) -> Vec<Expr> {
         let nodes = self.nodes.borrow();
@@ -191,7 +202,9 @@ impl Arena {
         let visit = visits.begin(nodes.len());
         let mut found = Vec::new();
         let mut open: Vec<Expr> = roots.to_vec();
+        let mut looks: u64 = 0;
         while let Some(expr) = open.pop() {
+            looks += 1;
             let last = &mut visits.last[expr.0 as usize];
             if *last != visit {
                 *last = visit;
@@ -199,7 +212,8 @@ impl Arena {
                 push_operands(&nodes[expr.0 as usize], &mut open);
             }
         }
-        self.budget.take(STEPS_OF_A_NODE.saturating_mul(found.len() as u64));
+        // Each is also put in order.
+        self.budget.take(STEPS_OF_A_LOOK.saturating_mul(looks.saturating_add(found.len() as u64)));
         // Operands are entered before what uses them, so ascending handles are a topological order.
         found.sort_unstable();
         found

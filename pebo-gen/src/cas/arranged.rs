@@ -93,6 +93,11 @@ pub(super) fn decimal(value: &Rational) -> Option<String> {
     const FEW_PLACES: u32 = 12;
     const MOST_PLACES: u32 = 60;
     const MOST_DIGITS: usize = 17;
+    // What divides 10^60 has no more bits.
+    const MOST_BITS: u64 = 200;
+    if value.denominator().bits() > MOST_BITS {
+        return None;
+    }
     let places = (0..=MOST_PLACES).find(|places| {
         Rational::from(10).pow(i32::try_from(*places).unwrap_or(0)).is_some_and(|scale| (value * &scale).is_integer())
     })?;

@@ -10,9 +10,12 @@ use std::cell::Cell;
 use std::fmt;
 use std::rc::Rc;
 
-/// Steps to a second: a machine of today does about twice as many, so that on one half as fast they still run out
+/// Steps to a second: a machine of today does half as many again, so that on one somewhat slower they still run out
 /// before its clock does.
-const STEPS_PER_SECOND: f64 = 50_000_000.0;
+const STEPS_PER_SECOND: f64 = 100_000_000.0;
+
+/// Questions that a budget is enough for if each takes as much as one may.
+const QUESTIONS: u64 = 20;
 
 /// Steps between two looks at the watch: some milliseconds.
 const BETWEEN_LOOKS: u64 = 1 << 18;
@@ -26,6 +29,7 @@ pub struct Budget(Rc<Shared>);
 
 struct Shared {
     left: Cell<u64>,
+    of_one_question: u64,
     stopped: Cell<bool>,
     watch: Option<Box<Watch>>,
 }
@@ -50,7 +54,16 @@ impl Budget {
     }
 
     fn of(left: u64, watch: Option<Box<Watch>>) -> Self {
-        Self(Rc::new(Shared { left: Cell::new(left), stopped: Cell::new(false), watch }))
+        // Of a budget without end, and of a short one, what a question has of the usual one.
+        let usual = steps_of(Self::SECONDS);
+        let whole = if left == u64::MAX { usual } else { left.max(usual) };
+        let of_one_question = whole / QUESTIONS;
+        Self(Rc::new(Shared { left: Cell::new(left), of_one_question, stopped: Cell::new(false), watch }))
+    }
+
+    /// The steps that a single normal form may take, so that others can follow where it is given up.
+    pub(super) fn of_one_question(&self) -> u64 {
+        self.0.of_one_question
     }
 
     /// Whether nothing is left.
@@ -96,5 +109,55 @@ impl Default for Budget {
 impl fmt::Debug for Budget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Budget").field("left", &self.0.left.get()).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::cas::interval::Precision;
+    use crate::cas::{Arena, Expr, Function};
+
+    /// What something takes of the arena's budget.
+    fn steps(arena: &Arena, run: impl FnOnce()) -> u64 {
+        let before = arena.budget().0.left.get();
+        run();
+        before - arena.budget().0.left.get()
+    }
+
+    /// A product of so many sines, and a sum of so many.
+    fn long(arena: &Arena, count: u32) -> [Expr; 2] {
+        let q = arena.variable("q");
+        let sines: Vec<Expr> =
+            (1..=count).map(|k| arena.call(Function::Sin, &[arena.add(q, arena.number(i64::from(k)))])).collect();
+        [arena.product(sines.iter().copied()), arena.sum(sines)]
+    }
+
+    /// Steps stand for time: what makes or evaluates few long expressions takes as many as what does so with many short ones.
+    #[test]
+    fn long_expressions_take_steps_for_each_operand() {
+        let arena = Arena::new();
+        let q = arena.symbol("q");
+        let [[short, _], [product, sum]] = [20, 200].map(|count| long(&arena, count));
+        let derived = |expr: Expr| steps(&arena, || _ = arena.derivative(expr, q));
+        assert!(derived(product) > 30 * derived(short));
+        let at = BTreeMap::from([(q, arena.number(3))]);
+        let precision = Precision::new(64);
+        let sines =
+            steps(&arena, || _ = arena.enclose(arena.call(Function::Sin, &[arena.of_symbol(q)]), &at, precision));
+        assert!(steps(&arena, || _ = arena.enclose(sum, &at, precision)) > 100 * sines);
+        let moved = BTreeMap::from([(q, arena.variable("p"))]);
+        let substituted = |expr: Expr| steps(&arena, || _ = arena.substitute(expr, &moved));
+        assert!(substituted(product) > 5 * substituted(short));
+    }
+
+    #[test]
+    fn a_question_has_a_part_of_the_whole_that_grows_with_it() {
+        let usual = Budget::default().of_one_question();
+        assert_eq!(Budget::unlimited().of_one_question(), usual);
+        assert_eq!(Budget::of_seconds(1.0).of_one_question(), usual);
+        assert_eq!(Budget::of_seconds(6.0 * Budget::SECONDS).of_one_question(), 6 * usual);
     }
 }

@@ -13,6 +13,10 @@ use super::expr::{Expr, Node, Product, Sum};
 use super::function::{Function, Parity};
 use super::rational::{Rational, half};
 
+/// Steps that entering a node takes, and those for each of its operands: a look at it, a number, a place in order.
+const STEPS_OF_A_NODE: u64 = 60;
+const STEPS_OF_AN_OPERAND: u64 = 10;
+
 /// A rational factor and powers to multiply it with.
 type Parts = (Rational, Vec<(Expr, Rational)>);
 
@@ -119,6 +123,7 @@ impl Arena {
                 _ => flat.push((term, coefficient, 0)),
             }
         }
+        self.count(flat.len() + constants.len());
         let constant = Rational::total_of_products(constants.iter().map(|(value, scale)| (value, &scales[*scale])));
         flat.sort_by_key(|entry| entry.0);
         let mut terms: Vec<(Expr, Rational)> = Vec::with_capacity(flat.len());
@@ -127,6 +132,7 @@ impl Arena {
             terms.push((run[0].0, Rational::total_of_products(products)));
         }
         terms.retain(|entry| !entry.1.is_zero());
+        self.count_words(terms.iter().map(|entry| &entry.1));
         match terms.as_slice() {
             [] => self.number(constant),
             [(term, coefficient)] if constant.is_zero() => self.scale(*term, coefficient),
@@ -164,6 +170,7 @@ impl Arena {
                 _ => flat.push((base, exponent)),
             }
         }
+        self.count(flat.len());
         flat.sort_by_key(|entry| entry.0);
         let mut factors: Vec<(Expr, Rational)> = Vec::with_capacity(flat.len());
         let mut merged = false;
@@ -192,6 +199,18 @@ impl Arena {
             }
             _ => self.intern(Node::Product(Rc::new(Product { coefficient, factors }))),
         }
+    }
+
+    /// What a node of so many operands takes. It is made all the same: what the budget no longer has is asked of what
+    /// would make more of them.
+    fn count(&self, operands: usize) {
+        self.budget().take(STEPS_OF_A_NODE.saturating_add(STEPS_OF_AN_OPERAND.saturating_mul(operands as u64)));
+    }
+
+    /// What numbers take that are longer than a word: products, and their common divisors.
+    fn count_words<'a>(&self, numbers: impl Iterator<Item = &'a Rational>) {
+        let words = numbers.map(|number| number.bits() / 64).filter(|words| *words > 2);
+        self.budget().take(words.map(|words| words.saturating_mul(words)).sum());
     }
 
     /// `-base`: the sign goes into a sum, so that `-(a - b)` is `b - a`.

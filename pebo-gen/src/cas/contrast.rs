@@ -73,7 +73,7 @@ fn independent(arena: &Arena, exprs: &[Expr], points: &[Point], precision: Preci
         if rows.len() < exprs.len() {
             continue;
         }
-        let mut chosen = pivots(rows.clone(), exprs.len(), precision)?;
+        let mut chosen = pivots(rows.clone(), exprs.len(), precision, arena.budget())?;
         if chosen.len() == exprs.len() {
             chosen.sort_unstable();
             return Some(Contrast {

@@ -54,12 +54,11 @@ impl Arena {
         values: &BTreeMap<Symbol, Interval>,
         precision: Precision,
     ) -> Option<Vec<Interval>> {
-        let parts = self.postorder(exprs);
-        if !self.budget().take(precision.steps().saturating_mul(parts.len() as u64)) {
-            return None;
-        }
         let mut known: FxHashMap<Expr, Interval> = FxHashMap::default();
-        for e in parts {
+        for e in self.postorder(exprs) {
+            if !self.budget().take(precision.steps().saturating_mul(1 + self.operand_count(e))) {
+                return None;
+            }
             let value = self.enclosure_of(e, values, precision, &known)?;
             known.insert(e, value);
         }
@@ -102,6 +101,9 @@ impl Arena {
                 Node::Pi | Node::Call(..) => None,
             };
             let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return Exact::Irrational };
+            // What it was made of is of that length too, and has no common factor left.
+            let words = value.bits().div_ceil(64);
+            self.budget().take(words * words * (1 + self.operand_count(e)));
             known.insert(e, value);
         }
         known.remove(&expr).map_or(Exact::Irrational, Exact::Value)

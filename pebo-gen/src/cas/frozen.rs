@@ -9,7 +9,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::domain::Domain;
 use super::field::Field;
@@ -48,7 +48,9 @@ impl<'a> Frozen<'a> {
     pub(crate) fn freeze(&mut self, exprs: &[Expr]) -> Vec<Expr> {
         let arena = self.arena;
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
-        for expr in arena.postorder(exprs) {
+        let parts = arena.postorder(exprs);
+        let whole = whole_sums(arena, &parts);
+        for expr in parts {
             let frozen = match arena.node(expr) {
                 Node::Call(..) if self.stays(expr) => self.symbol_of(expr),
                 Node::Product(product) => {
@@ -61,7 +63,7 @@ impl<'a> Frozen<'a> {
                                 let root = self.symbol_of(arena.power(*base, &share));
                                 (root, Rational::from(exponent.numerator()))
                             }
-                            _ if is_whole(arena, *base) && self.factors_stay(*base) => {
+                            _ if whole.contains(base) && self.factors_stay(*base) => {
                                 (self.sum(*base), exponent.clone())
                             }
                             _ => (known[base], exponent.clone()),
@@ -129,21 +131,28 @@ impl<'a> Frozen<'a> {
     }
 }
 
-/// Whether an expression is a sum without divisions but by powers, as `1 + (q/K)^10`: what others are divided by goes over
-/// their common denominator, as in `L - M^2/J`.
-fn is_whole(arena: &Arena, expr: Expr) -> bool {
-    let Node::Sum(sum) = arena.node(expr) else { return false };
-    sum.terms.iter().all(|(term, _)| match arena.node(*term) {
-        Node::Product(product) => {
-            let magnitude = product.factors[0].1.abs();
-            let is_quotient = product.factors.len() > 1 && !magnitude.is_one();
-            is_quotient && product.factors.iter().all(|(_, exponent)| exponent.abs() == magnitude)
-                || product.factors.iter().all(|(base, exponent)| {
-                    !exponent.is_negative() && (!matches!(arena.node(*base), Node::Sum(_)) || is_whole(arena, *base))
-                })
+/// Of expressions with what they consist of, operands first, the sums without divisions but by powers, as `1 + (q/K)^10`:
+/// what others are divided by goes over their common denominator, as in `L - M^2/J`.
+fn whole_sums(arena: &Arena, parts: &[Expr]) -> FxHashSet<Expr> {
+    let mut whole = FxHashSet::default();
+    for part in parts {
+        let Node::Sum(sum) = arena.node(*part) else { continue };
+        let is_whole = sum.terms.iter().all(|(term, _)| match arena.node(*term) {
+            Node::Product(product) => {
+                let magnitude = product.factors[0].1.abs();
+                let is_quotient = product.factors.len() > 1 && !magnitude.is_one();
+                is_quotient && product.factors.iter().all(|(_, exponent)| exponent.abs() == magnitude)
+                    || product.factors.iter().all(|(base, exponent)| {
+                        !exponent.is_negative() && (!matches!(arena.node(*base), Node::Sum(_)) || whole.contains(base))
+                    })
+            }
+            _ => true,
+        });
+        if is_whole {
+            whole.insert(*part);
         }
-        _ => true,
-    })
+    }
+    whole
 }
 
 /// A product whose sums have no more minus than plus signs: `z/(1 + q - z)` rather than `-z/(z - q - 1)`.

@@ -43,6 +43,7 @@ mod rational_matrix;
 pub(crate) mod reducible;
 pub(crate) mod residues;
 pub(crate) mod scaled;
+mod shared;
 pub(crate) mod solve;
 pub(crate) mod tidy;
 pub(crate) mod twice;

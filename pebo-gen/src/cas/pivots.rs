@@ -3,13 +3,19 @@
 //! Apart from exact elimination, since nothing is ever known to be zero here: an entry that may be is passed over, the largest
 //! is the pivot because its quotients widen least, and each step may fail.
 
+use super::budget::Budget;
 use super::interval::{Interval, Precision};
 
 /// Rows that are provably independent, as many as the elimination finds, in the order of their columns; none where an
-/// entry is too large to be represented.
+/// entry is too large to be represented, or the budget ends.
 ///
 /// A row more or less than these proves nothing: an enclosure that contains zero may enclose another number.
-pub(crate) fn pivots(rows: Vec<Vec<Interval>>, columns: usize, precision: Precision) -> Option<Vec<usize>> {
+pub(crate) fn pivots(
+    rows: Vec<Vec<Interval>>,
+    columns: usize,
+    precision: Precision,
+    budget: &Budget,
+) -> Option<Vec<usize>> {
     let mut rest: Vec<(usize, Vec<Interval>)> = rows.into_iter().enumerate().collect();
     let mut chosen = Vec::new();
     for column in 0..columns {
@@ -19,6 +25,10 @@ pub(crate) fn pivots(rows: Vec<Vec<Interval>>, columns: usize, precision: Precis
         let (index, pivot) = rest.swap_remove(place);
         chosen.push(index);
         for (_, row) in &mut rest {
+            // A product and a difference for each entry.
+            if !budget.take(precision.steps().saturating_mul(2 * (columns - column) as u64)) {
+                return None;
+            }
             let factor = row[column].div(&pivot[column], precision)?;
             for other in column..columns {
                 row[other] = row[other].sub(&factor.mul(&pivot[other], precision)?, precision)?;
@@ -42,7 +52,7 @@ mod tests {
     fn chosen(rows: &[&[i64]]) -> Vec<usize> {
         let entry = |value: &i64| Interval::from_rational(&Rational::from(*value), PRECISION).unwrap();
         let rows = rows.iter().map(|row| row.iter().map(entry).collect()).collect();
-        pivots(rows, 3, PRECISION).unwrap()
+        pivots(rows, 3, PRECISION, &Budget::unlimited()).unwrap()
     }
 
     #[test]

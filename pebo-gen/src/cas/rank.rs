@@ -42,7 +42,7 @@ pub(crate) fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, poin
 const PRECISION: Precision = Precision::new(256);
 
 fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> usize {
-    values_at(arena, entries, columns, point).map_or(0, |rows| rank_of(rows, columns))
+    values_at(arena, entries, columns, point).map_or(0, |rows| rank_of(arena, rows, columns))
 }
 
 fn values_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> Option<Vec<Vec<Interval>>> {
@@ -50,8 +50,8 @@ fn values_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> 
     Some(values.chunks(columns).map(<[Interval]>::to_vec).collect())
 }
 
-fn rank_of(rows: Vec<Vec<Interval>>, columns: usize) -> usize {
-    pivots(rows, columns, PRECISION).map_or(0, |chosen| chosen.len())
+fn rank_of(arena: &Arena, rows: Vec<Vec<Interval>>, columns: usize) -> usize {
+    pivots(rows, columns, PRECISION, arena.budget()).map_or(0, |chosen| chosen.len())
 }
 
 /// Vectors that every row provably annihilates.

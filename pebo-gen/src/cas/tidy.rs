@@ -18,6 +18,7 @@ use super::near_zero::near_zero;
 use super::oriented::Orientation;
 use super::rational::Rational;
 use super::scaled::scaled;
+use super::shared::Shared;
 use super::zero::decide;
 use super::{Arena, Expr, Node};
 
@@ -36,6 +37,12 @@ pub(crate) fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
 pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
     if is_shortest(arena, expr) {
         return expr;
+    }
+    // Of a long one over what it holds several times: written out, that would make it longer.
+    if operations(arena, expr) > LONG
+        && let Some(shared) = Shared::of(arena, expr)
+    {
+        return shared.opened(arena, shortest_turned(arena, orientation, shared.expr));
     }
     let domain = orientation.domain();
     let own = functions(arena, &[expr]);

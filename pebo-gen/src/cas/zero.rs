@@ -10,6 +10,7 @@ use super::enclosure::Point;
 use super::expr::Expr;
 use super::field::{Field, Obstacle};
 use super::interval::{Interval, Precision};
+use super::shared::vanishes_over_shared_sums;
 
 /// Points of the domain that a search looks at: an analytic expression that vanishes at so many, or has
 /// no value there, is not one that more of them would help with.
@@ -69,7 +70,11 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
         let fraction = field.fraction(expr)?;
         if fraction.is_zero() { Ok(()) } else { Err(field.doubt(&fraction)) }
     };
-    let mut normal = vanishes(Field::of_long_sums(arena, &domain.facts, &[expr]));
+    let mut normal = if vanishes_over_shared_sums(arena, &domain.facts, expr) {
+        Ok(())
+    } else {
+        vanishes(Field::of_long_sums(arena, &domain.facts, &[expr]))
+    };
     // What vanishes everywhere does so on the manifold; the converse is false.
     if normal.is_err() && !domain.manifold.is_empty() {
         let unsolved = domain.manifold.open().map(|equation| Obstacle::Unsolved(arena.print(equation)));

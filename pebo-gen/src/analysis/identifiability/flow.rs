@@ -115,6 +115,15 @@ impl Flow {
     pub(super) fn rate(&self, arena: &Arena, expr: Expr) -> Expr {
         arena.directional(expr, &self.rates)
     }
+
+    /// The rates of the entries of a matrix; none where the budget ends with them, as each may be many times as long as
+    /// its entry.
+    pub(super) fn rates(&self, arena: &Arena, rows: &[Vec<Expr>]) -> Result<Vec<Vec<Expr>>, Obstacle> {
+        let rate = |entry: &Expr| {
+            if arena.budget().is_exhausted() { Err(Obstacle::OutOfBudget) } else { Ok(self.rate(arena, *entry)) }
+        };
+        rows.iter().map(|row| row.iter().map(rate).collect()).collect()
+    }
 }
 
 /// The regressor with the fundamental matrix at its initial value: being invertible at all times, it takes

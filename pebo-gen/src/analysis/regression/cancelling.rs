@@ -75,7 +75,7 @@ pub(super) fn moved_freely(plant: &Plant, domain: &Domain, outputs: &[usize], bu
     let columns = rates.len();
     let free = |values: Vec<Interval>| {
         let rows = values.chunks(columns).map(<[Interval]>::to_vec).collect();
-        pivots(rows, columns, PRECISION).is_some_and(|chosen| chosen.len() + but >= columns)
+        pivots(rows, columns, PRECISION, arena.budget()).is_some_and(|chosen| chosen.len() + but >= columns)
     };
     columns == 0
         || domain

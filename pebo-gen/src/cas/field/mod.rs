@@ -66,9 +66,6 @@ use kernel::radical::ProductRoot;
 use kernel::trigonometric::Pair;
 use sign::Known;
 
-/// Steps of polynomial arithmetic that one field may spend, some seconds' worth.
-const STEPS: u64 = 50_000_000;
-
 /// How often the bases of angles and exponents may be refined before the field is given up.
 const MOST_ROUNDS: usize = 12;
 
@@ -152,7 +149,7 @@ impl<'a> Field<'a> {
     ) -> Result<Self, Obstacle> {
         let mut field = Self {
             arena,
-            work: Work::within(STEPS, arena.budget()),
+            work: Work::within(arena.budget().of_one_question(), arena.budget()),
             domain: domain_of(facts),
             steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
             roots: roots.to_vec(),

@@ -63,7 +63,7 @@ impl Question<'_> {
                 break;
             }
             let before = stack.clone();
-            latest = latest.iter().map(|row| row.iter().map(|e| flow.rate(arena, *e)).collect()).collect();
+            latest = flow.rates(arena, &latest)?;
             stack.extend(without_psi(plant, &latest));
             let next = rank_seen(arena, &domain, &stack, unknowns);
             if next == rank {
