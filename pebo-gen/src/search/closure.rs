@@ -14,8 +14,7 @@ use crate::cas::combination::equations;
 use crate::cas::field::{Field, Fraction, Obstacle};
 use crate::cas::linear::Echelon;
 use crate::cas::poly::{Monomial, Poly};
-use crate::cas::rational::Rational;
-use crate::cas::{Expr, Node, Symbol};
+use crate::cas::{Expr, Symbol};
 
 use super::products::apart;
 use super::question::Question;
@@ -132,22 +131,20 @@ fn combinations(
     let row = |part| monomials.iter().map(|monomial| entry(part, monomial)).collect::<Result<Vec<_>, _>>();
     let rows = parts.iter().map(row).collect::<Result<Vec<_>, Obstacle>>()?;
     let (echelon, _) = Echelon::of(field, rows, monomials.len())?;
-    let divisor = field.show(&field.of_polynomial(divisor)?);
-    let reciprocal = arena.div(arena.one(), divisor);
-    let of_row = |(_, row): (usize, &[Fraction])| {
-        let terms = row.iter().zip(&monomials).filter(|(coefficient, _)| !coefficient.is_zero());
-        let terms = terms.map(|(coefficient, monomial)| {
-            let powers = monomial.powers().iter();
-            let powers = powers.map(|(kernel, power)| (field.kernel(*kernel), i64::from(*power).into()));
-            arena.mul(field.show(coefficient), arena.multiply(&Rational::ONE, powers))
-        });
-        let terms: Vec<Expr> = terms.collect();
-        match arena.node(divisor) {
-            Node::Sum(_) => arena.div(arena.sum(terms), divisor),
-            _ => arena.sum(terms.into_iter().map(|term| arena.mul(term, reciprocal)).collect::<Vec<Expr>>()),
+    let apart = divisor.term_count() == 1;
+    let of_row = |(_, row): (usize, &[Fraction])| -> Result<Expr, Obstacle> {
+        let mut terms = Vec::new();
+        for (coefficient, monomial) in row.iter().zip(&monomials).filter(|(coefficient, _)| !coefficient.is_zero()) {
+            let power = Poly::from_terms([((*monomial).clone(), 1.into())])?;
+            terms.push(field.mul(coefficient, &field.quotient(&power, divisor)?)?);
         }
+        if apart {
+            return Ok(arena.sum(terms.iter().map(|term| field.show(term)).collect::<Vec<Expr>>()));
+        }
+        let whole = terms.iter().try_fold(Fraction::zero(), |sum, term| field.add(&sum, term))?;
+        Ok(field.show(&whole))
     };
-    Ok(echelon.rows().map(of_row).collect())
+    echelon.rows().map(of_row).collect()
 }
 
 /// Whether a function is no combination of 1 and those that were found with constant coefficients.

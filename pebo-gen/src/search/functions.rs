@@ -138,7 +138,7 @@ fn add_atoms(question: &Question<'_>, formulas: &[Expr], admits: &impl Fn(Expr) 
 }
 
 /// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are too
-/// many, or where a rate is no polynomial in the outputs.
+/// many, or where a rate is no polynomial in the outputs as it is written: `(q - q0)^4` loses digits as a sum.
 pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize) -> Option<Vec<(Expr, usize)>> {
     let arena = question.arena;
     let moving: BTreeSet<Symbol> = question.y.iter().copied().collect();
@@ -146,7 +146,8 @@ pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize
     let is_whole = |part: Expr| match arena.node(part) {
         Node::Call(..) => !arena.depends_on(part, &moving),
         Node::Product(product) => product.factors.iter().all(|(base, exponent)| {
-            exponent.is_integer() && !exponent.is_negative() || !arena.depends_on(*base, &moving)
+            let is_plain = exponent.is_one() || arena.as_symbol(*base).is_some();
+            is_plain && exponent.is_integer() && !exponent.is_negative() || !arena.depends_on(*base, &moving)
         }),
         _ => true,
     };
