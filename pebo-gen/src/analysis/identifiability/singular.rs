@@ -12,8 +12,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cas::determinant::determinant;
 use crate::cas::domain::Domain;
-use crate::cas::facts::Relation;
+use crate::cas::facts::{Facts, Relation};
 use crate::cas::field::{Field, Fraction, Obstacle};
+use crate::cas::linear::Echelon;
 use crate::cas::poly::Poly;
 use crate::cas::rational::Rational;
 use crate::cas::{Arena, Expr, Node, Symbol};
@@ -108,7 +109,9 @@ impl<'a> Volume<'a> {
         let field = &self.field;
         let open = |factor: &Poly| -> Result<bool, Obstacle> {
             let formula = field.show(&field.of_polynomial(factor)?);
-            Ok(!field.signs().never_zero(factor) && !domain.implies(self.arena, formula, Relation::NonZero))
+            let is_known =
+                || domain.implies(self.arena, formula, Relation::NonZero) || self.contradicts(formula, domain);
+            Ok(!field.signs().never_zero(factor) && !is_known())
         };
         let mut shared = false;
         for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
@@ -118,7 +121,7 @@ impl<'a> Volume<'a> {
             if field.may_vanish_together(&factor, fraction.denominator())? {
                 shared = true;
             } else {
-                self.add(&factor, plant, places)?;
+                self.add(&factor, plant, domain, places)?;
             }
         }
         if !shared {
@@ -140,7 +143,7 @@ impl<'a> Volume<'a> {
                 Some((value.is_zero(), there.show(&value)))
             });
             match there {
-                Some((true, _)) => self.add(&factor, plant, places)?,
+                Some((true, _)) => self.add(&factor, plant, domain, places)?,
                 Some((false, there)) if domain.implies(self.arena, there, Relation::NonZero) => {}
                 _ => places.all = false,
             }
@@ -148,8 +151,34 @@ impl<'a> Volume<'a> {
         Ok(())
     }
 
+    /// Whether a polynomial is zero nowhere, as far as the assumptions tell.
+    fn never_zero(&self, poly: &Poly, domain: &Domain) -> Result<bool, Obstacle> {
+        let formula = self.field.show(&self.field.of_polynomial(poly)?);
+        Ok(self.field.signs().never_zero(poly)
+            || domain.implies(self.arena, formula, Relation::NonZero)
+            || self.contradicts(formula, domain))
+    }
+
+    /// Whether what is assumed not to be zero would be where a formula is: it divides the square of that, as `cos(q) - 1`
+    /// divides `sin(q)^2`.
+    fn contradicts(&self, formula: Expr, domain: &Domain) -> bool {
+        let arena = self.arena;
+        let symbols = arena.symbols_of(&[formula]);
+        let divides = |fact: Expr| -> Result<bool, Obstacle> {
+            let square = arena.mul(fact, fact);
+            let field = Field::over(arena, &Facts::default(), &[formula, square])?;
+            let (formula, square) = (field.fraction(formula)?, field.fraction(square)?);
+            let whole = square.denominator().is_constant();
+            Ok(whole && square.numerator().div_exact(formula.numerator(), field.limit())?.is_some())
+        };
+        let mut facts = domain.facts.iter().filter(|(fact, relation)| {
+            *relation != Relation::NonNegative && symbols.is_superset(&arena.symbols_of(&[*fact]))
+        });
+        facts.any(|(fact, _)| divides(fact).unwrap_or(false))
+    }
+
     /// Adds the zeros of a factor.
-    fn add(&self, factor: &Poly, plant: &Plant, places: &mut Places) -> Result<(), Obstacle> {
+    fn add(&self, factor: &Poly, plant: &Plant, domain: &Domain, places: &mut Places) -> Result<(), Obstacle> {
         let formula = self.field.show(&self.field.of_polynomial(factor)?);
         if self.arena.symbols_of(&[formula]).is_subset(&constants(plant)) {
             if !places.constants.contains(&formula) {
@@ -157,7 +186,7 @@ impl<'a> Volume<'a> {
             }
             return Ok(());
         }
-        places.together |= self.may_be_nothing(factor, plant);
+        places.together |= self.may_be_nothing(factor, plant, domain)?;
         let place = match self.solved(factor, plant)? {
             Some((kernel, value)) => format!("{} = {}", self.arena.print(kernel), self.arena.print(value)),
             None => format!("{} = 0", self.arena.print(formula)),
@@ -170,11 +199,35 @@ impl<'a> Volume<'a> {
     }
 
     /// Whether parameters may make all coefficients of a factor, as a polynomial in what varies, zero.
-    fn may_be_nothing(&self, factor: &Poly, plant: &Plant) -> bool {
+    fn may_be_nothing(&self, factor: &Poly, plant: &Plant, domain: &Domain) -> Result<bool, Obstacle> {
         let constants = constants(plant);
         let varies = |v: &u32| !self.arena.symbols_of(&[self.field.kernel(*v)]).is_subset(&constants);
         let moving: Vec<u32> = factor.variables().iter().copied().filter(varies).collect();
-        !factor.collect(&moving).iter().any(|(_, coefficient)| self.field.signs().never_zero(coefficient))
+        let coefficients: Vec<Poly> = factor.collect(&moving).into_iter().map(|(_, coefficient)| coefficient).collect();
+        for coefficient in &coefficients {
+            if self.never_zero(coefficient, domain)? {
+                return Ok(false);
+            }
+        }
+        // `k - m` and `k + m` vanish together only where k does.
+        let monomials: BTreeSet<_> = coefficients.iter().flat_map(|poly| poly.terms().map(|(m, _)| m)).collect();
+        let number = |poly: &Poly, monomial| {
+            poly.coefficient(monomial)
+                .map_or(Fraction::zero(), |value| Fraction::constant(&Rational::from(value.clone())))
+        };
+        let row = |poly: &Poly| monomials.iter().map(|monomial| number(poly, monomial)).collect();
+        let (reduced, _) = Echelon::of(&self.field, coefficients.iter().map(row).collect(), monomials.len())?;
+        for (_, row) in reduced.rows() {
+            let mut sum = Fraction::zero();
+            for (value, monomial) in row.iter().zip(&monomials) {
+                let power = self.field.of_polynomial(&Poly::from_terms([(monomial.clone(), 1.into())])?)?;
+                sum = self.field.add(&sum, &self.field.mul(value, &power)?)?;
+            }
+            if self.never_zero(sum.numerator(), domain)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// A signal, or a function of it, and the one value at which a factor vanishes, if it is linear in that and nothing
@@ -337,6 +390,9 @@ mod tests {
         // Of powers the least is common.
         let powers = of_both("k > 0", ["(1 - d)^2*a + (1 - d)*b", "a + b"]);
         assert_eq!(powers, "d = 0, d = 1 | d^2*(d - 1)^2");
+        // The sine would be zero there too.
+        assert!(of("sin(d) > 0", "(1 - cos(d))*a").starts_with(" | "));
+        assert!(of("cos(d) > 0", "(1 - cos(d))*a").starts_with("cos(d) = 1 | "));
         // Parameters alone are no signal's business.
         assert_eq!(of("d > 0", "d*(k - l)*a"), "k - l != 0 | d^2*(k - l)^2");
     }

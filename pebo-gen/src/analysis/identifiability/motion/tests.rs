@@ -169,6 +169,10 @@ fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of
     for rate in ["p*sin(v) + s*cos(v)", "p*k*v + s*sin(v)", "p*tanh(v + k) + s*v"] {
         assert!(!told(rate), "{rate}");
     }
+    // k - 2*m and k + m vanish together only where k does.
+    let signed = "parameters: [k, m]\nassume: [k > 0]\nx: [p, s]\ny: [q]\nu: [v, w]\nf_x: {p: 0, s: 0}\nphi: [p, s]";
+    let lines = of(&format!("{signed}\nf_y: {{q: p*v + ((k - 2*m)*v^2 + (k + m)*w)*s}}"));
+    assert!(!lines.iter().any(|line| line == open), "{lines:?}");
 }
 
 /// At r = 0, which stays, no input shows s.
