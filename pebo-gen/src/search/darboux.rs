@@ -31,7 +31,7 @@ struct Shape {
     coefficients: BTreeSet<Symbol>,
 }
 
-/// The polynomials, each without a factor that divides its own rate by itself.
+/// The polynomials, taken apart into factors as far as factors are found.
 pub(super) fn invariant(question: &Question<'_>) -> Result<Vec<Expr>, Obstacle> {
     let arena = question.arena;
     let symbols: Vec<Symbol> = question.x.iter().chain(&question.y).copied().collect();
