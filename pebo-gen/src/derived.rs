@@ -90,7 +90,8 @@ impl Derived {
         Model { observer, simulation, recording, ..other.clone() } == self.model
     }
 
-    /// What there is to tell of the claims; a refusal of a transform is followed by what a search for another found.
+    /// What there is to tell of the claims; where a transform is refused or undecided, followed by what a search for another
+    /// found.
     pub fn advised(&self) -> Vec<Diagnostic> {
         let mut diagnostics = self.derivation.diagnostics.clone();
         let searched = match self.plant.origin {
@@ -99,7 +100,7 @@ impl Derived {
             TransformOrigin::Class => matches!(self.plant.class, Some(Class::Mechanical(_))),
             TransformOrigin::Found => false,
         };
-        let refused = searched && self.derivation.outcome == Outcome::Rejected;
+        let refused = searched && self.derivation.outcome != Outcome::Accepted;
         let open = diagnostics.iter_mut().find(|d| search::settles(d.code, &self.derivation)).filter(|_| refused);
         if let Some(diagnostic) = open {
             let budget = self.plant.arena.budget();

@@ -4,6 +4,7 @@
 //! recovers, modulo the period for declared angles; the author's formula where there is one, else one
 //! that solves the transform (Ortega et al. 2015, Assumption 1 (i), with `n_x` components).
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use crate::cas::asks::Want;
@@ -219,13 +220,24 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
     let states: Vec<Symbol> = plant.x.iter().map(|s| s.symbol).collect();
     // Where a class proposes a formula for every state, nothing is solved for.
     let proposed = |state: &Symbol| plant.proposal.phi_left.iter().any(|(own, _)| own == state);
-    let mut solved =
-        if states.iter().all(proposed) { BTreeMap::new() } else { solve(arena, domain, &equations, &states)? };
-    if solved.len() < states.len() && !plant.identities.is_empty() {
-        for (state, candidates) in with_identities(plant, domain, equations, &states)? {
-            solved.entry(state).or_insert(candidates);
+    let solved = if states.iter().all(proposed) { BTreeMap::new() } else { solve(arena, domain, &equations, &states)? };
+    // Of several the one that has a value wherever the plant has.
+    // Then the one in which no root is taken from what is near it, and the shortest.
+    let by_worth = |candidates: &mut Vec<Expr>| {
+        if candidates.len() > 1 {
+            candidates.sort_by_cached_key(|formula| {
+                let cancelling = root_differences(arena, *formula).len();
+                (unshown(plant, domain, *formula).len(), cancelling, operations(arena, *formula))
+            });
         }
-    }
+    };
+    let told = OnceCell::new();
+    let by_identities = |state: &Symbol| {
+        let told: &BTreeMap<_, _> = told.get_or_init(|| with_identities(plant, domain, &states).unwrap_or_default());
+        let mut candidates = told.get(state).cloned().unwrap_or_default();
+        by_worth(&mut candidates);
+        candidates
+    };
     // What is known of the functions of y alone is known of the equations above; as they are written they compute better.
     let known = plant.hidden();
     let mut frozen = Frozen::new(arena, &known);
@@ -248,16 +260,11 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
             candidates.sort_by_cached_key(|formula| operations(arena, *formula));
             candidates.extend(solved.get(&state.symbol).into_iter().flatten());
             let likeliest = candidates.first().copied();
-            // Of several the one that has a value wherever the plant has.
-            // Then the one in which no root is taken from what is near it, and the shortest.
-            if candidates.len() > 1 {
-                candidates.sort_by_cached_key(|formula| {
-                    let cancelling = root_differences(arena, *formula).len();
-                    (unshown(plant, domain, *formula).len(), cancelling, operations(arena, *formula))
-                });
-            }
+            by_worth(&mut candidates);
             let right = |formula: &Expr| check(plant, domain, state.symbol, *formula).1.is_zero();
+            // What outputs measure comes with their noise: it serves where the transform alone is not solved.
             let found = candidates.iter().copied().find(right);
+            let found = found.or_else(|| by_identities(&state.symbol).iter().copied().find(right));
             let written = as_written.get(&state.symbol).into_iter().flatten().map(|formula| frozen.thaw(*formula));
             let forms = found.into_iter().chain(written.filter(right)).map(|formula| shortest(arena, domain, formula));
             // Then the one in the author's functions: `z/tanh(y)`, and nothing in exponentials.
@@ -269,7 +276,8 @@ fn derived(plant: &Plant, domain: &Domain) -> Result<Vec<(Symbol, Expr, Span)>, 
                 (unshown(plant, domain, *formula).len(), foreign.count(), cancelling, operations(arena, *formula))
             };
             // A candidate that is wrong may still show that the transform is not one-to-one.
-            let formula = forms.min_by_key(merit).or(likeliest)?;
+            let likeliest = || likeliest.or_else(|| by_identities(&state.symbol).first().copied());
+            let formula = forms.min_by_key(merit).or_else(likeliest)?;
             Some((state.symbol, shortest(arena, domain, formula), state.rate.span))
         })
         .collect())
@@ -282,14 +290,13 @@ fn equations_of(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
 }
 
 /// Solves the transform together with the identities; of what comes out, what is a function of z and y.
-fn with_identities(
-    plant: &Plant,
-    domain: &Domain,
-    mut equations: Vec<Equation>,
-    states: &[Symbol],
-) -> Result<BTreeMap<Symbol, Vec<Expr>>, Obstacle> {
+fn with_identities(plant: &Plant, domain: &Domain, states: &[Symbol]) -> Result<BTreeMap<Symbol, Vec<Expr>>, Obstacle> {
+    if plant.identities.is_empty() {
+        return Ok(BTreeMap::new());
+    }
     let arena = &plant.arena;
     let zero = arena.zero();
+    let mut equations = equations_of(plant, plant.transform());
     equations.extend(plant.identities.iter().map(|identity| Equation { formula: identity.expr, value: zero }));
     let mut foreign = plant.hidden();
     foreign.extend(&plant.u);

@@ -12,7 +12,10 @@ use super::framed::{self, quoted};
 
 /// The text with the transform of this plant.
 pub(super) fn filled(source: &Source, model: &Model, plant: &Plant) -> Option<String> {
-    if plant.origin == TransformOrigin::Class {
+    // What the author wrote of the class's transform stays, and of coils there is nothing to write.
+    let blocks = model.class.as_ref().and_then(|class| search::blocks(plant, class.name()));
+    let written = blocks.is_none() || model.class.as_ref().is_some_and(framed::is_given);
+    if plant.origin == TransformOrigin::Class && written {
         return Some(source.text().to_owned());
     }
     let mut lines: Vec<String> = source.text().split_inclusive('\n').map(str::to_owned).collect();
@@ -26,7 +29,7 @@ pub(super) fn filled(source: &Source, model: &Model, plant: &Plant) -> Option<St
         }
         Some(class) => {
             let section = section(&lines, class.name())?;
-            framed::insert(&mut lines, section, &search::blocks(plant, class.name())?)?;
+            framed::insert(&mut lines, section, &blocks?)?;
         }
     }
     let text = lines.concat();

@@ -92,22 +92,14 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         seen: BTreeSet::new(),
         invariant: None,
     };
-    let own = of_class(plant);
-    let mut look = || {
-        if class != Some(Class::Gpebo) {
-            hunt.plain();
-        }
-        if class != Some(Class::Pebo) && !hunt.is_over() {
-            hunt.generalised();
-        }
-    };
-    if own.as_ref().is_some_and(Candidate::is_full) {
-        plant.arena.budget().share(FOR_BETTER, look);
-    } else {
-        look();
+    // What the plant's class gives may leave nothing better to be expected.
+    let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
+    hunt.candidates.extend(own);
+    if class != Some(Class::Gpebo) {
+        hunt.plain();
     }
-    if !hunt.candidates.iter().any(Candidate::is_full) {
-        hunt.candidates.extend(own);
+    if class != Some(Class::Pebo) && !hunt.is_over() {
+        hunt.generalised();
     }
     hunt.rest();
     let (mut candidates, tried) = (std::mem::take(&mut hunt.candidates), std::mem::take(&mut hunt.tried));
@@ -189,9 +181,6 @@ fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Cand
 
 /// The order of series that costs less than another form of transforms.
 const LOW_ORDER: usize = 2;
-
-/// The part of what is left that a search for something better than the transform of a class may take.
-const FOR_BETTER: u64 = 4;
 
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;

@@ -42,6 +42,9 @@ pub(super) struct Jets {
     coordinates: Vec<Symbol>,
 }
 
+/// Steps that a product of two terms takes: one of rational numbers, and a place among the terms.
+const STEPS_OF_A_PAIR: u64 = 30;
+
 /// `atan(3/4)`, whose sine and cosine are rational.
 fn angle(arena: &Arena) -> Expr {
     arena.call(Function::Atan, &[arena.number(Rational::new(3, 4).unwrap_or(Rational::ONE))])
@@ -140,10 +143,6 @@ impl Series<'_> {
         let mut known: BTreeMap<Expr, Jet> = BTreeMap::new();
         for expr in self.arena.postorder(exprs) {
             let jet = self.of(expr, &known)?;
-            let steps = jet.terms.len() * jet.terms.len();
-            if !self.arena.budget().take(steps as u64) {
-                return None;
-            }
             known.insert(expr, jet);
         }
         Some(exprs.iter().map(|expr| known[expr].clone()).collect())
@@ -168,7 +167,8 @@ impl Series<'_> {
                     None if value == angle(self.arena) => Jet { angle: Rational::ONE, ..Jet::default() },
                     None => return None,
                 };
-                if let Some(index) = self.coordinates.iter().position(|coordinate| *coordinate == symbol) {
+                let index = self.coordinates.iter().position(|coordinate| *coordinate == symbol);
+                if let Some(index) = index.filter(|_| self.order > 0) {
                     let mut unit = vec![0; self.coordinates.len()];
                     unit[index] = 1;
                     jet.terms.insert(unit, Rational::ONE);
@@ -208,14 +208,21 @@ impl Series<'_> {
                 return Some(scaled);
             }
         }
+        let mut of_degree: Vec<Vec<(&Monomial, &Rational)>> = vec![Vec::new(); self.order + 1];
+        for (monomial, factor) in &b.terms {
+            of_degree[degree(monomial)].push((monomial, factor));
+        }
         let mut terms: BTreeMap<Monomial, Rational> = BTreeMap::new();
         for (first, c) in &a.terms {
-            for (second, d) in &b.terms {
-                let monomial: Monomial = first.iter().zip(second).map(|(a, b)| a + b).collect();
-                if degree(&monomial) <= self.order {
-                    let entry = terms.entry(monomial).or_insert(Rational::ZERO);
-                    *entry = &*entry + &(c * d);
-                }
+            let beside = &of_degree[..=self.order - degree(first)];
+            let pairs: usize = beside.iter().map(Vec::len).sum();
+            if !self.arena.budget().take(STEPS_OF_A_PAIR * pairs as u64) {
+                return None;
+            }
+            for (second, d) in beside.iter().flatten() {
+                let monomial: Monomial = first.iter().zip(*second).map(|(a, b)| a + b).collect();
+                let entry = terms.entry(monomial).or_insert(Rational::ZERO);
+                *entry = &*entry + &(c * *d);
             }
         }
         terms.retain(|_, c| !c.is_zero());

@@ -10,6 +10,7 @@ mod shapes;
 mod table;
 mod timed;
 
+use pebo_gen::analysis::Verdict;
 use pebo_gen::report::summary;
 use pebo_gen::source::Source;
 use pebo_gen::{Derived, derive};
@@ -52,5 +53,19 @@ fn a_derived_left_inverse_keeps_the_functions_of_the_outputs() {
         ));
         let inverse = derived.derivation.left_inverse.result.expect("a left inverse");
         assert_eq!(derived.plant.arena.print(inverse.x[0].1), expected, "{phi}");
+    }
+}
+
+/// Both roots of a quadratic equation are candidates, and neither is right everywhere: the value of an output tells.
+#[test]
+fn what_outputs_measure_serves_where_the_transform_alone_is_not_solved() {
+    for (value, expected) in [("s - v", "w + z2"), ("1 + s - v", "w + z2 - 1"), ("2*v - 3*s", "(2*z2 - w)/3")] {
+        let derived = derived(&format!(
+            "x: [s, v]\ny: [w]\nu: [u]\nf_x: {{s: u, v: -u}}\ng_y: {{w: {value}}}\nphi: [s^2 + s, v]"
+        ));
+        let claim = derived.derivation.left_inverse;
+        assert_eq!(claim.verdict, Verdict::Proved, "{value}");
+        let inverse = claim.result.expect("a left inverse");
+        assert_eq!(derived.plant.arena.print(inverse.x[0].1), expected, "{value}");
     }
 }

@@ -257,6 +257,21 @@ fn coils_have_their_fluxes_where_nothing_better_is_found() {
     assert_eq!(solve(&source, None, &Ask::new()).filled.as_deref(), Some(source.text()));
 }
 
+/// With the speed measured the fluxes are a linear regression, and nothing else is looked for; the class that was asked for
+/// is another.
+#[test]
+fn a_class_that_leaves_nothing_better_answers_alone() {
+    let lines = "parameters: {R: 8.875, L: 0.04, n: 5, m: 0.2}\nx: [q]\ny: [i1, i2, omega]\nu: [v1, v2]\n\
+                 assume: [L > 0, m > 0, n > 0]\nangles: {q: 2*pi/n}\nelectromechanical:\n  L: [[L, 0], [0, L]]\n  \
+                 mu: [m*cos(n*q), m*sin(n*q)]\n  R: [R, R]\n  speed: omega\n  inertia: 1\n  load: 0";
+    let (_, found) = search(lines, None);
+    assert_eq!(found.candidates[0].formulas(), ["m*cos(n*q) + L*i1", "m*sin(n*q) + L*i2"]);
+    assert_eq!((found.candidates.len(), found.tried.len()), (1, 1));
+    let (_, generalised) = search(lines, Some(Class::Gpebo));
+    assert!(generalised.candidates.iter().all(|candidate| candidate.derivation.class == Class::Gpebo));
+    assert!(generalised.tried.len() > 1);
+}
+
 #[test]
 fn of_more_solutions_than_states_those_that_hold_everywhere_are_taken() {
     // Of the three momenta of a plane in polar coordinates, the two of the fixed frame.

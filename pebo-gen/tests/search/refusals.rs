@@ -107,14 +107,24 @@ fn a_model_without_phi_is_answered_with_the_one_that_was_found() {
 #[test]
 fn a_refusal_is_followed_by_what_was_found() {
     let refused = [
-        // The rate of x is not affine in x, that of x plus an integral over y is free of it.
-        ("x: [x]\ny: [y]\nf_x: {x: -x*y}\nf_y: {y: x}\nphi: [x^2]", Code::CascadeRefuted),
-        ("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: a}\nf_y: {y: b}\nphi: [a]", Code::LeftInverseUnderivable),
-        ("x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^5 + exp(-x^2)*0 + x}\nphi: [exp(x)]", Code::CascadeRefuted),
+        // The rate of x is not free of x, that of x plus an integral over y is.
+        ("class: pebo\nx: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x*y}\nf_y: {y: x}\nphi: [x]", Code::CascadeRefuted),
+        ("x: [x]\ny: [y]\nf_x: {x: -x*y}\nf_y: {y: x}\nphi: [x^2]", Code::LeftInverseRefuted),
+        ("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u, b: a}\nf_y: {y: b}\nphi: [a]", Code::LeftInverseRefuted),
+        (
+            "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^5 + exp(-x^2)*0 + x}\nphi: [exp(x)]",
+            Code::RegressionNonlinear,
+        ),
+        // Nothing is refuted: no left inverse was found, and the claim about the regression is open.
+        (
+            "x: [s, v]\ny: [w]\nu: [u]\nf_x: {s: u, v: u - v}\ng_y: {w: s - v - u}\nphi: [s^2 + s, v]",
+            Code::LeftInverseUnderivable,
+        ),
     ];
     for (lines, code) in refused {
         let answer = answered(&format!("model: m\n{lines}\n"));
-        let diagnostic = &answer.diagnostics[0];
+        let told = answer.diagnostics.iter().find(|diagnostic| diagnostic.code == code);
+        let diagnostic = told.unwrap_or_else(|| panic!("{lines}: {:#?}", answer.diagnostics));
         let help = diagnostic.help.as_deref().unwrap_or_default();
         assert!(help.contains("which is accepted"), "{lines}: {code:?} {:?} {help}", diagnostic.code);
     }
