@@ -101,11 +101,15 @@ impl Derived {
             TransformOrigin::Found => false,
         };
         let refused = searched && self.derivation.outcome != Outcome::Accepted;
-        let open = diagnostics.iter_mut().find(|d| search::settles(d.code, &self.derivation)).filter(|_| refused);
-        if let Some(diagnostic) = open {
+        let mut open = diagnostics.iter_mut().filter(|d| refused && search::settles(d.code, &self.derivation));
+        if let Some(first) = open.next() {
             let budget = self.plant.arena.budget();
             let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.asked));
-            *diagnostic = search.advise(&self.plant, diagnostic.clone());
+            *first = search.advise(&self.plant, first.clone());
+            // What mends the first mends the others.
+            if search.verdict == Found::Found {
+                open.for_each(|other| other.help = None);
+            }
         }
         diagnostics
     }

@@ -240,11 +240,16 @@ impl Search {
 
     /// The refusal of a given transform, with what the search found in its place.
     pub(crate) fn advise(&self, plant: &Plant, refusal: Diagnostic) -> Diagnostic {
-        if let Some(best) = self.candidates.first().filter(|_| self.verdict == Found::Found)
-            && let Some(keys) = best.keys()
-        {
+        if let Some(best) = self.candidates.first().filter(|_| self.verdict == Found::Found) {
             let class = best.derivation.class.name();
-            return refusal.help(format!("use {keys}, which is accepted ({class})"));
+            return match best.keys() {
+                Some(keys) => refusal.help(format!("use {keys}, which is accepted ({class})")),
+                None => {
+                    let frames = self.killing_fields(plant);
+                    let refusal = frames.into_iter().fold(refusal, Diagnostic::note);
+                    refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi")
+                }
+            };
         }
         let refusal = match &self.assumed {
             Some((candidate, signs)) => refusal.note(assumed(candidate, signs)),
@@ -277,9 +282,11 @@ pub(crate) fn assumed(candidate: &Candidate, signs: &[Symbol]) -> String {
 /// Whether another transform settles a refusal.
 pub(crate) fn settles(code: Code, derivation: &Derivation) -> bool {
     match code {
-        Code::CascadeRefuted | Code::LeftInverseUnderivable | Code::RegressionNonlinear | Code::NeverIdentifiable => {
-            true
-        }
+        Code::CascadeRefuted
+        | Code::LeftInverseUnderivable
+        | Code::RegressionNonlinear
+        | Code::RegressionUndecided
+        | Code::NeverIdentifiable => true,
         // The left inverse may be the author's own, and wrong.
         Code::LeftInverseRefuted => {
             derivation.left_inverse.result.as_ref().is_none_or(|inverse| inverse.origin != Origin::Given)

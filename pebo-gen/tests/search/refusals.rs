@@ -127,7 +127,25 @@ fn a_refusal_is_followed_by_what_was_found() {
         let diagnostic = told.unwrap_or_else(|| panic!("{lines}: {:#?}", answer.diagnostics));
         let help = diagnostic.help.as_deref().unwrap_or_default();
         assert!(help.contains("which is accepted"), "{lines}: {code:?} {:?} {help}", diagnostic.code);
+        let others = answer.diagnostics.iter().filter_map(|other| other.help.as_deref());
+        assert_eq!(others.filter(|help| help.contains("choose a phi")).count(), 0, "{lines}");
     }
+}
+
+/// A frame has as many components as there are momenta; a transform with more is not denied for it.
+#[test]
+fn a_transform_that_is_no_frame_is_told_to_a_mechanical_plant() {
+    let refused = answered(
+        "model: m\nx: [p1, p2]\ny: [q1, q2]\nu: [a, b]\n\
+         mechanical: {M: [['1 + cos(q2)^2', 0], [0, 1]], V: 'cos(q2)', G: [[1, 0], [0, 1]], T: [[1, 0], [0, 1]]}\n",
+    );
+    let diagnostic = &refused.diagnostics[0];
+    assert_eq!(diagnostic.code, Code::CascadeRefuted);
+    assert_eq!(
+        diagnostic.notes.last().map(|note| &**note),
+        Some("phi = [p1, p2, p1^2], generalised cascade, is accepted")
+    );
+    assert_eq!(diagnostic.help.as_deref(), Some("write the plant under `f_x` and `f_y`, with this phi"));
 }
 
 #[test]
