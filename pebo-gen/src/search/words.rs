@@ -242,14 +242,11 @@ impl Search {
     pub(crate) fn advise(&self, plant: &Plant, refusal: Diagnostic) -> Diagnostic {
         if let Some(best) = self.candidates.first().filter(|_| self.verdict == Found::Found) {
             let class = best.derivation.class.name();
-            return match best.keys() {
-                Some(keys) => refusal.help(format!("use {keys}, which is accepted ({class})")),
-                None => {
-                    let frames = self.killing_fields(plant);
-                    let refusal = frames.into_iter().fold(refusal, Diagnostic::note);
-                    refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi")
-                }
-            };
+            if let Some(keys) = best.keys() {
+                return refusal.help(format!("use {keys}, which is accepted ({class})"));
+            }
+            let refusal = self.killing_fields(plant).into_iter().fold(refusal, Diagnostic::note);
+            return refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi");
         }
         let refusal = match &self.assumed {
             Some((candidate, signs)) => refusal.note(assumed(candidate, signs)),
