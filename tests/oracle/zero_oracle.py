@@ -5,9 +5,10 @@ Write the cases, then read them (the second number is how many to sample, all if
     PEBO_CASES=$PWD/target/cases.tsv cargo test --release -p pebo-gen --test campaign
     python3 tests/oracle/zero_oracle.py target/cases.tsv 5000
 
-Needs SymPy and mpmath. What decides is the value at random points of the domain, with 50 digits: a
-case called zero must shrink to nothing with 150 digits wherever it has a real value, one called nonzero must
-not somewhere. `simplify` is asked of short open cases only, for information. Exits with 1 on a wrong verdict.
+Needs SymPy and mpmath. What decides is the value at random points of the domain, with 150 and with 250 digits: a
+value that differs from zero is the same with both, while what rounding leaves of zero is not. A case called zero
+must have no such value, one called nonzero must have one. `simplify` is asked of short open cases only, for
+information. Exits with 1 on a wrong verdict.
 """
 
 import random
@@ -17,8 +18,8 @@ from collections import Counter
 import mpmath
 import sympy
 
-mpmath.mp.dps = 50
-TINY = mpmath.mpf(10) ** -30
+FEW, MANY = 150, 250
+mpmath.mp.dps = MANY
 NAMES = "x y z a b p q r t w".split()
 SYMBOLS = {name: sympy.Symbol(name, real=True) for name in NAMES}
 LOCALS = SYMBOLS | {"abs": sympy.Abs, "atan2": sympy.atan2, "pi": sympy.pi, "min": sympy.Min, "max": sympy.Max}
@@ -42,8 +43,6 @@ def power(base, exponent):
     if base < 0:
         raise ValueError
     return base**exponent
-
-
 
 
 FUNCTIONS = {name: getattr(mpmath, name) for name in "sin cos tan sinh cosh tanh asinh exp atan atan2".split()} | {
@@ -89,20 +88,30 @@ def points(random_source, reach):
         yield {n: mpmath.mpf(random_source.uniform(*ranges.get(n, (-reach, reach)))) for n in NAMES}
 
 
+def at(digits, code, point):
+    with mpmath.workdps(digits):
+        return eval(code, FUNCTIONS, point)
+
+
+def differs_from_zero(few, many):
+    """Whether a value with few and with many digits is one number other than zero, and not rounding.
+
+    Rounding leaves of zero what is a hundred orders smaller with a hundred digits more, or nothing with either.
+    """
+    return abs(few - many) < abs(many) / 2
+
+
 def largest(text, random_source, times=12, reach=2.5):
-    """The largest magnitude over some points, zero where more digits let it shrink, and how many had a value."""
+    """The largest magnitude over some points, zero where it is rounding, and how many points had a value."""
     code, best, seen = compiled(text), mpmath.mpf(0), 0
     for _, point in zip(range(times), points(random_source, reach)):
         try:
-            with mpmath.workdps(50):
-                coarse = abs(eval(code, FUNCTIONS, point))
-            with mpmath.workdps(150):
-                fine = abs(eval(code, FUNCTIONS, point))
+            few, many = at(FEW, code, point), at(MANY, code, point)
         except (ValueError, ZeroDivisionError, OverflowError):
             continue
         seen += 1
-        # Rounding shrinks by a hundred orders, a value that differs from zero stays.
-        best = max(best, fine if fine > coarse * TINY else mpmath.mpf(0))
+        if differs_from_zero(few, many):
+            best = max(best, abs(many))
     return best, seen
 
 
@@ -118,12 +127,12 @@ def main():
         if not seen:
             counts[group, said, "no value"] += 1
         elif said == "open":
-            counts[group, said, "is zero" if value < TINY else "is not"] += 1
-        elif (value < TINY) == (said == "zero"):
+            counts[group, said, "is zero" if value == 0 else "is not"] += 1
+        elif (value == 0) == (said == "zero"):
             counts[group, said, "confirmed"] += 1
         else:
             # It may differ on a small part of the domain only, or far out: `sat(4 + (y/3)^3)` is 1 but for y < -4.3.
-            if said == "nonzero" and any(largest(text, source, 2000, reach)[0] >= TINY for reach in (2.5, 20)):
+            if said == "nonzero" and any(largest(text, source, 2000, reach)[0] > 0 for reach in (2.5, 20)):
                 counts[group, said, "confirmed"] += 1
                 continue
             counts[group, said, "WRONG"] += 1
