@@ -148,7 +148,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     Search { verdict, candidates, assumed, bound, affine, generalised, tried }
 }
 
-/// The transform of the plant's class, for where nothing better recovers the states: coils have their fluxes.
+/// The transform that the plant's class gives: coils have their fluxes.
 fn of_class(plant: &Plant) -> Option<Candidate> {
     let is_own = plant.origin == TransformOrigin::Class && !plant.phi.is_empty();
     is_own.then(|| Candidate { plant: plant.clone(), derivation: Derivation::derive(plant) })
