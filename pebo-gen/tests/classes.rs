@@ -301,6 +301,49 @@ fn a_chain_of_point_masses_rests_where_it_is_held() {
     }
 }
 
+/// Two masses, each at the end of two links, with T the inverse of the Jacobian of their positions.
+///
+/// Over one denominator, the rates of the outputs would be divided by `sin(2*q1 + q2)`, which harmless postures make zero.
+const FOUR_LINKS: &str = r"x: [p1, p2, p3, p4]
+y: [q1, q2, q3, q4]
+u: [u1, u2, u3, u4]
+assume: [sin(q2) > 0, sin(q4) > 0]
+define:
+  q12: q1 + q2
+  q123: q12 + q3
+  q1234: q123 + q4
+  ax: sin(q1) + sin(q12)
+  ay: cos(q1) + cos(q12)
+  bx: sin(q123) + sin(q1234)
+  by: cos(q123) + cos(q1234)
+  ra1: ((ax + bx)*cos(q12) - (sin(q12) + bx)*ay)/sin(q2)
+  ra2: ((ax + bx)*sin(q12) - (sin(q12) + bx)*ax)/sin(q2)
+  rb1: ((ay + by)*cos(q12) - (cos(q12) + by)*ay)/sin(q2)
+  rb2: ((ay + by)*sin(q12) - (cos(q12) + by)*ax)/sin(q2)
+mechanical:
+  M: [[ax^2 + ay^2 + (ax + bx)^2 + (ay + by)^2, ax*sin(q12) + ay*cos(q12) + (ax + bx)*(sin(q12) + bx) + (ay + by)*(cos(q12) + by), (ax + bx)*bx + (ay + by)*by, (ax + bx)*sin(q1234) + (ay + by)*cos(q1234)],
+      [ax*sin(q12) + ay*cos(q12) + (ax + bx)*(sin(q12) + bx) + (ay + by)*(cos(q12) + by), 1 + (sin(q12) + bx)^2 + (cos(q12) + by)^2, (sin(q12) + bx)*bx + (cos(q12) + by)*by, (sin(q12) + bx)*sin(q1234) + (cos(q12) + by)*cos(q1234)],
+      [(ax + bx)*bx + (ay + by)*by, (sin(q12) + bx)*bx + (cos(q12) + by)*by, bx^2 + by^2, bx*sin(q1234) + by*cos(q1234)],
+      [(ax + bx)*sin(q1234) + (ay + by)*cos(q1234), (sin(q12) + bx)*sin(q1234) + (cos(q12) + by)*cos(q1234), bx*sin(q1234) + by*cos(q1234), 1]]
+  G: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+  T: [[cos(q12)/sin(q2), sin(q12)/sin(q2), 0, 0],
+      [-ay/sin(q2), -ax/sin(q2), 0, 0],
+      [(cos(q1234)*ra1 - sin(q1234)*rb1)/sin(q4), (cos(q1234)*ra2 - sin(q1234)*rb2)/sin(q4), cos(q1234)/sin(q4), sin(q1234)/sin(q4)],
+      [(bx*rb1 - by*ra1)/sin(q4), (bx*rb2 - by*ra2)/sin(q4), -by/sin(q4), -bx/sin(q4)]]";
+
+#[test]
+fn a_plant_is_divided_by_what_its_frame_is_divided_by() {
+    let links = derived(FOUR_LINKS);
+    assert_eq!(links.derivation.outcome, Outcome::Accepted, "{:?}", links.derivation.diagnostics);
+    assert_eq!(links.derivation.conditions.len(), 0);
+    // At q1 = -q2/2 and without the assumptions the same, but for the postures at which T has no value.
+    let (_, without) = FOUR_LINKS.split_once("assume: [sin(q2) > 0, sin(q4) > 0]\n").expect("assumptions");
+    let head = &FOUR_LINKS[..FOUR_LINKS.find("assume").expect("assumptions")];
+    let links = derived(&format!("{head}{without}"));
+    let conditions: Vec<Expr> = links.derivation.conditions.iter().map(|(expr, _)| *expr).collect();
+    assert_eq!(printed(&links, &conditions), ["sin(q2)", "sin(q4)"]);
+}
+
 // Electromechanical plants.
 
 const MOTOR: &str = "x: [q]\ny: [i1, i2]\nu: [v1, v2]\nw: [omega]\nparameters: [R, L, n_p, lambda_m]\n\

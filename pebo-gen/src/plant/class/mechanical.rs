@@ -15,6 +15,8 @@ use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::oriented::oriented;
 use crate::cas::rational::half;
+use crate::cas::scaled::scaled;
+use crate::cas::tidy::operations;
 use crate::cas::zero::{Answer, decide, refute};
 use crate::cas::{Arena, Expr, Symbol};
 use crate::model::{Formula as Written, Mechanical as WrittenClass};
@@ -76,10 +78,15 @@ impl InVelocities {
     }
 }
 
-/// The force of inertia along a position: `v' (dM/dq) v / 2`.
+/// The force of inertia along a position: `v' (dM/dq) v / 2`, with each pair of velocities once.
 fn inertial(arena: &Arena, inertia: &Matrix, q: Symbol, v: &[Expr]) -> Expr {
     let slope = inertia.derivative(arena, q);
-    arena.scale(dot(arena, v, &slope.apply(arena, v)), &half())
+    let of_row = |i: usize| {
+        let beside = dot(arena, &slope.rows()[i][i + 1..], &v[i + 1..]);
+        let own = arena.scale(arena.mul(slope.at(i, i), v[i]), &half());
+        arena.mul(v[i], arena.add(own, beside))
+    };
+    scaled(arena, arena.sum((0..v.len()).map(of_row)))
 }
 
 pub(super) fn expand(
@@ -129,16 +136,18 @@ pub(super) fn expand(
     let (inverse_metric, is_implicit) = inverse.ok_or_else(|| singular("M", m.span))?;
     // Not in normal form: where W is simple, what the author wrote for T is shorter.
     let velocity = frame.mul(arena, &inverse_metric);
-    // Where the inverse is not written out, neither is what must not vanish: the rates have no value there.
-    let metric = (!is_implicit).then_some((&metric, m.span));
-    let conditions = determinants(place, [(&frame, t.span)].into_iter().chain(metric))?;
+    // det W = det(T)^2 det M: where it does not vanish, T has an inverse wherever it has a value. Where the inverse of W is not
+    // written out, neither is what must not vanish: the rates have no value there.
+    let (inverted, span) = if is_implicit { (&frame, t.span) } else { (&metric, m.span) };
+    let conditions = nonzero_determinant(place, inverted, span)?.into_iter().collect();
 
     let symbols = |list: &[Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (p, u) = (symbols(names.x), symbols(names.u));
     let z: Vec<Expr> = place.z.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
+    let at_p = transposed.apply(arena, &p);
     let over_one = |matrix: &Matrix, vector: &[Expr]| collected(place, matrix, vector, is_implicit);
     let on_positions = arena.symbols_of(&inverse_metric.rows().concat());
-    let rates = over_one(&velocity.mul(arena, &transposed), &p).map_err(open("M^-1 p", m.span))?;
+    let rates = over_one(&velocity, &at_p).map_err(open("M^-1 p", m.span))?;
     let velocities = if names.y.iter().any(|position| on_positions.contains(position)) {
         over_one(&velocity, &z).map_err(open("the velocity", m.span))?
     } else {
@@ -171,7 +180,10 @@ pub(super) fn expand(
         phi_left: momenta.collect(),
         rates: names.y.iter().zip(velocity.rows()).map(|(s, row)| (*s, (arena.zero(), row.clone()))).collect(),
     };
-    let energy = arena.add(arena.scale(dot(arena, &p, &rates), &half()), potential);
+    // p' M^-1 p is z' W^-1 z.
+    let of_work = [dot(arena, &p, &rates), dot(arena, &at_p, &inverse_metric.apply(arena, &at_p))];
+    let doubled = if is_implicit { of_work[0] } else { shorter(arena, of_work) };
+    let energy = arena.add(arena.scale(doubled, &half()), potential);
     Ok(Expansion {
         x: states.collect(),
         y: outputs.collect(),
@@ -196,20 +208,12 @@ pub(super) fn expand(
     })
 }
 
-/// That determinants do not vanish, where they are no numbers.
-fn determinants<'a>(
-    place: &Place<'_>,
-    matrices: impl Iterator<Item = (&'a Matrix, Span)>,
-) -> Result<Vec<Assumption>, Stop> {
-    let mut conditions = Vec::new();
-    for (matrix, span) in matrices {
-        let determinant = matrix.determinant(place.arena, &place.domain.facts);
-        let expr = determinant.map_err(|obstacle| Stop::from(unresolved("a determinant", span, &obstacle)))?;
-        if place.arena.as_number(expr).is_none() {
-            conditions.push(Assumption { expr, relation: Relation::NonZero, span });
-        }
-    }
-    Ok(conditions)
+/// That a determinant does not vanish, where it is no number.
+fn nonzero_determinant(place: &Place<'_>, matrix: &Matrix, span: Span) -> Result<Option<Assumption>, Stop> {
+    let determinant = matrix.determinant(place.arena, &place.domain.facts);
+    let expr = determinant.map_err(|obstacle| Stop::from(unresolved("a determinant", span, &obstacle)))?;
+    let is_number = place.arena.as_number(expr).is_some();
+    Ok((!is_number).then_some(Assumption { expr, relation: Relation::NonZero, span }))
 }
 
 /// `L_X M = sum over k of X_k dM/dq_k + (dX)' M + M dX`: zero where M does not change along X, a Killing field of M.
@@ -261,15 +265,26 @@ fn implicit_inverse(
     Ok(exists.then(|| adjugate.map(|cofactor| arena.div(cofactor, determinant))))
 }
 
-/// The product with a vector, each component over one denominator, but for what is not written out.
+/// The product with a vector, each component over one denominator where that is shorter, but for what is not written out.
+///
+/// As a product of what the author wrote it has a value wherever the author's formulas have, and sums of angles are kept.
 fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr], is_implicit: bool) -> Result<Vec<Expr>, Obstacle> {
-    let products = matrix.apply(place.arena, vector);
+    let arena = place.arena;
+    let products = matrix.apply(arena, vector);
     if is_implicit {
         return Ok(products);
     }
-    let field = Field::of_long_sums(place.arena, &place.domain.facts, &products)?;
-    let over_one = |e: &Expr| Ok(oriented(place.arena, place.domain, field.show(&field.fraction(*e)?)));
-    products.iter().map(over_one).collect()
+    let field = Field::of_long_sums(arena, &place.domain.facts, &products)?;
+    let shortened = |product: &Expr| {
+        let over_one = oriented(arena, place.domain, field.show(&field.fraction(*product)?));
+        Ok(shorter(arena, [over_one, *product]))
+    };
+    products.iter().map(shortened).collect()
+}
+
+/// Of two equal formulas the one with fewer operations, the first where they have as many.
+fn shorter(arena: &Arena, [first, second]: [Expr; 2]) -> Expr {
+    if operations(arena, second) < operations(arena, first) { second } else { first }
 }
 
 /// Where the column of T stands that a component of z is made of: its first entry that is not zero.
