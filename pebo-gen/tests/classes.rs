@@ -303,7 +303,7 @@ fn a_chain_of_point_masses_rests_where_it_is_held() {
 
 /// Two masses, each at the end of two links, with T the inverse of the Jacobian of their positions.
 ///
-/// Over one denominator, the rates of the outputs would be divided by `sin(2*q1 + q2)`, which harmless postures make zero.
+/// Over one denominator, the rates of the outputs would be divided by `sin(2*q1 + q2)`, which is zero in harmless postures.
 const FOUR_LINKS: &str = r"x: [p1, p2, p3, p4]
 y: [q1, q2, q3, q4]
 u: [u1, u2, u3, u4]
@@ -325,6 +325,7 @@ mechanical:
       [ax*sin(q12) + ay*cos(q12) + (ax + bx)*(sin(q12) + bx) + (ay + by)*(cos(q12) + by), 1 + (sin(q12) + bx)^2 + (cos(q12) + by)^2, (sin(q12) + bx)*bx + (cos(q12) + by)*by, (sin(q12) + bx)*sin(q1234) + (cos(q12) + by)*cos(q1234)],
       [(ax + bx)*bx + (ay + by)*by, (sin(q12) + bx)*bx + (cos(q12) + by)*by, bx^2 + by^2, bx*sin(q1234) + by*cos(q1234)],
       [(ax + bx)*sin(q1234) + (ay + by)*cos(q1234), (sin(q12) + bx)*sin(q1234) + (cos(q12) + by)*cos(q1234), bx*sin(q1234) + by*cos(q1234), 1]]
+  V: 9*(2*ax + bx)
   G: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
   T: [[cos(q12)/sin(q2), sin(q12)/sin(q2), 0, 0],
       [-ay/sin(q2), -ax/sin(q2), 0, 0],
@@ -336,6 +337,12 @@ fn a_plant_is_divided_by_what_its_frame_is_divided_by() {
     let links = derived(FOUR_LINKS);
     assert_eq!(links.derivation.outcome, Outcome::Accepted, "{:?}", links.derivation.diagnostics);
     assert_eq!(links.derivation.conditions.len(), 0);
+    // Along the horizontal, weight does nothing, and does not stand in the formula either.
+    let cascade = links.derivation.cascade.result.as_ref().expect("a cascade");
+    assert_eq!(
+        printed(&links, &cascade.h)[2],
+        "u3*cos(q1 + q2 + q3 + q4)/sin(q4) + u4*(-cos(q1 + q2 + q3) - cos(q1 + q2 + q3 + q4))/sin(q4)"
+    );
     // At q1 = -q2/2 and without the assumptions the same, but for the postures at which T has no value.
     let (_, without) = FOUR_LINKS.split_once("assume: [sin(q2) > 0, sin(q4) > 0]\n").expect("assumptions");
     let head = &FOUR_LINKS[..FOUR_LINKS.find("assume").expect("assumptions")];

@@ -8,6 +8,7 @@
 mod bounded;
 mod gpebo;
 mod killing;
+mod momentum;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -133,7 +134,7 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
         return component_found(plant, domain, mechanical, (plant.phi[index].expr, rate));
     }
     match killing::is_killing(&plant.arena, domain, mechanical, &mechanical.frame.column(index)) {
-        Ok(true) => Component::Free(proved_shortest(&plant.arena, domain, mechanical.h[index])),
+        Ok(true) => Component::Free(momentum::rate(plant, domain, mechanical, index)),
         Ok(false) => match &mechanical.in_velocities {
             // The rate has no normal form that could be looked at; that it varies, points show.
             Some(shown) => {

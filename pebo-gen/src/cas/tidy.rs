@@ -309,9 +309,14 @@ pub(crate) fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candida
 
 /// The number of operations of an expression, shared parts once; functions weigh more.
 pub(crate) fn operations(arena: &Arena, expr: Expr) -> usize {
+    operations_of(arena, &[expr])
+}
+
+/// As [`operations`], of several expressions together.
+pub(crate) fn operations_of(arena: &Arena, exprs: &[Expr]) -> usize {
     const FUNCTION: usize = 10;
     arena
-        .postorder(&[expr])
+        .postorder(exprs)
         .into_iter()
         .map(|e| match arena.node(e) {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,

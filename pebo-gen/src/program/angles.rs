@@ -46,25 +46,22 @@ impl Angles {
         if angles.len() > MOST_ANGLES {
             return Self::default();
         }
-        // An angle is made of simpler ones; a sort that is stable keeps the order of first use among equals.
+        // The simplest first; a sort that is stable keeps the order of first use among equals.
         angles.sort_by_key(|&angle| summands(arena, angle));
-        let mut parts = FxHashMap::default();
+        let mut parts: FxHashMap<Expr, Parts> = FxHashMap::default();
         let mut known: FxHashSet<Expr> = FxHashSet::default();
-        let mut simpler: Vec<Expr> = Vec::new();
-        for angle in angles {
-            let found = simpler.iter().find_map(|&first| {
-                let rest = arena.sub(angle, first);
-                if known.contains(&rest) {
-                    return Some(Parts { first, second: rest, minus: false });
+        // All that is made up of what is there, before another is called for.
+        while !angles.is_empty() {
+            let place = angles.iter().position(|angle| parts.contains_key(angle)).unwrap_or(0);
+            let newest = angles.remove(place);
+            known.insert(newest);
+            for angle in &angles {
+                if !parts.contains_key(angle)
+                    && let Some(made) = made_of(arena, *angle, newest, &known)
+                {
+                    parts.insert(*angle, made);
                 }
-                let rest = arena.neg(rest);
-                known.contains(&rest).then_some(Parts { first, second: rest, minus: true })
-            });
-            if let Some(found) = found {
-                parts.insert(angle, found);
             }
-            simpler.push(angle);
-            known.insert(angle);
         }
         Self { parts, known: FxHashMap::default() }
     }
@@ -86,6 +83,19 @@ pub(super) fn halved(arena: &Arena, roots: &[Expr]) -> Vec<Expr> {
         }
     }
     roots.iter().map(|root| arena.replace(*root, &known)).collect()
+}
+
+/// The newest and another of the known angles, if they make up this one.
+fn made_of(arena: &Arena, angle: Expr, newest: Expr, known: &FxHashSet<Expr>) -> Option<Parts> {
+    let rest = arena.sub(angle, newest);
+    let (less, more) = (arena.neg(rest), arena.add(angle, newest));
+    if known.contains(&rest) {
+        return Some(Parts { first: newest, second: rest, minus: false });
+    }
+    if known.contains(&less) {
+        return Some(Parts { first: newest, second: less, minus: true });
+    }
+    known.contains(&more).then_some(Parts { first: more, second: newest, minus: true })
 }
 
 /// How many summands an angle has.

@@ -481,6 +481,10 @@ fn an_angle_that_others_make_up_is_not_called_for() {
     assert_eq!(angles(&[(Sin, &[("q", 1)]), (Cos, &[("q", 2)])]), "1 add, 2 mul, 1 call");
     // Neither summand is needed by itself.
     assert_eq!(angles(&[(Sin, &[("q", 1), ("r", 1)]), (Sin, &[("s", 1)])]), "1 add, 2 call");
+    // Of q + r, q + s and q + r + s one is called for, whatever the others have in common with it.
+    let sums: [&[(&str, i64)]; 3] = [&[("q", 1), ("r", 1)], &[("q", 1), ("s", 1)], &[("q", 1), ("r", 1), ("s", 1)]];
+    let [first, second, both] = sums.map(|sum| (Cos, sum));
+    assert_eq!(angles(&[(Sin, &[("r", 1)]), (Sin, &[("s", 1)]), first, second, both]), "4 add, 6 mul, 3 call");
 }
 
 #[test]
