@@ -49,7 +49,7 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     let kept = |form: Expr| {
         functions(arena, &[form]).iter().all(|call| {
             own.contains(call) || domain.written.contains(call) || own.iter().any(|own| is_root_of(arena, *call, *own))
-        })
+        }) && !dissolves(arena, &[expr], form)
     };
     let mut forms = vec![expr];
     if let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) {
@@ -175,6 +175,31 @@ pub(crate) fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
             }
             _ => {}
         }
+    }
+    found
+}
+
+/// Whether a form of expressions writes a hyperbolic function of theirs with powers of exponentials: `exp(q)^4 - 1` over
+/// `exp(q)^4 + 1` is `tanh(2*q)`, and overflows.
+pub(crate) fn dissolves(arena: &Arena, exprs: &[Expr], form: Expr) -> bool {
+    let hyperbolic = |exprs: &[Expr]| -> BTreeSet<Expr> {
+        let is_hyperbolic =
+            |call: &Expr| matches!(arena.node(*call), Node::Call(Function::Sinh | Function::Cosh | Function::Tanh, _));
+        functions(arena, exprs).into_iter().filter(is_hyperbolic).collect()
+    };
+    !hyperbolic(exprs).is_subset(&hyperbolic(&[form]))
+        && !powers_of_exp(arena, &[form]).is_subset(&powers_of_exp(arena, exprs))
+}
+
+/// The powers of exponentials, but for the first.
+fn powers_of_exp(arena: &Arena, exprs: &[Expr]) -> BTreeSet<(Expr, Rational)> {
+    let mut found = BTreeSet::new();
+    for expr in arena.postorder(exprs) {
+        let Node::Product(product) = arena.node(expr) else { continue };
+        let is_power = |(base, exponent): &&(Expr, Rational)| {
+            matches!(arena.node(*base), Node::Call(Function::Exp, _)) && !exponent.abs().is_one()
+        };
+        found.extend(product.factors.iter().filter(is_power).cloned());
     }
     found
 }

@@ -45,6 +45,8 @@ fn a_derived_left_inverse_keeps_the_functions_of_the_outputs() {
         ("exp(x)*(1 - abs(m)*m)", "m != 1", "log(z1/(1 - m*abs(m)))"),
         ("2*tanh(m)*x", "m != 0", "z1/(2*tanh(m))"),
         ("cosh(m)*x^2", "x > 0", "sqrt(z1/cosh(m))"),
+        // Not in powers of exp(m), though that is one function less.
+        ("exp(m)*x^2 + tanh(2*m)", "x > 0", "sqrt((z1 - tanh(2*m))/exp(m))"),
         ("2*(sin(m) + 2)*x + tanh(2*m)", "x > 0", "(z1 - tanh(2*m))/(2*(sin(m) + 2))"),
         ("(1 + m^2)*x + min(m, 1)^3", "x > 0", "(z1 - min(m, 1)^3)/(m^2 + 1)"),
     ] {

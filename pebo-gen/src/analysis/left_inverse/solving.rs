@@ -10,7 +10,7 @@ use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::frozen::Frozen;
 use crate::cas::solve::{Equation, solve};
-use crate::cas::tidy::{functions, operations, root_differences, shortest};
+use crate::cas::tidy::{dissolves, functions, operations, root_differences, shortest};
 use crate::cas::{Expr, Symbol};
 use crate::plant::{Plant, State};
 
@@ -116,7 +116,8 @@ impl<'a> Solving<'a> {
         let own = functions(arena, &self.plant.transform());
         let z = self.plant.z.iter().copied().collect();
         let is_foreign = |call: &Expr| !own.contains(call) && arena.symbols_of(&[*call]).is_disjoint(&z);
-        let foreign = functions(arena, &[formula]).into_iter().filter(is_foreign).count();
+        let foreign = functions(arena, &[formula]).into_iter().filter(is_foreign).count()
+            + usize::from(dissolves(arena, &self.plant.transform(), formula));
         let (unshown, cancelling, operations) = self.cost(formula);
         (unshown, foreign, cancelling, operations)
     }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rustc_hash::FxHashMap;
 
 use super::super::literal::Scalar;
-use super::moved::{BITS, MOVE, Moves};
+use super::moved::{BITS, Moves};
 use super::places::Place;
 use crate::cas::interval::{Interval, Precision};
 use crate::cas::rational::Rational;
@@ -25,17 +25,25 @@ pub(super) struct Exact {
     pub(super) values: Vec<Value>,
 }
 
+/// Half the distance from 1 to the next number: what rounding moves an argument by.
+fn roundoff(scalar: Scalar) -> f64 {
+    match scalar {
+        Scalar::F32 => f64::from(f32::EPSILON) / 2.0,
+        Scalar::F64 => f64::EPSILON / 2.0,
+    }
+}
+
 /// The values of expressions; where they do not all exist, of each by itself.
-pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place) -> Exact {
-    let values = at_once(arena, exprs, place).unwrap_or_else(|| {
-        let alone = exprs.iter().map(|&expr| at_once(arena, &[expr], place)?.pop().flatten());
+pub(super) fn exact(arena: &Arena, exprs: &[Expr], place: &Place, scalar: Scalar) -> Exact {
+    let values = at_once(arena, exprs, place, scalar).unwrap_or_else(|| {
+        let alone = exprs.iter().map(|&expr| at_once(arena, &[expr], place, scalar)?.pop().flatten());
         alone.collect()
     });
     Exact { values }
 }
 
 /// The same in one pass, none if one of them has no value.
-pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Vec<Value>> {
+pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place, scalar: Scalar) -> Option<Vec<Value>> {
     let still = at(arena, exprs, place, None)?;
     let parts = arena.postorder(exprs);
     let values = arena.enclose_over(&parts, &still, Precision::new(BITS))?;
@@ -45,7 +53,7 @@ pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Ve
     let unknown: Vec<Expr> =
         exprs.iter().zip(&effects).filter(|(_, effect)| effect.is_none()).map(|(e, _)| *e).collect();
     let still: Option<Vec<Interval>> = unknown.iter().map(|expr| Some((*known.get(expr)?).clone())).collect();
-    let mut others = by_differences(arena, &unknown, &still?, place).into_iter();
+    let mut others = by_differences(arena, &unknown, &still?, (place, roundoff(scalar))).into_iter();
     let values = exprs
         .iter()
         .zip(effects)
@@ -53,16 +61,16 @@ pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place) -> Option<Ve
     Some(values.collect())
 }
 
-/// The effects of the arguments one at a time: together the effects of some would cancel, as those of b and c in a*b - c
-/// where that is small.
-fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], place: &Place) -> Vec<f64> {
+/// The effects of the arguments one at a time, each moved by this part: together the effects of some would cancel, as those
+/// of b and c in a*b - c where that is small.
+fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], (place, part): (&Place, f64)) -> Vec<f64> {
     let mut effects = vec![0.0; exprs.len()];
     for symbol in arena.symbols_of(exprs) {
         let moving: BTreeSet<Symbol> = [symbol].into();
         let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moving)).collect();
         let there = |indices: &[usize]| {
             let exprs: Vec<Expr> = indices.iter().map(|index| exprs[*index]).collect();
-            arena.enclose_over(&exprs, &at(arena, &exprs, place, Some(symbol))?, Precision::new(BITS))
+            arena.enclose_over(&exprs, &at(arena, &exprs, place, Some((symbol, part)))?, Precision::new(BITS))
         };
         let moved: Vec<Option<Interval>> = match there(&reached) {
             Some(values) => values.into_iter().map(Some).collect(),
@@ -70,18 +78,23 @@ fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], place: &Pla
         };
         for (index, moved) in reached.iter().zip(moved) {
             let difference = moved.and_then(|moved| moved.sub(&still[*index], Precision::new(BITS)));
-            effects[*index] += difference.map_or(0.0, |difference| surely(&difference) / MOVE);
+            effects[*index] += difference.map_or(0.0, |difference| surely(&difference) / part);
         }
     }
     effects
 }
 
-/// What expressions depend on, at a place; one of them may be moved.
-fn at(arena: &Arena, exprs: &[Expr], place: &Place, moved: Option<Symbol>) -> Option<BTreeMap<Symbol, Interval>> {
+/// What expressions depend on, at a place; one of them may be moved by a part of it.
+fn at(
+    arena: &Arena,
+    exprs: &[Expr],
+    place: &Place,
+    moved: Option<(Symbol, f64)>,
+) -> Option<BTreeMap<Symbol, Interval>> {
     let entry = |symbol: Symbol| {
         // In full: value (1 + part) has more digits than a number of f64.
         let value = Rational::from_f64_exact(place.get(&symbol).copied().unwrap_or(1.0))?;
-        let part = Rational::from_f64_exact(if moved == Some(symbol) { MOVE } else { 0.0 })?;
+        let part = Rational::from_f64_exact(moved.filter(|(own, _)| *own == symbol).map_or(0.0, |(_, part)| part))?;
         Some((symbol, Interval::from_rational(&(&value + &(&value * &part)), Precision::new(BITS))?))
     };
     arena.symbols_of(exprs).into_iter().map(entry).collect()
@@ -90,14 +103,10 @@ fn at(arena: &Arena, exprs: &[Expr], place: &Place, moved: Option<Symbol>) -> Op
 impl Exact {
     /// The errors of computed values, in units of what rounding causes.
     pub(super) fn units(&self, computed: &[f64], scalar: Scalar) -> Vec<f64> {
-        // Half the distance from 1 to the next number, and the least number with all digits.
-        let (roundoff, least) = match scalar {
-            Scalar::F32 => (f64::from(f32::EPSILON) / 2.0, f64::from(f32::MIN_POSITIVE)),
-            Scalar::F64 => (f64::EPSILON / 2.0, f64::MIN_POSITIVE),
-        };
-        let largest = match scalar {
-            Scalar::F32 => f64::from(f32::MAX),
-            Scalar::F64 => f64::MAX,
+        // The least number with all digits, and the largest.
+        let (least, largest) = match scalar {
+            Scalar::F32 => (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX)),
+            Scalar::F64 => (f64::MIN_POSITIVE, f64::MAX),
         };
         let units = |(exact, &found): (&Value, &f64)| {
             let Some((value, condition)) = exact else { return 0.0 };
@@ -109,7 +118,7 @@ impl Exact {
             let error = Interval::from_rational(&found, Precision::new(BITS))
                 .and_then(|found| found.sub(value, Precision::new(BITS)))
                 .map_or(f64::INFINITY, |error| magnitude(&error));
-            let unit = roundoff * (condition + surely(value));
+            let unit = roundoff(scalar) * (condition + surely(value));
             // Without a unit the value is 0 and stays so, whatever the arguments: what is left is the rounding of numbers
             // in the formula.
             if error > least && unit > 0.0 { error / unit } else { 0.0 }
@@ -134,6 +143,7 @@ fn surely(value: &Interval) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::moved::MOVE;
     use super::*;
     use crate::cas::Function;
 
@@ -145,7 +155,7 @@ mod tests {
         let parts = arena.postorder(&[expr]);
         let values = arena.enclose_over(&parts, &still, Precision::new(BITS)).unwrap();
         let effect = Moves::of(arena, &still, &parts, &values).effect(expr);
-        (effect, by_differences(arena, &[expr], &values[parts.len() - 1..], &place)[0])
+        (effect, by_differences(arena, &[expr], &values[parts.len() - 1..], (&place, MOVE))[0])
     }
 
     #[test]
@@ -181,11 +191,24 @@ mod tests {
             .sub(arena.call(Function::Sin, &[arena.add(a, arena.mul(b, b))]), arena.scale(third, &Rational::from(3)));
         let parts = arena.add(arena.div(vanishing, a), arena.mul(b, b));
         let place: Place = [(arena.symbol("a"), 0.3), (arena.symbol("b"), 0.0)].into();
-        let units = exact(&arena, &[parts], &place).units(&[1e-17], Scalar::F64);
+        let units = exact(&arena, &[parts], &place, Scalar::F64).units(&[1e-17], Scalar::F64);
         assert_eq!(units, [0.0]);
         // Beside it there is one.
         let place: Place = [(arena.symbol("a"), 0.3), (arena.symbol("b"), 0.1)].into();
-        assert!(exact(&arena, &[parts], &place).units(&[1.0], Scalar::F64)[0] > MOST);
+        assert!(exact(&arena, &[parts], &place, Scalar::F64).units(&[1.0], Scalar::F64)[0] > MOST);
+    }
+
+    #[test]
+    fn near_the_zero_of_a_root_a_rounding_is_no_move_of_more() {
+        // (a - b)^(1/3) is as steep there as it is for a rounding of a; over a larger move it bends.
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let root = arena.power(arena.sub(a, b), &Rational::new(1, 3).unwrap());
+        let place: Place = [(arena.symbol("a"), 27.0 + 16.0 * f64::EPSILON), (arena.symbol("b"), 27.0)].into();
+        let value = (16.0 * f64::EPSILON).cbrt();
+        let units = exact(&arena, &[root], &place, Scalar::F64).units(&[value * 1.1], Scalar::F64)[0];
+        assert!(units < MOST, "{units}");
+        assert!(exact(&arena, &[root], &place, Scalar::F64).units(&[1.0], Scalar::F64)[0] > MOST);
     }
 
     #[test]

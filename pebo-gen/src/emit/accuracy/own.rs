@@ -81,7 +81,7 @@ impl<'a> Own<'a> {
     pub(super) fn cause(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> Cause {
         if self.is_authors(value, place, scalar, units) {
             Cause::Model
-        } else if self.is_within(value, place, units, ROUNDINGS) {
+        } else if self.is_within(value, (place, scalar), units, ROUNDINGS) {
             Cause::Small
         } else {
             Cause::Form
@@ -106,7 +106,7 @@ impl<'a> Own<'a> {
             let mut places = (0..=BESIDE).map(|step| beside(scalar, place, step));
             places.any(|place| self.units(formulas, &place, scalar).iter().any(|lost| LIKE * lost >= units))
         };
-        formulas.iter().any(lose_as_much) || self.is_within(value, place, units, MOST)
+        formulas.iter().any(lose_as_much) || self.is_within(value, (place, scalar), units, MOST)
     }
 
     /// The most units that the author's formulas lose together with those of their sums that the value holds.
@@ -119,13 +119,13 @@ impl<'a> Own<'a> {
     }
 
     /// Whether the error is at most so many roundings of what the value is elsewhere.
-    fn is_within(&self, value: Expr, place: &Place, units: f64, roundings: f64) -> bool {
+    fn is_within(&self, value: Expr, (place, scalar): (&Place, Scalar), units: f64, roundings: f64) -> bool {
         let first = |exact: Exact| exact.sizes().next().flatten();
         let there = self.spots.iter().map(|spot| spot.there(Scalar::F32));
         let mut sizes: Vec<f64> = there.filter_map(|there| first(there.exact(self.arena, &[value]))).collect();
         sizes.sort_by(f64::total_cmp);
         let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        first(exact(self.arena, &[value], place)).is_some_and(|here| units * here <= roundings * usual)
+        first(exact(self.arena, &[value], place, scalar)).is_some_and(|here| units * here <= roundings * usual)
     }
 
     /// The parts of a value that lose digits although their own parts lose none, by what they are.
@@ -146,7 +146,7 @@ impl<'a> Own<'a> {
         let symbols: Vec<Symbol> = self.arena.symbols_of(formulas).into_iter().collect();
         let inputs: Vec<f64> = symbols.iter().map(|symbol| place.get(symbol).copied().unwrap_or(1.0)).collect();
         let Ok(program) = lower(self.arena, &symbols, formulas) else { return Vec::new() };
-        exact(self.arena, formulas, place).units(&run(&program, scalar, &inputs), scalar)
+        exact(self.arena, formulas, place, scalar).units(&run(&program, scalar, &inputs), scalar)
     }
 }
 

@@ -23,12 +23,13 @@ pub(super) struct Spot {
 /// A place in the numbers of one scalar.
 pub(super) struct There {
     pub(super) place: Place,
+    scalar: Scalar,
     known: RefCell<FxHashMap<Expr, Value>>,
 }
 
 impl Spot {
     pub(super) fn new(place: Place) -> Self {
-        let there = |scalar| There { place: in_all_digits(scalar, &place), known: RefCell::default() };
+        let there = |scalar| There { place: in_all_digits(scalar, &place), scalar, known: RefCell::default() };
         Self { single: there(Scalar::F32), double: there(Scalar::F64), place }
     }
 
@@ -44,7 +45,7 @@ impl There {
     /// Exact values of the expressions.
     pub(super) fn exact(&self, arena: &Arena, exprs: &[Expr]) -> Exact {
         let missing = self.missing(exprs);
-        self.know(&missing, exact(arena, &missing, &self.place).values);
+        self.know(&missing, exact(arena, &missing, &self.place, self.scalar).values);
         let known = self.known.borrow();
         Exact { values: exprs.iter().map(|expr| known.get(expr).cloned().flatten()).collect() }
     }
@@ -52,7 +53,7 @@ impl There {
     /// Finds the values of expressions with common parts in one pass, if all of them have a value.
     pub(super) fn prepare(&self, arena: &Arena, exprs: &[Expr]) {
         let missing = self.missing(exprs);
-        if let Some(values) = at_once(arena, &missing, &self.place) {
+        if let Some(values) = at_once(arena, &missing, &self.place, self.scalar) {
             self.know(&missing, values);
         }
     }
