@@ -106,24 +106,7 @@ pub(super) fn expand(
             .help("a mechanical plant measures all its positions, and x has their momenta in the same order")
             .into());
     }
-    let on_q: BTreeSet<Symbol> = names.y.iter().chain(names.constants).copied().collect();
-    let mut read = |name, matrix, (height, width), diagonal, counted| {
-        let size = Size { height, width, diagonal, counted };
-        place.matrix(shape::Written { name, matrix }, size, &on_q, problems)
-    };
-    let inertia = read("M", &written.m, (n, n), true, "positions x positions");
-    let forces = read("G", &written.g, (n, names.u.len()), false, "positions x inputs");
-    let frame = match &written.t {
-        Some(_) => read("T", &written.t, (n, n), true, "positions x positions"),
-        None => Some(Matrix::identity(arena, n)),
-    };
-    let potential = match &written.v {
-        Some(v) => problems.keep(place.formula(v, &on_q, "V(q)")),
-        None => Some(arena.zero()),
-    };
-    let (Some(inertia), Some(forces), Some(frame), Some(potential)) = (inertia, forces, frame, potential) else {
-        return Err(Stop::Reported);
-    };
+    let Read { inertia, forces, frame, potential } = read(place, written, names, problems)?;
     place.symmetric("M", &inertia, m.span)?;
     let open = |what: &'static str, span: Span| move |obstacle: Obstacle| Stop::from(unresolved(what, span, &obstacle));
     let transposed = frame.transpose();
@@ -206,6 +189,42 @@ pub(super) fn expand(
             })
         }),
     })
+}
+
+/// What is written of a mechanical plant, over its positions.
+struct Read {
+    inertia: Matrix,
+    forces: Matrix,
+    frame: Matrix,
+    potential: Expr,
+}
+
+fn read(
+    place: &Place<'_>,
+    written: &WrittenClass<Written>,
+    names: &Names<'_>,
+    problems: &mut Diagnostics,
+) -> Result<Read, Stop> {
+    let (arena, n) = (place.arena, names.y.len());
+    let on_q: BTreeSet<Symbol> = names.y.iter().chain(names.constants).copied().collect();
+    let mut matrix = |name, matrix, (height, width), diagonal, counted| {
+        let size = Size { height, width, diagonal, counted };
+        place.matrix(shape::Written { name, matrix }, size, &on_q, problems)
+    };
+    let inertia = matrix("M", &written.m, (n, n), true, "positions x positions");
+    let forces = matrix("G", &written.g, (n, names.u.len()), false, "positions x inputs");
+    let frame = match &written.t {
+        Some(_) => matrix("T", &written.t, (n, n), true, "positions x positions"),
+        None => Some(Matrix::identity(arena, n)),
+    };
+    let potential = match &written.v {
+        Some(v) => problems.keep(place.formula(v, &on_q, "V(q)")),
+        None => Some(arena.zero()),
+    };
+    match (inertia, forces, frame, potential) {
+        (Some(inertia), Some(forces), Some(frame), Some(potential)) => Ok(Read { inertia, forces, frame, potential }),
+        _ => Err(Stop::Reported),
+    }
 }
 
 /// That a determinant does not vanish, where it is no number.
