@@ -17,7 +17,7 @@ use crate::analysis::forms;
 use crate::analysis::identifiability;
 use crate::analysis::identities;
 use crate::analysis::left_inverse;
-use crate::analysis::left_inverse::at_phi;
+use crate::analysis::left_inverse::checking::at_phi;
 use crate::analysis::limited::{ended, limited, unfinished};
 use crate::analysis::permitted;
 use crate::analysis::regression;

@@ -27,7 +27,7 @@ use self::divided::{Decided, Formulas};
 use self::flow::{Flow, effective, without_psi};
 use self::singular::{Places, Volume};
 use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
-use crate::analysis::left_inverse::at_phi;
+use crate::analysis::left_inverse::checking::at_phi;
 use crate::analysis::pencil;
 
 /// Decides how the unknowns are identified.

@@ -4,6 +4,7 @@
 //! recovers, modulo the period for declared angles; the author's formula where there is one, else one
 //! that solves the transform (Ortega et al. 2015, Assumption 1 (i), with `n_x` components).
 
+pub(super) mod checking;
 mod solving;
 mod words;
 
@@ -15,12 +16,13 @@ use crate::cas::facts::Relation;
 use crate::cas::rational::Rational;
 use crate::cas::twice::Twice;
 use crate::cas::zero::{self, Answer, decide, refute};
-use crate::cas::{self, Arena, Expr, Function, Symbol};
+use crate::cas::{self, Expr, Symbol};
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 
 use crate::analysis::design::{Claim, Comparison, LeftInverse, Origin, Verdict, Witness};
 use crate::cas::rank::null_vectors;
+use checking::{check, unshown};
 use words::{degenerate, not_injective, refuted, takes_twice, undecided, underivable};
 
 /// Proves or refutes the left inverse.
@@ -102,18 +104,6 @@ impl Verdict {
     fn max_doubt(self) -> Self {
         if self == Self::Proved { Self::Undecided } else { self }
     }
-}
-
-/// What a formula for a state asks at z = phi(x, y) that the domain does not show: the ask, and the ask there.
-///
-/// What stands under roots and logarithms and below fraction bars is read off the formula as it stands, since
-/// substituting would simplify its domain away.
-fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relation), (Expr, Relation))> {
-    let arena = &plant.arena;
-    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    let asked = arena.asks(&[formula], Want::Value).into_iter();
-    let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
-    there.filter(|(_, ask)| !arena.holds_of_number(*ask) && !domain.implies(arena, ask.0, ask.1)).collect()
 }
 
 /// Whether the formula provably has a value wherever the plant has, but for what must only not vanish and is listed
@@ -213,64 +203,4 @@ fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let slopes: Vec<Vec<Expr>> =
         seen.map(|seen| plant.x.iter().map(|s| arena.derivative(seen.expr, s.symbol)).collect()).collect();
     null_vectors(arena, domain, &slopes, plant.x.len()).ok()?.into_iter().next()
-}
-
-/// What must vanish, for an angle up to periods: `phi_left(phi(x, y), y) - x`.
-fn residual(plant: &Plant, state: Symbol, formula: Expr) -> Expr {
-    let arena = &plant.arena;
-    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    arena.sub(arena.substitute(formula, &transform), arena.of_symbol(state))
-}
-
-/// Decides whether a formula gives the state back; returns what was tested for zero as well.
-fn check(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) -> (Expr, Answer) {
-    let arena = &plant.arena;
-    let difference = residual(plant, state, formula);
-    let plain = decide(arena, difference, domain);
-    let Some(period) = plant.period(state) else { return (difference, plain) };
-    if plain.is_zero() {
-        return (difference, plain);
-    }
-    let unlike = unlike_after(plant, domain, state, period);
-    if let Some(answer) = unlike {
-        return answer;
-    }
-    let turn = arena.div(arena.turn(), period);
-    turns(arena, domain, arena.mul(difference, turn))
-}
-
-/// A rate that is not the same a period further on: then the state is no angle of that period, and
-/// knowing it up to the period is not knowing it.
-fn unlike_after(plant: &Plant, domain: &Domain, state: Symbol, period: Expr) -> Option<(Expr, Answer)> {
-    let arena = &plant.arena;
-    let turned = BTreeMap::from([(state, arena.add(arena.of_symbol(state), period))]);
-    plant.rates().into_values().find_map(|rate| {
-        let change = arena.sub(arena.substitute(rate, &turned), rate);
-        let answer = decide(arena, change, domain);
-        (!answer.is_zero()).then_some((change, answer))
-    })
-}
-
-/// Decides whether an angle is a whole number of turns: its sine is 0 and its cosine 1.
-fn turns(arena: &Arena, domain: &Domain, angle: Expr) -> (Expr, Answer) {
-    let sin = arena.call(Function::Sin, &[angle]);
-    let answer = decide(arena, sin, domain);
-    if !answer.is_zero() {
-        return (sin, answer);
-    }
-    let cos = arena.sub(arena.call(Function::Cos, &[angle]), arena.one());
-    (cos, decide(arena, cos, domain))
-}
-
-/// Whether an angle is provably a whole number of turns.
-pub(super) fn is_whole_turns(arena: &Arena, domain: &Domain, angle: Expr) -> bool {
-    turns(arena, domain, angle).1.is_zero()
-}
-
-/// Where the transform stands.
-pub(super) fn at_phi(plant: &Plant) -> Span {
-    match (plant.phi.first(), plant.phi.last()) {
-        (Some(first), Some(last)) => first.span.to(last.span),
-        _ => Span::point(0),
-    }
 }

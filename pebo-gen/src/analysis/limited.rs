@@ -7,7 +7,7 @@ use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 
 use crate::analysis::design::{Claim, Verdict};
-use crate::analysis::left_inverse::at_phi;
+use crate::analysis::left_inverse::checking::at_phi;
 
 /// The claim that is proved or refuted in time; undecided if the budget ended with it, and skipped if it had before.
 pub(super) fn limited<T>(

@@ -16,7 +16,7 @@ use crate::source::{Code, Diagnostic};
 use super::crossing::{Seen, all_shown};
 use super::motion::seen;
 use crate::analysis::design::{Blind, Cascade, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
-use crate::analysis::left_inverse::at_phi;
+use crate::analysis::left_inverse::checking::at_phi;
 
 /// An answer where all formulas are analytic.
 pub(super) struct Decided {

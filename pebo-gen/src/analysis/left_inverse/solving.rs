@@ -14,7 +14,7 @@ use crate::cas::tidy::{dissolves, functions, operations, root_differences, short
 use crate::cas::{Expr, Symbol};
 use crate::plant::{Plant, State};
 
-use super::{check, unshown};
+use super::checking::{check, unshown};
 
 type Solved = BTreeMap<Symbol, Vec<Expr>>;
 

@@ -9,7 +9,8 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 
-use super::{at_phi, check, solving, unlike_after};
+use super::checking::{at_phi, check, unlike_after};
+use super::solving;
 
 pub(super) fn refuted(plant: &Plant, domain: &Domain, state: Symbol, span: Span, witness: &Witness) -> Diagnostic {
     let arena = &plant.arena;

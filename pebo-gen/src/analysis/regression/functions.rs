@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::analysis::left_inverse::is_whole_turns;
+use crate::analysis::left_inverse::checking::is_whole_turns;
 use crate::analysis::regression::separation::{self, Recovered, Separated};
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;

@@ -16,7 +16,7 @@ use crate::cas::zero::{Answer, decide};
 use crate::cas::{Arena, Expr, Function, Node, Symbol};
 use crate::plant::Plant;
 
-use crate::analysis::left_inverse::is_whole_turns;
+use crate::analysis::left_inverse::checking::is_whole_turns;
 use crate::cas::solve::{Equation, solve};
 use crate::cas::tidy::shortest;
 
