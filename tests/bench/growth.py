@@ -11,6 +11,7 @@ for SymPy too: its parameters' subexpressions are left out. Bytes are those of t
 leading blanks. Needs SymPy, in this Python or in the environment of run.py.
 """
 
+import argparse
 import json
 import os
 import re
@@ -24,6 +25,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 LIMIT = 300
+FAMILIES = ["chain", "phases"]
 COLUMNS = "| family | n | seconds | operations | calls | bytes | SymPy: seconds | operations | calls | bytes |"
 
 
@@ -103,14 +105,18 @@ def by_sympy(task):
 
 
 def main():
-    families = [sys.argv[1]] if len(sys.argv) > 1 else ["chain", "phases"]
-    first, last = (int(size) for size in sys.argv[2:4]) if len(sys.argv) > 3 else (2, 8)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("family", nargs="?", choices=FAMILIES, help="both unless one is named")
+    parser.add_argument("first", nargs="?", type=int, default=2, help="the smallest n")
+    parser.add_argument("last", nargs="?", type=int, default=8, help="the largest n")
+    asked = parser.parse_args()
+    families = [asked.family] if asked.family else FAMILIES
     if "PEBO_GEN" not in os.environ:
         subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "pebo-gen"], check=True, cwd=ROOT)
     print(COLUMNS + "\n|" + "---|" * 10)
     with tempfile.TemporaryDirectory() as folder:
         for family in families:
-            for n in range(first, last + 1):
+            for n in range(asked.first, asked.last + 1):
                 path = model(family, n, folder)
                 ours, task = emitted(path), formulas(path)
                 theirs = " | | |"
