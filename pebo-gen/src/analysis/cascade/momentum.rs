@@ -1,7 +1,8 @@
 //! The rate of a momentum along a Killing field: `h_i = T_i' (G u - dV/dq)`.
 //!
-//! In: a component whose field is proved to be one. Out: its rate as a formula for people and code. Where the potential does
-//! not change along the field, its terms cancel, and they are left out rather than expanded.
+//! In: a component whose field is proved to be one. Out: its rate as a formula for people and code. What the potential gives
+//! along the field stands apart from what the inputs give: its terms often cancel wholly or to a constant, such as a weight,
+//! which is then neither expanded nor divided by what the frame is divided by.
 
 use std::collections::BTreeMap;
 
@@ -20,21 +21,17 @@ pub(super) fn rate(plant: &Plant, domain: &Domain, mechanical: &Mechanical, inde
     // The regressor has the entries of T too.
     let beside = mechanical.frame.column(index);
     let cost = |form: Expr| operations_of(arena, &[beside.as_slice(), &[form]].concat());
-    match of_inputs(plant, domain, mechanical.h[index]) {
-        Some(form) if cost(form) < cost(short) => form,
-        _ => short,
-    }
+    let apart = apart(plant, domain, mechanical.h[index]);
+    if cost(apart) < cost(short) { apart } else { short }
 }
 
-/// The rate as a combination of the inputs, where what is left without them cancels.
-fn of_inputs(plant: &Plant, domain: &Domain, rate: Expr) -> Option<Expr> {
+/// The rate as what the potential leaves and a combination of the inputs, each in its own form.
+fn apart(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     let arena = &plant.arena;
     let without: BTreeMap<_, _> = plant.u.iter().map(|input| (*input, arena.zero())).collect();
-    let rest = arena.substitute(rate, &without);
-    if arena.is_zero(rest) || !decide(arena, rest, domain).is_zero() {
-        return None;
-    }
+    let left = arena.substitute(rate, &without);
+    let left = if decide(arena, left, domain).is_zero() { arena.zero() } else { proved_shortest(arena, domain, left) };
     let slopes: Vec<Expr> = plant.u.iter().map(|input| arena.derivative(rate, *input)).collect();
     let inputs: Vec<Expr> = plant.u.iter().map(|input| arena.of_symbol(*input)).collect();
-    Some(dot(arena, &slopes, &inputs))
+    arena.add(dot(arena, &slopes, &inputs), left)
 }

@@ -8,7 +8,8 @@ use crate::counted::arm::TUNING;
 const M1: f32 = 0.8;
 const L1: f32 = 0.5;
 const L2: f32 = 0.35;
-const M1_L1_G: f32 = M1 * L1 * 9.81;
+const M1_G: f32 = M1 * 9.81;
+const INV_L1: f32 = 1.0 / L1;
 const INV_L1_L2: f32 = 1.0 / (L1 * L2);
 const INV_M1_L1: f32 = 1.0 / (M1 * L1);
 const INV_M1_L1_L2: f32 = 1.0 / (M1 * L1 * L2);
@@ -20,12 +21,10 @@ struct Posture {
     first: [f32; 2],
     /// Of the sum of both.
     both: [f32; 2],
-    /// The first link, and the first coordinate of the second.
-    link: [f32; 2],
-    reach: f32,
-    /// What gravity leaves of both torques.
-    weight: f32,
-    scale: f32,
+    inv_sine: f32,
+    /// What the torque of the first joint gives the momenta, times the sine, and what that of the second takes.
+    shoulder: [f32; 2],
+    elbow: [f32; 2],
     /// By rows.
     regressor: [[f32; 2]; 2],
 }
@@ -34,10 +33,9 @@ impl Posture {
     const NONE: Self = Self {
         first: [0.0; 2],
         both: [0.0; 2],
-        link: [0.0; 2],
-        reach: 0.0,
-        weight: 0.0,
-        scale: 0.0,
+        inv_sine: 0.0,
+        shoulder: [0.0; 2],
+        elbow: [0.0; 2],
         regressor: [[0.0; 2]; 2],
     };
 
@@ -45,18 +43,15 @@ impl Posture {
         let (sin_1, cos_1) = Real::sin_cos(y1);
         let (sin_2, cos_2) = Real::sin_cos(y2);
         let both = [cos_1 * cos_2 - sin_1 * sin_2, sin_1 * cos_2 + cos_1 * sin_2];
-        let link = [cos_1 * L1, sin_1 * L1];
-        let reach = both[0] * L2;
         // From the shoulder to the tip.
-        let tip = [reach + link[0], both[1] * L2 + link[1]];
+        let tip = [both[0] * L2 + cos_1 * L1, both[1] * L2 + sin_1 * L1];
         let inv_sine = 1.0 / sin_2;
         Self {
             first: [cos_1, sin_1],
             both,
-            link,
-            reach,
-            weight: sin_2 * M1_L1_G,
-            scale: INV_L1_L2 * inv_sine,
+            inv_sine,
+            shoulder: [both[0] * INV_L1, both[1] * INV_L1],
+            elbow: [tip[0] * INV_L1_L2, tip[1] * INV_L1_L2],
             regressor: [
                 [INV_M1_L1 * both[0] * inv_sine, INV_M1_L1 * both[1] * inv_sine],
                 [-(INV_M1_L1_L2 * tip[0] * inv_sine), -(INV_M1_L1_L2 * tip[1] * inv_sine)],
@@ -64,11 +59,10 @@ impl Posture {
         }
     }
 
+    /// Gravity takes from the upright momentum what it takes from a free point mass.
     fn h(&self, u: [f32; 2]) -> [f32; 2] {
-        let [_, elbow] = u;
-        let rest = u[0] - elbow;
-        let upright = L2 * (rest * self.both[1] - self.weight) - elbow * self.link[1];
-        [self.scale * (rest * self.reach - elbow * self.link[0]), self.scale * upright]
+        let given = |axis: usize| self.inv_sine * (u[0] * self.shoulder[axis] - u[1] * self.elbow[axis]);
+        [given(0), given(1) - M1_G]
     }
 
     fn phi_0(&self, chi: [f32; 2]) -> [f32; 2] {
