@@ -4,6 +4,7 @@
 Exit status 0 if every script proves all of its claims and every changed one finds the false claim, else 1.
 """
 
+import concurrent.futures
 import contextlib
 import copy
 import io
@@ -54,27 +55,33 @@ def falsified(plant, derived):
     yield "identifiability", changed(blind), "identifiability:"
 
 
+def look(script):
+    """What there is to say of a script, and how many of its claims are not as they must be."""
+    start = time.process_time()
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True)
+    if run.returncode != 0:
+        return f"{script}: exit {run.returncode}\n{run.stdout}{run.stderr}", 1
+    module = runpy.run_path(script)
+    caught, missed = [], []
+    for name, derived, line in falsified(module["PLANT"], module["DERIVED"]):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            verdict = module["Certificate"](module["PLANT"], derived).prove()
+        false = [text for text in said.getvalue().splitlines() if " FALSE" in text]
+        if verdict == 2 and any(text.startswith(line) for text in false):
+            caught.append(name)
+        else:
+            missed.append(f"{script}: a false {name} was not found\n{said.getvalue()}")
+    took = time.process_time() - start
+    return "\n".join([*missed, f"{script}: proved; false {', '.join(caught)} found ({took:.1f} s)"]), len(missed)
+
+
 def main(scripts):
     failures = 0
-    for script in scripts:
-        start = time.process_time()
-        run = subprocess.run([sys.executable, script], capture_output=True, text=True)
-        if run.returncode != 0:
-            print(f"{script}: exit {run.returncode}\n{run.stdout}{run.stderr}")
-            failures += 1
-            continue
-        module = runpy.run_path(script)
-        caught = []
-        for name, derived, line in falsified(module["PLANT"], module["DERIVED"]):
-            said = io.StringIO()
-            with contextlib.redirect_stdout(said):
-                verdict = module["Certificate"](module["PLANT"], derived).prove()
-            false = [text for text in said.getvalue().splitlines() if " FALSE" in text]
-            if verdict != 2 or not any(text.startswith(line) for text in false):
-                print(f"{script}: a false {name} was not found\n{said.getvalue()}")
-                failures += 1
-            caught.append(name)
-        print(f"{script}: proved; false {', '.join(caught)} found ({time.process_time() - start:.1f} s)", flush=True)
+    with concurrent.futures.ProcessPoolExecutor() as processes:
+        for said, failed in processes.map(look, scripts):
+            print(said, flush=True)
+            failures += failed
     print(f"{len(scripts) - failures} certificates hold" if failures == 0 else f"{failures} failures")
     return failures != 0 or not scripts
 
