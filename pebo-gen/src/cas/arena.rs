@@ -11,6 +11,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::budget::Budget;
 use super::expr::{Expr, Node, Symbol};
+use super::notation::Notation;
 use super::rational::Rational;
 
 /// Steps that looking at a node takes, or at one that was seen before as an operand of another.
@@ -49,6 +50,7 @@ pub struct Arena {
     symbols: RefCell<FxHashMap<String, Symbol>>,
     /// The generator's own by theirs: another space of names.
     generated: RefCell<FxHashMap<String, Symbol>>,
+    notation: Notation,
 }
 
 impl Arena {
@@ -67,12 +69,18 @@ impl Arena {
             names: RefCell::default(),
             symbols: RefCell::default(),
             generated: RefCell::default(),
+            notation: Notation::default(),
         }
     }
 
     /// What all questions about the expressions may take together.
     pub fn budget(&self) -> &Budget {
         &self.budget
+    }
+
+    /// How the author wrote numbers.
+    pub(crate) fn notation(&self) -> &Notation {
+        &self.notation
     }
 
     /// What the expression is.

@@ -54,10 +54,10 @@ pub(super) fn summands(arena: &Arena, sum: &Sum) -> Vec<(bool, Summand)> {
 }
 
 /// What stands above and below the line, without the sign.
-pub(super) fn quotient(product: &Product) -> (Vec<Factor<'_>>, Vec<Factor<'_>>) {
+pub(super) fn quotient<'a>(arena: &Arena, product: &'a Product) -> (Vec<Factor<'a>>, Vec<Factor<'a>>) {
     let coefficient = product.coefficient.abs();
     let (mut above, mut below) = (Vec::new(), Vec::new());
-    if as_fraction(&coefficient) {
+    if arena.notation().as_fraction(&coefficient) {
         for (part, side) in [(coefficient.numerator(), &mut above), (coefficient.denominator(), &mut below)] {
             if !part.is_one() {
                 side.push(Factor::Number(part.clone().into()));
@@ -79,61 +79,4 @@ pub(super) fn quotient(product: &Product) -> (Vec<Factor<'_>>, Vec<Factor<'_>>) 
 /// Whether the exponent, sign apart, is that of a square root.
 pub(super) fn is_root(exponent: &Rational) -> bool {
     Rational::new(1, 2).as_ref() == Some(exponent)
-}
-
-/// Whether the number reads better as a fraction than as a decimal.
-pub(super) fn as_fraction(value: &Rational) -> bool {
-    const LARGEST_DENOMINATOR: i64 = 12;
-    value.denominator().to_i64().is_some_and(|d| d <= LARGEST_DENOMINATOR) || decimal(value).is_none()
-}
-
-/// The exact decimal of a non-negative number, if it is short: of few places, or of no more digits than a number in
-/// double precision has and no longer than the fraction.
-pub(super) fn decimal(value: &Rational) -> Option<String> {
-    const FEW_PLACES: u32 = 12;
-    const MOST_PLACES: u32 = 60;
-    const MOST_DIGITS: usize = 17;
-    // What divides 10^60 has no more bits.
-    const MOST_BITS: u64 = 200;
-    if value.denominator().bits() > MOST_BITS {
-        return None;
-    }
-    let places = (0..=MOST_PLACES).find(|places| {
-        Rational::from(10).pow(i32::try_from(*places).unwrap_or(0)).is_some_and(|scale| (value * &scale).is_integer())
-    })?;
-    let scale = Rational::from(10).pow(i32::try_from(places).ok()?)?;
-    let digits = (value * &scale).to_string();
-    let text = in_places(&digits, usize::try_from(places).ok()?);
-    let is_short = digits.len() <= MOST_DIGITS && text.len() <= value.to_string().len();
-    (places <= FEW_PLACES || is_short).then_some(text)
-}
-
-/// A whole number, one with many zeros behind it with an exponent.
-pub(super) fn whole(value: &Rational) -> String {
-    const MOST_ZEROS: usize = 6;
-    let digits = value.to_string();
-    let significant = digits.trim_end_matches('0');
-    let zeros = digits.len() - significant.len();
-    let (sign, significant) = significant.strip_prefix('-').map_or(("", significant), |rest| ("-", rest));
-    if zeros <= MOST_ZEROS || significant.is_empty() {
-        return digits;
-    }
-    let (head, tail) = significant.split_at(1);
-    let point = if tail.is_empty() { "" } else { "." };
-    format!("{sign}{head}{point}{tail}e{}", zeros + tail.len())
-}
-
-/// Digits with so many of them behind the point.
-fn in_places(digits: &str, width: usize) -> String {
-    // Leading zeros beyond a few read better as an exponent: 2.2e-5.
-    let significant = digits.trim_end_matches('0');
-    if digits.len() + 3 <= width {
-        let exponent = width - digits.len() + 1;
-        let (head, tail) = significant.split_at(1);
-        let point = if tail.is_empty() { "" } else { "." };
-        return format!("{head}{point}{tail}e-{exponent}");
-    }
-    let padded = format!("{digits:0>width$}", width = width + 1);
-    let (whole, fraction) = padded.split_at(padded.len() - width);
-    if fraction.is_empty() { whole.to_owned() } else { format!("{whole}.{fraction}") }
 }

@@ -115,21 +115,24 @@ pub(crate) fn combine_on(
         && let Ok(field) = Field::over(arena, &domain.facts, &signals)
         && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
     {
-        let thawed = |c: &Fraction| {
-            let [whole, apart] = [field.show(c), field.show_apart(c)].map(|form| frozen.thaw(form));
-            shortest(arena, domain, shorter(arena, whole, apart))
-        };
-        return Ok(Some(coefficients.iter().map(thawed).collect()));
+        return Ok(Some(coefficients.iter().map(|c| tidied(&field, domain, c, |form| frozen.thaw(form))).collect()));
     }
     let combined = |field: Result<Field<'_>, Obstacle>| {
         let field = field?;
         let coefficients = combine(&field, target, basis, x)?;
-        Ok(coefficients.map(|coefficients| coefficients.iter().map(|c| field.show(c)).collect()))
+        Ok(coefficients.map(|all| all.iter().map(|c| tidied(&field, domain, c, |form| form)).collect()))
     };
     match combined(Field::over(arena, &domain.facts, &roots)) {
         Ok(None) | Err(_) if !domain.manifold.is_empty() => combined(Field::on(arena, domain, &roots)),
         found => found,
     }
+}
+
+/// A coefficient as the shortest of its forms.
+fn tidied(field: &Field<'_>, domain: &Domain, coefficient: &Fraction, thaw: impl Fn(Expr) -> Expr) -> Expr {
+    let arena = field.arena();
+    let [whole, apart] = [field.show(coefficient), field.show_apart(coefficient)].map(thaw);
+    shortest(arena, domain, shorter(arena, whole, apart))
 }
 
 /// The numerators of fractions over their least common denominator.

@@ -146,6 +146,13 @@ impl Elimination<'_> {
         if progress.together.get() {
             // What cannot be solved together may be found one at a time.
             let found = self.states_together(&field, &open, &unknown).unwrap_or_default();
+            // No equation is left where each gave a state: the check sees whether they hold.
+            if found.len() > 1
+                && found.len() == open.len()
+                && let Some(accepted) = accept(&extended(arena, values, &found))
+            {
+                return Ok(Some(accepted));
+            }
             if found.len() > 1
                 && let Ok(Some(accepted)) = self.advance(&formulas, values, &found, accept, (progress, &mut *stuck))
             {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use rustc_hash::FxHashMap;
 
 use super::arena::Arena;
-use super::arranged::{Factor, Summand, as_fraction, decimal, is_root, quotient, summands};
+use super::arranged::{Factor, Summand, is_root, quotient, summands};
 use super::expr::{Expr, Node, Product, Sum, Symbol};
 use super::function::Function;
 use super::letter::{greek, parts};
@@ -140,18 +140,18 @@ impl Arena {
     }
 
     /// The value of a parameter: a decimal if it has a short one, as most authors write it.
-    pub fn mathml_value(value: &Rational) -> String {
-        number_in(value, false).elements
+    pub fn mathml_value(&self, value: &Rational) -> String {
+        self.typeset_number_in(value, false).elements
     }
 
     /// An expression of whose parts these are set.
     fn typeset(&self, expr: Expr, known: &FxHashMap<Expr, Row>) -> Row {
         match self.node(expr) {
-            Node::Number(value) => number(&value),
+            Node::Number(value) => self.typeset_number(&value),
             Node::Pi => Row::atom("<mi>π</mi>"),
             Node::Symbol(symbol) => named(&self.name(symbol), |letter| letter),
             Node::Sum(sum) => self.typeset_sum(&sum, known),
-            Node::Product(product) => product_row(&product, known),
+            Node::Product(product) => self.typeset_product(&product, known),
             Node::Call(function, arguments) => {
                 let arguments: Vec<&str> = arguments.iter().map(|a| known[a].elements.as_str()).collect();
                 call(function, &arguments.join("<mo>,</mo>"))
@@ -168,42 +168,66 @@ impl Arena {
                 (_, false) => "<mo>+</mo>",
             });
             let summand = match summand {
-                Summand::Number(value) => number(&value),
+                Summand::Number(value) => self.typeset_number(&value),
                 Summand::Expr(term) => known[&term].clone(),
-                Summand::Product(product) => product_row(&product, known),
+                Summand::Product(product) => self.typeset_product(&product, known),
             };
             elements.push_str(&summand.within(Binding::Product).elements);
         }
         Row::new(elements, Binding::Sum, Ends::Plain)
     }
-}
 
-fn product_row(product: &Product, known: &FxHashMap<Expr, Row>) -> Row {
-    let factor = |factor: &Factor<'_>| match factor {
-        Factor::Number(value) => number(value),
-        Factor::Power(base, exponent) => power(&known[base], &exponent.abs()),
-    };
-    let (above, below) = quotient(product);
-    let [above, below] = [above, below].map(|side| side.iter().map(factor).collect::<Vec<Row>>());
-    let row = if below.is_empty() {
-        side(&above, Binding::Factor)
-    } else {
-        let [above, below] = [above, below].map(|factors| side(&factors, Binding::Sum).element());
-        let fraction = format!("<mfrac>{above}{below}</mfrac>");
-        Row::new(fraction, Binding::Factor, Ends::Plain)
-    };
-    if product.coefficient.is_negative() {
-        // A minus before a factor binds as a sum does: (−a)b and (−a)² keep their parentheses.
-        Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends)
-    } else {
-        row
+    fn typeset_product(&self, product: &Product, known: &FxHashMap<Expr, Row>) -> Row {
+        let factor = |factor: &Factor<'_>| match factor {
+            Factor::Number(value) => self.typeset_number(value),
+            Factor::Power(base, exponent) => power(&known[base], &exponent.abs()),
+        };
+        let (above, below) = quotient(self, product);
+        let [above, below] = [above, below].map(|side| side.iter().map(factor).collect::<Vec<Row>>());
+        let row = if below.is_empty() {
+            side(&above, Binding::Factor)
+        } else {
+            let [above, below] = [above, below].map(|factors| side(&factors, Binding::Sum).element());
+            let fraction = format!("<mfrac>{above}{below}</mfrac>");
+            Row::new(fraction, Binding::Factor, Ends::Plain)
+        };
+        if product.coefficient.is_negative() {
+            // A minus before a factor binds as a sum does: (−a)b and (−a)² keep their parentheses.
+            Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends)
+        } else {
+            row
+        }
+    }
+
+    fn typeset_number(&self, value: &Rational) -> Row {
+        self.typeset_number_in(value, self.notation().as_fraction(&value.abs()))
+    }
+
+    /// A number as a fraction, or as a decimal if it has a short one.
+    fn typeset_number_in(&self, value: &Rational, fraction: bool) -> Row {
+        let magnitude = value.abs();
+        let row = match self.notation().decimal(&magnitude) {
+            _ if magnitude.is_integer() => Row::new(format!("<mn>{magnitude}</mn>"), Binding::Atom, Ends::Digit),
+            Some(text) if !fraction => match text.split_once("e-") {
+                Some((digits, exponent)) => {
+                    let ten = format!("<msup><mn>10</mn><mrow>{MINUS}<mn>{exponent}</mn></mrow></msup>");
+                    Row::new(format!("<mn>{digits}</mn>{DOT}{ten}"), Binding::Factor, Ends::Digit)
+                }
+                None => Row::new(format!("<mn>{text}</mn>"), Binding::Atom, Ends::Digit),
+            },
+            _ => {
+                let (above, below) = (magnitude.numerator(), magnitude.denominator());
+                Row::new(format!("<mfrac><mn>{above}</mn><mn>{below}</mn></mfrac>"), Binding::Factor, Ends::Plain)
+            }
+        };
+        if value.is_negative() { Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends) } else { row }
     }
 }
 
 /// Factors beside one another; a single one binds at least as tightly as `least`.
 fn side(factors: &[Row], least: Binding) -> Row {
     match factors {
-        [] => number(&Rational::ONE),
+        [] => Row::new("<mn>1</mn>", Binding::Atom, Ends::Digit),
         [alone] => alone.within(least),
         [first, rest @ ..] => {
             let first = first.within(Binding::Factor);
@@ -250,30 +274,6 @@ fn call(function: Function, arguments: &str) -> Row {
 
 fn parenthesised(elements: &str) -> String {
     format!("<mrow><mo>(</mo>{elements}<mo>)</mo></mrow>")
-}
-
-fn number(value: &Rational) -> Row {
-    number_in(value, as_fraction(&value.abs()))
-}
-
-/// A number as a fraction, or as a decimal if it has a short one.
-fn number_in(value: &Rational, fraction: bool) -> Row {
-    let magnitude = value.abs();
-    let row = match decimal(&magnitude) {
-        _ if magnitude.is_integer() => Row::new(format!("<mn>{magnitude}</mn>"), Binding::Atom, Ends::Digit),
-        Some(text) if !fraction => match text.split_once("e-") {
-            Some((digits, exponent)) => {
-                let ten = format!("<msup><mn>10</mn><mrow>{MINUS}<mn>{exponent}</mn></mrow></msup>");
-                Row::new(format!("<mn>{digits}</mn>{DOT}{ten}"), Binding::Factor, Ends::Digit)
-            }
-            None => Row::new(format!("<mn>{text}</mn>"), Binding::Atom, Ends::Digit),
-        },
-        _ => {
-            let (above, below) = (magnitude.numerator(), magnitude.denominator());
-            Row::new(format!("<mfrac><mn>{above}</mn><mn>{below}</mn></mfrac>"), Binding::Factor, Ends::Plain)
-        }
-    };
-    if value.is_negative() { Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends) } else { row }
 }
 
 /// What stands for a formula that no page holds.

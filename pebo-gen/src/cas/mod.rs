@@ -32,6 +32,7 @@ pub(crate) mod manifold;
 pub(crate) mod mathml;
 mod minors;
 mod near_zero;
+mod notation;
 pub(crate) mod oriented;
 pub(crate) mod parts;
 pub(crate) mod pivots;

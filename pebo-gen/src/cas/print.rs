@@ -1,13 +1,13 @@
 //! Expressions as text in the model file's grammar: what is printed parses back to the same value.
 //!
-//! Small denominators stay fractions (`x/2`), others become decimals where these are exact
-//! (`9.81*m`), as an engineer would write them.
+//! Numbers are written as [`notation`](super::notation) has them.
 
 use rustc_hash::FxHashMap;
 
 use super::arena::Arena;
-use super::arranged::{Factor, Summand, as_fraction, decimal, is_root, quotient, summands, whole};
+use super::arranged::{Factor, Summand, is_root, quotient, summands};
 use super::expr::{Expr, Node, Product, Sum};
+use super::notation::whole;
 use super::rational::Rational;
 
 /// The length up to which a formula is printed, with all of its parts.
@@ -59,11 +59,11 @@ impl Arena {
         let mut written = 0;
         for e in self.postorder(&[expr]) {
             let text = match self.node(e) {
-                Node::Number(value) => number(&value),
+                Node::Number(value) => self.print_number(&value),
                 Node::Pi => Text::new("pi", Binding::Atom),
                 Node::Symbol(symbol) => Text::new(self.name(symbol), Binding::Atom),
                 Node::Sum(sum) => self.print_sum(&sum, &known),
-                Node::Product(product) => print_product(&product, &known),
+                Node::Product(product) => self.print_product(&product, &known),
                 Node::Call(function, arguments) => {
                     let inner: Vec<&str> = arguments.iter().map(|a| known[a].text.as_str()).collect();
                     Text::new(format!("{}({})", function.row().name, inner.join(", ")), Binding::Atom)
@@ -88,37 +88,51 @@ impl Arena {
                 (_, false) => " + ",
             });
             let summand = match summand {
-                Summand::Number(value) => number(&value),
+                Summand::Number(value) => self.print_number(&value),
                 Summand::Expr(term) => known[&term].clone(),
-                Summand::Product(product) => print_product(&product, known),
+                Summand::Product(product) => self.print_product(&product, known),
             };
             text.push_str(&summand.within(Binding::Product));
         }
         Text::new(text, Binding::Sum)
     }
-}
 
-fn print_product(product: &Product, known: &FxHashMap<Expr, Text>) -> Text {
-    let factor = |factor: Factor<'_>| match factor {
-        Factor::Number(value) => number(&value).text,
-        Factor::Power(base, exponent) => power(&known[&base], &exponent.abs()),
-    };
-    let (above, below) = quotient(product);
-    let above: Vec<String> = above.into_iter().map(factor).collect();
-    let below: Vec<String> = below.into_iter().map(factor).collect();
-    let single = above.len() + below.len() == 1 && below.is_empty();
-    let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
-    match below.as_slice() {
-        [] => {}
-        [one] => text = format!("{text}/{one}"),
-        several => text = format!("{text}/({})", several.join("*")),
+    fn print_product(&self, product: &Product, known: &FxHashMap<Expr, Text>) -> Text {
+        let factor = |factor: Factor<'_>| match factor {
+            Factor::Number(value) => self.print_number(&value).text,
+            Factor::Power(base, exponent) => power(&known[&base], &exponent.abs()),
+        };
+        let (above, below) = quotient(self, product);
+        let above: Vec<String> = above.into_iter().map(factor).collect();
+        let below: Vec<String> = below.into_iter().map(factor).collect();
+        let single = above.len() + below.len() == 1 && below.is_empty();
+        let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
+        match below.as_slice() {
+            [] => {}
+            [one] => text = format!("{text}/{one}"),
+            several => text = format!("{text}/({})", several.join("*")),
+        }
+        if product.coefficient.is_negative() {
+            Text::new(format!("-{text}"), Binding::Negation)
+        } else if single && product.factors.len() == 1 && !product.factors[0].1.is_one() {
+            Text::new(text, Binding::Power)
+        } else {
+            Text::new(text, Binding::Product)
+        }
     }
-    if product.coefficient.is_negative() {
-        Text::new(format!("-{text}"), Binding::Negation)
-    } else if single && product.factors.len() == 1 && !product.factors[0].1.is_one() {
-        Text::new(text, Binding::Power)
-    } else {
-        Text::new(text, Binding::Product)
+
+    fn print_number(&self, value: &Rational) -> Text {
+        if value.is_integer() {
+            let binding = if value.is_negative() { Binding::Negation } else { Binding::Atom };
+            return Text::new(whole(value), binding);
+        }
+        let sign = if value.is_negative() { "-" } else { "" };
+        match self.notation().decimal(&value.abs()) {
+            Some(text) if !self.notation().as_fraction(&value.abs()) => {
+                Text::new(format!("{sign}{text}"), if sign.is_empty() { Binding::Atom } else { Binding::Negation })
+            }
+            _ => Text::new(value.to_string(), if sign.is_empty() { Binding::Product } else { Binding::Negation }),
+        }
     }
 }
 
@@ -132,18 +146,4 @@ fn power(base: &Text, exponent: &Rational) -> String {
     }
     let base = base.within(Binding::Atom);
     if exponent.is_integer() { format!("{base}^{exponent}") } else { format!("{base}^({exponent})") }
-}
-
-fn number(value: &Rational) -> Text {
-    if value.is_integer() {
-        let binding = if value.is_negative() { Binding::Negation } else { Binding::Atom };
-        return Text::new(whole(value), binding);
-    }
-    let sign = if value.is_negative() { "-" } else { "" };
-    match decimal(&value.abs()) {
-        Some(text) if !as_fraction(value) => {
-            Text::new(format!("{sign}{text}"), if sign.is_empty() { Binding::Atom } else { Binding::Negation })
-        }
-        _ => Text::new(value.to_string(), if sign.is_empty() { Binding::Product } else { Binding::Negation }),
-    }
 }

@@ -1,7 +1,8 @@
 //! Numbers beside sums where the fewest stand: `(3*p - 2*b)/(2*J)` is `(1.5*p - b)/J`.
 //!
 //! In: an expression, as a normal form over whole numbers writes it. Out: an equal one. A sum beside a number may be
-//! divided by a number that joins it. A decimal stays one: no number appears that has no exact decimal.
+//! divided by a number that joins it. A decimal stays one: no number appears that has no exact decimal, unless the one
+//! beside the sum goes: `(3*v - q)/3` is `v - q/3`.
 
 use rustc_hash::FxHashMap;
 
@@ -37,18 +38,21 @@ pub(crate) fn scaled(arena: &Arena, expr: Expr) -> Expr {
 
 /// The number by which a sum beside this coefficient is to be divided, if any.
 fn share(sum: &Sum, coefficient: &Rational) -> Option<Rational> {
+    // The numbers that are left, if none of them is to lose its decimal or the coefficient goes.
     let count = |share: &Rational| -> Option<usize> {
-        let mut count = usize::from(!(&coefficient.abs() * share).is_one());
+        let outer = &coefficient.abs() * share;
+        let may_lose = outer.is_one();
+        let mut count = usize::from(!outer.is_one());
         for (_, number) in &sum.terms {
             let quotient = number.checked_div(share)?;
-            if !is_short(&quotient) && is_short(number) {
+            if !may_lose && !is_short(&quotient) && is_short(number) {
                 return None;
             }
             count += usize::from(!quotient.abs().is_one());
         }
         let constant = sum.constant.checked_div(share)?;
         count += usize::from(!constant.is_integer());
-        (is_short(&constant) || !is_short(&sum.constant)).then_some(count)
+        (may_lose || is_short(&constant) || !is_short(&sum.constant)).then_some(count)
     };
     let mut best = (count(&Rational::ONE)?, None);
     let numbers = sum.terms.iter().map(|(_, number)| number.abs());
@@ -95,7 +99,8 @@ mod tests {
             (over(fraction(1, 2), sum([3, -2, 0], 0)), "(3*a/2 - b)/d"),
             (over(fraction(1, 5), sum([2, 0, 0], -5)), "(2*a/5 - 1)/d"),
             (over(fraction(1, million), sum([million, -million, 1], 0)), "(a - b + 1e-6*c)/d"),
-            // A third has no decimal.
+            // Where no number goes for it, a third stays outside.
+            (over(fraction(1, 3), sum([3, -1, 0], 0)), "(a - b/3)/d"),
             (over(fraction(1, 3), sum([1, 2, 0], 0)), "(a + 2*b)/(3*d)"),
             (over(fraction(1, 2), sum([1, -1, 0], 0)), "(a - b)/(2*d)"),
         ];

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::asks::Want;
 use super::domain::Domain;
@@ -60,12 +60,23 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     }
     forms.extend(forms.iter().filter_map(|form| without_differences(arena, *form)).collect::<Vec<Expr>>());
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
-    let forms = forms.flat_map(|form| [form, scaled(arena, form)]);
-    forms.fold(expr, |best, form| {
-        let shorter = operations(arena, form) < operations(arena, best) && kept(form) && divides_as(arena, expr, form);
-        let cancels = || !root_differences(arena, form).is_subset(&root_differences(arena, expr));
-        if shorter && !cancels() && asks_no_more(arena, domain, expr, form) { form } else { best }
-    })
+    // Several ways to write it often give the same form.
+    let mut seen = FxHashSet::default();
+    let forms = forms.flat_map(|form| [form, scaled(arena, form)]).filter(|form| seen.insert(*form));
+    let cancels = |form: Expr| !root_differences(arena, form).is_subset(&root_differences(arena, expr));
+    let (mut best, mut fewest) = (expr, operations(arena, expr));
+    for form in forms {
+        let taken = operations(arena, form);
+        if taken < fewest
+            && kept(form)
+            && divides_as(arena, expr, form)
+            && !cancels(form)
+            && asks_no_more(arena, domain, expr, form)
+        {
+            (best, fewest) = (form, taken);
+        }
+    }
+    best
 }
 
 /// The other ways to write an expression that have a value wherever it has, those with the fewest operations first. They

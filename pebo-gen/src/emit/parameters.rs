@@ -1,6 +1,6 @@
 //! The parameters of the plant, and the model that is made of them.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
 use super::document;
@@ -11,6 +11,7 @@ use super::names::camel;
 use super::permission;
 use crate::cas::Arena;
 use crate::cas::rational::Rational;
+use crate::plant::Parameter;
 
 /// A number as an author writes it: 8.875 rather than 71/8.
 pub(super) fn decimal(arena: &Arena, value: &Rational) -> String {
@@ -20,6 +21,24 @@ pub(super) fn decimal(arena: &Arena, value: &Rational) -> String {
         Some(digits) => digits,
         None => arena.print(arena.number(value.clone())),
     }
+}
+
+/// The value of a parameter as the author wrote it, where that is short.
+fn written(parameter: &Parameter) -> Option<&str> {
+    const LONGEST: usize = 24;
+    parameter.text.as_deref().filter(|text| text.len() <= LONGEST)
+}
+
+/// The author's text as a literal, where Rust has it too and it reads without groups of digits: `22.9e-6`.
+fn authors_literal(parameter: &Parameter) -> Option<TokenStream> {
+    const LONGEST_RUN: usize = 5;
+    let text = written(parameter)?;
+    let (sign, magnitude) = text.strip_prefix('-').map_or((quote!(), text), |rest| (quote!(-), rest));
+    let runs = || magnitude.split(|c: char| !c.is_ascii_digit());
+    let is_floating = magnitude.contains(['.', 'e']) && magnitude.split(['.', 'e']).all(|part| !part.is_empty());
+    let reads = runs().all(|run| run.len() <= LONGEST_RUN);
+    let literal = (is_floating && reads).then(|| syn::LitFloat::new(magnitude, Span::call_site()))?;
+    Some(quote!(#sign #literal))
 }
 
 impl Module<'_> {
@@ -37,9 +56,10 @@ impl Module<'_> {
         }
         let fields = parameters.iter().map(|parameter| {
             let name = document::quantity(self.plant, parameter.symbol);
-            let line = match &parameter.value {
-                Some(value) => format!("{name}, {} in the model.", decimal(arena, value)),
-                None => format!("{name}, without a value in the model."),
+            let line = match (written(parameter), &parameter.value) {
+                (Some(text), Some(_)) => format!("{name}, {text} in the model."),
+                (None, Some(value)) => format!("{name}, {} in the model.", decimal(arena, value)),
+                (_, None) => format!("{name}, without a value in the model."),
             };
             let (doc, field) = (doc(&line), ident(&scope.locals[&parameter.symbol]));
             quote!(#doc pub #field: #scalar,)
@@ -53,7 +73,10 @@ impl Module<'_> {
                 .zip(values)
                 .map(|(parameter, value)| {
                     let field = ident(&scope.locals[&parameter.symbol]);
-                    let value = number(value, &mut |ratio| scope.ratio(ratio)).tokens;
+                    let value = match authors_literal(parameter) {
+                        Some(literal) => literal,
+                        None => number(value, &mut |ratio| scope.ratio(ratio)).tokens,
+                    };
                     quote!(#field: #value)
                 })
                 .collect();

@@ -1,6 +1,6 @@
 //! The plant: its signals, its class with matrices, its equations, and what is assumed.
 
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Expr, Symbol};
 use crate::plant::{Class, Plant};
 
 use super::formula::{Setter, Steps};
@@ -140,7 +140,7 @@ fn parameters(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
         }
         let name = setter.symbol(parameter.symbol);
         if let Some(value) = &parameter.value {
-            html.formula(&format!("{name}<mo>=</mo>{}", Arena::mathml_value(value)));
+            html.formula(&format!("{name}<mo>=</mo>{}", plant.arena.mathml_value(value)));
         } else {
             html.formula(&name);
             html.text(" (given later)");

@@ -15,7 +15,11 @@ use super::Scope;
 pub fn lower(arena: &Arena, scope: &Scope, formula: &Formula) -> Result<Expr, Diagnostic> {
     // The parser bounds the depth, so recursion is safe here.
     match &formula.term {
-        Term::Number(decimal) => Ok(arena.number(exact(decimal, formula.span)?)),
+        Term::Number(decimal) => {
+            let value = exact(decimal, formula.span)?;
+            arena.notation().keep(&value, decimal.text());
+            Ok(arena.number(value))
+        }
         Term::Name(name) => match scope.look_up(name, formula.span) {
             Err(_) if name == PI => Ok(arena.pi()),
             found => found,

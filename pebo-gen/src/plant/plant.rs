@@ -115,6 +115,8 @@ pub struct Parameter {
     pub symbol: Symbol,
     /// Its value, unless it is given later.
     pub value: Option<Rational>,
+    /// The value as it is written in the model.
+    pub text: Option<String>,
     /// Where it is declared.
     pub span: Span,
 }

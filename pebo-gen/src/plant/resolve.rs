@@ -224,8 +224,9 @@ impl Diagnostics {
 
 fn parameter(arena: &Arena, entry: &Entry<Option<Spanned<model::Decimal>>>) -> Result<Parameter, Diagnostic> {
     let value = entry.value.as_ref().map(|v| exact(&v.value, v.span)).transpose()?;
+    let text = entry.value.as_ref().map(|v| v.value.text().to_owned());
     arena.variable(&entry.name.value);
-    Ok(Parameter { symbol: arena.symbol(&entry.name.value), value, span: entry.name.span })
+    Ok(Parameter { symbol: arena.symbol(&entry.name.value), value, text, span: entry.name.span })
 }
 
 fn resolved(arena: &Arena, scope: &Scope, formula: &model::Formula) -> Result<Formula, Diagnostic> {

@@ -29,25 +29,15 @@ pub(super) struct Growth {
 impl Growth {
     /// The growth of an accepted model.
     pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
-        if derivation.outcome != Outcome::Accepted {
-            return None;
-        }
-        let cascade = derivation.cascade.result.as_ref()?;
-        let inverse = derivation.left_inverse.result.as_ref()?;
-        let regression = derivation.regression.result.as_ref()?;
-        let functions = [
-            ("h", cascade.h.clone()),
-            ("lambda", cascade.lambda.iter().flatten().flatten().copied().collect()),
-            ("phi_0", regression.phi_0.clone()),
-            ("phi_1", regression.phi_1.concat()),
-            ("primitive_0", regression.primitive_0.clone()),
-            ("primitive_1", regression.primitive_1.concat()),
-            ("phi_left", inverse.x.iter().map(|state| state.1).collect()),
-        ];
-        let all: Vec<Expr> = functions.iter().flat_map(|function| &function.1).copied().collect();
-        let derived = operations(plant, &all)?;
+        let functions = functions(derivation)?;
+        let derived = together(plant, &functions)?;
         let most = functions.iter().max_by_key(|function| operations(plant, &function.1))?.0;
         Some(Self { written: operations(plant, &written(plant))?, derived, most })
+    }
+
+    /// The same, of a model whose observer takes more than a page.
+    pub(super) fn of_long(plant: &Plant, derivation: &Derivation) -> Option<Self> {
+        (together(plant, &functions(derivation)?)? > PAGE).then(|| Self::of(plant, derivation)).flatten()
     }
 
     /// How many times as many, where they are many.
@@ -55,6 +45,31 @@ impl Growth {
         let times = self.derived / self.written.max(1);
         (times >= MANY && self.derived > PAGE).then_some(times)
     }
+}
+
+/// The functions of an accepted model's observer, with their names.
+fn functions(derivation: &Derivation) -> Option<Vec<(&'static str, Vec<Expr>)>> {
+    if derivation.outcome != Outcome::Accepted {
+        return None;
+    }
+    let cascade = derivation.cascade.result.as_ref()?;
+    let inverse = derivation.left_inverse.result.as_ref()?;
+    let regression = derivation.regression.result.as_ref()?;
+    Some(vec![
+        ("h", cascade.h.clone()),
+        ("lambda", cascade.lambda.iter().flatten().flatten().copied().collect()),
+        ("phi_0", regression.phi_0.clone()),
+        ("phi_1", regression.phi_1.concat()),
+        ("primitive_0", regression.primitive_0.clone()),
+        ("primitive_1", regression.primitive_1.concat()),
+        ("phi_left", inverse.x.iter().map(|state| state.1).collect()),
+    ])
+}
+
+/// The operations of one program for all functions.
+fn together(plant: &Plant, functions: &[(&'static str, Vec<Expr>)]) -> Option<usize> {
+    let all: Vec<Expr> = functions.iter().flat_map(|function| &function.1).copied().collect();
+    operations(plant, &all)
 }
 
 /// What the author wrote, of a class what stands for it.

@@ -31,7 +31,7 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     remarks.extend(fundamental(plant, derivation));
     remarks.extend(rests.map(|(values, lines)| Remark { name: "operating point", values, lines }));
     remarks.extend(special(plant).map(|line| remark("values", vec![line])));
-    remarks.extend(Growth::of(plant, derivation).and_then(long).map(|lines| remark("cost", lines)));
+    remarks.extend(Growth::of_long(plant, derivation).and_then(long).map(|lines| remark("cost", lines)));
     if derivation.outcome == Outcome::Accepted {
         let drift = derivation.drift(plant);
         remarks.extend(

@@ -73,12 +73,17 @@ pub(super) fn linear(
             |symbol: &Symbol| states.get(symbol).is_none_or(|formula| arena.as_symbol(*formula).is_some());
         let own = plant.y[*output].rate.filter(|rate| arena.symbols_of(&[rate.expr]).iter().all(is_coordinate));
         let own = own.filter(|_| plant.class.is_none()).and_then(|_| written.first().copied());
-        let candidates = [written.as_slice(), &[shortest(arena, domain, known)]].concat();
-        let short = asking_less(arena, domain, shortest_equal(arena, domain, known, &candidates), &written);
-        let calls = |form: Expr| functions(arena, &[form]).len();
-        let own = own.filter(|own| calls(*own) <= calls(short));
         let own = own.filter(|own| decide(arena, arena.sub(*own, known), domain).is_zero());
-        phi_0.push(own.unwrap_or(short));
+        let calls = |form: Expr| functions(arena, &[form]).len();
+        let tidied = || {
+            let candidates = [written.as_slice(), &[shortest(arena, domain, known)]].concat();
+            asking_less(arena, domain, shortest_equal(arena, domain, known, &candidates), &written)
+        };
+        phi_0.push(match own {
+            Some(own) if calls(own) == 0 => own,
+            Some(own) => Some(tidied()).filter(|tidied| calls(*tidied) < calls(own)).unwrap_or(own),
+            None => tidied(),
+        });
         // Of what is affine in z, the slopes are the factors.
         let factors: Vec<Expr> = row
             .factors

@@ -148,7 +148,8 @@ fn a_substitution_is_shown_before_anything_is_made_of_it() {
 
 #[test]
 fn a_parameter_is_set_as_its_decimal() {
-    let value = |n, d| Arena::mathml_value(&Rational::new(n, d).expect("a fraction"));
+    let arena = Arena::new();
+    let value = |n, d| arena.mathml_value(&Rational::new(n, d).expect("a fraction"));
     assert_eq!([value(49, 5), value(-3, 2), value(7, 1)], ["<mn>9.8</mn>", "<mo>−</mo><mn>1.5</mn>", "<mn>7</mn>"]);
     assert_eq!(value(1, 3), "<mfrac><mn>1</mn><mn>3</mn></mfrac>");
 }

@@ -196,7 +196,7 @@ impl Sketch {
             parameters: self
                 .parameters
                 .iter()
-                .map(|(name, text)| Parameter { symbol: arena.symbol(name), value: value(text), span })
+                .map(|(name, text)| Parameter { symbol: arena.symbol(name), value: value(text), text: None, span })
                 .collect(),
             x: self.x.iter().map(|(x, rate)| State { symbol: arena.symbol(x), rate: at(rate) }).collect(),
             y: self
