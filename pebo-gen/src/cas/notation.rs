@@ -54,7 +54,6 @@ impl Notation {
     }
 }
 
-
 /// The exact decimal of a non-negative number, if it is short: of few places, or of no more digits than a number in
 /// double precision has and no longer than the fraction.
 fn short_decimal(value: &Rational) -> Option<String> {
