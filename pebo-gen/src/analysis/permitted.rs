@@ -15,12 +15,18 @@ use crate::analysis::design::{Cascade, Claim, Class, LeftInverse, Regression, Ve
 /// A function: its name, its entries, and what it may contain besides the parameters.
 type Function = (&'static str, Vec<Expr>, Vec<Symbol>);
 
-/// `h` and `Lambda` know outputs and inputs.
+/// The transform is of what has a rate; `h` and `Lambda` know outputs and inputs.
 pub(super) fn cascade(plant: &Plant, claim: Claim<Cascade>, found: &mut Vec<Diagnostic>) -> Claim<Cascade> {
     let signals = [outputs(plant), plant.u.clone()].concat();
+    // What has none would count as a constant.
+    let moving: Vec<Symbol> = plant.rates().into_keys().collect();
     confined(plant, claim, Code::CascadeUndecided, found, |cascade| {
         let lambda = cascade.lambda.iter().flatten().flatten().copied().collect();
-        vec![("h", cascade.h.clone(), signals.clone()), ("Lambda", lambda, signals.clone())]
+        vec![
+            ("phi", plant.transform(), moving.clone()),
+            ("h", cascade.h.clone(), signals.clone()),
+            ("Lambda", lambda, signals.clone()),
+        ]
     })
 }
 

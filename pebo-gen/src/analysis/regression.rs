@@ -29,7 +29,7 @@ use crate::source::{Diagnostic, Span};
 
 use crate::analysis::blame;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
-use cancelling::combinations;
+use cancelling::{affine_combinations, combinations};
 pub(super) use differentiated::{differentiated, no_such_form};
 use functions::over_parameterised;
 use linear::{decompose, linear};
@@ -214,8 +214,17 @@ pub(super) fn prove(
             return claim;
         }
     }
-    // What the rates do not say an identity may, in a form that was not found.
-    let mut verdict = if plant.identities.is_empty() { Verdict::Refuted } else { Verdict::Undecided };
+    // What keeps one rate from being affine may cancel from several.
+    let outputs: Vec<usize> = rows.iter().map(|row| row.0).collect();
+    let (combined, moving) = affine_combinations(plant, domain, &outputs).unwrap_or((Vec::new(), outputs.len() > 1));
+    if combined.len() > affine.len()
+        && let Some(claim) = together::of_combinations(plant, domain, cascade, left_inverse, &combined, found)
+    {
+        return claim;
+    }
+    // What the rates do not say an identity may, in a form that was not found, or a combination that was not put together.
+    let is_refuted = plant.identities.is_empty() && combined.len() <= affine.len() && !moving;
+    let mut verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
     for (index, rate, span, obstacle) in obstacles {
         if unsought {
             verdict = Verdict::Undecided;

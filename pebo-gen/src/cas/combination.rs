@@ -71,6 +71,19 @@ pub(crate) fn cancelling(
     Ok(echelon.null_space())
 }
 
+/// The combinations of expressions, with coefficients free of x, that vanish; a basis of them.
+///
+/// If the kernels are independent there are no others.
+pub(crate) fn relations(
+    field: &Field<'_>,
+    exprs: &[Expr],
+    x: &BTreeSet<Symbol>,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+    let rows = equations(field, &[exprs.to_vec()], x)?;
+    let (echelon, _) = Echelon::of(field, rows, exprs.len())?;
+    Ok(echelon.null_space())
+}
+
 /// The equations that say of coefficients free of the symbols that the combination of each row of expressions vanishes, an
 /// expression for each coefficient.
 ///

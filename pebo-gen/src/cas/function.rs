@@ -426,8 +426,7 @@ static TABLE: [Row; 21] = [
         enclosure: |a, _| Some(a[0].abs()),
         asks: nothing,
         smooth: Some(|_, a| vec![(a[0], Relation::NonZero)]),
-        // The sign, where the argument is not zero.
-        derivative: |arena, a| vec![arena.div(a[0], arena.call(Function::Abs, a))],
+        derivative: |arena, a| vec![arena.call(Function::Sign, a)],
         in_terms: None,
         inverse: None,
     },

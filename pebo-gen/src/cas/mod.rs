@@ -4,6 +4,7 @@
 
 mod arena;
 mod arranged;
+mod as_sign;
 pub mod asks;
 pub(crate) mod bounds;
 pub mod budget;
@@ -25,6 +26,7 @@ mod hyperbolic;
 mod implied;
 pub mod integer;
 pub mod interval;
+pub(crate) mod jump;
 pub(crate) mod letter;
 mod lifting;
 pub(crate) mod linear;

@@ -80,7 +80,7 @@ impl Domain {
 
     /// The factors of what stands under absolute values, also where these are written as roots of squares or as other
     /// functions: `exp(log(q^2)/2)` is `|q|`.
-    fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    pub(super) fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
         let mut under = arena.dividers(exprs);
         let mut magnitudes: Vec<Expr> =
             arena.magnitudes(exprs).into_iter().filter(|root| !arena.symbols_of(&[*root]).is_empty()).collect();

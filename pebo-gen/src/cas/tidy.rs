@@ -7,12 +7,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::as_sign::as_sign;
 use super::asks::Want;
 use super::domain::Domain;
-use super::facts::Facts;
+use super::facts::{Facts, Relation};
 use super::field::Field;
 use super::frozen::Frozen;
-use super::function::Function;
+use super::function::{Asks, Function};
 use super::hyperbolic::without_differences;
 use super::near_zero::near_zero;
 use super::oriented::Orientation;
@@ -38,6 +39,7 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     if is_shortest(arena, expr) {
         return expr;
     }
+    let expr = as_sign(arena, expr);
     // Of a long one over what it holds several times: written out, that would make it longer.
     if operations(arena, expr) > LONG
         && let Some(shared) = Shared::of(arena, expr)
@@ -62,7 +64,8 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
     // Several ways to write it often give the same form.
     let mut seen = FxHashSet::default();
-    let forms = forms.flat_map(|form| [form, scaled(arena, form)]).filter(|form| seen.insert(*form));
+    let forms = forms.flat_map(|form| [form, scaled(arena, form)]).map(|form| as_sign(arena, form));
+    let forms = forms.filter(|form| seen.insert(*form));
     let cancels = |form: Expr| !root_differences(arena, form).is_subset(&root_differences(arena, expr));
     let (mut best, mut fewest) = (expr, operations(arena, expr));
     for form in forms {
@@ -290,24 +293,43 @@ pub(crate) fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Ex
 
 /// Whether a form asks for nothing, to have a value, but what the expression asks too or what the domain shows.
 pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
-    let own = arena.asks(&[expr], Want::Value);
-    let mut more = arena.asks(&[form], Want::Value);
+    let own = asks_of_code(arena, expr);
+    let mut more = asks_of_code(arena, form);
     more.retain(|ask| !own.contains(ask));
     if more.is_empty() {
         return true;
     }
-    let mut there = domain.clone();
-    for (part, relation) in own {
-        there.facts.assume(part, relation);
+    // That proofs leave a place out is no reason to divide by zero there: signs are known, and what is asked anyway.
+    let mut facts = Facts::new();
+    let signs = domain.facts.iter().filter(|(_, relation)| *relation != Relation::NonZero);
+    for (part, relation) in signs.map(|(part, relation)| (part, relation)).chain(own) {
+        facts.assume(part, relation);
     }
+    let there = Domain { facts, ..domain.clone() };
     more.into_iter().all(|(part, relation)| there.implies(arena, part, relation))
+}
+
+/// What an expression asks to be computed: unlike a proof, code has a value for the sign of 0.
+fn asks_of_code(arena: &Arena, expr: Expr) -> Asks {
+    let mut found = Asks::new();
+    for part in arena.postorder(&[expr]) {
+        if matches!(arena.node(part), Node::Call(Function::Sign, _)) {
+            continue;
+        }
+        for ask in arena.asked_by(part, Want::Value) {
+            if !found.contains(&ask) && !arena.holds_of_number(ask) {
+                found.push(ask);
+            }
+        }
+    }
+    found
 }
 
 /// The first of the candidates that asks for less than the expression of what the domain does not show and is proved
 /// equal to it: of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
 pub(crate) fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
     let unshown = |form: Expr| {
-        let asked = arena.asks(&[form], Want::Value).into_iter();
+        let asked = asks_of_code(arena, form).into_iter();
         asked.filter(|(part, relation)| !domain.implies(arena, *part, *relation)).count()
     };
     let most = unshown(expr);

@@ -28,6 +28,8 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         Equilibrium::Undecided(reason) => (Vec::new(), vec![format!("none was found: {reason}")]),
     });
     let mut remarks: Vec<Remark> = plant.time.map(|time| remark("time", told(plant, time))).into_iter().collect();
+    let jumps = jumps(plant, derivation);
+    remarks.extend((!jumps.is_empty()).then(|| remark("jumps", jumps)));
     remarks.extend(fundamental(plant, derivation));
     remarks.extend(rests.map(|(values, lines)| Remark { name: "operating point", values, lines }));
     remarks.extend(special(plant).map(|line| remark("values", vec![line])));
@@ -50,6 +52,16 @@ fn told(plant: &Plant, time: Symbol) -> Vec<String> {
         format!("`{name}` is not declared: it is a known input, the time in s"),
         "the application hands it over with the other inputs, at the middle of each step".to_owned(),
     ]
+}
+
+/// Where the transform jumps, and what that does to the unknown constant.
+fn jumps(plant: &Plant, derivation: &Derivation) -> Vec<String> {
+    let arena = &plant.arena;
+    let line = |(component, border): (Symbol, Expr)| {
+        let (component, border) = (arena.name(component), arena.print(border));
+        format!("`{component}` was not shown to be continuous where `{border}` passes zero: there `theta` changes")
+    };
+    derivation.jumps(plant).into_iter().map(line).collect()
 }
 
 /// What becomes of a generalised cascade's fundamental matrix, what that means, and what would do without it.

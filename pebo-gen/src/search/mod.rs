@@ -20,6 +20,7 @@ mod closure;
 mod completion;
 mod connection;
 mod constants;
+mod continuous;
 mod darboux;
 mod decision;
 mod driven;
@@ -57,6 +58,7 @@ use bound::LARGEST_ORDER;
 pub use bound::{Bound, BoundClass, Evidence};
 pub use candidate::Candidate;
 use connection::Connection;
+use continuous::{continuous, is_of_states_and_outputs};
 pub use found::{Form, Found, Search, Start, Tried};
 pub use frame::Block;
 #[cfg(feature = "yaml")]
@@ -480,10 +482,16 @@ impl Hunt<'_> {
 
     /// Has the claims proved or refuted, with a third of what is left: what is open then does not end the search.
     fn prove(&mut self, phi: &[Expr]) {
-        if !phi.iter().all(|component| self.question.exists(*component)) {
+        let question = self.question;
+        let may_stand =
+            |component: &Expr| question.exists(*component) && is_of_states_and_outputs(question, *component);
+        if !phi.iter().all(may_stand) {
             return;
         }
-        let candidate = self.question.arena.budget().share(3, || Candidate::of(self.question, phi));
+        let Some(phi) = phi.iter().map(|component| continuous(question, *component)).collect::<Option<Vec<_>>>() else {
+            return;
+        };
+        let candidate = question.arena.budget().share(3, || Candidate::of(question, &phi));
         self.candidates.push(candidate);
     }
 }

@@ -6,8 +6,10 @@
 //! One thing with `design`, `drift` and `equilibrium`: a derivation keeps the remarks on itself, which are made of it.
 
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 use crate::cas::zero::decide;
+use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
 use crate::analysis::advice::drift::{Drift, rebase_residuals};
@@ -33,6 +35,19 @@ impl Derivation {
     pub fn drift(&self, plant: &Plant) -> Option<&Drift> {
         let found = || Drift::of(plant, self).filter(|drift| !drift.integrators.is_empty());
         self.remarks.drift.get_or_init(found).as_ref()
+    }
+
+    /// The borders at which components of the transform jump, or were not shown not to: theta is another constant on each
+    /// side. None where it is open which borders there are.
+    pub fn jumps(&self, plant: &Plant) -> Vec<(Symbol, Expr)> {
+        let (arena, domain) = (&plant.arena, self.domain(plant));
+        let constant: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let varies = |expr: Expr| !arena.symbols_of(&[expr]).is_subset(&constant);
+        let of_component = |(component, z): (Expr, &Symbol)| {
+            let jumps = domain.jumps(arena, component, varies).unwrap_or_default();
+            jumps.into_iter().map(|jump| (*z, jump.border)).collect::<Vec<_>>()
+        };
+        plant.transform().into_iter().zip(&plant.z).flat_map(of_component).collect()
     }
 
     /// Whether a constant may be moved from theta to the extension in motion (`Rebase` of the runtime): proved.

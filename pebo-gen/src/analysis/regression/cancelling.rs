@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::cas::combination::cancelling;
+use crate::cas::combination::{cancelling, relations};
 use crate::cas::domain::Domain;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::interval::{Interval, Precision};
@@ -63,6 +63,37 @@ fn found(plant: &Plant, domain: &Domain, outputs: &[usize]) -> Result<Vec<Combin
         }
     }
     Ok(found)
+}
+
+/// Combinations with constant coefficients of rates that are not affine in phi which are affine, as many as were found;
+/// and whether there are others, with coefficients that move.
+pub(super) fn affine_combinations(
+    plant: &Plant,
+    domain: &Domain,
+    outputs: &[usize],
+) -> Result<(Vec<Combination>, bool), Obstacle> {
+    let arena = &plant.arena;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let rates = rates(plant, outputs);
+    let symbols: Vec<Expr> = outputs.iter().map(|index| arena.of_symbol(plant.y[*index].symbol)).collect();
+    // The rates come last, so that each relation has one rate of its own, and of the others what keeps it from being affine.
+    let basis = [&[arena.one()], plant.transform().as_slice(), &rates].concat();
+    let field = Field::over(arena, &domain.facts, &basis)?;
+    let (mut found, mut moving) = (Vec::new(), false);
+    for vector in relations(&field, &basis, &plant.hidden())? {
+        let of_rates = &vector[basis.len() - rates.len()..];
+        let Some(pivot) = of_rates.iter().rfind(|entry| !entry.is_zero()) else { continue };
+        let scaled = of_rates.iter().map(|entry| field.div(entry, pivot)).collect::<Result<Vec<_>, _>>()?;
+        let scaled: Vec<Expr> = scaled.iter().map(|entry| field.show(entry)).collect();
+        if !arena.symbols_of(&scaled).is_subset(&constants) {
+            moving = true;
+            continue;
+        }
+        let first = scaled.iter().position(|entry| !arena.is_zero(*entry)).map_or(0, |place| outputs[place]);
+        let rate = shortest(arena, domain, dot(arena, &scaled, &rates));
+        found.push(Combination { output: dot(arena, &scaled, &symbols), rate, first });
+    }
+    Ok((found, moving))
 }
 
 /// Whether at a point of the domain the unmeasured signals move these rates freely, but for so many combinations:
