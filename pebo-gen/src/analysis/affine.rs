@@ -3,12 +3,14 @@
 //!
 //! In: a formula. Out: its coefficients, free of x and proved; or points that show that there are none.
 
-use crate::cas::Expr;
+use std::collections::BTreeSet;
+
 use crate::cas::combination::combine_on;
 use crate::cas::contrast::{Contrast, contrast};
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::zero::{Answer, decide};
+use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 
@@ -23,14 +25,46 @@ pub(super) fn of(plant: &Plant, domain: &Domain, expr: Expr) -> Result<Option<Ro
     over(plant, domain, expr, &basis)
 }
 
-/// The same over any basis.
+/// The same over any basis that begins with 1.
 fn over(plant: &Plant, domain: &Domain, expr: Expr, basis: &[Expr]) -> Result<Option<Row>, Obstacle> {
     let arena = &plant.arena;
-    let Some(row) = combine_on(arena, domain, expr, basis, &plant.hidden())? else { return Ok(None) };
+    let places = connected(plant, expr, basis);
+    let some: Vec<Expr> = places.iter().map(|place| basis[*place]).collect();
+    let Some(found) = combine_on(arena, domain, expr, &some, &plant.hidden())? else { return Ok(None) };
+    let mut row = vec![arena.zero(); basis.len()];
+    for (place, coefficient) in places.into_iter().zip(found) {
+        row[place] = coefficient;
+    }
     match decide(arena, arena.sub(expr, dot(arena, &row, basis)), domain) {
         Answer::Zero => Ok(Some(row)),
         Answer::Open(obstacle) => Err(obstacle),
         Answer::NonZero(_) => Err(Obstacle::NoWitness),
+    }
+}
+
+/// The places of 1 and of the functions that share unmeasured signals with an expression, or with one another of these. What
+/// the others make together is free of these signals, so that 1 does as well; identities tie signals to one another.
+fn connected(plant: &Plant, expr: Expr, basis: &[Expr]) -> Vec<usize> {
+    if !plant.identities.is_empty() {
+        return (0..basis.len()).collect();
+    }
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    let of = |expr: Expr| -> BTreeSet<Symbol> { arena.symbols_of(&[expr]).intersection(&hidden).copied().collect() };
+    let mut reached = of(expr);
+    let mut open: Vec<(usize, BTreeSet<Symbol>)> = basis.iter().map(|b| of(*b)).enumerate().skip(1).collect();
+    let mut places = vec![0];
+    loop {
+        let (near, far): (Vec<_>, Vec<_>) = open.into_iter().partition(|(_, symbols)| !symbols.is_disjoint(&reached));
+        if near.is_empty() {
+            places.sort_unstable();
+            return places;
+        }
+        for (place, symbols) in near {
+            places.push(place);
+            reached.extend(symbols);
+        }
+        open = far;
     }
 }
 

@@ -292,6 +292,8 @@ pub enum Place {
     UnshownAtRest(Expr),
     /// These keep their signs: the regressor bends where one changes.
     Part(Vec<(Expr, Side)>),
+    /// These keep their signs, and the other holds.
+    Within(Vec<(Expr, Side)>, Box<Place>),
 }
 
 /// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.

@@ -88,6 +88,20 @@ fn the_fundamental_matrix_is_never_singular() {
 }
 
 #[test]
+fn a_sign_stays_a_sign_where_code_computes_it() {
+    // As a quotient of q and its magnitude it would be 0/0 at q = 0, where the author's formula has a value.
+    for factor in ["2 + sign(q)*sqrt(abs(q))", "sign(q)*(1 - exp(-abs(q))) + 3", "sign(q)*max(abs(q) - 1, 0) + 1"] {
+        let (plant, derivation) =
+            derive(&format!("x: [p]\ny: [q]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: \"p*({factor})\"}}\nphi: [p]"));
+        let regression = derivation.regression.result.unwrap();
+        for formula in [regression.phi_0[0], regression.phi_1[0][0]] {
+            let shown = plant.arena.print(formula);
+            assert!(shown.contains("sign(q)") && !shown.contains("/q"), "{shown}");
+        }
+    }
+}
+
+#[test]
 fn values_of_parameters_that_hide_an_unknown_are_refuted() {
     let (_, zero) = derive("x: [a]\ny: [y]\nu: [u]\nparameters: {k: 0}\nf_x: {a: u}\nf_y: {y: k*a}\nphi: [a]");
     let (_, equal) = derive(

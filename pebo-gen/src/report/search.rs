@@ -27,6 +27,8 @@ pub struct SearchReport {
     bound_affine: Option<BoundReport>,
     /// The same of transforms affine in x with a generalised cascade.
     bound_generalised: Option<BoundReport>,
+    /// What the bounds of a verdict `none` do not exclude.
+    not_excluded: Option<&'static str>,
     tried: Vec<String>,
     diagnostics: Vec<Located>,
 }
@@ -82,6 +84,7 @@ impl SearchReport {
             bound: search.bound.as_ref().map(|found| bound(&plant.arena, found)),
             bound_affine: search.affine.as_ref().map(|found| bound(&plant.arena, found)),
             bound_generalised: search.generalised.as_ref().map(|found| bound(&plant.arena, found)),
+            not_excluded: search.open(),
             tried: search.tried.iter().map(crate::search::Tried::sentence).collect(),
             diagnostics: Vec::new(),
         }
@@ -98,6 +101,7 @@ impl SearchReport {
             bound: None,
             bound_affine: None,
             bound_generalised: None,
+            not_excluded: None,
             tried: Vec::new(),
             diagnostics: diagnostics.iter().map(|d| Located::new(d, source)).collect(),
         }
@@ -156,7 +160,7 @@ pub fn search_summary(plant: &Plant, search: &Search) -> String {
         text.extend(bound.certificate(&plant.arena).iter().map(|line| format!("  certificate: {line}\n")));
     }
     if let Some(open) = search.open() {
-        text.extend([format!("  {open}\n")]);
+        text.extend([format!("  not excluded: {open}\n")]);
     }
     for tried in &search.tried {
         text.extend([format!("  tried: {}\n", tried.sentence())]);

@@ -31,11 +31,14 @@ pub(super) struct Connection {
     shift: Vec<Option<Vec<Expr>>>,
 }
 
+/// Derivatives of unknown functions past which no equations for them are written: these are dense matrices.
+pub(super) const MOST_DERIVATIVES: usize = 1024;
+
 impl Connection {
     /// Solves the equations of a plant for rates as asked.
     pub(super) fn of(question: &Question<'_>, asked: Rate) -> Result<Self, Obstacle> {
         let arena = question.arena;
-        let mut conditions = conditions(question, &question.rates);
+        let mut conditions = conditions(question, &question.rates)?;
         if asked == Rate::Affine {
             // What is affine in x has slopes that are free of it.
             let slopes = question.hidden.iter().zip(conditions).flat_map(|(symbol, row)| {
@@ -161,8 +164,11 @@ impl Connection {
 
 /// For each hidden symbol a row that says that a rate is free of it, with a column for each derivative of T, those of one
 /// state together, then for each derivative of s, then for each entry of T.
-pub(super) fn conditions(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>) -> Vec<Vec<Expr>> {
+pub(super) fn conditions(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>) -> Result<Vec<Vec<Expr>>, Obstacle> {
     let arena = question.arena;
+    if (question.x.len() + question.y.len()) * question.y.len() > MOST_DERIVATIVES {
+        return Err(Obstacle::TooLarge);
+    }
     let of = |symbols: &[Symbol]| symbols.iter().map(|symbol| rates[symbol]).collect::<Vec<Expr>>();
     let moving = of(&question.y);
     let mut exprs = Vec::new();
@@ -172,7 +178,7 @@ pub(super) fn conditions(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>
     exprs.extend(&moving);
     exprs.extend(of(&question.x));
     let along = |symbol| exprs.iter().map(|e| arena.derivative(*e, symbol)).collect::<Vec<Expr>>();
-    question.hidden.iter().map(|symbol| along(*symbol)).collect()
+    Ok(question.hidden.iter().map(|symbol| along(*symbol)).collect())
 }
 
 /// The positive root, without one where it can be.

@@ -22,6 +22,7 @@ use crate::cas::{Expr, Function, Node, Symbol};
 
 use super::bound::{Bound, BoundClass, Evidence};
 use super::completion::{Completed, Derivations, Solutions, System};
+use super::connection::MOST_DERIVATIVES;
 use super::posed::{Posed, Rows};
 use super::question::Question;
 
@@ -45,7 +46,8 @@ pub(super) fn decided(question: &Question<'_>, class: BoundClass, others: usize)
     let rates: BTreeMap<Symbol, Expr> =
         question.rates.iter().map(|(symbol, rate)| (*symbol, arena.substitute(*rate, &point))).collect();
     let (posed, share) = match class {
-        BoundClass::Affine => (Posed::affine(question, &rates), SHARES[0]),
+        BoundClass::Affine => (Posed::affine(question, &rates).ok()?, SHARES[0]),
+        BoundClass::Smooth if question.rates.len().pow(2) > MOST_DERIVATIVES => return None,
         BoundClass::Smooth => (Posed::smooth(question, &rates), SHARES[1]),
         BoundClass::AffineRate => return None,
     };

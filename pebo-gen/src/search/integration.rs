@@ -22,7 +22,7 @@ use super::question::Question;
 /// The transforms affine in x, as far as they are integrals of what the equations for them hold.
 pub(super) fn integrated(question: &Question<'_>) -> Result<Vec<Expr>, Obstacle> {
     let arena = question.arena;
-    let posed = Posed::affine(question, &question.rates);
+    let posed = Posed::affine(question, &question.rates)?;
     let Some(field) = posed.field(question)? else { return Ok(Vec::new()) };
     let Some(Rows { kept, rows }) = posed.rows(question, &field)? else { return Ok(Vec::new()) };
     let by = Derivations::of(&field, &posed.base)?;

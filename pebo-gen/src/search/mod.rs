@@ -184,6 +184,9 @@ fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Cand
 /// The order of series that costs less than another form of transforms.
 const LOW_ORDER: usize = 2;
 
+/// Products of a state and an output from which on constant combinations are tried before them.
+const MOST_PRODUCTS: usize = 100;
+
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;
 
@@ -234,6 +237,12 @@ impl Hunt<'_> {
         let affine = [&[(arena.one(), 0)], states.as_slice()].concat();
         let mut outputs = functions::of_outputs(question);
         self.attempt(Form::Affine(0), |_| Ok(Ansatz { of_x: states.clone(), of_y: vec![(arena.one(), 0)], weight: 1 }));
+        // With many signals there are too many products; combinations with constant coefficients there are not.
+        if states.len() * question.y.len() > MOST_PRODUCTS && !self.is_over() {
+            let of_y = question.y.iter().map(|y| (arena.of_symbol(*y), 1));
+            let of_y = std::iter::once((arena.one(), 0)).chain(of_y).collect();
+            self.attempt(Form::Affine(0), |_| Ok(Ansatz { of_x: affine.clone(), of_y, weight: 1 }));
+        }
         for degree in 1..=3 {
             // Found in no time where there is one, while completions of long formulas take long.
             if degree == 2 && !self.is_over() {

@@ -37,17 +37,17 @@ pub(super) struct Rows {
 
 impl Posed {
     /// For T and the gradient of s, functions of y.
-    pub(super) fn affine(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>) -> Self {
+    pub(super) fn affine(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>) -> Result<Self, Obstacle> {
         let (states, outputs) = (question.x.len(), question.y.len());
         let arena = question.arena;
-        let conditions = conditions(question, rates).into_iter().map(|row| {
+        let conditions = conditions(question, rates)?.into_iter().map(|row| {
             let (slopes, rest) = row.split_at(states * outputs);
             let (shifts, values) = rest.split_at(outputs);
             let padding = vec![arena.zero(); outputs * outputs];
             [slopes, &padding, values, shifts].concat()
         });
         let gradient = (0..outputs).map(|output| (states + output, output)).collect();
-        Self { base: question.y.clone(), conditions: conditions.collect(), gradient }
+        Ok(Self { base: question.y.clone(), conditions: conditions.collect(), gradient })
     }
 
     /// For the gradient of phi, functions of x and y.

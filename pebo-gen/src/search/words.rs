@@ -208,7 +208,7 @@ impl Search {
     pub fn open(&self) -> Option<&'static str> {
         let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
         (self.verdict == Found::None && excluded).then_some(
-            "not excluded: a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
+            "a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
         )
     }
 

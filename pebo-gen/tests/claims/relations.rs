@@ -172,4 +172,21 @@ pub(super) const RELATIONS: &[Row] = &[
         "x: [a]\ny: [s, k]\nu: [u]\nf_x: {a: u}\nphi: [a]\nregression: differentiated\nidentities: [s - k*a^2]",
         Undecided(Code::RegressionUndecided),
     ),
+    (
+        "what bends cancels from two rates",
+        "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v}\nf_y: {q: p + 2*abs(p), r: abs(p)}\nphi: [p]",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "an unknown road cancels from the travel and the wheel: quarter car",
+        "parameters: {ms: 300, mu: 40, ks: 16000, kt: 160000, c: 1000}\nx: [vs, vu]\ny: [d, zu]\nu: [F]\nw: [zr]\n\
+         f_x: {vs: (-ks*d - c*(vs - vu) + F)/ms, vu: (ks*d + c*(vs - vu) - kt*(zu - zr) - F)/mu}\n\
+         f_y: {d: vs - vu, zu: vu}\nphi: [vs + c*d/ms]\nphi_left: {vs: z1 - c*d/ms}",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "what cancels with a coefficient that moves is not refuted",
+        "x: [p]\ny: [q, r, m]\nu: [v]\nf_x: {p: v}\nf_y: {q: p + m*exp(p^2), r: exp(p^2), m: v}\nphi: [p]",
+        Undecided(Code::RegressionNonlinear),
+    ),
 ];

@@ -290,3 +290,37 @@ fn a_state_is_not_replaced_by_the_output_that_measures_it() {
     assert_eq!(found.candidates[0].formulas(), ["angle", "bias"]);
     assert!(found.candidates.iter().any(|candidate| candidate.formulas() == ["angle - incline", "bias"]));
 }
+
+/// A damper of two constants: as a sum of products of q and signs it may jump where q is 1, and theta with it.
+#[test]
+fn a_transform_goes_over_where_the_rates_bend() {
+    let damper = "parameters: [m, d1, d2]\nassume: [m > 0]\nx: [p]\ny: [q]\nu: [F]\n\
+                  f_x: {p: F - (d1 + (d2 - d1)*(1 + sign(q - 1))/2)*p/m}\nf_y: {q: p/m}";
+    for lines in [damper, "x: [p]\ny: [q]\nu: [v]\nf_x: {p: v - p*sat(q)}\nf_y: {q: p}"] {
+        let (plant, found) = search(lines, None);
+        written(lines, &found);
+        let best = &found.candidates[0];
+        assert!(best.derivation.jumps(&plant).is_empty() && best.derivation.jumps(&best.plant).is_empty(), "{lines}");
+    }
+    // An author may write one that does, and is told.
+    let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nf_y: {q: p}\nphi: [p + 5*sign(q) + abs(q)]\n";
+    let derived = pebo_gen::derive(&pebo_gen::source::Source::new("m.yaml", text).expect("a text")).expect("a model");
+    let jumps = derived.derivation.jumps(&derived.plant);
+    assert_eq!(jumps.iter().map(|jump| derived.plant.arena.print(jump.1)).collect::<Vec<_>>(), ["q"]);
+}
+
+/// Many states of which each output's rate has one: products of states and outputs would be too many to look at.
+#[test]
+fn many_states_are_no_harder_than_few() {
+    let count = 30;
+    let list = |of: &dyn Fn(usize) -> String| (0..count).map(of).collect::<Vec<_>>().join(", ");
+    let lines = format!(
+        "x: [{}]\ny: [{}]\nu: [v]\nf_x: {{{}}}\nf_y: {{{}}}",
+        list(&|i| format!("p{i}")),
+        list(&|i| format!("q{i}")),
+        list(&|i| format!("p{i}: v - p{}", (i + 1) % count)),
+        list(&|i| format!("q{i}: p{i}")),
+    );
+    let (_, found) = search(&lines, None);
+    assert_eq!(written(&lines, &found), (pebo_gen::analysis::Class::Pebo, count));
+}

@@ -224,3 +224,15 @@ fn none_says_what_it_leaves_open() {
     let asked = said(&format!("class: pebo\n{ARM}"));
     assert!(!asked.contains(open), "{asked}");
 }
+
+#[test]
+fn an_unmeasured_signal_is_no_component() {
+    // Whatever mu is, a slope explains the speed.
+    for lines in [
+        "parameters: [m]\nassume: [m > 0]\nx: [mu]\ny: [vel]\nu: [F]\nw: [slope]\nf_x: {mu: 0}\nf_y: {vel: (F - mu*vel - slope)/m}",
+        "x: [b, p]\ny: [q]\nu: [v]\nw: [d]\nf_x: {b: 0, p: d + b*v}\nf_y: {q: p}",
+    ] {
+        let (_, found) = search(lines, None);
+        assert_ne!(found.verdict, Found::Found, "{lines}");
+    }
+}

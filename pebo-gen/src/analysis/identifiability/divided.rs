@@ -124,6 +124,27 @@ fn parted(plant: &Plant, parts: &[Part]) -> Diagnostic {
         .help("choose a phi of what is seen on one side alone, and state that side under `assume`")
 }
 
+/// The motions within parts on which not all unknowns are seen: of all parts together, where all have the same.
+fn of_parts(plant: &Plant, within: &[(&Part, Vec<Blind>)], parts: usize) -> Vec<Blind> {
+    let key = |blind: &Blind| (blind.place(plant), blind.seen.clone());
+    let mut found: Vec<Blind> = Vec::new();
+    for (part, motions) in within {
+        for motion in motions {
+            let is_same = |(_, others): &&(&Part, Vec<Blind>)| others.iter().any(|other| key(other) == key(motion));
+            let place = if within.iter().filter(is_same).count() == parts {
+                motion.place.clone()
+            } else {
+                Place::Within(part.sides.clone(), Box::new(motion.place.clone()))
+            };
+            let motion = Blind { place, ..motion.clone() };
+            if !found.iter().any(|other| key(other) == key(&motion)) {
+                found.push(motion);
+            }
+        }
+    }
+    found
+}
+
 /// Answers on a domain by the answers on its parts.
 fn on_parts(
     plant: &Plant,
@@ -157,6 +178,7 @@ fn on_parts(
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
+    let mut within: Vec<(&Part, Vec<Blind>)> = Vec::new();
     let mut shown = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
@@ -176,6 +198,7 @@ fn on_parts(
                 let also = motion.and_then(|motion| motion.by_itself);
                 by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
                 at_rest &= motion.is_some_and(|motion| motion.at_rest);
+                within.extend(motion.map(|motion| (part, motion.blind.clone())));
             }
             Some(Excitation::Never) => {
                 let (seen, hidden) = (seen(arena, symbols, &decided.hidden), decided.hidden.clone());
@@ -213,6 +236,13 @@ fn on_parts(
     // What several parts show together, they show while the plant moves from one to the other.
     let by_itself = by_itself.filter(|_| blind.len() < parts.len());
     let at_rest = at_rest && by_itself == Some(true);
+    blind.extend(of_parts(plant, &within, parts.len()));
+    // On the borders too a column may vanish.
+    let on_whole = whole.claim.result.and_then(|result| result.motion).map(|motion| motion.blind);
+    let undecided = on_whole.into_iter().flatten().filter(|motion| matches!(motion.place, Place::Unshown(_)));
+    let others: Vec<Blind> =
+        undecided.filter(|motion| blind.iter().all(|other| other.place(plant) != motion.place(plant))).collect();
+    blind.extend(others);
     let motion = Motion { by_itself, at_rest, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,

@@ -22,7 +22,7 @@ use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
 use crate::cas::tidy::shortest;
-use crate::cas::{Expr, Symbol};
+use crate::cas::{Arena, Expr, Symbol};
 use crate::plant::Plant;
 
 use losses::MOST_OF_DETERMINANT;
@@ -115,6 +115,11 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             everywhere = all;
         }
     }
+    if by_itself != Some(true) {
+        let zeros = question.columns().unwrap_or_default().into_iter();
+        let others: Vec<Blind> = zeros.filter(|zero| !is_listed(arena, &blind, *zero)).map(unshown).collect();
+        blind.extend(others);
+    }
     blind.extend(kept);
     if let Some(shown) = rest.as_ref().ok().filter(|_| at_rest) {
         let known: Vec<Expr> = blind.iter().filter_map(|other| unshown_zero(&other.place)).collect();
@@ -155,6 +160,14 @@ impl Question<'_> {
         }
         found
     }
+}
+
+/// Whether what is zero where an input has a value is listed by that.
+fn is_listed(arena: &Arena, listed: &[Blind], zero: Expr) -> bool {
+    listed.iter().any(|other| match &other.place {
+        Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
+        _ => false,
+    })
 }
 
 /// What is zero where nothing was decided.

@@ -4,13 +4,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{Blind, Place};
-use crate::analysis::identifiability::flow::Flow;
+use crate::analysis::identifiability::flow::{Flow, without_psi};
 use crate::analysis::identifiability::singular::Volume;
 use crate::cas::facts::Relation;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::poly::Poly;
 use crate::cas::{Arena, Expr, Symbol};
 
+use super::is_listed;
 use super::question::{Question, Restriction, Shown, seen};
 
 /// Parts of the rows up to which their determinant is worked out.
@@ -79,11 +80,7 @@ impl Question<'_> {
                 found.push(unshown());
                 continue;
             };
-            let is_listed = |other: &Blind| match &other.place {
-                Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
-                _ => false,
-            };
-            if listed.iter().any(is_listed) {
+            if is_listed(arena, listed, zero) {
                 continue;
             }
             let equal = BTreeMap::from([(input, value)]);
@@ -102,6 +99,40 @@ impl Question<'_> {
             }
         }
         (found, all)
+    }
+
+    /// Factors in inputs alone that all entries of a column have: while one is zero, that unknown moves no output.
+    pub(super) fn columns(&self) -> Result<Vec<Expr>, Obstacle> {
+        let &Self { plant, domain, regression, unknowns, .. } = self;
+        let arena = &plant.arena;
+        let rows = [without_psi(plant, &regression.phi_1), without_psi(plant, &regression.primitive_1)].concat();
+        let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+        let commanded: BTreeSet<Symbol> = plant.commanded().collect();
+        let of_inputs = |formula: Expr| {
+            let symbols = arena.symbols_of(&[formula]);
+            !symbols.is_disjoint(&commanded) && symbols.iter().all(|s| commanded.contains(s) || constants.contains(s))
+        };
+        let field = Field::over(arena, &domain.facts, &rows.concat())?;
+        let mut found = Vec::new();
+        for column in 0..unknowns {
+            let entries = rows.iter().map(|row| field.fraction(row[column])).collect::<Result<Vec<_>, _>>()?;
+            let Some(first) = entries.iter().find(|entry| !entry.is_zero()) else { continue };
+            for (factor, _) in first.numerator().factored(field.limit())?.factors {
+                let formula = field.show(&field.of_polynomial(&factor)?);
+                if !of_inputs(formula) || found.contains(&formula) || domain.implies(arena, formula, Relation::NonZero)
+                {
+                    continue;
+                }
+                let mut divides = true;
+                for entry in &entries {
+                    divides &= entry.is_zero() || entry.numerator().div_exact(&factor, field.limit())?.is_some();
+                }
+                if divides {
+                    found.push(formula);
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// What no input moves away from zero, of all that makes rows lose their rank: an output that stays constant, or one that

@@ -202,3 +202,42 @@ fn parts_of_the_domain_say_what_has_to_move_in_them() {
     assert!(of_rate("p*max(v, 1) + s", "0").ends_with("keep the inputs varying"));
     assert!(of_rate("p*max(q, 1) + s", "v").contains("neither rests nor stays"));
 }
+
+#[test]
+fn a_column_that_vanishes_with_functions_of_inputs_is_told() {
+    let constant = |factor: &str| {
+        of(&format!("x: [p, s]\ny: [q]\nu: [v, r]\nf_x: {{p: 0, s: 0}}\nf_y: {{q: p*({factor}) + s*r}}\nphi: [p, s]"))
+    };
+    for (factor, told) in [
+        ("sin(v)", "`sin(v) = 0`"),
+        ("1 - cos(v)", "`cos(v) - 1 = 0`"),
+        ("v^2 - 2", "`v^2 - 2 = 0`"),
+        ("v^2 + r^2 - 1", "`v^2 + r^2 - 1 = 0`"),
+    ] {
+        let lines = constant(factor);
+        let told = format!("while {told}, it was not decided what is identified");
+        assert!(
+            lines.contains(&told) && lines.contains(&"while `r = 0`, only `z1` is identified".to_owned()),
+            "{lines:?}"
+        );
+    }
+    // None of these vanishes.
+    assert!(constant("2 + sin(v)").iter().all(|line| !line.contains("sin(v) +")));
+}
+
+#[test]
+fn what_hides_on_each_side_of_a_bend_is_told() {
+    let friction = "parameters: [J]\nassume: [J > 0]\nx: [b, fc]\ny: [w]\nu: [tau]\nf_x: {b: 0, fc: 0}\n\
+                    f_y: {w: (tau - b*w - fc*sign(w))/J}\nphi: [b, fc]";
+    let lines = of(friction);
+    for told in [
+        "while `w > 0` and the plant rests, only `z2 + w*z1` is identified",
+        "while `w < 0` and the plant rests, only `z2 - w*z1` is identified",
+    ] {
+        assert!(lines.iter().any(|line| line == told), "{lines:?}");
+    }
+    // What is the same on both sides is told of both.
+    let lines = of("x: [p, s]\ny: [q]\nu: [v, r]\nf_x: {p: 0, s: 0}\nf_y: {q: p*abs(v) + s*r}\nphi: [p, s]");
+    assert!(lines.contains(&"while `r = 0`, only `z1` is identified".to_owned()), "{lines:?}");
+    assert!(lines.iter().any(|line| line.starts_with("while `abs(v) = 0`")), "{lines:?}");
+}

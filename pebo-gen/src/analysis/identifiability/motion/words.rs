@@ -74,8 +74,24 @@ impl Blind {
 
     /// The motion, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
+        self.place.worded(plant)
+    }
+
+    fn line(&self, plant: &Plant) -> String {
+        let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        if self.place.is_undecided() {
+            return format!("while {}, it was not decided what is identified", self.worded(plant));
+        }
+        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
+        format!("while {}, {seen} is identified", self.worded(plant))
+    }
+}
+
+impl Place {
+    /// The motion, with formulas as code.
+    fn worded(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
-        match &self.place {
+        match self {
             Place::Rest => "the plant rests".to_owned(),
             Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
                 "all inputs are constant".to_owned()
@@ -97,19 +113,22 @@ impl Blind {
             }
             Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
             Place::UnshownAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
-            Place::Part(sides) => {
-                let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", arena.print(*expr), side.sign());
-                sides.iter().map(side).collect::<Vec<_>>().join(" and ")
-            }
+            Place::Part(sides) => on_sides(plant, sides),
+            Place::Within(sides, place) => format!("{} and {}", on_sides(plant, sides), place.worded(plant)),
         }
     }
 
-    fn line(&self, plant: &Plant) -> String {
-        let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
-        if matches!(self.place, Place::Unshown(_) | Place::UnshownAtRest(_)) {
-            return format!("while {}, it was not decided what is identified", self.worded(plant));
+    /// Whether what is seen there was not decided.
+    fn is_undecided(&self) -> bool {
+        match self {
+            Self::Unshown(_) | Self::UnshownAtRest(_) => true,
+            Self::Within(_, place) => place.is_undecided(),
+            _ => false,
         }
-        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
-        format!("while {}, {seen} is identified", self.worded(plant))
     }
+}
+
+fn on_sides(plant: &Plant, sides: &[(Expr, Side)]) -> String {
+    let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", plant.arena.print(*expr), side.sign());
+    sides.iter().map(side).collect::<Vec<_>>().join(" and ")
 }
