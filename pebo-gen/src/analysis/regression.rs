@@ -67,7 +67,7 @@ fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> 
         }
     }
     // A component without a rate of its own is a constant, and so is each of its functions.
-    let rests = |index: usize| cascade.lambda.is_none() && arena.is_zero(cascade.h[index]);
+    let rests = |index: usize| is_constant(plant, cascade, index);
     let curved = |z: Symbol| arena.depends_on(arena.derivative(rate, z), &BTreeSet::from([z]));
     plant
         .z
@@ -75,6 +75,16 @@ fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> 
         .enumerate()
         .find(|(index, z)| rests(*index) && curved(**z))
         .map(|(index, _)| OtherForm::Function(index))
+}
+
+/// Whether a component of the transform has no rate.
+fn is_constant(plant: &Plant, cascade: &Cascade, index: usize) -> bool {
+    cascade.lambda.is_none() && plant.arena.is_zero(cascade.h[index])
+}
+
+/// The first component that has none.
+fn constant_component(plant: &Plant, cascade: &Cascade) -> Option<usize> {
+    (0..cascade.h.len()).find(|index| is_constant(plant, cascade, *index))
 }
 
 /// The regression of the rates that are affine in phi, where there are others too; none if no rate is.
@@ -238,7 +248,11 @@ pub(super) fn prove(
         }
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
-        let form = in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate));
+        let form = match left_inverse {
+            Some(_) => in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
+            // What the rate is in z is not known: it may be linear with any function of a component that is constant.
+            None => constant_component(plant, cascade).map(OtherForm::Function),
+        };
         if let (Some(shown), Some(form)) = (&bend, form) {
             verdict = Verdict::Undecided;
             found.push(not_in_other_forms(plant, index, span, shown, form));

@@ -23,10 +23,11 @@ pub(super) fn decimal(arena: &Arena, value: &Rational) -> String {
     }
 }
 
-/// The value of a parameter as the author wrote it, where that is short.
+/// The value of a parameter as the author wrote it, where that is short; not of whole numbers, to which Rust adds a point.
 fn written(parameter: &Parameter) -> Option<&str> {
     const LONGEST: usize = 24;
-    parameter.text.as_deref().filter(|text| text.len() <= LONGEST)
+    let is_whole = parameter.value.as_ref().is_some_and(Rational::is_integer);
+    parameter.text.as_deref().filter(|text| !is_whole && text.len() <= LONGEST)
 }
 
 /// The author's text as a literal, where Rust has it too and it reads without groups of digits: `22.9e-6`.

@@ -40,7 +40,7 @@ impl Candidate {
         self.derivation.left_inverse.result.as_ref().map_or(0, |inverse| inverse.x.len())
     }
 
-    /// What comes first among candidates: what is accepted, recovers all states, has no component that is zero, outputs affine
+    /// What comes first among candidates: what is accepted, recovers all states, filters what outputs tell, has outputs affine
     /// in z, a plain cascade, few components, unknowns that are seen at once, and is short.
     pub(super) fn merit(&self) -> impl Ord + use<> {
         let accepted = match self.derivation.outcome {
@@ -52,7 +52,7 @@ impl Candidate {
         (
             accepted,
             self.plant.x.len() - self.recovered().min(self.plant.x.len()),
-            self.vanishes_in_part(),
+            self.copies_an_output(),
             !self.is_linear(),
             self.derivation.class != Class::Pebo,
             self.plant.phi.len(),
@@ -61,13 +61,19 @@ impl Candidate {
         )
     }
 
-    /// Whether a component is zero by the identities, as a state less the output that measures it: such a component
-    /// filters nothing, and the state is recovered with all the noise of that output.
-    pub(super) fn vanishes_in_part(&self) -> bool {
+    /// Whether a state is recovered with all the noise of an output that tells it: by a component that is zero by the
+    /// identities, as a state less the output that measures it, or by that output alone.
+    pub(super) fn copies_an_output(&self) -> bool {
         let arena = &self.plant.arena;
+        if self.plant.identities.is_empty() {
+            return false;
+        }
         let domain = self.plant.domain();
         let vanishes = |component: &Expr| decide(arena, *component, &domain).is_zero();
-        !self.plant.identities.is_empty() && self.plant.transform().iter().any(vanishes)
+        let z = self.plant.z.iter().copied().collect();
+        let inverse = self.derivation.left_inverse.result.as_ref();
+        inverse.is_some_and(|inverse| inverse.x.iter().any(|(_, formula)| !arena.depends_on(*formula, &z)))
+            || self.plant.transform().iter().any(vanishes)
     }
 }
 

@@ -50,6 +50,7 @@ use std::collections::BTreeSet;
 use crate::analysis::{Class, Derivation, Verdict};
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
+use crate::cas::zero::decide;
 use crate::cas::{Expr, Symbol};
 use crate::plant::{Plant, TransformOrigin};
 
@@ -83,27 +84,19 @@ pub(crate) use words::settles;
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let question = Question::of(plant);
-    let mut hunt = Hunt {
-        question: &question,
-        candidates: Vec::new(),
-        tried: Vec::new(),
-        affine: None,
-        bound: None,
-        generalised: None,
-        later: Vec::new(),
-        seen: BTreeSet::new(),
-        invariant: None,
-    };
+    let mut hunt = Hunt::new(&question);
     // What the plant's class gives may leave nothing better to be expected.
     let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
     hunt.candidates.extend(own);
-    if class != Some(Class::Gpebo) {
-        hunt.plain();
+    hunt.run(class);
+    // An output may tell a state, with all of its noise: what filters it was looked for first.
+    if !hunt.candidates.iter().any(Candidate::is_full)
+        && let Some(told) = Question::with_told_states(plant)
+    {
+        let mut others = Hunt::new(&told);
+        others.run(class);
+        hunt.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
     }
-    if class != Some(Class::Pebo) && !hunt.is_over() {
-        hunt.generalised();
-    }
-    hunt.rest();
     let (mut candidates, tried) = (std::mem::take(&mut hunt.candidates), std::mem::take(&mut hunt.tried));
     if let Some(class) = class {
         candidates.retain(|candidate| candidate.derivation.class == class);
@@ -211,11 +204,38 @@ struct Hunt<'a> {
     invariant: Option<Vec<Expr>>,
 }
 
+impl<'a> Hunt<'a> {
+    fn new(question: &'a Question<'a>) -> Self {
+        Self {
+            question,
+            candidates: Vec::new(),
+            tried: Vec::new(),
+            affine: None,
+            bound: None,
+            generalised: None,
+            later: Vec::new(),
+            seen: BTreeSet::new(),
+            invariant: None,
+        }
+    }
+
+    /// Tries the forms of the class, or of both.
+    fn run(&mut self, class: Option<Class>) {
+        if class != Some(Class::Gpebo) {
+            self.plain();
+        }
+        if class != Some(Class::Pebo) && !self.is_over() {
+            self.generalised();
+        }
+        self.rest();
+    }
+}
+
 impl Hunt<'_> {
     /// Whether there is nothing better to be expected.
     fn is_over(&self) -> bool {
         !self.question.goes_on()
-            || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.vanishes_in_part())
+            || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.copies_an_output())
     }
 
     /// Whether a look at transforms affine in x, or at series of low order, shows that no smooth transform has a plain
@@ -500,6 +520,21 @@ impl Hunt<'_> {
         let Some(phi) = phi.iter().map(|component| continuous(question, *component)).collect::<Option<Vec<_>>>() else {
             return;
         };
+        // What the values of outputs make zero filters nothing; the rest may do alone.
+        let domain = &question.domain;
+        let is_zero = |component: &Expr| decide(question.arena, *component, domain).is_zero();
+        let rest: Vec<Expr> = match question.plant.identities.as_slice() {
+            [] => phi.clone(),
+            _ => phi.iter().copied().filter(|component| !is_zero(component)).collect(),
+        };
+        if !rest.is_empty() && rest.len() < phi.len() {
+            let candidate = question.arena.budget().share(3, || Candidate::of(question, &rest));
+            let is_full = candidate.is_full();
+            self.candidates.push(candidate);
+            if is_full {
+                return;
+            }
+        }
         let candidate = question.arena.budget().share(3, || Candidate::of(question, &phi));
         self.candidates.push(candidate);
     }

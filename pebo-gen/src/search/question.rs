@@ -16,7 +16,7 @@ pub(super) struct Question<'a> {
     /// The domain of the model: where its own formulas have values.
     pub(super) domain: Domain,
     pub(super) rates: BTreeMap<Symbol, Expr>,
-    /// The unmeasured states.
+    /// The unmeasured states that are looked for.
     pub(super) x: Vec<Symbol>,
     /// The outputs that a transform may hold: those with a rate.
     pub(super) y: Vec<Symbol>,
@@ -28,16 +28,30 @@ pub(super) struct Question<'a> {
 
 impl<'a> Question<'a> {
     pub(super) fn of(plant: &'a Plant) -> Self {
-        let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+        Self::knowing(plant, &BTreeMap::new())
+    }
+
+    /// The question for the other states where outputs tell some by their value alone; none where they tell none or all.
+    pub(super) fn with_told_states(plant: &'a Plant) -> Option<Self> {
+        let told = told(plant);
+        (!told.is_empty() && told.len() < plant.x.len()).then(|| Self::knowing(plant, &told))
+    }
+
+    /// The question where some states are functions of outputs.
+    fn knowing(plant: &'a Plant, told: &BTreeMap<Symbol, Expr>) -> Self {
+        let states = plant.x.iter().map(|state| state.symbol);
+        let x: Vec<Symbol> = states.filter(|state| !told.contains_key(state)).collect();
         let moving = plant.y.iter().filter(|output| output.rate.is_some());
-        let hidden = plant.hidden();
+        let mut hidden = plant.hidden();
+        hidden.retain(|symbol| !told.contains_key(symbol));
         let outputs = plant.y.iter().map(|output| output.symbol);
-        let signals = hidden.iter().copied().chain(outputs).chain(plant.u.iter().copied()).collect();
+        let signals = plant.hidden().into_iter().chain(outputs).chain(plant.u.iter().copied()).collect();
+        let rates = plant.rates().into_iter().map(|(symbol, rate)| (symbol, plant.arena.substitute(rate, told)));
         Self {
             plant,
             arena: &plant.arena,
             domain: plant.domain(),
-            rates: plant.rates(),
+            rates: rates.collect(),
             y: moving.map(|output| output.symbol).collect(),
             x,
             hidden,
@@ -102,4 +116,28 @@ impl<'a> Question<'a> {
     pub(super) fn goes_on(&self) -> bool {
         !self.arena.budget().is_exhausted()
     }
+}
+
+/// The states that outputs with a rate tell by their value alone, as functions of these: `th` by `m = th`. In the rates they
+/// are measured.
+fn told(plant: &Plant) -> BTreeMap<Symbol, Expr> {
+    let arena = &plant.arena;
+    let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+    let mut found = BTreeMap::new();
+    for output in plant.y.iter().filter(|output| output.rate.is_some()) {
+        let Some(value) = output.value else { continue };
+        let symbols = arena.symbols_of(&[value.expr]);
+        let others: Vec<Symbol> = symbols.difference(&constants).copied().collect();
+        let [state] = others.as_slice() else { continue };
+        let slope = arena.derivative(value.expr, *state);
+        let is_steep = !arena.depends_on(slope, &states) && !arena.is_zero(slope);
+        if !states.contains(state) || !is_steep || !plant.domain().implies(arena, slope, Relation::NonZero) {
+            continue;
+        }
+        let rest = arena.substitute(value.expr, &BTreeMap::from([(*state, arena.zero())]));
+        let state_by_output = arena.div(arena.sub(arena.of_symbol(output.symbol), rest), slope);
+        found.entry(*state).or_insert(state_by_output);
+    }
+    found
 }

@@ -284,11 +284,12 @@ fn of_more_solutions_than_states_those_that_hold_everywhere_are_taken() {
 
 #[test]
 fn a_state_is_not_replaced_by_the_output_that_measures_it() {
-    // `angle - incline` has a known rate, as it is zero: with it the estimate of the angle would be the sensor's sample.
+    // `angle - incline` has a known rate, as it is zero: with it, or without any component for the angle, the estimate of the
+    // angle would be the sensor's sample.
     let lines = "x: [angle, bias]\ny: [incline]\nu: [gyro]\nf_x: {angle: gyro - bias, bias: 0}\ng_y: {incline: angle}";
     let (_, found) = search(lines, None);
     assert_eq!(found.candidates[0].formulas(), ["angle", "bias"]);
-    assert!(found.candidates.iter().any(|candidate| candidate.formulas() == ["angle - incline", "bias"]));
+    assert!(found.candidates.iter().any(|candidate| candidate.formulas() == ["bias"]));
 }
 
 /// A damper of two constants: as a sum of products of q and signs it may jump where q is 1, and theta with it.
@@ -323,4 +324,23 @@ fn many_states_are_no_harder_than_few() {
     );
     let (_, found) = search(&lines, None);
     assert_eq!(written(&lines, &found), (pebo_gen::analysis::Class::Pebo, count));
+}
+
+/// A state that an output tells by its value is as good as measured.
+#[test]
+fn a_state_that_an_output_tells_is_no_unknown() {
+    for (lines, components) in [
+        ("x: [th, om]\ny: [m]\nu: [F]\nf_x: {th: om, om: F - sin(th) - 0.1*om}\ng_y: {m: th}", 1),
+        (
+            "parameters: [k, c]\nassume: [k > 0]\nx: [th, om]\ny: [m]\nu: [F]\n\
+             f_x: {th: om, om: F - sin(th) - 0.1*om}\ng_y: {m: k*th + c}",
+            1,
+        ),
+        ("x: [pos, vel]\ny: [m]\nu: [F]\nf_x: {pos: vel, vel: F - pos^3 - vel*pos^2}\ng_y: {m: pos}", 1),
+        // Biomass and its rate of growth from what it gives off: no component is zero for the value of the output.
+        ("x: [X, mu]\ny: [Q]\nu: [D]\nassume: [X > 0, mu > 0]\nf_x: {X: mu*X - D*X, mu: 0}\ng_y: {Q: mu*X}", 1),
+    ] {
+        let (_, found) = search(lines, None);
+        assert_eq!(written(lines, &found), (pebo_gen::analysis::Class::Pebo, components), "{lines}");
+    }
 }

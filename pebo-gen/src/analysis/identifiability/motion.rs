@@ -22,10 +22,10 @@ use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
 use crate::cas::field::Obstacle;
 use crate::cas::tidy::shortest;
-use crate::cas::{Arena, Expr, Symbol};
+use crate::cas::{Expr, Symbol};
 use crate::plant::Plant;
 
-use losses::MOST_OF_DETERMINANT;
+use losses::{MOST_OF_DETERMINANT, is_listed};
 use question::{MOST_PARTS, Question, Restriction, Shown};
 
 pub(super) use question::seen;
@@ -160,14 +160,6 @@ impl Question<'_> {
         }
         found
     }
-}
-
-/// Whether what is zero where an input has a value is listed by that.
-fn is_listed(arena: &Arena, listed: &[Blind], zero: Expr) -> bool {
-    listed.iter().any(|other| match &other.place {
-        Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
-        _ => false,
-    })
 }
 
 /// What is zero where nothing was decided.

@@ -11,7 +11,6 @@ use crate::cas::field::{Field, Obstacle};
 use crate::cas::poly::Poly;
 use crate::cas::{Arena, Expr, Symbol};
 
-use super::is_listed;
 use super::question::{Question, Restriction, Shown, seen};
 
 /// Parts of the rows up to which their determinant is worked out.
@@ -284,6 +283,14 @@ impl Question<'_> {
         };
         Some(places().is_none_or(|places| !places.all || places.together || !places.constants.is_empty()))
     }
+}
+
+/// Whether what is zero where an input has a value is listed by that.
+pub(super) fn is_listed(arena: &Arena, listed: &[Blind], zero: Expr) -> bool {
+    listed.iter().any(|other| match &other.place {
+        Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
+        _ => false,
+    })
 }
 
 /// What the symbol is where a formula that is linear in it vanishes.
