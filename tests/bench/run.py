@@ -77,6 +77,10 @@ def polynomials(shelf, ours, others, timeout):
         ("gcd, 3 variables", shelf.gcd(3, 40, 8)),
         ("gcd, 5 variables", shelf.gcd(5, 40, 4)),
         ("gcd, 7 variables", shelf.gcd(7, 40, 3)),
+        ("power 10, 1 variable, 40 terms", shelf.power(1, 40, 39, 10)),
+        ("power 6, 4 variables, 8 terms", shelf.power(4, 8, 4, 6)),
+        ("square-free parts, 1 variable", shelf.square_free(1, 12, 14)),
+        ("square-free parts, 3 variables", shelf.square_free(3, 5, 3)),
     ]
     table = []
     for name, job in jobs:

@@ -189,21 +189,19 @@ pub(super) fn prove(
         return Claim { verdict: Verdict::Proved, result: Some(regression) };
     }
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
-    let mut unsought = false;
-    let mut unrecovered = None;
-    let mut in_z: BTreeMap<usize, Expr> = BTreeMap::new();
+    let mut sought = Sought::default();
     if let Some(left_inverse) = left_inverse {
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| of_z(plant, domain, left_inverse, *rate)).collect();
-        in_z = rows.iter().map(|row| row.0).zip(rates.iter().copied()).collect();
+        sought.in_z = rows.iter().map(|row| row.0).zip(rates.iter().copied()).collect();
         match separation::separate(plant, domain, &rates) {
-            Ok(Some(_)) if cascade.lambda.is_some() => unsought = true,
+            Ok(Some(_)) if cascade.lambda.is_some() => sought.unsought = true,
             Ok(Some(separated)) => {
                 let eta: Vec<String> = separated.eta.iter().map(|e| plant.arena.print(*e)).collect();
                 let outputs = rows.iter().map(|r| r.0).collect();
                 if let Some(claim) = over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found) {
                     return claim;
                 }
-                unrecovered = Some(eta.join(", "));
+                sought.unrecovered = Some(eta.join(", "));
             }
             Ok(None) => {
                 let of_outputs: Vec<(usize, Expr)> = rows.iter().map(|row| row.0).zip(rates).collect();
@@ -212,7 +210,7 @@ pub(super) fn prove(
                     return claim;
                 }
                 if cascade.lambda.is_none() {
-                    formless(plant, domain, &in_z, &mut obstacles);
+                    formless(plant, domain, &sought.in_z, &mut obstacles);
                 }
             }
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
@@ -234,14 +232,38 @@ pub(super) fn prove(
     }
     // What the rates do not say an identity may, in a form that was not found, or a combination that was not put together.
     let is_refuted = plant.identities.is_empty() && combined.len() <= affine.len() && !moving;
-    let mut verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
+    let verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
+    refuse(plant, domain, (cascade, left_inverse), &sought, obstacles, verdict, found)
+}
+
+/// What was come to of functions of theta.
+#[derive(Default)]
+struct Sought {
+    /// Whether there are some that no regression is made of.
+    unsought: bool,
+    /// Functions from which theta was not recovered.
+    unrecovered: Option<String>,
+    /// The rates as functions of z.
+    in_z: BTreeMap<usize, Expr>,
+}
+
+/// Says of each rate that is in the way what is known of it; the verdict is the firmest that is left.
+fn refuse(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, left_inverse): (&Cascade, Option<&LeftInverse>),
+    sought: &Sought,
+    obstacles: Vec<Curved>,
+    mut verdict: Verdict,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
     for (index, rate, span, obstacle) in obstacles {
-        if unsought {
+        if sought.unsought {
             verdict = Verdict::Undecided;
             found.push(not_sought(plant, index, span));
             continue;
         }
-        if let Some(functions) = &unrecovered {
+        if let Some(functions) = &sought.unrecovered {
             verdict = Verdict::Undecided;
             found.push(not_recovered(plant, index, span, functions));
             continue;
@@ -249,7 +271,7 @@ pub(super) fn prove(
         // What was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         let form = match left_inverse {
-            Some(_) => in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
+            Some(_) => sought.in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
             // What the rate is in z is not known: it may be linear with any function of a component that is constant.
             None => constant_component(plant, cascade).map(OtherForm::Function),
         };

@@ -302,7 +302,7 @@ pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
     // That proofs leave a place out is no reason to divide by zero there: signs are known, and what is asked anyway.
     let mut facts = Facts::new();
     let signs = domain.facts.iter().filter(|(_, relation)| *relation != Relation::NonZero);
-    for (part, relation) in signs.map(|(part, relation)| (part, relation)).chain(own) {
+    for (part, relation) in signs.chain(own) {
         facts.assume(part, relation);
     }
     let there = Domain { facts, ..domain.clone() };

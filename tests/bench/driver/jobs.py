@@ -111,3 +111,11 @@ class Shelf:
 
     def gcd(self, variables, terms, largest):
         return self._put(f"gcd {variables} {terms} {largest}", polynomials.gcd(2, variables, terms, largest))
+
+    def power(self, variables, terms, largest, exponent):
+        job = polynomials.power(3, variables, terms, largest, exponent)
+        return self._put(f"power {variables} {terms} {largest} {exponent}", job)
+
+    def square_free(self, variables, terms, largest):
+        job = polynomials.square_free(4, variables, terms, largest)
+        return self._put(f"square-free {variables} {terms} {largest}", job)

@@ -28,6 +28,34 @@ def gcd(seed, variables, terms, largest):
             "b": _listed(_product(b, common)), "gcd": _listed(common)}
 
 
+def power(seed, variables, terms, largest, exponent):
+    """A power of a random polynomial with positive coefficients; in one variable without gaps, so that its terms are known."""
+    source = random.Random(seed)
+    if variables == 1:
+        base = {(place,): source.randint(1, 99) for place in range(terms)}
+        count = exponent * (terms - 1) + 1
+    else:
+        base = _random(source, variables, terms, largest, range(1, 100))
+        support = {(0,) * variables}
+        for _ in range(exponent):
+            support = {tuple(map(int.__add__, p, q)) for p in support for q in base}
+        count = len(support)
+    return {"kind": "power", "variables": variables, "a": _listed(base), "power": exponent,
+            "terms": count, "sum": str(sum(base.values()) ** exponent)}
+
+
+def square_free(seed, variables, terms, largest):
+    """a b^2 c^3 for random polynomials; that they are square-free and coprime every system confirms."""
+    source = random.Random(seed)
+    parts = [_random(source, variables, terms, largest, [*range(-99, 0), *range(1, 100)]) for _ in range(3)]
+    product = {(0,) * variables: 1}
+    for times, part in enumerate(parts, 1):
+        for _ in range(times):
+            product = _product(product, part)
+    return {"kind": "square_free", "variables": variables, "a": _listed(product),
+            "parts": [_listed(part) for part in parts]}
+
+
 def _random(source, variables, terms, largest, coefficients):
     # A constant term, so that no variable divides it; one coefficient 1, so that the content is 1.
     poly = {(0,) * variables: 1}

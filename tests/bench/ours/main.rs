@@ -15,6 +15,8 @@ fn main() -> ExitCode {
         Some("zero") => identity::proof(job, how.alone),
         Some("product") => polynomial::product(job),
         Some("gcd") => polynomial::gcd(job),
+        Some("power") => polynomial::power(job),
+        Some("square_free") => polynomial::square_free(job),
         _ => Err("an unknown kind of job".to_owned()),
     })
 }

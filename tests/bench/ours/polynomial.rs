@@ -16,19 +16,55 @@ pub(crate) fn product(job: &Value) -> Result<Work, String> {
     } else {
         (poly(job, "a")?, poly(job, "b")?)
     };
-    let (count, sum) = (number(job, "terms")?, job["sum"].as_str().and_then(Integer::from_digits));
+    let known = known(job)?;
     Ok(Box::new(move || {
         let product = a.mul(&b, &Limit::new(u64::MAX));
+        Box::new(move || checked(product, &known))
+    }))
+}
+
+/// A power, checked like a product.
+pub(crate) fn power(job: &Value) -> Result<Work, String> {
+    let (a, known) = (poly(job, "a")?, known(job)?);
+    let exponent = u32::try_from(number(job, "power")?).map_err(|error| error.to_string())?;
+    Ok(Box::new(move || {
+        let power = a.pow(exponent, &Limit::new(u64::MAX));
+        Box::new(move || checked(power, &known))
+    }))
+}
+
+/// The square-free parts of `a b^2 c^3`, which are known up to their signs.
+pub(crate) fn square_free(job: &Value) -> Result<Work, String> {
+    let a = poly(job, "a")?;
+    let parts = job["parts"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let parts: Vec<Poly> = parts.iter().map(of_terms).collect::<Result<_, _>>()?;
+    Ok(Box::new(move || {
+        let found = a.square_free(&Limit::new(u64::MAX));
         Box::new(move || {
-            let product = product.map_err(too_large)?;
-            let mut total = Integer::ZERO;
-            for (_, coefficient) in product.terms() {
-                total += coefficient;
-            }
-            let right = u64::try_from(product.term_count()) == Ok(count) && Some(total) == sum;
+            let found = found.map_err(too_large)?.factors;
+            let is_known = |(factor, times): &(Poly, u32)| {
+                let part = usize::try_from(*times).ok().and_then(|times| parts.get(times.checked_sub(1)?));
+                part.is_some_and(|part| part == factor || *factor == -part)
+            };
+            let right = found.len() == parts.len() && found.iter().all(is_known);
             if right { Ok(()) } else { Err("WRONG".to_owned()) }
         })
     }))
+}
+
+/// The number of terms and the sum of coefficients.
+fn known(job: &Value) -> Result<(u64, Option<Integer>), String> {
+    Ok((number(job, "terms")?, job["sum"].as_str().and_then(Integer::from_digits)))
+}
+
+fn checked(found: Result<Poly, TooLarge>, (count, sum): &(u64, Option<Integer>)) -> Result<(), String> {
+    let found = found.map_err(too_large)?;
+    let mut total = Integer::ZERO;
+    for (_, coefficient) in found.terms() {
+        total += coefficient;
+    }
+    let right = u64::try_from(found.term_count()) == Ok(*count) && Some(total) == *sum;
+    if right { Ok(()) } else { Err("WRONG".to_owned()) }
 }
 
 /// A greatest common divisor, which is known up to its sign.
@@ -44,8 +80,12 @@ pub(crate) fn gcd(job: &Value) -> Result<Work, String> {
 }
 
 fn poly(job: &Value, key: &str) -> Result<Poly, String> {
+    of_terms(&job[key])
+}
+
+fn of_terms(list: &Value) -> Result<Poly, String> {
     let term = |(coefficient, exponents): (i64, Vec<u32>)| (Monomial::new((0..).zip(exponents)), coefficient.into());
-    Poly::from_terms(terms(job, key).into_iter().map(term)).map_err(too_large)
+    Poly::from_terms(terms(list).into_iter().map(term)).map_err(too_large)
 }
 
 fn too_large(error: TooLarge) -> String {

@@ -114,10 +114,10 @@ pub(crate) fn entries<'a>(job: &'a Value, key: &str) -> impl Iterator<Item = (&'
 }
 
 /// The terms of a polynomial: coefficients with their exponents.
-pub(crate) fn terms(job: &Value, key: &str) -> Vec<(i64, Vec<u32>)> {
+pub(crate) fn terms(list: &Value) -> Vec<(i64, Vec<u32>)> {
     let exponent = |value: &Value| value.as_u64().and_then(|e| u32::try_from(e).ok());
     let term = |entry: &Value| Some((entry[0].as_i64()?, entry[1].as_array()?.iter().filter_map(exponent).collect()));
-    job[key].as_array().into_iter().flatten().filter_map(term).collect()
+    list.as_array().into_iter().flatten().filter_map(term).collect()
 }
 
 /// A number of the job.

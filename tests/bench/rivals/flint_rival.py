@@ -42,4 +42,29 @@ def gcd(job, *_how):
     return work
 
 
-protocol.serve(lambda job, *how: {"zero": proof, "product": product, "gcd": gcd}[job["kind"]](job, *how))
+def power(job, *_how):
+    context = _context(job["variables"])
+    a = _poly(context, job["a"])
+
+    def work():
+        found = a ** job["power"]
+        return lambda: protocol.right(len(found) == job["terms"] and str(sum(found.coeffs())) == job["sum"])
+
+    return work
+
+
+def square_free(job, *_how):
+    context = _context(job["variables"])
+    a, parts = _poly(context, job["a"]), [_poly(context, part) for part in job["parts"]]
+
+    def work():
+        found = a.factor_squarefree()[1]
+        known = [(part, times) for times, part in enumerate(parts, 1)]
+        return lambda: protocol.right(len(found) == len(known) and all(
+            any(times == own and part in (other, -other) for other, own in known) for part, times in found))
+
+    return work
+
+
+JOBS = {"zero": proof, "product": product, "gcd": gcd, "power": power, "square_free": square_free}
+protocol.serve(lambda job, *how: JOBS[job["kind"]](job, *how))

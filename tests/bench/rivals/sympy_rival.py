@@ -89,4 +89,29 @@ def gcd(job, *_how):
     return work
 
 
-protocol.serve(lambda job, *how: {"zero": proof, "product": product, "gcd": gcd}[job["kind"]](job, *how))
+def power(job, *_how):
+    names = ring([f"x{i}" for i in range(job["variables"])], sp.ZZ, order=sp.lex)[0]
+    a = _poly(names, job["a"])
+
+    def work():
+        found = a ** job["power"]
+        return lambda: protocol.right(len(found) == job["terms"] and str(sum(found.values())) == job["sum"])
+
+    return work
+
+
+def square_free(job, *_how):
+    names = ring([f"x{i}" for i in range(job["variables"])], sp.ZZ, order=sp.lex)[0]
+    a, parts = _poly(names, job["a"]), [_poly(names, part) for part in job["parts"]]
+
+    def work():
+        found = a.sqf_list()[1]
+        known = [(part, times) for times, part in enumerate(parts, 1)]
+        return lambda: protocol.right(len(found) == len(known) and all(
+            any(times == own and part in (other, -other) for other, own in known) for part, times in found))
+
+    return work
+
+
+JOBS = {"zero": proof, "product": product, "gcd": gcd, "power": power, "square_free": square_free}
+protocol.serve(lambda job, *how: JOBS[job["kind"]](job, *how))
