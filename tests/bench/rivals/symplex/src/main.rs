@@ -110,7 +110,7 @@ fn proof(job: &Value, how: &How) -> Result<Work, String> {
 fn poly(job: &Value, key: &str) -> Result<Poly, String> {
     let variables = usize::try_from(number(job, "variables")?).map_err(|error| error.to_string())?;
     let term = |(coefficient, exponents)| (exponents, Ratio::from_integer(BigInt::from(coefficient)));
-    Poly::from_terms(variables, terms(job, key).into_iter().map(term).collect()).ok_or_else(|| "terms".to_owned())
+    Poly::from_terms(variables, terms(&job[key]).into_iter().map(term).collect()).ok_or_else(|| "terms".to_owned())
 }
 
 fn product(job: &Value) -> Result<Work, String> {
