@@ -9,6 +9,9 @@ use super::expr::Expr;
 use super::facts::Relation;
 use super::field::{Field, Obstacle};
 
+/// How many places where an expression bends are looked at, each from both sides.
+const MOST_BORDERS: usize = 2;
+
 /// Signs that a value has somewhere.
 #[derive(Default)]
 struct Signs {
@@ -19,6 +22,11 @@ struct Signs {
 impl Domain {
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
     pub(crate) fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        self.implies_across(arena, expr, relation, MOST_BORDERS)
+    }
+
+    /// The same with a look at either side of so many places where the expression bends.
+    fn implies_across(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
         if self.facts.iter().any(|fact| fact == (expr, relation)) {
             return true;
         }
@@ -43,6 +51,22 @@ impl Domain {
             || (signed && !self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
             || divides()
             || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
+            || (signed && borders > 0 && self.implies_on_both_sides(arena, expr, relation, borders - 1))
+    }
+
+    /// Whether the expression compares so on either side of a place where it bends: there it has no magnitude of what
+    /// passes zero. `max(q, 1)` is q where that is at least 1, and 1 elsewhere.
+    fn implies_on_both_sides(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
+        let sides = |divider: Expr| [divider, arena.neg(divider)];
+        let is_open = |divider: &Expr| {
+            !sides(*divider).into_iter().any(|side| self.implies_across(arena, side, Relation::NonNegative, 0))
+        };
+        let Some(divider) = arena.dividers(&[expr]).into_iter().find(is_open) else { return false };
+        sides(divider).into_iter().all(|side| {
+            let mut there = self.clone();
+            there.facts.assume(side, Relation::NonNegative);
+            there.implies_across(arena, expr, relation, borders)
+        })
     }
 
     /// The signs that the expression provably has at some points of the domain.
@@ -96,5 +120,41 @@ impl Domain {
         Ok(rest.to_constant().is_some()
             || field.signs().is_positive(&rest)?
             || field.signs().is_positive(&rest.opposite())?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::Function;
+    use crate::cas::rational::Rational;
+
+    #[test]
+    fn signs_are_looked_for_on_both_sides_of_a_bend() {
+        use Relation::{NonNegative, NonZero, Positive};
+
+        let arena = Arena::new();
+        let [q, k] = ["q", "k"].map(|name| arena.variable(name));
+        let number = |n: i64| arena.number(Rational::from(n));
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let cases = [
+            (call(Function::Max, &[q, number(1)]), Positive, true),
+            (call(Function::Max, &[q, number(1)]), NonZero, true),
+            (call(Function::Max, &[q, number(0)]), NonNegative, true),
+            (call(Function::Max, &[q, number(0)]), Positive, false),
+            (arena.add(call(Function::Max, &[q, number(-1)]), number(1)), NonZero, false),
+            (arena.add(call(Function::Max, &[q, number(-1)]), number(2)), NonZero, true),
+            (arena.add(call(Function::Sat, &[q]), number(2)), Positive, true),
+            (arena.add(call(Function::Sat, &[q]), number(1)), Positive, false),
+            (arena.add(call(Function::Sign, &[q]), number(2)), NonZero, true),
+            (arena.add(call(Function::Sign, &[q]), number(1)), NonZero, false),
+            (arena.sub(number(-1), call(Function::Max, &[k, number(1)])), NonZero, true),
+            (arena.sub(call(Function::Abs, &[q]), q), NonNegative, true),
+            (arena.sub(call(Function::Abs, &[q]), q), Positive, false),
+        ];
+        for (expr, relation, expected) in cases {
+            let implied = Domain::default().implies(&arena, expr, relation);
+            assert_eq!(implied, expected, "{} {}", arena.print(expr), relation.sign());
+        }
     }
 }

@@ -18,6 +18,7 @@ pub mod domain;
 pub(crate) mod elimination;
 pub(crate) mod enclosure;
 mod expr;
+mod extremes;
 pub mod facts;
 pub mod field;
 pub(crate) mod frozen;

@@ -285,6 +285,11 @@ pub(super) fn assumed(arena: &Arena, assumptions: &[Assumption], parameters: &[P
     let mut domain = Domain::default();
     for assumption in assumptions {
         domain.facts.assume(assumption.expr, assumption.relation);
+        if assumption.relation != Relation::NonZero {
+            for above in arena.above_extremes(assumption.expr) {
+                domain.facts.assume(above, assumption.relation);
+            }
+        }
     }
     for parameter in parameters {
         let Some(value) = &parameter.value else { continue };

@@ -41,6 +41,34 @@ fn conditions_are_discharged_by_enclosures_over_the_assumed_box() {
     assert_eq!(remaining("u > 0"), 1);
 }
 
+/// What holds of magnitudes, greatest and least values is used, and what holds of these whatever they are of.
+#[test]
+fn conditions_are_discharged_by_what_bounds_magnitudes() {
+    let remaining = |assume: &str, rate: &str| {
+        let plant = derived(&format!(
+            "x: [p]\ny: [q]\nu: [v]\nassume: ['{assume}']\nf_x: {{p: '{rate}'}}\nf_y: {{q: p}}\nphi: [p]"
+        ));
+        let arena = &plant.plant.arena;
+        let shown = |(e, relation): &(_, Relation)| format!("{} {}", arena.print(*e), relation.sign());
+        plant.derivation.conditions.iter().map(shown).collect::<Vec<_>>()
+    };
+    for (assume, rate) in [
+        ("abs(q) < 1", "v/sqrt(1 - q^2)"),
+        ("max(q, v) < 1", "v/(q - 1) + 1/(1 - v)"),
+        ("min(q, v) > 0", "sqrt(q) + log(v)"),
+        ("v > 0", "v/max(q, 1)"),
+        ("v > 0", "v/(2 + sat(q)) - 1/(max(q, v) + max(q, 1))"),
+    ] {
+        assert_eq!(remaining(assume, rate), Vec::<String>::new(), "{assume}, {rate}");
+    }
+    assert_eq!(remaining("abs(q) > 1", "v/(1 - q)"), ["1 - q != 0"]);
+    assert_eq!(remaining("max(q, v) > 0", "v/q"), ["q != 0"]);
+    assert_eq!(remaining("v > 0", "v/(1 + max(q, -1))"), ["max(q, -1) + 1 != 0"]);
+    assert_eq!(remaining("v > 0", "v/(1 + sat(q))"), ["sat(q) + 1 != 0"]);
+    // A sign computes zero where its argument is zero, and proofs leave that out.
+    assert_eq!(remaining("v > 0", "v/(2 + sign(q))"), ["q != 0"]);
+}
+
 /// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
 #[test]
 fn points_without_a_value_refute_nothing() {

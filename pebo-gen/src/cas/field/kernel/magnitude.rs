@@ -18,10 +18,10 @@ impl Field<'_> {
 
     /// `|poly|`: by its sign where that is known, else part by part.
     fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
-        match self.signs().of_polynomial(poly)? {
-            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(poly.clone())),
-            Some(_) => return Ok(Fraction::polynomial(-poly)),
-            None => {}
+        for signed in [poly.clone(), -poly] {
+            if self.signs().of_polynomial(&signed)?.is_some_and(Sign::is_positive_or_zero) {
+                return Ok(Fraction::polynomial(signed));
+            }
         }
         let (content, rest) = primitive(poly);
         let product = self.product_of(&rest)?;
@@ -35,10 +35,10 @@ impl Field<'_> {
 
     /// `|part|`: by its sign where that is known, else a kernel whose square is known.
     pub(in crate::cas::field) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
-        match self.signs().of_part(part)? {
-            Some(sign) if sign.is_positive_or_zero() => return Ok(Fraction::polynomial(part.clone())),
-            Some(Sign::Negative) => return Ok(Fraction::polynomial(-part)),
-            _ => {}
+        for signed in [part.clone(), -part] {
+            if self.signs().of_part(&signed)?.is_some_and(Sign::is_positive_or_zero) {
+                return Ok(Fraction::polynomial(signed));
+            }
         }
         self.signs().leave_open(part);
         let kernel = self.arena.call(Function::Abs, &[self.show_polynomial(part)]);
