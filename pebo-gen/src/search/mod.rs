@@ -90,9 +90,10 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     hunt.candidates.extend(own);
     hunt.run(class);
     // An output may tell a state, with all of its noise: what filters it was looked for first.
-    if !hunt.candidates.iter().any(Candidate::is_full)
-        && let Some(told) = Question::with_told_states(plant)
-    {
+    for told in Question::with_told_states(plant) {
+        if hunt.is_full() || !told.goes_on() {
+            break;
+        }
         let mut others = Hunt::new(&told);
         others.run(class);
         hunt.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
@@ -236,6 +237,11 @@ impl Hunt<'_> {
     fn is_over(&self) -> bool {
         !self.question.goes_on()
             || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.copies_an_output())
+    }
+
+    /// Whether a transform was found.
+    fn is_full(&self) -> bool {
+        self.candidates.iter().any(Candidate::is_full)
     }
 
     /// Whether a look at transforms affine in x, or at series of low order, shows that no smooth transform has a plain
@@ -502,7 +508,7 @@ impl Hunt<'_> {
     /// Proves what was put off: transforms in which the outputs do not look affine.
     fn rest(&mut self) {
         for phi in std::mem::take(&mut self.later) {
-            if self.candidates.iter().any(Candidate::is_full) || !self.question.goes_on() {
+            if self.is_full() || !self.question.goes_on() {
                 return;
             }
             self.prove(&phi);

@@ -31,13 +31,20 @@ impl<'a> Question<'a> {
         Self::knowing(plant, &BTreeMap::new())
     }
 
-    /// The question for the other states where outputs tell some by their value alone; none where they tell none or all.
-    pub(super) fn with_told_states(plant: &'a Plant) -> Option<Self> {
-        let told = told(plant);
-        (!told.is_empty() && told.len() < plant.x.len()).then(|| Self::knowing(plant, &told))
+    /// The questions for the other states where outputs tell some by their value, alone or together with states that stay
+    /// unmeasured. An output that is a function of several states tells one of them; which, differs between the questions.
+    pub(super) fn with_told_states(plant: &'a Plant) -> Vec<Self> {
+        let mut known: Vec<BTreeMap<Symbol, Expr>> = Vec::new();
+        for turn in 0..plant.x.len() {
+            let told = told(plant, turn);
+            if !told.is_empty() && told.len() < plant.x.len() && !known.contains(&told) {
+                known.push(told);
+            }
+        }
+        known.iter().map(|told| Self::knowing(plant, told)).collect()
     }
 
-    /// The question where some states are functions of outputs.
+    /// The question where some states are functions of outputs and of the other states.
     fn knowing(plant: &'a Plant, told: &BTreeMap<Symbol, Expr>) -> Self {
         let states = plant.x.iter().map(|state| state.symbol);
         let x: Vec<Symbol> = states.filter(|state| !told.contains_key(state)).collect();
@@ -118,26 +125,47 @@ impl<'a> Question<'a> {
     }
 }
 
-/// The states that outputs with a rate tell by their value alone, as functions of these: `th` by `m = th`. In the rates they
-/// are measured.
-fn told(plant: &Plant) -> BTreeMap<Symbol, Expr> {
+/// States that outputs with a rate tell by their value, as functions of these and of the states that are left: `th` by
+/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. What moves is told before what is constant; of as
+/// many states as an output has, the one is told whose turn it is.
+fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
+    let domain = plant.domain();
     let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
-    let mut found = BTreeMap::new();
-    for output in plant.y.iter().filter(|output| output.rate.is_some()) {
-        let Some(value) = output.value else { continue };
-        let symbols = arena.symbols_of(&[value.expr]);
-        let others: Vec<Symbol> = symbols.difference(&constants).copied().collect();
-        let [state] = others.as_slice() else { continue };
-        let slope = arena.derivative(value.expr, *state);
-        let is_steep = !arena.depends_on(slope, &states) && !arena.is_zero(slope);
-        if !states.contains(state) || !is_steep || !plant.domain().implies(arena, slope, Relation::NonZero) {
+    let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+    let rates = plant.rates();
+    let is_constant = |state: &Symbol| rates.get(state).is_some_and(|rate| arena.is_zero(*rate));
+    let values = plant.y.iter().filter(|output| output.rate.is_some());
+    let mut values: Vec<(Symbol, Expr)> = values.filter_map(|y| Some((y.symbol, y.value.as_ref()?.expr))).collect();
+    // What an output tells alone is known in those of several states.
+    values.sort_by_key(|(_, value)| arena.symbols_of(&[*value]).intersection(&states).count());
+    let mut found: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    for (output, value) in values {
+        let value = arena.substitute(value, &found);
+        let symbols = arena.symbols_of(&[value]);
+        let is_known = |symbol: &Symbol| {
+            states.contains(symbol) || parameters.contains(symbol) || plant.y.iter().any(|y| y.symbol == *symbol)
+        };
+        if !symbols.iter().all(is_known) {
             continue;
         }
-        let rest = arena.substitute(value.expr, &BTreeMap::from([(*state, arena.zero())]));
-        let state_by_output = arena.div(arena.sub(arena.of_symbol(output.symbol), rest), slope);
-        found.entry(*state).or_insert(state_by_output);
+        let is_steep = |state: &Symbol| {
+            let slope = arena.derivative(value, *state);
+            let is_free = !arena.depends_on(slope, &states) && !arena.is_zero(slope);
+            is_free && domain.implies(arena, slope, Relation::NonZero)
+        };
+        let mut told: Vec<Symbol> = plant.x.iter().map(|x| x.symbol).filter(|x| symbols.contains(x)).collect();
+        told.retain(is_steep);
+        told.sort_by_key(is_constant);
+        let Some(state) = (!told.is_empty()).then(|| told[turn % told.len()]) else { continue };
+        let rest = arena.substitute(value, &BTreeMap::from([(state, arena.zero())]));
+        let difference = arena.sub(arena.of_symbol(output), rest);
+        let by_output = arena.div(difference, arena.derivative(value, state));
+        let own = BTreeMap::from([(state, by_output)]);
+        for earlier in found.values_mut() {
+            *earlier = arena.substitute(*earlier, &own);
+        }
+        found.insert(state, by_output);
     }
     found
 }

@@ -326,6 +326,28 @@ fn many_states_are_no_harder_than_few() {
     assert_eq!(written(&lines, &found), (pebo_gen::analysis::Class::Pebo, count));
 }
 
+/// An output that is a sum of states tells one of them by the others: a sine of unknown frequency with a bias, and the way to
+/// an unknown level at an unknown rate.
+#[test]
+fn a_state_that_an_output_tells_together_with_others_is_no_unknown() {
+    for (lines, class, phi) in [
+        (
+            "x: [p, s, w2, b]\ny: [a]\nassume: [w2 > 0]\nf_x: {p: s, s: -w2*p, w2: 0, b: 0}\ng_y: {a: p + b}",
+            pebo_gen::analysis::Class::Gpebo,
+            vec!["s", "w2", "w2*b"],
+        ),
+        (
+            "x: [c, k, b]\ny: [m]\nf_x: {c: -k*c, k: 0, b: 0}\ng_y: {m: c + b}",
+            pebo_gen::analysis::Class::Pebo,
+            vec!["k", "k*b"],
+        ),
+    ] {
+        let (_, found) = search(lines, None);
+        assert_eq!(written(lines, &found), (class, phi.len()), "{lines}");
+        assert_eq!(found.candidates[0].formulas(), phi, "{lines}");
+    }
+}
+
 /// A state that an output tells by its value is as good as measured.
 #[test]
 fn a_state_that_an_output_tells_is_no_unknown() {
