@@ -11,6 +11,7 @@
 
 use super::integer::Integer;
 use super::poly::{PrimeField, Residue, TooLarge, Work, steps};
+use super::residues::Rows;
 
 /// Bits of a prime: with those of a part of an entry, sums of very many products fit double words.
 const BITS_OF_PRIME: u32 = 50;
@@ -169,33 +170,17 @@ fn ratio(value: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
 }
 
 /// The inverse of a matrix modulo a prime.
-fn inverse(prime: &PrimeField, mut matrix: Vec<Vec<Residue>>) -> Option<Vec<Vec<Residue>>> {
+fn inverse(prime: &PrimeField, matrix: Vec<Vec<Residue>>) -> Option<Vec<Vec<Residue>>> {
     let size = matrix.len();
-    for (index, row) in matrix.iter_mut().enumerate() {
-        row.extend((0..size).map(|column| if column == index { prime.one() } else { Residue::ZERO }));
+    let mut rows = Rows::new(prime, 2 * size);
+    for (index, mut row) in matrix.into_iter().enumerate() {
+        row.resize(2 * size, Residue::ZERO);
+        row[size + index] = prime.one();
+        rows.insert(row);
     }
-    for column in 0..size {
-        let found = (column..size).find(|row| !matrix[*row][column].is_zero())?;
-        matrix.swap(column, found);
-        let scale = prime.inv(matrix[column][column])?;
-        for entry in &mut matrix[column] {
-            *entry = prime.mul(*entry, scale);
-        }
-        let pivot = std::mem::take(&mut matrix[column]);
-        for row in matrix.iter_mut().filter(|row| !row.is_empty()) {
-            let factor = row[column];
-            if !factor.is_zero() {
-                for (entry, other) in row[column..].iter_mut().zip(&pivot[column..]) {
-                    *entry = prime.sub(*entry, prime.mul(factor, *other));
-                }
-            }
-        }
-        matrix[column] = pivot;
-    }
-    for row in &mut matrix {
-        row.drain(..size);
-    }
-    Some(matrix)
+    // As many rows as columns: where each of these has a pivot, none is beyond.
+    let is_regular = rows.pivots().eq(0..size);
+    is_regular.then(|| rows.reduced().into_iter().map(|(_, mut row)| row.split_off(size)).collect())
 }
 
 #[cfg(test)]

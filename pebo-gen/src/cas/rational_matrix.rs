@@ -35,6 +35,23 @@ pub(super) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Re
     eliminated(rows, columns, work)
 }
 
+/// A solution of rows `[matrix | right side]`, with zero for unknowns that stay free; none where there is none.
+pub(super) fn solution(
+    rows: &[Vec<Rational>],
+    unknowns: usize,
+    work: &Work,
+) -> Result<Option<Vec<Rational>>, TooLarge> {
+    let Reduced { rows, rest } = reduced(rows, unknowns, work)?;
+    if rest.iter().any(|row| !row[unknowns].is_zero()) {
+        return Ok(None);
+    }
+    let mut solution = vec![Rational::ZERO; unknowns];
+    for (pivot, row) in rows {
+        solution[pivot] = row[unknowns].clone();
+    }
+    Ok(Some(solution))
+}
+
 fn eliminated(mut rest: Vec<Vec<Integer>>, columns: usize, work: &Work) -> Result<Reduced, TooLarge> {
     let mut done: Vec<(usize, Vec<Integer>)> = Vec::new();
     let mut last = Integer::ONE;

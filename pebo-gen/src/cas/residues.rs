@@ -48,21 +48,27 @@ impl<'a> Rows<'a> {
         true
     }
 
-    /// A basis of the vectors that all rows annihilate, each with its last column: the others are left of it, and no
-    /// two have the same. A column has a vector if and only if it is a combination of those left of it.
-    pub(crate) fn null_space(&self) -> Vec<(usize, Vec<Residue>)> {
-        let prime = self.prime;
-        let mut reduced = self.echelon.clone();
+    /// The rows by ascending pivots, each zero in the pivots of the others.
+    pub(crate) fn reduced(self) -> Vec<(usize, Vec<Residue>)> {
+        let mut reduced = self.echelon;
         for index in (0..reduced.len()).rev() {
             let (above, rest) = reduced.split_at_mut(index);
             let (pivot, row) = &rest[0];
             for (_, other) in above {
                 let factor = other[*pivot];
                 if !factor.is_zero() {
-                    clear(prime, &mut other[*pivot..], factor, &row[*pivot..]);
+                    clear(self.prime, &mut other[*pivot..], factor, &row[*pivot..]);
                 }
             }
         }
+        reduced
+    }
+
+    /// A basis of the vectors that all rows annihilate, each with its last column: the others are left of it, and no
+    /// two have the same. A column has a vector if and only if it is a combination of those left of it.
+    pub(crate) fn null_space(&self) -> Vec<(usize, Vec<Residue>)> {
+        let prime = self.prime;
+        let reduced = self.clone().reduced();
         let is_pivot = |column: &usize| reduced.binary_search_by_key(column, |(pivot, _)| *pivot).is_ok();
         let vector = |free: usize| {
             let mut vector = vec![Residue::ZERO; self.columns];

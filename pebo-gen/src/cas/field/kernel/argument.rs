@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 
 use crate::cas::expr::Expr;
 use crate::cas::integer::Integer;
-use crate::cas::poly::{Monomial, Poly, steps};
+use crate::cas::poly::{Monomial, Poly};
 use crate::cas::rational::Rational;
+use crate::cas::rational_matrix;
 
 use crate::cas::field::fraction::{Fraction, negated, primitive};
 use crate::cas::field::{Family, Field, Obstacle};
@@ -197,9 +198,8 @@ impl Field<'_> {
                 row[column] = Rational::from(coefficient.clone());
             }
         }
-        // A row for each monomial, and a pass over all of them for each atom.
-        self.limit().spend(steps(rows.len() * columns.len() * columns.len()))?;
-        let Some(solution) = solve(rows.into_values().collect(), atoms.len()) else { return Ok(None) };
+        let rows: Vec<_> = rows.into_values().collect();
+        let Some(solution) = rational_matrix::solution(&rows, atoms.len(), self.limit())? else { return Ok(None) };
         let used = atoms.iter().zip(solution).filter(|(_, share)| !share.is_zero());
         Ok(Some(used.map(|((atom, _), share)| (*atom, share)).collect()))
     }
@@ -209,34 +209,6 @@ impl Field<'_> {
 fn over(monomial: &Monomial, divisor: &Monomial) -> Option<Monomial> {
     let fits = divisor.powers().iter().all(|&(v, e)| monomial.exponent(v) >= e);
     fits.then(|| Monomial::new(monomial.powers().iter().map(|&(v, e)| (v, e - divisor.exponent(v)))))
-}
-
-/// Solves rows `[matrix | right]` over the rationals; zero for unknowns that are free.
-fn solve(mut rows: Vec<Vec<Rational>>, unknowns: usize) -> Option<Vec<Rational>> {
-    let mut pivots: Vec<(usize, Vec<Rational>)> = Vec::new();
-    for column in 0..unknowns {
-        let Some(index) = rows.iter().position(|row| !row[column].is_zero()) else { continue };
-        let pivot = rows.swap_remove(index);
-        let pivot: Vec<Rational> =
-            pivot.iter().map(|entry| entry.checked_div(&pivot[column])).collect::<Option<_>>()?;
-        for row in rows.iter_mut().chain(pivots.iter_mut().map(|(_, row)| row)) {
-            let factor = row[column].clone();
-            if !factor.is_zero() {
-                for (entry, own) in row.iter_mut().zip(&pivot) {
-                    *entry = &*entry - &(&factor * own);
-                }
-            }
-        }
-        pivots.push((column, pivot));
-    }
-    if rows.iter().any(|row| !row[unknowns].is_zero()) {
-        return None;
-    }
-    let mut solution = vec![Rational::ZERO; unknowns];
-    for (column, row) in pivots {
-        solution[column] = row[unknowns].clone();
-    }
-    Some(solution)
 }
 
 #[cfg(test)]
