@@ -7,29 +7,29 @@ use dashu_int::{IBig, UBig};
 use super::Integer;
 use super::Repr::{Big, Small};
 
+/// Bytes of a word: entries are written and read so many bytes at a time.
+const WORD: usize = 8;
+
 impl Integer {
-    /// The sum of `entry * 256^(slot * place)` over entries and their places, all different; the magnitude of each fits so
-    /// many bytes.
+    /// The sum of `entry * 256^(slot * place)` over entries by ascending places; the magnitude of each fits so many bytes.
     pub(in crate::cas) fn packed<'a>(
         entries: impl Iterator<Item = (usize, &'a Self)>,
         slot: usize,
         places: usize,
     ) -> Self {
-        let [mut positive, mut negative] = [vec![0_u8; slot * places], Vec::new()];
+        let length = slot * places + WORD;
+        let [mut positive, mut negative] = [vec![0_u8; length], Vec::new()];
         for (place, entry) in entries {
             let digits = if entry.is_negative() {
-                negative.resize(slot * places, 0);
+                negative.resize(length, 0);
                 &mut negative
             } else {
                 &mut positive
             };
             let digits = &mut digits[slot * place..];
             match &entry.0 {
-                Small(value) => {
-                    let bytes = value.unsigned_abs().to_le_bytes();
-                    let length = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
-                    digits[..length].copy_from_slice(&bytes[..length]);
-                }
+                // What is beyond the slot is zero, and the next entry is written over it.
+                Small(value) => digits[..WORD].copy_from_slice(&value.unsigned_abs().to_le_bytes()),
                 Big(value) => {
                     let bytes = value.as_ref().unsigned_abs().to_le_bytes();
                     digits[..bytes.len()].copy_from_slice(&bytes);
@@ -37,6 +37,9 @@ impl Integer {
             }
         }
         let whole = |bytes: &[u8]| IBig::from(UBig::from_le_bytes(bytes));
+        if negative.is_empty() {
+            return Self::from_big(whole(&positive));
+        }
         Self::from_big(whole(&positive) - whole(&negative))
     }
 
@@ -44,7 +47,11 @@ impl Integer {
     pub(in crate::cas) fn unpacked(&self, slot: usize, places: usize) -> Vec<Self> {
         let negative = self.is_negative();
         let mut bytes = self.big().as_ref().unsigned_abs().to_le_bytes().into_vec();
-        bytes.resize(slot * places, 0);
+        bytes.resize(slot * places + WORD, 0);
+        if slot <= WORD {
+            return of_words(&bytes, slot, places, negative);
+        }
+        bytes.truncate(slot * places);
         let mut carry = false;
         let entry = |digits: &mut [u8]| {
             if carry {
@@ -61,6 +68,24 @@ impl Integer {
         };
         bytes.chunks_exact_mut(slot).map(entry).collect()
     }
+}
+
+/// The entries of slots that are no longer than a word, with the opposite sign if asked for.
+fn of_words(bytes: &[u8], slot: usize, places: usize, negative: bool) -> Vec<Integer> {
+    // The digits in the highest bits: a sign is where it is read, and what is beyond the slot is gone.
+    let shift = 64 - 8 * slot;
+    let mut borrowed = 0;
+    let mut entries = Vec::with_capacity(places);
+    for place in 0..places {
+        let mut word = [0; WORD];
+        word.copy_from_slice(&bytes[slot * place..][..WORD]);
+        let digits = i64::from_le_bytes(word) << shift;
+        let value = digits.wrapping_add(borrowed << shift);
+        borrowed = i64::from(digits < 0 || value < 0);
+        let value = Integer::from(value >> shift);
+        entries.push(if negative { -value } else { value });
+    }
+    entries
 }
 
 /// Digits in two's complement.

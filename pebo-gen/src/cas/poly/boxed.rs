@@ -1,5 +1,7 @@
 //! Products and quotients in an array with a cell for every monomial within given degrees.
 
+use std::ops::Range;
+
 use super::super::integer::Integer;
 use super::division::{Outcome, Rest};
 use super::layout::{Exponents, Layout};
@@ -7,6 +9,9 @@ use super::multiply::{Factor, Sum, Terms};
 
 /// Boxes larger than this do not stay in the cache: a hash table or a heap is then no slower.
 const MAX_CELLS: usize = 1 << 21;
+
+/// Sums that are added to in turn are that near to each other, if they can be.
+const MOST_BYTES_OF_BLOCK: usize = 1 << 15;
 
 /// The monomials up to some degrees, numbered: the exponents are digits, the last variable's the
 /// lowest, so that numbers ascend as monomials do and add up where those are multiplied.
@@ -29,23 +34,37 @@ impl<'a> ExponentBox<'a> {
     /// The product of factors whose degrees add up to those of the box.
     pub(super) fn product<S: Sum>(&self, left: &Factor<'_, S::Factor>, right: &Factor<'_, S::Factor>) -> Terms {
         let mut sums = vec![S::default(); self.cells];
-        let places = self.places(right.keys);
-        for (start, a) in self.places(left.keys).into_iter().zip(left.coefficients) {
-            let row = &mut sums[start..];
-            for (place, b) in places.iter().zip(right.coefficients) {
-                row[*place].add_product(a, b);
+        let block = self.block(size_of::<S>());
+        let (left_places, right_places) = (self.places(left.keys), self.places(right.keys));
+        for rows in blocks(&left_places, block) {
+            for columns in blocks(&right_places, block) {
+                let terms = right_places[columns.clone()].iter().zip(&right.coefficients[columns]);
+                for (start, a) in left_places[rows.clone()].iter().zip(&left.coefficients[rows.clone()]) {
+                    let row = &mut sums[*start..];
+                    for (place, b) in terms.clone() {
+                        row[*place].add_product(a, b);
+                    }
+                }
             }
         }
+        self.terms(sums, block)
+    }
+
+    /// The terms with these coefficients, one for every cell. A block's keys are those of the first block with the
+    /// exponents of the block's first monomial added.
+    fn terms<S: Sum>(&self, sums: Vec<S>, block: usize) -> Terms {
         let words = self.layout.words();
         let (mut keys, mut coefficients) = (Vec::new(), Vec::new());
+        let last: Vec<u64> = (0..block).flat_map(|place| self.key(place)).collect();
+        let mut first = self.key(self.cells - block);
         for (place, sum) in sums.into_iter().enumerate().rev() {
+            let within = place % block;
             if !sum.vanishes() {
-                let start = keys.len();
-                keys.resize(start + words, 0);
-                for (index, exponent) in self.exponents(place).into_iter().enumerate() {
-                    self.layout.add(&mut keys[start..], index, exponent);
-                }
+                keys.extend((0..words).map(|word| first[word] + last[within * words + word]));
                 coefficients.push(sum.into_integer());
+            }
+            if within == 0 && place > 0 {
+                first = self.key(place - block);
             }
         }
         (keys, coefficients)
@@ -108,6 +127,19 @@ impl<'a> ExponentBox<'a> {
         Ok(Outcome::Quotient(keys, coefficients))
     }
 
+    /// How many cells, the monomials in the last variables, stay in the nearest cache while terms are added to them.
+    fn block(&self, bytes: usize) -> usize {
+        let mut block = 1;
+        for degree in self.degrees.iter().rev() {
+            let larger = block * (*degree as usize + 1);
+            if larger * bytes > MOST_BYTES_OF_BLOCK {
+                break;
+            }
+            block = larger;
+        }
+        block
+    }
+
     fn places(&self, keys: &[u64]) -> Vec<usize> {
         let place = |key| {
             self.degrees
@@ -116,6 +148,14 @@ impl<'a> ExponentBox<'a> {
                 .fold(0, |place, (index, degree)| place * (*degree as usize + 1) + self.layout.get(key, index) as usize)
         };
         keys.chunks_exact(self.layout.words()).map(place).collect()
+    }
+
+    fn key(&self, place: usize) -> Vec<u64> {
+        let mut key = vec![0; self.layout.words()];
+        for (index, exponent) in self.exponents(place).into_iter().enumerate() {
+            self.layout.add(&mut key, index, exponent);
+        }
+        key
     }
 
     fn exponents(&self, mut place: usize) -> Exponents {
@@ -128,5 +168,42 @@ impl<'a> ExponentBox<'a> {
             place /= base;
         }
         exponents
+    }
+}
+
+/// The ranges of descending places that lie in one block each.
+fn blocks(places: &[usize], block: usize) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut start = 0;
+    places.chunk_by(move |a, b| a / block == b / block).map(move |chunk| {
+        let range = start..start + chunk.len();
+        start = range.end;
+        range
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Monomial, Poly, TooLarge, Work};
+    use super::*;
+
+    #[test]
+    fn a_box_of_many_blocks_holds_the_sum_of_all_products() {
+        let poly = |largest: u32, step: u32, sign: i64| {
+            let entry = |k: u32| {
+                let exponents = [k % largest, k * step % largest, k / largest % largest].into_iter();
+                (Monomial::new((0..).zip(exponents)), Integer::from(sign * i64::from(k % 17) + 3))
+            };
+            Poly::from_terms((0..500).map(entry)).unwrap()
+        };
+        let work = Work::new(u64::MAX);
+        for largest in [13, 31, 37] {
+            let (a, b) = (poly(largest, 7, 1), poly(largest, 11, -1));
+            let cells: u32 = a.degrees().iter().zip(&b.degrees()).map(|(a, b)| a + b + 1).product();
+            assert!(cells as usize > MOST_BYTES_OF_BLOCK / size_of::<i64>(), "more than a block");
+            let term_by_term = b.terms().try_fold(Poly::zero(), |sum, (monomial, coefficient)| {
+                Ok::<_, TooLarge>(&sum + &a.mul_term(&monomial, coefficient, &work)?)
+            });
+            assert_eq!(a.mul(&b, &work), term_by_term, "{largest}");
+        }
     }
 }

@@ -139,9 +139,9 @@ impl Layout {
         Monomial::new(self.powers(key).map(|(index, exponent)| (self.variables[index], exponent)))
     }
 
-    /// The largest exponent of each variable.
+    /// The largest exponent of each variable in descending keys.
     pub(super) fn degrees(&self, keys: &[u64]) -> Exponents {
-        self.folded(keys, |largest, other, kept| largest & kept | other & !kept)
+        self.folded(self.largest(keys), |largest, other, kept| largest & kept | other & !kept)
     }
 
     /// The smallest exponent of each variable.
@@ -153,17 +153,13 @@ impl Layout {
     /// in which the first is at least as large as the second.
     fn folded(&self, keys: &[u64], join: impl Fn(u64, u64, u64) -> u64) -> Exponents {
         let guard = self.guard();
-        let mut keys = keys.chunks_exact(self.words);
-        let Some(first) = keys.next() else { return Exponents::from_elem(0, self.variables.len()) };
-        let mut joined = SmallVec::<[u64; 8]>::from_slice(first);
-        for key in keys {
-            for (word, other) in joined.iter_mut().zip(key) {
-                let at_least = ((*word | guard) - other) & guard;
-                let fields = at_least | (at_least - (at_least >> ((1 << self.log_width) - 1)));
-                *word = join(*word, *other, fields);
-            }
-        }
-        self.exponents(&joined)
+        let join = |joined: u64, other: u64| {
+            let at_least = ((joined | guard) - other) & guard;
+            let fields = at_least | (at_least - (at_least >> ((1 << self.log_width) - 1)));
+            join(joined, other, fields)
+        };
+        let of_word = |word| keys.chunks_exact(self.words).map(move |key| key[word]).reduce(join).unwrap_or(0);
+        self.exponents(&(0..self.words).map(of_word).collect::<SmallVec<[u64; 8]>>())
     }
 
     /// The same keys in the layout `to`, which must have room for every exponent that is not zero.
@@ -185,14 +181,16 @@ impl Layout {
         converted
     }
 
-    /// The smallest layout for these keys, if this is not it.
+    /// The descending keys that tell the largest exponents: in one variable the first.
+    fn largest<'k>(&self, keys: &'k [u64]) -> &'k [u64] {
+        if self.variables.len() == 1 { &keys[..keys.len().min(self.words)] } else { keys }
+    }
+
+    /// The smallest layout for these descending keys, if this is not it.
     pub(super) fn shrunk(&self, keys: &[u64]) -> Option<Self> {
-        let mut seen = SmallVec::<[u64; 8]>::from_elem(0, self.words);
-        for key in keys.chunks_exact(self.words) {
-            for (all, word) in seen.iter_mut().zip(key) {
-                *all |= word;
-            }
-        }
+        let keys = self.largest(keys);
+        let of_word = |word| keys.chunks_exact(self.words).fold(0, |seen, key| seen | key[word]);
+        let seen: SmallVec<[u64; 8]> = (0..self.words).map(of_word).collect();
         // The union of the bits is zero where every exponent is, and as long as the longest.
         let union = self.exponents(&seen);
         let largest = union.iter().copied().max().unwrap_or(0);

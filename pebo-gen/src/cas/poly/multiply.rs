@@ -88,9 +88,9 @@ impl Poly {
             return Ok(Self::zero());
         }
         work.begin(steps(self.term_count() + other.term_count()))?;
-        let words = |poly: &Self| poly.bits().div_ceil(64);
+        let (bits, other_bits) = (self.bits(), other.bits());
         let pairs = steps(self.term_count()).saturating_mul(steps(other.term_count()));
-        work.spend(pairs.saturating_mul(words(self)).saturating_mul(words(other)))?;
+        work.spend(pairs.saturating_mul(bits.div_ceil(64)).saturating_mul(other_bits.div_ceil(64)))?;
         let (layout, degrees) = self.product_layout(other)?;
         let (left, right) = (self.keys_in(&layout), other.keys_in(&layout));
         if self.term_count() == 1 || other.term_count() == 1 {
@@ -98,7 +98,7 @@ impl Poly {
             return Ok(Self::from_sorted(layout, keys, coefficients));
         }
         let fewer = self.term_count().min(other.term_count());
-        let bits = self.bits() + other.bits() + u64::from(usize::BITS - fewer.leading_zeros());
+        let bits = bits + other_bits + u64::from(usize::BITS - fewer.leading_zeros());
         if let Some((keys, coefficients)) = packed::product(&layout, self, other, bits) {
             return Ok(Self::from_sorted(layout, keys, coefficients));
         }

@@ -23,7 +23,7 @@ pub(super) fn product(layout: &Layout, a: &Poly, b: &Poly, bits: u64) -> Option<
     // The magnitude and a sign.
     let slot = usize::try_from(bits / 8 + 1).ok()?;
     let whole = &pack(a, slot, left) * &pack(b, slot, right);
-    Some(terms(layout, &whole.unpacked(slot, left + right - 1)))
+    Some(terms(layout, whole.unpacked(slot, left + right - 1)))
 }
 
 /// The power of a dense polynomial.
@@ -36,7 +36,7 @@ pub(super) fn power(layout: &Layout, a: &Poly, exponent: u32) -> Result<Option<T
     let bits = (a.bits() + u64::from(usize::BITS - a.term_count().leading_zeros())) * u64::from(exponent);
     let slot = usize::try_from(bits / 8 + 1).map_err(|_| TooLarge)?;
     let whole = pack(a, slot, places).pow(exponent);
-    Ok(Some(terms(layout, &whole.unpacked(slot, (places - 1) * exponent as usize + 1))))
+    Ok(Some(terms(layout, whole.unpacked(slot, (places - 1) * exponent as usize + 1))))
 }
 
 /// The number of coefficients up to the degree, if at least half of them are not zero.
@@ -48,19 +48,19 @@ pub(super) fn dense(poly: &Poly) -> Option<usize> {
 /// The value at `256^slot`.
 pub(super) fn pack(poly: &Poly, slot: usize, places: usize) -> Integer {
     let place = |key| poly.layout.get(key, 0) as usize;
-    Integer::packed(poly.keys().map(place).zip(&poly.coefficients), slot, places)
+    Integer::packed(poly.keys().map(place).zip(&poly.coefficients).rev(), slot, places)
 }
 
-/// The terms with these coefficients by ascending powers.
-fn terms(layout: &Layout, coefficients: &[Integer]) -> Terms {
+/// The terms with these coefficients by ascending powers, in a layout of one variable that has room for them.
+fn terms(layout: &Layout, coefficients: Vec<Integer>) -> Terms {
+    let (_, shift) = layout.place(0);
     let mut keys = Vec::with_capacity(coefficients.len());
     let mut kept = Vec::with_capacity(coefficients.len());
-    for (exponent, coefficient) in coefficients.iter().enumerate().rev().filter(|(_, c)| !c.is_zero()) {
-        let mut key = [0];
-        #[expect(clippy::cast_possible_truncation, reason = "a degree that the layout has room for")]
-        layout.add(&mut key, 0, exponent as u32);
-        keys.push(key[0]);
-        kept.push(coefficient.clone());
+    for (exponent, coefficient) in coefficients.into_iter().enumerate().rev() {
+        if !coefficient.is_zero() {
+            keys.push((exponent as u64) << shift);
+            kept.push(coefficient);
+        }
     }
     (keys, kept)
 }
