@@ -7,7 +7,7 @@ use super::arena::Arena;
 use super::domain::Domain;
 use super::expr::Expr;
 use super::facts::Relation;
-use super::field::{Field, Obstacle};
+use super::field::{Field, Fraction, Obstacle};
 
 /// How many places where an expression bends are looked at, each from both sides.
 const MOST_BORDERS: usize = 2;
@@ -82,7 +82,8 @@ impl Domain {
     }
 
     /// Whether the expression vanishes only where something does that is assumed not to: its factors are among those
-    /// of the facts, as `d - 1` is of `L*(1 - d) != 0`.
+    /// of the facts, as `d - 1` is of `L*(1 - d) != 0`, or among those of their squares, as `cos(q)^2 - 1` is of
+    /// `sin(q) != 0`.
     fn divides(&self, arena: &Arena, expr: Expr) -> Result<bool, Obstacle> {
         let symbols = arena.symbols_of(&[expr]);
         let facts = self.facts.iter().filter(|(fact, relation)| {
@@ -93,33 +94,43 @@ impl Domain {
             return Ok(false);
         }
         let field = Field::over(arena, &self.facts, &[facts.as_slice(), &[expr]].concat())?;
-        let mut rest = field.fraction(expr)?.numerator().clone();
-        if rest.is_zero() {
+        let is_signed = |fraction: &Fraction| {
+            Ok::<_, Obstacle>(
+                fraction.to_constant().is_some()
+                    || field.signs().is_positive(fraction)?
+                    || field.signs().is_positive(&fraction.opposite())?,
+            )
+        };
+        let own = field.fraction(expr)?;
+        if own.is_zero() {
             return Ok(false);
         }
+        let mut known = Vec::new();
         for fact in facts {
             let fact = field.fraction(fact)?;
             // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
-            let below = field.of_polynomial(fact.denominator())?;
-            if below.to_constant().is_none()
-                && !field.signs().is_positive(&below)?
-                && !field.signs().is_positive(&below.opposite())?
-            {
-                continue;
-            }
-            loop {
-                let common = rest.gcd(fact.numerator(), field.limit())?;
-                if common.is_constant() {
-                    break;
-                }
-                let Some(quotient) = rest.div_exact(&common, field.limit())? else { break };
-                rest = quotient;
+            if is_signed(&field.of_polynomial(fact.denominator())?)? {
+                known.push(field.mul(&fact, &fact)?);
+                known.push(fact);
             }
         }
-        let rest = field.of_polynomial(&rest)?;
-        Ok(rest.to_constant().is_some()
-            || field.signs().is_positive(&rest)?
-            || field.signs().is_positive(&rest.opposite())?)
+        for own in [field.mul(&own, &own)?, own] {
+            let mut rest = own.numerator().clone();
+            for fact in &known {
+                loop {
+                    let common = rest.gcd(fact.numerator(), field.limit())?;
+                    if common.is_constant() {
+                        break;
+                    }
+                    let Some(quotient) = rest.div_exact(&common, field.limit())? else { break };
+                    rest = quotient;
+                }
+            }
+            if is_signed(&field.of_polynomial(&rest)?)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 }
 
@@ -128,6 +139,22 @@ mod tests {
     use super::*;
     use crate::cas::Function;
     use crate::cas::rational::Rational;
+
+    #[test]
+    fn what_vanishes_with_a_fact_does_not_vanish() {
+        let arena = Arena::new();
+        let [q, k] = ["q", "k"].map(|name| arena.variable(name));
+        let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
+        let square = arena.sub(arena.mul(cosine, cosine), arena.one());
+        let implied = |fact, expr| {
+            let mut domain = Domain::default();
+            domain.facts.assume(fact, Relation::NonZero);
+            domain.implies(&arena, expr, Relation::NonZero)
+        };
+        assert!(implied(sine, square) && implied(square, sine));
+        assert!(implied(arena.mul(k, sine), square));
+        assert!(!implied(cosine, square) && !implied(arena.add(sine, k), square));
+    }
 
     #[test]
     fn signs_are_looked_for_on_both_sides_of_a_bend() {

@@ -251,7 +251,8 @@ fn divides_as(arena: &Arena, expr: Expr, form: Expr) -> bool {
     divisors(arena, form).iter().all(within)
 }
 
-/// The sums and functions by which an expression divides, and how often along one path at most.
+/// The sums and functions by which an expression divides, and how often along one path at most. By `cos(q)^2 - 1` it
+/// divides as by `sin(q)^2`.
 fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
     let mut known: FxHashMap<Expr, BTreeMap<Expr, Rational>> = FxHashMap::default();
     for e in arena.postorder(&[expr]) {
@@ -265,7 +266,10 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
                         found.entry(*inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                     }
                     if exponent.is_negative() && matches!(arena.node(*base), Node::Sum(_) | Node::Call(..)) {
-                        found.entry(*base).and_modify(|sum| *sum = &*sum + &magnitude).or_insert(magnitude);
+                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &magnitude + &magnitude));
+                        for (inner, times) in sine.into_iter().chain([(*base, magnitude)]) {
+                            found.entry(inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
+                        }
                     }
                 }
             }
@@ -281,6 +285,17 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
         known.insert(e, found);
     }
     known.remove(&expr).unwrap_or_default()
+}
+
+/// `sin(q)`, of `cos(q)^2 - 1` or a multiple of it.
+fn sine_of_square(arena: &Arena, expr: Expr) -> Option<Expr> {
+    let Node::Sum(sum) = arena.node(expr) else { return None };
+    let [(term, slope)] = sum.terms.as_slice() else { return None };
+    let Node::Product(product) = arena.node(*term) else { return None };
+    let [(base, power)] = product.factors.as_slice() else { return None };
+    let Node::Call(Function::Cos, arguments) = arena.node(*base) else { return None };
+    let is_square = *power == Rational::from(2) && *slope == -&sum.constant;
+    is_square.then(|| arena.call(Function::Sin, &arguments))
 }
 
 /// Of equal forms the shortest in the functions of the author's formula; the first where none keeps to them.
@@ -405,6 +420,25 @@ pub(crate) fn operations_of(arena: &Arena, exprs: &[Expr]) -> usize {
 mod tests {
     use super::*;
     use crate::cas::facts::Relation;
+
+    #[test]
+    fn a_sine_is_divided_by_and_not_the_square_of_a_cosine_less_one() {
+        let arena = Arena::new();
+        let [q, k] = ["q", "k"].map(|name| arena.variable(name));
+        let [s, c] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
+        let square = arena.scale(arena.sub(arena.mul(c, c), arena.one()), &Rational::from(2));
+        let cases = [
+            (arena.div(arena.mul(k, s), square), "-k/(2*sin(q))"),
+            // The author has no sine.
+            (arena.div(k, square), "k/(2*(cos(q)^2 - 1))"),
+            (arena.div(k, arena.mul(s, s)), "k/sin(q)^2"),
+            // Of one sine it has no two.
+            (arena.div(k, s), "k/sin(q)"),
+        ];
+        for (written, expected) in cases {
+            assert_eq!(arena.print(shortest(&arena, &Domain::default(), written)), expected);
+        }
+    }
 
     #[test]
     fn what_cancels_leaves_beside_functions_that_stay() {

@@ -42,6 +42,8 @@ impl Field<'_> {
             let mut coefficient = Rational::ONE;
             let mut powers = Vec::new();
             for (poly, exponent) in [(&fraction.num, 1), (&fraction.den, -1)] {
+                let (poly, sines) = self.sines(poly.clone(), exponent);
+                powers.extend(sines);
                 let parts = poly.factored(self.limit())?;
                 let content = Rational::from(parts.content);
                 coefficient = if exponent > 0 { content } else { coefficient.checked_div(&content).ok_or(TooLarge)? };
@@ -90,7 +92,8 @@ impl Field<'_> {
     /// The same of the fraction over these powers of kernels.
     pub(super) fn show_apart_over(&self, fraction: &Fraction, also: &Monomial) -> Expr {
         self.count(fraction);
-        let (below, den) = primitive(&fraction.den);
+        let Fraction { num, den } = &self.over_sines(fraction).unwrap_or_else(|_| fraction.clone());
+        let (below, den) = primitive(den);
         let own = den.monomial_content();
         let mut powers: BTreeMap<u32, u32> = own.powers().iter().copied().collect();
         for (variable, times) in also.powers() {
@@ -98,7 +101,7 @@ impl Field<'_> {
         }
         let content = Monomial::new(powers);
         let mut groups: BTreeMap<Vec<(u32, u32)>, Terms> = BTreeMap::new();
-        for (monomial, coefficient) in fraction.num.terms() {
+        for (monomial, coefficient) in num.terms() {
             let cancelled = common(&monomial, &content);
             let left = divided(&content, &cancelled);
             let group = groups.entry(left.powers().to_vec()).or_default();

@@ -26,6 +26,37 @@ impl Field<'_> {
         whole.chain([self.show_apart_over(&rest, &sines)]).collect()
     }
 
+    /// The fraction over powers of sines in place of those of `1 - cos(q)^2`, if the denominator has such, with no higher
+    /// power of such a cosine than the first above: then terms cancel on their own. It is not in normal form.
+    pub(super) fn over_sines(&self, fraction: &Fraction) -> Result<Fraction, Obstacle> {
+        let Fraction { mut num, mut den } = fraction.clone();
+        for variable in den.variables().to_vec() {
+            let Some(sine) = self.sine_beside(variable) else { continue };
+            let cosine = Poly::variable(variable);
+            let (square, turned) = (
+                &Poly::one() - &cosine.pow(2, self.limit())?,
+                &Poly::one() - &Poly::variable(sine).pow(2, self.limit())?,
+            );
+            let mut times = 0;
+            while let Some(rest) = den.div_exact(&square, self.limit())? {
+                den = rest;
+                times += 2;
+            }
+            if times == 0 {
+                continue;
+            }
+            den = den.mul(&Poly::variable(sine).pow(times, self.limit())?, self.limit())?;
+            let mut total = Poly::zero();
+            for (power, coefficient) in num.coefficients_in(variable) {
+                let power =
+                    cosine.pow(power % 2, self.limit())?.mul(&turned.pow(power / 2, self.limit())?, self.limit())?;
+                total = &total + &coefficient.mul(&power, self.limit())?;
+            }
+            num = total;
+        }
+        Ok(Fraction { num, den })
+    }
+
     /// The rest of the fraction, and the powers of sines that are left below, if any cancelled.
     fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Monomial)>, Obstacle> {
         let Fraction { mut num, mut den } = fraction.clone();
@@ -93,6 +124,26 @@ mod tests {
             for form in shown {
                 assert!(decide(&arena, arena.sub(form, written), &Domain::default()).is_zero());
             }
+        }
+    }
+
+    #[test]
+    fn terms_cancel_over_sines() {
+        let arena = Arena::new();
+        let [q, a, b] = ["q", "a", "b"].map(|name| arena.variable(name));
+        let [s, c] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
+        let square = arena.sub(arena.one(), arena.mul(c, c));
+        let cases = [
+            (arena.div(arena.add(arena.mul(a, square), arena.product([b, s, c])), square), "a + b*cos(q)/sin(q)"),
+            (arena.div(arena.mul(a, s), arena.mul(b, square)), "a/(b*sin(q))"),
+            (arena.div(arena.sub(a, arena.mul(b, square)), arena.mul(square, square)), "a/sin(q)^4 - b/sin(q)^2"),
+            (arena.div(arena.add(a, s), arena.add(b, c)), "(a + sin(q))/(b + cos(q))"),
+        ];
+        for (written, expected) in cases {
+            let field = Field::over(&arena, &Facts::default(), &[written]).unwrap();
+            let shown = field.show_apart(&field.fraction(written).unwrap());
+            assert_eq!(arena.print(shown), expected);
+            assert!(decide(&arena, arena.sub(shown, written), &Domain::default()).is_zero());
         }
     }
 }

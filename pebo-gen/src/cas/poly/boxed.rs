@@ -54,7 +54,8 @@ impl<'a> ExponentBox<'a> {
     /// exponents of the block's first monomial added.
     fn terms<S: Sum>(&self, sums: Vec<S>, block: usize) -> Terms {
         let words = self.layout.words();
-        let (mut keys, mut coefficients) = (Vec::new(), Vec::new());
+        let count = sums.iter().filter(|sum| !sum.vanishes()).count();
+        let (mut keys, mut coefficients) = (Vec::with_capacity(count * words), Vec::with_capacity(count));
         let last: Vec<u64> = (0..block).flat_map(|place| self.key(place)).collect();
         let mut first = self.key(self.cells - block);
         for (place, sum) in sums.into_iter().enumerate().rev() {
