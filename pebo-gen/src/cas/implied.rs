@@ -110,11 +110,11 @@ impl Domain {
             let fact = field.fraction(fact)?;
             // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
             if is_signed(&field.of_polynomial(fact.denominator())?)? {
-                known.push(field.mul(&fact, &fact)?);
+                known.extend(square(&field, &fact)?);
                 known.push(fact);
             }
         }
-        for own in [field.mul(&own, &own)?, own] {
+        for own in square(&field, &own)?.into_iter().chain([own]) {
             let mut rest = own.numerator().clone();
             for fact in &known {
                 loop {
@@ -132,6 +132,13 @@ impl Domain {
         }
         Ok(false)
     }
+}
+
+/// The square of a short fraction, where that is more than a product: `sin(q)` has `1 - cos(q)^2`.
+fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Obstacle> {
+    const MOST_TERMS: usize = 16;
+    let is_worth_it = fraction.weight() <= MOST_TERMS && field.has_relations(fraction);
+    is_worth_it.then(|| field.mul(fraction, fraction)).transpose()
 }
 
 #[cfg(test)]

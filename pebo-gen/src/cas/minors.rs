@@ -1,8 +1,14 @@
 //! Minors of polynomials, row by row: each is computed once, and nothing is divided.
+//!
+//! In: the minors of some rows, and one more row. Out: the minors of all of these; too large, where they take more memory
+//! than one question of many may have, however little time they take.
 
 use std::collections::BTreeMap;
 
 use super::poly::{Poly, TooLarge, Work};
+
+/// What all minors of one size may take in memory.
+const MOST_BYTES: usize = 1 << 26;
 
 /// The minors of one more row than these, each named by the set of its columns, a bit each.
 pub(super) fn larger_minors(
@@ -11,6 +17,7 @@ pub(super) fn larger_minors(
     work: &Work,
 ) -> Result<BTreeMap<u64, Poly>, TooLarge> {
     let mut larger: BTreeMap<u64, Poly> = BTreeMap::new();
+    let mut bytes = 0;
     for (columns, minor) in minors {
         for (column, entry) in row.iter().enumerate() {
             let bit = 1 << column;
@@ -20,8 +27,39 @@ pub(super) fn larger_minors(
             let product = entry.mul(minor, work)?;
             let odd = (columns >> column).count_ones() % 2 == 1;
             let sum = larger.entry(columns | bit).or_default();
+            bytes -= sum.bytes();
             *sum = if odd { &*sum - &product } else { &*sum + &product };
+            bytes += sum.bytes();
+            if bytes > MOST_BYTES {
+                return Err(TooLarge);
+            }
         }
     }
     Ok(larger)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cas::integer::Integer;
+    use crate::cas::poly::Monomial;
+
+    #[test]
+    fn minors_that_take_much_memory_are_given_up_in_time() {
+        // A variable of its own for each of so many summands of each entry.
+        let entry = |row: u32, column: u32, summands: u32| {
+            let of = |k: u32| (Monomial::new([((row * 6 + column) * summands + k, 1)]), Integer::ONE);
+            Poly::from_terms((0..summands).map(of)).unwrap()
+        };
+        let largest = |summands: u32| {
+            let mut minors = BTreeMap::from([(0_u64, Poly::one())]);
+            for row in 0..6 {
+                let entries: Vec<Poly> = (0..6).map(|column| entry(row, column, summands)).collect();
+                minors = larger_minors(&minors, &entries.iter().collect::<Vec<_>>(), &Work::new(u64::MAX))?;
+            }
+            Ok(minors.into_values().map(|minor| minor.term_count()).max())
+        };
+        assert_eq!(largest(1), Ok(Some(720)), "6!");
+        assert_eq!(largest(6), Err(TooLarge));
+    }
 }

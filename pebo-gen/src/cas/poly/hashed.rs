@@ -132,7 +132,7 @@ impl Division<'_> {
 }
 
 /// No table has more entries than fit here; growing and sorting them takes about as much again.
-const MOST_BYTES: usize = 1 << 26;
+const MOST_BYTES: usize = 1 << 24;
 
 /// Open addressing by linear probing; a slot holds the number of its entry plus one.
 struct Table<const N: usize, S> {

@@ -226,6 +226,11 @@ impl Poly {
         self.layout.degrees(&self.keys)
     }
 
+    /// What its terms take in memory, but for coefficients beyond a word.
+    pub(in crate::cas) fn bytes(&self) -> usize {
+        size_of_val(self.keys.as_slice()) + size_of_val(self.coefficients.as_slice())
+    }
+
     /// The number of bits of the largest coefficient.
     pub fn bits(&self) -> u64 {
         self.coefficients.iter().map(Integer::bits).max().unwrap_or(0)

@@ -263,10 +263,16 @@ impl Question<'_> {
                 .into_iter()
                 .find_map(|parameter| Some((parameter, solved(arena, formula, parameter)?)));
             let there = solved.map(|solved| Restriction { equal: BTreeMap::from([solved]), ..Restriction::default() });
-            match there.and_then(|there| self.shown_with(&there)) {
+            let Some(there) = there else {
+                lost.push(formula);
+                continue;
+            };
+            match self.shown_with(&there) {
                 // Other motions show them all the same, but perhaps not for further values.
-                Some(further) => all &= !further,
-                None => lost.push(formula),
+                Ok(Some(further)) => all &= !further,
+                Ok(None) => lost.push(formula),
+                // It takes too long to see: perhaps they do.
+                Err(_) => all = false,
             }
         }
         Ok((lost, all))
@@ -274,14 +280,17 @@ impl Question<'_> {
 
     /// Whether further values of the parameters may hide unknowns that are shown with a restriction; none if they are not
     /// shown.
-    fn shown_with(&self, restriction: &Restriction) -> Option<bool> {
+    fn shown_with(&self, restriction: &Restriction) -> Result<Option<bool>, Obstacle> {
         let &Self { plant, domain, .. } = self;
-        let shown = self.shown(restriction).ok().filter(|shown| shown.hidden.is_empty())?;
+        let shown = self.shown(restriction)?;
+        if !shown.hidden.is_empty() {
+            return Ok(None);
+        }
         let places = || {
             let domain = domain.restricted(&plant.arena, &restriction.equal)?;
             Volume::of(&plant.arena, &domain, &shown.stack).and_then(|volume| volume.places(plant, &domain)).ok()
         };
-        Some(places().is_none_or(|places| !places.all || places.together || !places.constants.is_empty()))
+        Ok(Some(places().is_none_or(|places| !places.all || places.together || !places.constants.is_empty())))
     }
 }
 
