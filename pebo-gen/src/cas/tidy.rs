@@ -82,9 +82,24 @@ pub(crate) fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr
     best
 }
 
-/// The other ways to write an expression that have a value wherever it has, those with the fewest operations first. They
-/// may be in other functions than the author's and divide by other sums: that they are equal, the caller decides.
-pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
+/// The other ways to write an expression with at most so many operations that have a value wherever it has, those with the
+/// fewest first. They may be in other functions than the author's and divide by other sums: that they are equal, the caller
+/// decides.
+pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr, most: usize) -> impl Iterator<Item = Expr> {
+    let mut forms: Vec<(usize, Expr)> = Vec::new();
+    for form in ways(arena, domain, expr) {
+        let taken = operations(arena, form);
+        if form != expr && taken <= most && !forms.contains(&(taken, form)) {
+            forms.push((taken, form));
+        }
+    }
+    forms.sort_by_key(|(taken, _)| *taken);
+    // Whether a form has a value takes long to see: of those that are not looked at it is not asked.
+    forms.into_iter().map(|(_, form)| form).filter(move |form| asks_no_more(arena, domain, expr, *form))
+}
+
+/// The ways to write an expression, some of them several times.
+fn ways(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
     let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) else { return Vec::new() };
     let orientation = Orientation::new(arena, domain);
     let own = functions(arena, &[expr]);
@@ -101,14 +116,7 @@ pub(crate) fn others(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
     ways.extend(Field::over(arena, &domain.facts, &[expr]).iter().flat_map(in_kernels_of));
     ways.extend(in_own_functions(&field, &domain.facts, expr, &own, |form| functions(arena, &[form]).is_subset(&own)));
     ways.extend([expr].iter().chain(&ways).filter_map(|form| near_zero(arena, *form)).collect::<Vec<Expr>>());
-    let mut found: Vec<Expr> = Vec::new();
-    for form in ways.into_iter().flat_map(|form| [orientation.of(form), form]) {
-        if form != expr && !found.contains(&form) && asks_no_more(arena, domain, expr, form) {
-            found.push(form);
-        }
-    }
-    found.sort_by_cached_key(|form| operations(arena, *form));
-    found
+    ways.into_iter().flat_map(|form| [orientation.of(form), form]).collect()
 }
 
 /// The ways to write the normal form; none where it is long and has more terms than the expression has operations, as a

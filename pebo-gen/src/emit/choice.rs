@@ -86,8 +86,8 @@ pub(super) fn choose<'a>(
                 let is_losing = entries.contains(&place);
                 let own = operations(arena, entry);
                 let most = if is_losing { MOST_LONGER * own } else { own.saturating_sub(1) };
-                let forms = others(arena, &domain, entry).into_iter().take(MOST_WAYS);
-                forms.filter(|form| operations(arena, *form) <= most).find(|form| keeps(entry, *form))
+                let mut forms = others(arena, &domain, entry, most).take(MOST_WAYS);
+                forms.find(|form| keeps(entry, *form))
             });
             let Some(other) = other else { return Ok(None) };
             let other = measured(&other)?;
