@@ -14,12 +14,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::arena::Arena;
 use super::domain::Domain;
-use super::expr::{Expr, Symbol};
+use super::expr::{Expr, Node, Symbol};
 use super::field::{Field, Fraction, Obstacle};
 use super::frozen::Frozen;
+use super::function::Function;
 use super::linear::{Echelon, solve};
 use super::poly::{Monomial, Poly};
-use super::tidy::{shorter, shortest};
+use super::tidy::{asking_less, shorter, shortest};
 
 /// Solves for the coefficients of `target` over `basis`; none if the comparison has no solution.
 pub(crate) fn combine(
@@ -128,12 +129,14 @@ pub(crate) fn combine_on(
         && let Ok(field) = Field::over(arena, &domain.facts, &signals)
         && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
     {
-        return Ok(Some(coefficients.iter().map(|c| tidied(&field, domain, c, |form| frozen.thaw(form))).collect()));
+        let shown = Shown::new(&field, domain, &signals, x);
+        return Ok(Some(coefficients.iter().map(|c| shown.form(c, |form| frozen.thaw(form))).collect()));
     }
     let combined = |field: Result<Field<'_>, Obstacle>| {
         let field = field?;
         let coefficients = combine(&field, target, basis, x)?;
-        Ok(coefficients.map(|all| all.iter().map(|c| tidied(&field, domain, c, |form| form)).collect()))
+        let shown = Shown::new(&field, domain, &roots, x);
+        Ok(coefficients.map(|all| all.iter().map(|c| shown.form(c, |form| form)).collect()))
     };
     match combined(Field::over(arena, &domain.facts, &roots)) {
         Ok(None) | Err(_) if !domain.manifold.is_empty() => combined(Field::on(arena, domain, &roots)),
@@ -141,11 +144,64 @@ pub(crate) fn combine_on(
     }
 }
 
-/// A coefficient as the shortest of its forms.
-fn tidied(field: &Field<'_>, domain: &Domain, coefficient: &Fraction, thaw: impl Fn(Expr) -> Expr) -> Expr {
-    let arena = field.arena();
-    let [whole, apart] = [field.show(coefficient), field.show_apart(coefficient)].map(thaw);
-    shortest(arena, domain, shorter(arena, whole, apart))
+/// Divisors that are tried.
+const MOST_DIVISORS: usize = 8;
+
+/// What coefficients are shown with.
+struct Shown<'f, 'a> {
+    field: &'f Field<'a>,
+    domain: &'f Domain,
+    /// Sums with roots or magnitudes, free of x, that the formulas or equations hold: by these they may divide.
+    divisors: Vec<Expr>,
+}
+
+impl<'f, 'a> Shown<'f, 'a> {
+    fn new(field: &'f Field<'a>, domain: &'f Domain, formulas: &[Expr], x: &BTreeSet<Symbol>) -> Self {
+        let arena = field.arena();
+        let is_folded = |part: Expr| match arena.node(part) {
+            Node::Call(function, _) => function == Function::Abs,
+            Node::Product(product) => product.factors.iter().any(|(_, power)| !power.is_integer()),
+            _ => false,
+        };
+        let is_divisor = |part: &Expr| {
+            matches!(arena.node(*part), Node::Sum(_))
+                && !arena.depends_on(*part, x)
+                && arena.postorder(&[*part]).into_iter().any(is_folded)
+        };
+        let formulas = [formulas, domain.manifold.equations()].concat();
+        let divisors = arena.postorder(&formulas).into_iter().filter(is_divisor).take(MOST_DIVISORS).collect();
+        Self { field, domain, divisors }
+    }
+
+    /// A coefficient as the shortest of its forms; over sums of the formulas where it asks for less so: the normal
+    /// form has `(1 - abs(q))/(1 - q^2)` for `1/(1 + abs(q))`.
+    fn form(&self, coefficient: &Fraction, thaw: impl Fn(Expr) -> Expr) -> Expr {
+        let arena = self.field.arena();
+        let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&thaw);
+        let [whole, apart] = forms(coefficient);
+        let shown = shortest(arena, self.domain, shorter(arena, whole, apart));
+        let Some((rest, below)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
+        let [whole, apart] = forms(&rest).map(|form| arena.div(form, thaw(below)));
+        asking_less(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
+    }
+
+    /// A coefficient as what is left of it over such sums, if some make its denominator shorter.
+    fn over_divisors(&self, coefficient: &Fraction) -> Result<Option<(Fraction, Expr)>, Obstacle> {
+        let mut rest = coefficient.clone();
+        let mut below = Vec::new();
+        for divisor in &self.divisors {
+            let factor = self.field.fraction(*divisor)?;
+            while !rest.denominator().is_constant() {
+                let next = self.field.mul(&rest, &factor)?;
+                if next.denominator().total_degree() >= rest.denominator().total_degree() {
+                    break;
+                }
+                rest = next;
+                below.push(*divisor);
+            }
+        }
+        Ok((!below.is_empty()).then(|| (rest, self.field.arena().product(below))))
+    }
 }
 
 /// The numerators of fractions over their least common denominator.

@@ -69,6 +69,21 @@ fn conditions_are_discharged_by_what_bounds_magnitudes() {
     assert_eq!(remaining("v > 0", "v/(2 + sign(q))"), ["q != 0"]);
 }
 
+/// A regression in several functions of an unknown divides by what the output's value does, and not by its conjugate too.
+#[test]
+fn a_regression_divides_by_what_the_value_of_an_output_does() {
+    for (factor, listed) in [("1 + abs(q)", vec!["q != 0"]), ("1 + sqrt(q)", vec![])] {
+        let plant = derived(&format!(
+            "x: [p, b]\ny: [q, m]\nu: [v]\nassume: ['{}']\nf_x: {{p: v - p^2, b: 0}}\nf_y: {{q: v}}\n\
+             g_y: {{m: '({factor})*p + b'}}\nphi: [b, b^2]",
+            if listed.is_empty() { "q > 0" } else { "v > 0" }
+        ));
+        assert_eq!(plant.derivation.outcome, Outcome::Accepted);
+        let shown = |(e, relation): &(_, Relation)| format!("{} {}", plant.plant.arena.print(*e), relation.sign());
+        assert_eq!(plant.derivation.conditions.iter().map(shown).collect::<Vec<_>>(), listed);
+    }
+}
+
 /// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
 #[test]
 fn points_without_a_value_refute_nothing() {

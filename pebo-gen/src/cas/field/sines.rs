@@ -26,18 +26,15 @@ impl Field<'_> {
         whole.chain([self.show_apart_over(&rest, &sines)]).collect()
     }
 
-    /// The fraction over powers of sines in place of those of `1 - cos(q)^2`, if the denominator has such, with no higher
-    /// power of such a cosine than the first above: then terms cancel on their own. It is not in normal form.
+    /// The fraction over powers of sines in place of those of `1 - cos(q)^2`, if the denominator has such, with what of its
+    /// numerator they divide written as their multiple: then terms cancel on their own. It is not in normal form. What they
+    /// do not divide stays, as `cos(q)^2` does: `1 - sin(q)^2` in its place has lost its digits where it is small.
     pub(super) fn over_sines(&self, fraction: &Fraction) -> Result<Fraction, Obstacle> {
         let Fraction { mut num, mut den } = fraction.clone();
         for variable in den.variables().to_vec() {
             let Some(sine) = self.sine_beside(variable) else { continue };
-            let cosine = Poly::variable(variable);
-            let (square, turned) = (
-                &Poly::one() - &cosine.pow(2, self.limit())?,
-                &Poly::one() - &Poly::variable(sine).pow(2, self.limit())?,
-            );
-            let mut times = 0;
+            let square = &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?;
+            let mut times = 0_u32;
             while let Some(rest) = den.div_exact(&square, self.limit())? {
                 den = rest;
                 times += 2;
@@ -45,16 +42,31 @@ impl Field<'_> {
             if times == 0 {
                 continue;
             }
-            den = den.mul(&Poly::variable(sine).pow(times, self.limit())?, self.limit())?;
+            let power = |times: u32| Poly::variable(sine).pow(times, self.limit());
+            den = den.mul(&power(times)?, self.limit())?;
+            let others: Vec<u32> = num.variables().iter().copied().filter(|v| ![variable, sine].contains(v)).collect();
             let mut total = Poly::zero();
-            for (power, coefficient) in num.coefficients_in(variable) {
-                let power =
-                    cosine.pow(power % 2, self.limit())?.mul(&turned.pow(power / 2, self.limit())?, self.limit())?;
-                total = &total + &coefficient.mul(&power, self.limit())?;
+            for (monomial, mut rest) in num.collect(&others) {
+                let mut taken = 0;
+                while taken < times
+                    && let Some(quotient) = self.over_sine(&rest, sine, &square)?
+                {
+                    rest = quotient;
+                    taken += 1;
+                }
+                let monomial = Poly::from_terms([(monomial, 1.into())])?;
+                let rest = rest.mul(&power(taken)?, self.limit())?;
+                total = &total + &rest.mul(&monomial, self.limit())?;
             }
             num = total;
         }
         Ok(Fraction { num, den })
+    }
+
+    /// The polynomial over a sine, of which the square is given, if that divides it.
+    fn over_sine(&self, poly: &Poly, sine: u32, square: &Poly) -> Result<Option<Poly>, Obstacle> {
+        let turned = self.reduce(&poly.mul(&Poly::variable(sine), self.limit())?)?;
+        Ok(turned.div_exact(square, self.limit())?)
     }
 
     /// The rest of the fraction, and the powers of sines that are left below, if any cancelled.
@@ -71,8 +83,7 @@ impl Field<'_> {
                 times += 2;
             }
             while times > 0 {
-                let turned = self.reduce(&num.mul(&Poly::variable(sine), self.limit())?)?;
-                let Some(rest) = turned.div_exact(&square, self.limit())? else { break };
+                let Some(rest) = self.over_sine(&num, sine, &square)? else { break };
                 num = rest;
                 times -= 1;
                 cancelled = true;
@@ -137,6 +148,9 @@ mod tests {
             (arena.div(arena.add(arena.mul(a, square), arena.product([b, s, c])), square), "a + b*cos(q)/sin(q)"),
             (arena.div(arena.mul(a, s), arena.mul(b, square)), "a/(b*sin(q))"),
             (arena.div(arena.sub(a, arena.mul(b, square)), arena.mul(square, square)), "a/sin(q)^4 - b/sin(q)^2"),
+            // Where the cosine is small, `1/sin(q)^2 - 1` has no digits.
+            (arena.div(arena.mul(a, arena.mul(c, c)), square), "a*cos(q)^2/sin(q)^2"),
+            (arena.div(arena.mul(c, c), arena.mul(square, square)), "cos(q)^2/sin(q)^4"),
             (arena.div(arena.add(a, s), arena.add(b, c)), "(a + sin(q))/(b + cos(q))"),
         ];
         for (written, expected) in cases {
