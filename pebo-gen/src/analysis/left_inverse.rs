@@ -5,6 +5,7 @@
 //! that solves the transform (Ortega et al. 2015, Assumption 1 (i), with `n_x` components).
 
 pub(super) mod checking;
+mod overdetermined;
 mod solving;
 mod words;
 

@@ -95,7 +95,7 @@ pub(super) fn of_affine_rates(
     left_inverse: Option<&LeftInverse>,
 ) -> Option<Claim<Regression>> {
     let rates = plant.y.iter().enumerate().filter_map(|(index, output)| Some((index, output.rate?.expr)));
-    let row = |(index, rate)| Some((index, decompose(plant, domain, index, rate).ok()??));
+    let row = |(index, rate)| Some((index, decompose(plant, domain, left_inverse, (index, rate)).ok()??));
     let (outputs, rows): (Vec<usize>, Vec<_>) = rates.filter_map(row).unzip();
     let regression = || linear(plant, domain, cascade, left_inverse, outputs, &rows);
     (!rows.is_empty()).then(|| Claim { verdict: Verdict::Proved, result: Some(regression()) })
@@ -161,7 +161,7 @@ pub(super) fn prove(
     let mut obstacles = Vec::new();
     let mut moved = Vec::new();
     for (index, rate, span) in &rows {
-        match decompose(plant, domain, *index, *rate) {
+        match decompose(plant, domain, left_inverse, (*index, *rate)) {
             Ok(Some(row)) => affine.push(row),
             Ok(None) | Err(_) if plant.arena.depends_on(*rate, &unmeasured) => moved.push((*index, *rate, *span)),
             Ok(None) => obstacles.push((*index, *rate, *span, None)),

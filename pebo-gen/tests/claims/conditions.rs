@@ -84,6 +84,22 @@ fn a_regression_divides_by_what_the_value_of_an_output_does() {
     }
 }
 
+/// Three angular momenta of a spherical pendulum for two states: no two of them give both states everywhere, all three do.
+#[test]
+fn of_more_components_than_states_no_place_is_lost() {
+    let plant = derived(
+        "parameters: [g, l, m]\nx: [pt, pp]\ny: [th, ph]\nassume: [l > 0, m > 0, sin(th) != 0]\n\
+         f_x: {pt: pp^2*cos(th)/(m*l^2*sin(th)^3) - m*g*l*sin(th), pp: 0}\n\
+         f_y: {th: pt/(m*l^2), ph: pp/(m*l^2*sin(th)^2)}\n\
+         phi: [pt*cos(ph) - pp*cos(th)*sin(ph)/sin(th), -pp*cos(th)*cos(ph)/sin(th) - pt*sin(ph), pp]",
+    );
+    assert_eq!(plant.derivation.outcome, Outcome::Accepted);
+    assert!(plant.derivation.conditions.is_empty());
+    let inverse = plant.derivation.left_inverse.result.as_ref().expect("a left inverse");
+    let formulas: Vec<String> = inverse.x.iter().map(|(_, formula)| plant.plant.arena.print(*formula)).collect();
+    assert_eq!(formulas, ["z1*cos(ph) - z2*sin(ph)", "z3"]);
+}
+
 /// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
 #[test]
 fn points_without_a_value_refute_nothing() {

@@ -15,8 +15,9 @@ use crate::cas::{Expr, Symbol};
 use crate::plant::{Plant, State};
 
 use super::checking::{check, unshown};
+use super::overdetermined::by_least_squares;
 
-type Solved = BTreeMap<Symbol, Vec<Expr>>;
+pub(super) type Solved = BTreeMap<Symbol, Vec<Expr>>;
 
 /// A formula for each state that one was found for.
 pub(super) fn formulas<'a>(plant: &'a Plant, domain: &Domain) -> Result<Vec<(&'a State, Expr)>, Obstacle> {
@@ -33,6 +34,8 @@ struct Solving<'a> {
     alone: Solved,
     /// What it gives where functions of y alone are kept as they are written: they compute better.
     as_written: Solved,
+    /// What it gives by least squares, once that was asked for.
+    least_squares: OnceCell<Solved>,
     /// What it gives together with the values of outputs, once that was asked for.
     together: OnceCell<Result<Solved, Obstacle>>,
 }
@@ -59,7 +62,7 @@ impl<'a> Solving<'a> {
         for formula in as_written.values_mut().flatten() {
             *formula = frozen.thaw(*formula);
         }
-        Ok(Self { plant, domain, alone, as_written, together: OnceCell::new() })
+        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), together: OnceCell::new() })
     }
 
     /// The best formula for a state that is right, and else the likeliest: one that is wrong may still show that the
@@ -74,7 +77,13 @@ impl<'a> Solving<'a> {
             None => self.with_values(state)?.into_iter().find(right),
         };
         let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
-        let forms = found.into_iter().chain(written).map(|formula| shortest(arena, self.domain, formula));
+        // What has a value wherever the plant has is looked for no further.
+        let all_shown = found.is_some_and(|formula| unshown(self.plant, self.domain, formula).is_empty());
+        let squares =
+            (!all_shown).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
+        let squares = squares.and_then(|squares| squares.get(&state)).into_iter().flatten().copied().filter(right);
+        let forms =
+            found.into_iter().chain(written).chain(squares).map(|formula| shortest(arena, self.domain, formula));
         let formula = match forms.min_by_key(|formula| self.demerit(*formula)) {
             Some(formula) => Some(formula),
             None => match candidates.first() {

@@ -1,9 +1,10 @@
 //! Rates that are affine in the transform: `f_y = A(y, u) + B(y, u) phi`, and the linear regression they make.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::affine;
 use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
+use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
 use crate::cas::tidy::{asking_less, functions, shortest, shortest_equal};
@@ -20,8 +21,55 @@ pub(super) struct Row {
     pub(super) factors: Vec<Expr>,
 }
 
-/// Writes an output's rate over {1, phi}, and proves it.
-pub(super) fn decompose(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<Row>, Obstacle> {
+/// Writes an output's rate over {1, phi}, and proves it: as the left inverse has it where that asks for less, since of more
+/// components than states there are many ways.
+pub(super) fn decompose(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: Option<&LeftInverse>,
+    (index, rate): (usize, Expr),
+) -> Result<Option<Row>, Obstacle> {
+    let found = decomposed(plant, domain, index, rate)?;
+    let others = || {
+        let inverse = left_inverse.filter(|_| plant.phi.len() > plant.x.len())?;
+        by_left_inverse(plant, domain, inverse, rate)
+    };
+    Ok(match found {
+        Some(row) => Some(match others() {
+            Some(other) if asks(plant, domain, &other) < asks(plant, domain, &row) => other,
+            _ => row,
+        }),
+        None => None,
+    })
+}
+
+/// How much a row asks to have values that the domain does not show.
+fn asks(plant: &Plant, domain: &Domain, row: &Row) -> usize {
+    let arena = &plant.arena;
+    let formulas = [row.factors.as_slice(), &[row.known]].concat();
+    let asked = arena.asks(&formulas, Want::Value).into_iter();
+    asked.filter(|ask| !arena.holds_of_number(*ask) && !domain.implies(arena, ask.0, ask.1)).count()
+}
+
+/// The rate at the left inverse, where that is affine in z; proved.
+fn by_left_inverse(plant: &Plant, domain: &Domain, inverse: &LeftInverse, rate: Expr) -> Option<Row> {
+    let arena = &plant.arena;
+    let states: BTreeMap<Symbol, Expr> = inverse.x.iter().copied().collect();
+    let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
+    let in_z = arena.substitute(rate, &states);
+    let slope = |z: &Symbol| shortest(arena, domain, arena.derivative(in_z, *z));
+    let factors: Vec<Expr> = plant.z.iter().map(slope).collect();
+    let nowhere: BTreeMap<Symbol, Expr> = plant.z.iter().map(|z| (*z, arena.zero())).collect();
+    let known = shortest(arena, domain, arena.substitute(in_z, &nowhere));
+    let foreign: BTreeSet<Symbol> = plant.hidden().union(&z).copied().collect();
+    let is_free = |formula: &Expr| !arena.depends_on(*formula, &foreign);
+    let rebuilt = arena.add(known, dot(arena, &factors, &plant.transform()));
+    let is_right =
+        factors.iter().chain([&known]).all(is_free) && decide(arena, arena.sub(rate, rebuilt), domain).is_zero();
+    is_right.then_some(Row { known, factors })
+}
+
+fn decomposed(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<Row>, Obstacle> {
     let arena = &plant.arena;
     let phi = plant.transform();
     if let Some((known, factors)) = plant.proposal.rates.get(&plant.y[index].symbol) {

@@ -105,7 +105,7 @@ fn in_z(
 ) -> Option<Equation> {
     let arena = &plant.arena;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
-    let rate = match decompose(plant, domain, combination.first, combination.rate) {
+    let rate = match decompose(plant, domain, left_inverse, (combination.first, combination.rate)) {
         Ok(Some(row)) => arena.add(row.known, dot(arena, &row.factors, &z)),
         _ => arena.substitute(combination.rate, &left_inverse?.x.iter().copied().collect()),
     };
