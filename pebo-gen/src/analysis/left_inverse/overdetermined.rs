@@ -6,7 +6,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::solving::Solved;
 use crate::cas::domain::Domain;
 use crate::cas::tidy::shortest;
 use crate::cas::{Expr, Symbol};
@@ -17,20 +16,22 @@ use crate::plant::matrix::Matrix;
 const MOST_COMPONENTS: usize = 8;
 
 /// A formula for each state; none where the transform is another one, or its columns are never independent.
-pub(super) fn by_least_squares(plant: &Plant, domain: &Domain) -> Solved {
+pub(super) fn by_least_squares(plant: &Plant, domain: &Domain) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let transform = plant.transform();
     let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
     if transform.len() <= states.len() || transform.len() > MOST_COMPONENTS {
-        return Solved::new();
+        return BTreeMap::new();
     }
     let slopes = Matrix::build(transform.len(), states.len(), |i, j| arena.derivative(transform[i], states[j]));
     let hidden: BTreeSet<Symbol> = plant.hidden();
     if slopes.entries().iter().any(|slope| arena.depends_on(*slope, &hidden)) {
-        return Solved::new();
+        return BTreeMap::new();
     }
     let transposed = slopes.transpose();
-    let Ok(Some(inverse)) = transposed.mul(arena, &slopes).inverse(arena, &domain.facts) else { return Solved::new() };
+    let Ok(Some(inverse)) = transposed.mul(arena, &slopes).inverse(arena, &domain.facts) else {
+        return BTreeMap::new();
+    };
     let nowhere: BTreeMap<Symbol, Expr> = states.iter().map(|state| (*state, arena.zero())).collect();
     let moved: Vec<Expr> = plant
         .z
@@ -40,5 +41,5 @@ pub(super) fn by_least_squares(plant: &Plant, domain: &Domain) -> Solved {
         .collect();
     // The factors of z one by one: together they would stand over one denominator.
     let factors = inverse.mul(arena, &transposed).map(|factor| shortest(arena, domain, factor));
-    states.into_iter().zip(factors.apply(arena, &moved)).map(|(state, formula)| (state, vec![formula])).collect()
+    states.into_iter().zip(factors.apply(arena, &moved)).collect()
 }

@@ -17,7 +17,7 @@ use crate::plant::{Plant, State};
 use super::checking::{check, unshown};
 use super::overdetermined::by_least_squares;
 
-pub(super) type Solved = BTreeMap<Symbol, Vec<Expr>>;
+type Solved = BTreeMap<Symbol, Vec<Expr>>;
 
 /// A formula for each state that one was found for.
 pub(super) fn formulas<'a>(plant: &'a Plant, domain: &Domain) -> Result<Vec<(&'a State, Expr)>, Obstacle> {
@@ -35,7 +35,7 @@ struct Solving<'a> {
     /// What it gives where functions of y alone are kept as they are written: they compute better.
     as_written: Solved,
     /// What it gives by least squares, once that was asked for.
-    least_squares: OnceCell<Solved>,
+    least_squares: OnceCell<BTreeMap<Symbol, Expr>>,
     /// What it gives together with the values of outputs, once that was asked for.
     together: OnceCell<Result<Solved, Obstacle>>,
 }
@@ -81,7 +81,7 @@ impl<'a> Solving<'a> {
         let all_shown = found.is_some_and(|formula| unshown(self.plant, self.domain, formula).is_empty());
         let squares =
             (!all_shown).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
-        let squares = squares.and_then(|squares| squares.get(&state)).into_iter().flatten().copied().filter(right);
+        let squares = squares.and_then(|squares| squares.get(&state)).copied().filter(right);
         let forms =
             found.into_iter().chain(written).chain(squares).map(|formula| shortest(arena, self.domain, formula));
         let formula = match forms.min_by_key(|formula| self.demerit(*formula)) {

@@ -29,18 +29,14 @@ pub(super) fn decompose(
     left_inverse: Option<&LeftInverse>,
     (index, rate): (usize, Expr),
 ) -> Result<Option<Row>, Obstacle> {
-    let found = decomposed(plant, domain, index, rate)?;
     let others = || {
         let inverse = left_inverse.filter(|_| plant.phi.len() > plant.x.len())?;
         by_left_inverse(plant, domain, inverse, rate)
     };
-    Ok(match found {
-        Some(row) => Some(match others() {
-            Some(other) if asks(plant, domain, &other) < asks(plant, domain, &row) => other,
-            _ => row,
-        }),
-        None => None,
-    })
+    Ok(decomposed(plant, domain, index, rate)?.map(|row| match others() {
+        Some(other) if asks(plant, domain, &other) < asks(plant, domain, &row) => other,
+        _ => row,
+    }))
 }
 
 /// How much a row asks to have values that the domain does not show.
