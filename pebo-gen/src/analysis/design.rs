@@ -1,9 +1,9 @@
 //! What was derived of a plant: each claim with its verdict.
 
+use crate::cas::analytic::Side;
 use crate::cas::asks::Want;
 use crate::cas::domain::Domain;
 use crate::cas::facts::Relation;
-use crate::cas::parts::Side;
 use crate::cas::{Arena, Expr, Symbol};
 pub use crate::plant::CascadeClass as Class;
 use crate::plant::{Plant, RelationForm};

@@ -40,7 +40,7 @@ mod words;
 #[cfg(test)]
 mod tests;
 
-pub use crate::cas::parts::Side;
+pub use crate::cas::analytic::Side;
 pub use advice::drift::Drift;
 pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! Knows neither plants nor spans. An [`Arena`] owns expressions; [`Expr`] is a copyable handle.
 
+pub(crate) mod analytic;
 mod arena;
 mod arranged;
 mod as_sign;
@@ -37,7 +38,6 @@ mod minors;
 mod near_zero;
 mod notation;
 pub(crate) mod oriented;
-pub(crate) mod parts;
 pub(crate) mod pivots;
 pub mod poly;
 mod print;

@@ -1,7 +1,7 @@
 //! The rank of matrices over a domain, and what their rows annihilate.
 //!
 //! In: rows of formulas. Out: a rank that is seen at exact points of the domain by a rigorous elimination, hence the least
-//! that there is almost everywhere, if the formulas are analytic there (`parts`); and by exact algebra the vectors that every row provably annihilates.
+//! that there is almost everywhere, if the formulas are analytic there (`analytic`); and by exact algebra the vectors that every row provably annihilates.
 
 use super::domain::Domain;
 use super::enclosure::Point;

@@ -64,17 +64,18 @@ pub(crate) fn solve(
     };
     for start in &starts {
         // What needs a relation among what is known may be out of reach as it is written.
-        if let Ok(found) = eliminated(arena, domain, equations, unknowns, start.clone(), Known::Written) {
+        if let Ok(found) = eliminated(arena, domain, equations, unknowns, start.clone(), Reading::Written) {
             add(found);
         }
     }
     for start in &starts {
-        add(eliminated(arena, domain, equations, unknowns, start.clone(), Known::Normal)?);
+        add(eliminated(arena, domain, equations, unknowns, start.clone(), Reading::Normal)?);
     }
     // Inside out as far as they go: `p/(1 - p) = exp(z)` for `log(p/(1 - p)) = z`.
     let [given, _] = starts;
     if unknowns.iter().any(|unknown| !candidates.contains_key(unknown)) {
-        for (symbol, value) in eliminated(arena, domain, &turned, unknowns, given, Known::Normal).unwrap_or_default() {
+        for (symbol, value) in eliminated(arena, domain, &turned, unknowns, given, Reading::Normal).unwrap_or_default()
+        {
             candidates.entry(symbol).or_default().push(value);
         }
     }
@@ -114,7 +115,7 @@ fn by_roots(
         let Some((unknown, value)) = roots.first().copied() else { break };
         known.insert(unknown, value);
         found.insert(unknown, roots.iter().filter(|root| root.0 == unknown).map(|root| root.1).collect());
-        let rest = eliminated(arena, domain, equations, unknowns, known.clone(), Known::Normal).unwrap_or_default();
+        let rest = eliminated(arena, domain, equations, unknowns, known.clone(), Reading::Normal).unwrap_or_default();
         for (symbol, value) in rest {
             if known.insert(symbol, value).is_none() {
                 found.insert(symbol, vec![value]);
@@ -154,7 +155,7 @@ fn fits(arena: &Arena, domain: &Domain, equations: &[Equation], unknown: Symbol,
 
 /// How elimination reads what is free of the unknowns.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Known {
+enum Reading {
     /// As it is written.
     Written,
     /// In the normal form.
@@ -168,7 +169,7 @@ fn eliminated(
     equations: &[Equation],
     unknowns: &[Symbol],
     mut found: BTreeMap<Symbol, Expr>,
-    reading: Known,
+    reading: Reading,
 ) -> Result<BTreeMap<Symbol, Expr>, Obstacle> {
     let mut differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
     differences = arena.substitute_all(&differences, &found);
@@ -246,12 +247,12 @@ fn eliminate(
     domain: &Domain,
     differences: &[Expr],
     open: &BTreeSet<Symbol>,
-    reading: Known,
+    reading: Reading,
 ) -> Result<Vec<Equation>, Obstacle> {
     let mut frozen = Frozen::new(arena, open);
     let differences = match reading {
-        Known::Written => frozen.freeze(differences),
-        Known::Normal => differences.to_vec(),
+        Reading::Written => frozen.freeze(differences),
+        Reading::Normal => differences.to_vec(),
     };
     let field = Field::over(arena, &domain.facts, &differences)?;
     let hidden: Vec<u32> = field.kernels_of(open).into_iter().collect();

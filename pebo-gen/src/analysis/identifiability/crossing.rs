@@ -9,12 +9,12 @@
 use std::collections::BTreeSet;
 
 use crate::analysis::design::Cascade;
+use crate::cas::analytic::{Part, Side};
 use crate::cas::domain::Domain;
 use crate::cas::enclosure::Point;
 use crate::cas::facts::Facts;
 use crate::cas::field::{Field, Obstacle};
 use crate::cas::manifold::Manifold;
-use crate::cas::parts::{Part, Side};
 use crate::cas::rank::full_rank_at;
 use crate::cas::zero::decide;
 use crate::cas::{Arena, Expr, Symbol};

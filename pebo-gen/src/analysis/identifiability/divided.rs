@@ -7,9 +7,9 @@
 use std::collections::BTreeSet;
 
 use crate::cas::Expr;
+use crate::cas::analytic::Part;
 use crate::cas::domain::Domain;
 use crate::cas::field::Obstacle;
-use crate::cas::parts::Part;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 

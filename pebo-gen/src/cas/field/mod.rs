@@ -64,7 +64,7 @@ use kernel::argument::{Atoms, Units};
 use kernel::inverse::{InverseAngle, domain_of};
 use kernel::radical::ProductRoot;
 use kernel::trigonometric::Pair;
-use sign::Known;
+use sign::SignMemory;
 
 /// How often the bases of angles and exponents may be refined before the field is given up.
 const MOST_ROUNDS: usize = 12;
@@ -98,7 +98,7 @@ pub struct Field<'a> {
     /// What roots, logarithms and magnitudes are taken of.
     base: RefCell<CoprimeBase>,
     /// What [`Signs`] keeps.
-    known_signs: Known,
+    sign_memory: SignMemory,
     round: Round,
 }
 
@@ -156,7 +156,7 @@ impl<'a> Field<'a> {
             units: RefCell::default(),
             finest: Cell::default(),
             base: RefCell::default(),
-            known_signs: Known::default(),
+            sign_memory: SignMemory::default(),
             round: Round::default(),
         };
         for _ in 0..MOST_ROUNDS {
@@ -174,7 +174,7 @@ impl<'a> Field<'a> {
             }
             field.keep_base();
             field.round = Round::default();
-            field.known_signs.start_again();
+            field.sign_memory.start_again();
         }
         Err(Obstacle::TooLarge)
     }

@@ -4,7 +4,7 @@
 //! values, or none. The rules are sound and simple: numbers, kernels ([`kernel`]), sums of like signs, facts ([`facts`]),
 //! factors, differences of exponentials ([`exponential`]), discriminants ([`discriminant`]), distances from bounds
 //! ([`shift`]), and last enclosures over the box that the facts state. [`Signs`] asks, with the algebra of a field;
-//! [`Known`] is what is kept between questions. The field holds that, and looks into it nowhere: what a root or a
+//! [`SignMemory`] is what is kept between questions. The field holds that, and looks into it nowhere: what a root or a
 //! logarithm becomes depends on signs, so that it asks too.
 
 mod discriminant;
@@ -43,7 +43,7 @@ pub(in crate::cas::field) enum Sign {
 
 /// What is kept between questions.
 #[derive(Default, Debug)]
-pub(in crate::cas::field) struct Known {
+pub(in crate::cas::field) struct SignMemory {
     /// What must hold for the expressions to have values.
     learned: RefCell<Vec<(Expr, Relation)>>,
     /// Signs of expressions over the box that the facts state.
@@ -66,7 +66,7 @@ struct Round {
     undecided: RefCell<BTreeSet<Poly>>,
 }
 
-impl Known {
+impl SignMemory {
     /// Forgets what speaks of kernels: they are made anew.
     pub(in crate::cas::field) fn start_again(&mut self) {
         self.round = Round::default();
@@ -77,13 +77,13 @@ impl Known {
 #[derive(Clone, Copy)]
 pub struct Signs<'f, 'a> {
     field: &'f Field<'a>,
-    known: &'f Known,
+    memory: &'f SignMemory,
 }
 
 impl<'a> Field<'a> {
     /// Signs throughout the domain.
     pub fn signs(&self) -> Signs<'_, 'a> {
-        Signs { field: self, known: &self.known_signs }
+        Signs { field: self, memory: &self.sign_memory }
     }
 }
 
@@ -229,11 +229,11 @@ impl Signs<'_, '_> {
 
     /// What enclosures over the box say, once for each expression.
     fn over_box(&self, expr: Expr) -> Option<bool> {
-        if let Some(known) = self.known.boxed.borrow().get(&expr) {
+        if let Some(known) = self.memory.boxed.borrow().get(&expr) {
             return *known;
         }
         let sign = self.field.domain.sign_over_box(self.field.arena, expr);
-        self.known.boxed.borrow_mut().insert(expr, sign);
+        self.memory.boxed.borrow_mut().insert(expr, sign);
         sign
     }
 
@@ -252,7 +252,7 @@ impl Signs<'_, '_> {
 impl Signs<'_, '_> {
     /// How much must hold for the expressions to have values.
     pub(in crate::cas::field) fn count_learned(&self) -> usize {
-        self.known.learned.borrow().len()
+        self.memory.learned.borrow().len()
     }
 }
 

@@ -19,6 +19,7 @@
 //! are linear in the number of terms, up to sorting.
 
 mod boxed;
+mod coefficients;
 mod divide;
 mod division;
 mod evaluate;
@@ -31,7 +32,6 @@ mod linear;
 mod monomial;
 mod multiply;
 mod packed;
-mod parts;
 mod root;
 mod square_free;
 mod substitute;

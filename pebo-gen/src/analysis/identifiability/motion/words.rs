@@ -2,7 +2,7 @@
 
 use crate::analysis::design::{Blind, Motion, Place};
 use crate::cas::Expr;
-use crate::cas::parts::Side;
+use crate::cas::analytic::Side;
 use crate::plant::Plant;
 
 impl Motion {

@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn the_root_of_a_product_of_unknown_signs_has_the_product_as_its_square() {
+    fn the_root_of_a_product_of_unsign_memory_has_the_product_as_its_square() {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         for product in [arena.mul(x, y), arena.neg(arena.mul(x, y)), arena.scale(arena.mul(x, y), &Rational::from(-3))]

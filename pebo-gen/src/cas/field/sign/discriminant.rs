@@ -13,13 +13,13 @@ impl Signs<'_, '_> {
         const MOST_TERMS: usize = 40;
         const DEEPEST: u32 = 3;
         // Each step asks for the signs of polynomials in one variable less.
-        let depth = self.known.round.depth.get();
+        let depth = self.memory.round.depth.get();
         if poly.term_count() > MOST_TERMS || depth == DEEPEST {
             return Ok(None);
         }
-        self.known.round.depth.set(depth + 1);
+        self.memory.round.depth.set(depth + 1);
         let sign = self.as_quadratic(poly);
-        self.known.round.depth.set(depth);
+        self.memory.round.depth.set(depth);
         sign
     }
 

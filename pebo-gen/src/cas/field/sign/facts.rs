@@ -23,7 +23,7 @@ impl Signs<'_, '_> {
     ///
     /// Most questions ask for no sign, so this waits for the first that does.
     pub(super) fn learn(&self) -> Result<(), Obstacle> {
-        if self.known.round.read.replace(true) {
+        if self.memory.round.read.replace(true) {
             return Ok(());
         }
         let occurring: BTreeSet<Expr> = self.field.arena.postorder(&self.field.roots).into_iter().collect();
@@ -40,7 +40,7 @@ impl Signs<'_, '_> {
             }
             self.learn_sign(expr, compared)?;
         }
-        let learned = self.known.learned.borrow().clone();
+        let learned = self.memory.learned.borrow().clone();
         for (expr, compared) in learned {
             self.learn_sign(expr, compared)?;
         }
@@ -50,18 +50,18 @@ impl Signs<'_, '_> {
     /// Whether there is any fact to tell a sign by.
     pub(in crate::cas::field) fn has_facts(&self) -> Result<bool, Obstacle> {
         self.learn()?;
-        Ok(!self.known.round.facts.borrow().is_empty())
+        Ok(!self.memory.round.facts.borrow().is_empty())
     }
 
     /// Something is made of a part because its sign is not known.
     pub(in crate::cas::field) fn leave_open(&self, part: &Poly) {
-        self.known.round.undecided.borrow_mut().insert(part.clone());
+        self.memory.round.undecided.borrow_mut().insert(part.clone());
     }
 
     fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
         let fraction = self.field.fraction(expr)?;
         if fraction.den.is_constant() {
-            self.known.round.facts.borrow_mut().push((fraction.num, compared));
+            self.memory.round.facts.borrow_mut().push((fraction.num, compared));
             return Ok(());
         }
         // n/d > 0 has the sign of n*d. But a denominator may have been cleared of roots by a factor that vanishes where
@@ -73,7 +73,7 @@ impl Signs<'_, '_> {
             exact => exact,
         };
         let product = fraction.num.mul(&fraction.den, self.field.limit())?;
-        self.known.round.facts.borrow_mut().push((product, compared));
+        self.memory.round.facts.borrow_mut().push((product, compared));
         Ok(())
     }
 
@@ -89,13 +89,13 @@ impl Signs<'_, '_> {
             return Ok(());
         }
         let entry = (self.field.show_polynomial(poly), compared);
-        if !self.known.learned.borrow().contains(&entry) {
-            self.known.learned.borrow_mut().push(entry);
-            if !self.known.round.undecided.borrow().is_empty() {
+        if !self.memory.learned.borrow().contains(&entry) {
+            self.memory.learned.borrow_mut().push(entry);
+            if !self.memory.round.undecided.borrow().is_empty() {
                 self.field.round.finer.set(true);
             }
         }
-        self.known.round.facts.borrow_mut().push((poly.clone(), compared));
+        self.memory.round.facts.borrow_mut().push((poly.clone(), compared));
         Ok(())
     }
 
@@ -123,7 +123,7 @@ impl Signs<'_, '_> {
 
     /// The facts, and that no sine or cosine exceeds one.
     fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Compared)> {
-        let mut facts = self.known.round.facts.borrow().clone();
+        let mut facts = self.memory.round.facts.borrow().clone();
         for &variable in poly.variables() {
             if let Node::Call(Function::Sin | Function::Cos, _) = self.field.arena.node(self.field.kernel(variable)) {
                 let value = Poly::variable(variable);

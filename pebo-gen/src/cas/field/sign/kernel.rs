@@ -18,7 +18,7 @@ impl Signs<'_, '_> {
         if let Some(sign) = self.by_function(variable) {
             return Some(sign);
         }
-        for (fact, compared) in self.known.round.facts.borrow().iter() {
+        for (fact, compared) in self.memory.round.facts.borrow().iter() {
             if fact.variables() != [variable] {
                 continue;
             }
@@ -58,8 +58,8 @@ impl Signs<'_, '_> {
         // A fact may have the kernel itself in it: then its form is all that is known.
         let by_form =
             (root || matches!(self.field.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
-        let state = (variable, self.known.round.facts.borrow().len());
-        let memo = &self.known.round.memo;
+        let state = (variable, self.memory.round.facts.borrow().len());
+        let memo = &self.memory.round.memo;
         if let Some(sign) = memo.borrow().answer(state) {
             return *sign;
         }
@@ -67,7 +67,7 @@ impl Signs<'_, '_> {
             return by_form;
         }
         let sign = self.by_arguments(expr, radicand).or(by_form);
-        memo.borrow_mut().end(state, sign, self.known.round.depth.get() == 0);
+        memo.borrow_mut().end(state, sign, self.memory.round.depth.get() == 0);
         sign
     }
 
@@ -85,7 +85,7 @@ impl Signs<'_, '_> {
 
     /// The sign of a sine or cosine by the range of its angle.
     fn by_angle(&self, function: Function, angle: Expr) -> Option<Sign> {
-        if self.known.round.facts.borrow().is_empty() {
+        if self.memory.round.facts.borrow().is_empty() {
             return None;
         }
         let right = self.field.scale(&self.field.fraction(self.field.arena.pi()).ok()?, &half()).ok()?;

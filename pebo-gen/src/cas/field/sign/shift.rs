@@ -30,7 +30,7 @@ impl Signs<'_, '_> {
         if poly.term_count() > MOST_TERMS || poly.total_degree() > MOST_DEGREE {
             return Ok(None);
         }
-        let facts = self.known.round.facts.borrow().clone();
+        let facts = self.memory.round.facts.borrow().clone();
         let mut tries = MOST_TRIES;
         self.shifted(poly, &facts, &Distances::new(), &mut tries)
     }
