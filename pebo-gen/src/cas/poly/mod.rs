@@ -19,7 +19,7 @@
 //! are linear in the number of terms, up to sorting.
 
 mod boxed;
-mod coefficients;
+mod contents;
 mod divide;
 mod division;
 mod evaluate;
