@@ -54,7 +54,7 @@ impl Conditions {
         };
         for (key, part) in parts {
             let known = self.listed.iter().any(|(other, (_, listed))| *other == key && *listed == relation);
-            if !known && !arena.holds_of_number((part, relation)) && !self.known.implies(arena, part, relation) {
+            if !known && !self.known.grants(arena, (part, relation)) {
                 self.listed.push((key, (part, relation)));
                 self.known.facts.assume(part, relation);
             }
@@ -110,7 +110,7 @@ impl Conditions {
         let arena = &plant.arena;
         for (part, relation) in arena.asks(formulas, Want::Value) {
             let ask = (arena.substitute(part, values), relation);
-            if arena.holds_of_number(ask) || self.known.implies(arena, ask.0, relation) {
+            if self.known.grants(arena, ask) {
                 continue;
             }
             let free = arena.symbols_of(&[ask.0]).iter().any(|symbol| plant.is_of_extension(*symbol));

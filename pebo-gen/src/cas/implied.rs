@@ -20,6 +20,11 @@ struct Signs {
 }
 
 impl Domain {
+    /// Whether what a formula asks is granted: of numbers it holds, or the facts show it.
+    pub(crate) fn grants(&self, arena: &Arena, ask: (Expr, Relation)) -> bool {
+        arena.holds_of_number(ask) || self.implies(arena, ask.0, ask.1)
+    }
+
     /// Whether the facts show that the expression compares so with zero, wherever it has a value.
     pub(crate) fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
         self.implies_across(arena, expr, relation, MOST_BORDERS)

@@ -34,8 +34,12 @@ impl<'a> Question<'a> {
     /// The questions for the other states where outputs tell some by their value, alone or together with states that stay
     /// unmeasured. An output that is a function of several states tells one of them; which, differs between the questions.
     pub(super) fn with_told_states(plant: &'a Plant) -> Vec<Self> {
+        let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+        let values = plant.y.iter().filter_map(|output| output.value.as_ref());
+        let count = |value: Expr| plant.arena.symbols_of(&[value]).intersection(&states).count();
+        let turns = values.map(|value| count(value.expr)).max().unwrap_or(0);
         let mut known: Vec<BTreeMap<Symbol, Expr>> = Vec::new();
-        for turn in 0..plant.x.len() {
+        for turn in 0..turns {
             let told = told(plant, turn);
             if !told.is_empty() && told.len() < plant.x.len() && !known.contains(&told) {
                 known.push(told);
@@ -126,8 +130,8 @@ impl<'a> Question<'a> {
 }
 
 /// States that outputs with a rate tell by their value, as functions of these and of the states that are left: `th` by
-/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. What moves is told before what is constant; of as
-/// many states as an output has, the one is told whose turn it is.
+/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. Of the states
+/// of an output one is told, in the first turn the first that moves, in each further turn the next.
 fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let domain = plant.domain();

@@ -84,6 +84,27 @@ fn a_regression_divides_by_what_the_value_of_an_output_does() {
     }
 }
 
+/// Whether equal phases identify the currents takes too long to see of five: that is said, and no condition forbids them.
+#[test]
+fn values_of_parameters_that_were_not_worked_out_are_no_conditions() {
+    let list = |of: &dyn Fn(usize) -> String, between: &str| (1..=5).map(of).collect::<Vec<_>>().join(between);
+    let plant = derived(&format!(
+        "parameters: [C, G, E, {}]\nx: [{}]\ny: [v]\nu: [{}]\nassume: [C > 0, G > 0, {}]\nf_x: {{{}}}\n\
+         f_y: {{v: ({} - G*v)/C}}\nphi: [{}]",
+        list(&|k| format!("L{k}, R{k}"), ", "),
+        list(&|k| format!("i{k}"), ", "),
+        list(&|k| format!("d{k}"), ", "),
+        list(&|k| format!("L{k} > 0, R{k} > 0, 0 < d{k} < 1"), ", "),
+        list(&|k| format!("i{k}: (E - R{k}*i{k} - (1 - d{k})*v)/L{k}"), ", "),
+        list(&|k| format!("(1 - d{k})*i{k}"), " + "),
+        list(&|k| format!("i{k}"), ", "),
+    ));
+    assert_eq!(plant.derivation.outcome, Outcome::Accepted);
+    let identifiability = plant.derivation.identifiability.result.as_ref().expect("an answer");
+    assert!(identifiability.constants.is_empty() && plant.derivation.conditions.is_empty());
+    assert!(!identifiability.motion.as_ref().expect("motions").parameters, "it is said that they were not worked out");
+}
+
 /// Three angular momenta of a spherical pendulum for two states: no two of them give both states everywhere, all three do.
 #[test]
 fn of_more_components_than_states_no_place_is_lost() {

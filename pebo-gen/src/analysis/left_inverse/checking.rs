@@ -22,7 +22,7 @@ pub(super) fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Ex
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let asked = arena.asks(&[formula], Want::Value).into_iter();
     let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
-    there.filter(|(_, ask)| !arena.holds_of_number(*ask) && !domain.implies(arena, ask.0, ask.1)).collect()
+    there.filter(|(_, ask)| !domain.grants(arena, *ask)).collect()
 }
 
 /// What must vanish, for an angle up to periods: `phi_left(phi(x, y), y) - x`.

@@ -44,7 +44,7 @@ fn asks(plant: &Plant, domain: &Domain, row: &Row) -> usize {
     let arena = &plant.arena;
     let formulas = [row.factors.as_slice(), &[row.known]].concat();
     let asked = arena.asks(&formulas, Want::Value).into_iter();
-    asked.filter(|ask| !arena.holds_of_number(*ask) && !domain.implies(arena, ask.0, ask.1)).count()
+    asked.filter(|ask| !domain.grants(arena, *ask)).count()
 }
 
 /// The rate at the left inverse, where that is affine in z; proved.

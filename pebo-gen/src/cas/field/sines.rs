@@ -33,17 +33,9 @@ impl Field<'_> {
         let Fraction { mut num, mut den } = fraction.clone();
         for variable in den.variables().to_vec() {
             let Some(sine) = self.sine_beside(variable) else { continue };
-            let square = &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?;
-            let mut times = 0_u32;
-            while let Some(rest) = den.div_exact(&square, self.limit())? {
-                den = rest;
-                times += 2;
-            }
-            if times == 0 {
-                continue;
-            }
+            let Some((rest, square, times)) = self.without_squares(&den, variable)? else { continue };
             let power = |times: u32| Poly::variable(sine).pow(times, self.limit());
-            den = den.mul(&power(times)?, self.limit())?;
+            den = rest.mul(&power(times)?, self.limit())?;
             let others: Vec<u32> = num.variables().iter().copied().filter(|v| ![variable, sine].contains(v)).collect();
             let mut total = Poly::zero();
             for (monomial, mut rest) in num.collect(&others) {
@@ -63,6 +55,18 @@ impl Field<'_> {
         Ok(Fraction { num, den })
     }
 
+    /// The polynomial without its powers of `1 - cos(q)^2`, that square, and the power of the sine that they are; none if it
+    /// has none.
+    fn without_squares(&self, poly: &Poly, cosine: u32) -> Result<Option<(Poly, Poly, u32)>, Obstacle> {
+        let square = &Poly::one() - &Poly::variable(cosine).pow(2, self.limit())?;
+        let (mut rest, mut times) = (poly.clone(), 0);
+        while let Some(quotient) = rest.div_exact(&square, self.limit())? {
+            rest = quotient;
+            times += 2;
+        }
+        Ok((times > 0).then_some((rest, square, times)))
+    }
+
     /// The polynomial over a sine, of which the square is given, if that divides it.
     fn over_sine(&self, poly: &Poly, sine: u32, square: &Poly) -> Result<Option<Poly>, Obstacle> {
         let turned = self.reduce(&poly.mul(&Poly::variable(sine), self.limit())?)?;
@@ -76,12 +80,8 @@ impl Field<'_> {
         let mut cancelled = false;
         for variable in den.variables().to_vec() {
             let Some(sine) = self.sine_beside(variable) else { continue };
-            let square = &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?;
-            let mut times = 0_u32;
-            while let Some(rest) = den.div_exact(&square, self.limit())? {
-                den = rest;
-                times += 2;
-            }
+            let Some((rest, square, mut times)) = self.without_squares(&den, variable)? else { continue };
+            den = rest;
             while times > 0 {
                 let Some(rest) = self.over_sine(&num, sine, &square)? else { break };
                 num = rest;

@@ -271,7 +271,7 @@ impl Question<'_> {
                 // Other motions show them all the same, but perhaps not for further values.
                 Ok(Some(further)) => all &= !further,
                 Ok(None) => lost.push(formula),
-                // It takes too long to see: perhaps they do.
+                // Whether they do is open: the verdict says that such values were not all worked out.
                 Err(_) => all = false,
             }
         }
