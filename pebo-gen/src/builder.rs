@@ -5,10 +5,10 @@
 use std::fmt::{self, Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 
-use crate::cas::budget::Budget;
 use crate::derived::derive_within;
 use crate::emit::Scalar;
-use crate::source::{Colour, Source, render};
+use pebo_cas::Budget;
+use pebo_design::source::{Colour, Source, render};
 
 /// Writes the observers of model files, from a crate's build script.
 ///

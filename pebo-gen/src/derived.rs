@@ -3,18 +3,17 @@
 //! In: a source, or a model that somebody read. Out: a [`Derived`], whose claims all have a verdict; a transform that the
 //! model does not have is searched for. Nothing more is worked out before it is asked for.
 
-use crate::analysis::{Derivation, Outcome};
-use crate::cas;
-use crate::cas::budget::Budget;
-use crate::cas::rational::Rational;
 use crate::emit::{self, EmitError, Emitted, Scalar};
-use crate::model::Model;
-use crate::plant::{Class, Plant, Settings, TransformOrigin};
-use crate::search::{self, Found};
+use pebo_cas::domain::zero::decide;
+use pebo_cas::{Arena, Budget, Rational};
+use pebo_design::analysis::{Derivation, Outcome};
+use pebo_design::model::Model;
+use pebo_design::plant::{Class, Plant, Settings, TransformOrigin};
+use pebo_design::search::{self, Found};
 #[cfg(feature = "yaml")]
-use crate::source::Source;
-use crate::source::{Code, Diagnostic, Diagnostics, Span};
-use crate::tuning::Tuned;
+use pebo_design::source::Source;
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+use pebo_lab::settings::Tuned;
 
 /// A model with everything that was derived of it.
 #[derive(Debug)]
@@ -84,7 +83,7 @@ impl Derived {
 
     /// Whether all that was derived holds of another reading of the model too, which then may stand in the place of
     /// [`model`](Self::model): one that differs in the sections `observer`, `simulation` and `recording` alone, as with
-    /// [`Source::set`](crate::source::Source::set).
+    /// [`Source::set`](pebo_design::source::Source::set).
     pub fn holds_of(&self, other: &Model) -> bool {
         let Model { observer, simulation, recording, .. } = self.model.clone();
         Model { observer, simulation, recording, ..other.clone() } == self.model
@@ -117,7 +116,7 @@ impl Derived {
     /// Writes the observer as Rust, and proves that the written code computes what was derived.
     pub fn emit(&self, scalar: Scalar) -> Result<Emitted, EmitError> {
         let domain = self.plant.domain();
-        let is_zero = |arena: &cas::Arena, expr| cas::zero::decide(arena, expr, &domain).is_zero();
+        let is_zero = |arena: &Arena, expr| decide(arena, expr, &domain).is_zero();
         emit::emit(&self.plant, &self.derivation, self.settings().0.as_ref(), scalar, is_zero)
     }
 
@@ -175,19 +174,13 @@ impl Derived {
 
     /// The closed loop that the model file describes, ready to be run.
     #[cfg(feature = "simulate")]
-    pub fn scenario(
-        &self,
-        overrides: &crate::simulate::Overrides,
-    ) -> Result<crate::simulate::Scenario, Vec<Diagnostic>> {
-        crate::simulate::Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides)
+    pub fn scenario(&self, overrides: &pebo_lab::Overrides) -> Result<pebo_lab::Scenario, Vec<Diagnostic>> {
+        pebo_lab::Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides)
     }
 
     /// The observer of the model, ready to be run over recorded data with these columns.
     #[cfg(feature = "simulate")]
-    pub fn replay(
-        &self,
-        log: &crate::simulate::replay::Log<'_>,
-    ) -> Result<crate::simulate::replay::Replay, Vec<Diagnostic>> {
-        crate::simulate::replay::Replay::resolve(&self.model, &self.plant, &self.derivation, log)
+    pub fn replay(&self, log: &pebo_lab::recording::Log<'_>) -> Result<pebo_lab::recording::Replay, Vec<Diagnostic>> {
+        pebo_lab::recording::Replay::resolve(&self.model, &self.plant, &self.derivation, log)
     }
 }

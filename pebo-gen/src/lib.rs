@@ -8,27 +8,19 @@
 //! 2015). [`derive()`] says what is proved of it, claim by claim; [`Derived::emit`] writes the observer
 //! if everything is. [`answer()`] is both in one call, with all that front ends show, as one value that serialises.
 
-pub mod analysis;
 #[cfg(feature = "yaml")]
 mod answer;
 #[cfg(feature = "yaml")]
 mod builder;
-pub mod cas;
 #[cfg(feature = "yaml")]
 mod certificate;
 mod derived;
 pub mod emit;
-pub mod model;
 #[cfg(feature = "yaml")]
 mod page;
-pub mod plant;
-mod program;
 pub mod report;
-pub mod search;
 #[cfg(feature = "simulate")]
 pub mod simulate;
-pub mod source;
-mod tuning;
 
 #[cfg(feature = "yaml")]
 pub use answer::{Answer, Ask, Section, Solution, Stage, Standing, Typeset, answer, solve};
@@ -39,6 +31,8 @@ pub use builder::{BuildError, Builder, Built};
 pub use derived::Derived;
 #[cfg(feature = "yaml")]
 pub use derived::{derive, derive_within};
+
+pub use pebo_design::{analysis, model, plant, search, source};
 
 /// The package's front page, of which the example is a test.
 #[cfg(doctest)]

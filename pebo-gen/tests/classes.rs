@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::time::Instant;
 
+use pebo_cas::Expr;
+use pebo_cas::domain::zero::decide;
 use pebo_gen::analysis::{Class, Excitation, Outcome, RegressionKind, Verdict};
-use pebo_gen::cas::Expr;
-use pebo_gen::cas::zero::decide;
 use pebo_gen::report::summary;
 use pebo_gen::source::{Code, Diagnostic, Source};
 use pebo_gen::{Derived, derive};

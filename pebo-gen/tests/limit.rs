@@ -3,8 +3,8 @@
 
 use std::cell::Cell;
 
+use pebo_cas::Budget;
 use pebo_gen::analysis::{Outcome, Verdict};
-use pebo_gen::cas::budget::Budget;
 use pebo_gen::source::{Code, Diagnostic, Source};
 use pebo_gen::{Derived, derive_within};
 

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use pebo_gen::cas::Arena;
-use pebo_gen::cas::facts::{Facts, Relation};
-use pebo_gen::cas::field::Field;
-use pebo_gen::cas::function::Value;
+use pebo_cas::Arena;
+use pebo_cas::graph::function::Value;
+use pebo_cas::tower::Field;
+use pebo_cas::{Facts, Relation};
 use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 

@@ -5,12 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use pebo_gen::cas::domain::Domain;
-use pebo_gen::cas::facts::Relation;
-use pebo_gen::cas::field::Obstacle;
-use pebo_gen::cas::function::{Function, Value};
-use pebo_gen::cas::zero::{Answer, decide};
-use pebo_gen::cas::{Arena, Expr};
+use pebo_cas::Domain;
+use pebo_cas::Relation;
+use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::graph::function::{Function, Value};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Arena, Expr};
 use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 

@@ -4,10 +4,10 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use pebo_cas::Rational;
+use pebo_cas::number::interval::{Interval, Precision};
+use pebo_cas::{Expr, Symbol};
 use pebo_gen::analysis::{Class, RegressionKind};
-use pebo_gen::cas::interval::{Interval, Precision};
-use pebo_gen::cas::rational::Rational;
-use pebo_gen::cas::{Expr, Symbol};
 use pebo_gen::emit::Scalar;
 use pebo_gen::source::Source;
 use pebo_gen::{Derived, derive};

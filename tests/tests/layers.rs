@@ -12,11 +12,11 @@ use graph::Graph;
 /// The circles among files: the file whose documentation says why they are one thing, and how many they are. To add a
 /// row is to have found no other way.
 const CIRCLES: &[(&str, usize)] = &[
-    ("analysis/advice/remarks.rs", 4),
-    ("cas/field/mod.rs", 16),
-    ("cas/poly/multiply.rs", 6),
-    ("emit/module.rs", 2),
     ("emit/layout/mod.rs", 3),
+    ("emit/module/mod.rs", 2),
+    ("cas/tower/mod.rs", 14),
+    ("cas/poly/multiply.rs", 6),
+    ("analysis/advice/remarks.rs", 4),
     ("model/formula/parser.rs", 2),
     ("model/rust/functions.rs", 2),
     ("plant/plant.rs", 12),
@@ -24,7 +24,7 @@ const CIRCLES: &[(&str, usize)] = &[
 ];
 
 fn generator() -> Graph {
-    Graph::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../pebo-gen/src"))
+    Graph::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../pebo-gen"))
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn arrows_are_read_off_every_way_to_name_something() {
     for (text, expected) in uses {
         let folder = tempfile::tempdir().expect("a folder");
         let write = |name: &str, text: &str| {
-            let path = folder.path().join(name);
+            let path = folder.path().join("src").join(name);
             std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
             std::fs::write(path, text).expect("a file");
         };

@@ -2,9 +2,9 @@
 //!
 //! The formulas on both sides are those of the paper's Sections 4 and 5.
 
+use pebo_cas::Expr;
+use pebo_cas::domain::zero::{Answer, decide};
 use pebo_gen::analysis::{Outcome, Verdict};
-use pebo_gen::cas::Expr;
-use pebo_gen::cas::zero::{Answer, decide};
 use pebo_gen::model::formula::{Estimates, Places, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 use pebo_gen::source::{Code, Source};

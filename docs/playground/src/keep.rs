@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use pebo_gen::cas::budget::Budget;
+use pebo_cas::Budget;
 use pebo_gen::source::{Diagnostic, Source};
 use pebo_gen::{Ask, Derived, Stage, derive_within};
 

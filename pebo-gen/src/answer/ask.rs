@@ -4,10 +4,10 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
-use crate::cas::budget::Budget;
 use crate::emit::Scalar;
+use pebo_cas::Budget;
 #[cfg(feature = "simulate")]
-use crate::simulate::Overrides;
+use pebo_lab::Overrides;
 
 /// Is told where a call is, and says whether to go on.
 type Watch = dyn Fn(Stage) -> ControlFlow<()>;

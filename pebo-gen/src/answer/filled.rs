@@ -3,10 +3,10 @@
 //! In: the text, and the plant with its transform. Out: the text with the components under `phi`, and without the left
 //! inverse of another transform, or with the matrices of the transform under the key of its class; all else is as it was. None where the result would not read as meant: the text is read again.
 
-use crate::model::Model;
-use crate::plant::{Plant, TransformOrigin};
-use crate::search;
-use crate::source::Source;
+use pebo_design::model::Model;
+use pebo_design::plant::{Plant, TransformOrigin};
+use pebo_design::search;
+use pebo_design::source::Source;
 
 use super::framed::{self, quoted};
 

@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
-use crate::model::Class;
-use crate::search::Block;
+use pebo_design::model::Class;
+use pebo_design::search::Block;
 
 /// Whether the class has a transform of its author's.
 pub(super) fn is_given(class: &Class) -> bool {

@@ -40,14 +40,14 @@ use serde::Serialize;
 
 use ask::Explained;
 
-use crate::analysis::Outcome;
 use crate::certificate::certificate;
 use crate::derived::{Derived, derive_within};
 use crate::emit::Emitted;
 use crate::report::{self, Report};
+use pebo_design::analysis::Outcome;
+use pebo_design::source::{Diagnostic, Source};
 #[cfg(feature = "simulate")]
-use crate::simulate::replay::Replayed;
-use crate::source::{Diagnostic, Source};
+use pebo_lab::recording::Replayed;
 
 /// All there is to say of a model. Fields are only ever added.
 ///

@@ -1,10 +1,10 @@
 //! What a page is made of: the verdict, the code for `f64`, and the closed loop where the model describes one.
 
-use crate::analysis::Outcome;
 use crate::derived::Derived;
 use crate::emit::{Emitted, Scalar};
 use crate::page::{self, Section, Subject};
-use crate::source::{Diagnostic, Source};
+use pebo_design::analysis::Outcome;
+use pebo_design::source::{Diagnostic, Source};
 
 use super::ask::Ask;
 #[cfg(feature = "simulate")]

@@ -6,10 +6,10 @@
 use std::io::{Read, Write};
 use std::ops::ControlFlow;
 
-use crate::analysis::Outcome;
 use crate::derived::{Derived, derive_within};
-use crate::simulate::replay::{Failure, Log, Replayed, Unreadable};
-use crate::source::{Diagnostic, Source};
+use pebo_design::analysis::Outcome;
+use pebo_design::source::{Diagnostic, Source};
+use pebo_lab::recording::{Failure, Log, Replayed, Unreadable};
 
 use super::ask::{Ask, Stage};
 use super::standing::Standing;

@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use crate::derived::Derived;
-use crate::simulate::{Ensemble, Rated, Scenario, Summary, Trace, figure};
-use crate::source::Diagnostic;
+use pebo_design::source::Diagnostic;
+use pebo_lab::{Ensemble, Rated, Scenario, Summary, Trace, figure};
 
 use super::ask::{Ask, AskRun, Stage};
 use super::standing::Standing;

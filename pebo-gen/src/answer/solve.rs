@@ -7,12 +7,12 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::analysis::Class;
-use crate::model::Model;
-use crate::plant::Plant;
 use crate::report::{SearchReport, search_summary};
-use crate::search::{self, Found};
-use crate::source::{Diagnostic, Source};
+use pebo_design::analysis::Class;
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+use pebo_design::search::{self, Found};
+use pebo_design::source::{Diagnostic, Source};
 
 use super::ask::Ask;
 use super::filled::filled;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::analysis::Outcome;
-use crate::source::{Code, Diagnostic};
+use pebo_design::analysis::Outcome;
+use pebo_design::source::{Code, Diagnostic};
 
 /// How a call ended, from best to worst: what programs return as their exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

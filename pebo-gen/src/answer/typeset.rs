@@ -3,8 +3,8 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use crate::cas::{Arena, Expr};
 use crate::derived::Derived;
+use pebo_cas::{Arena, Expr};
 
 /// The functions of an observer as `MathML`, each formula a `math` element; empty where they were not derived.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -6,11 +6,11 @@
 
 mod python;
 
-use crate::analysis::{Derivation, Excitation, Motion, RegressionKind};
-use crate::cas::{Expr, Symbol};
-use crate::model::class::Matrix;
-use crate::model::{Class, Entry, Formula, Model};
-use crate::plant::Plant;
+use pebo_cas::{Expr, Symbol};
+use pebo_design::analysis::{Derivation, Excitation, Motion, RegressionKind};
+use pebo_design::model::class::Matrix;
+use pebo_design::model::{Class, Entry, Formula, Model};
+use pebo_design::plant::Plant;
 
 use python::Literal;
 
@@ -47,8 +47,8 @@ fn stated(model: &Model) -> Literal {
     let texts = |formulas: &[Formula]| Literal::texts(formulas);
     let named =
         |entries: &[Entry<Formula>]| Literal::named(entries.iter().map(|entry| (&entry.name.value, &entry.value)));
-    let names = |list: &[crate::model::Spanned<String>]| Literal::texts(list.iter().map(|name| &name.value));
-    let parameter = |entry: &Entry<Option<crate::model::Spanned<crate::model::Decimal>>>| {
+    let names = |list: &[pebo_design::model::Spanned<String>]| Literal::texts(list.iter().map(|name| &name.value));
+    let parameter = |entry: &Entry<Option<pebo_design::model::Spanned<pebo_design::model::Decimal>>>| {
         let value = entry.value.as_ref().map_or(Literal::None, |value| Literal::text(value.value.text()));
         (entry.name.value.clone(), value)
     };

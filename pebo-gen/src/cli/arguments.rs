@@ -7,7 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, ValueEnum};
-use pebo_gen::cas::budget::Budget;
+use pebo_cas::Budget;
 use pebo_gen::emit::Scalar;
 
 const EXAMPLES: &str = "\

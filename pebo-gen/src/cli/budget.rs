@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use memory_stats::memory_stats;
-use pebo_gen::cas::budget::Budget;
+use pebo_cas::Budget;
 use pebo_gen::{Ask, Stage};
 
 use super::arguments::Limit;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::cas::rational::Rational;
+use pebo_cas::Rational;
 
 /// The reason for which a derivation was not emitted.
 #[derive(Clone, PartialEq, Eq, Debug)]

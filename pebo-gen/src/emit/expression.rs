@@ -10,9 +10,8 @@ use quote::quote;
 
 use super::literal::literal;
 use super::names::{LONGEST, Names};
-use crate::cas::Function;
-use crate::cas::rational::Rational;
-use crate::program::{Constant, Operand, Operation, Program};
+use pebo_cas::{Function, Rational};
+use pebo_design::program::{Constant, Operand, Operation, Program};
 
 /// How tightly the outermost operation of an expression binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]

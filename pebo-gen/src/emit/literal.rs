@@ -3,8 +3,7 @@
 //! A literal stands for the rational that its decimal digits spell; the compiler rounds it once, to
 //! the target scalar. A number without a short decimal is a quotient of two literals.
 
-use crate::cas::integer::Integer;
-use crate::cas::rational::Rational;
+use pebo_cas::{Integer, Rational};
 
 /// The floating-point type of the emitted code.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -8,32 +8,15 @@
 //! that depends on `pebo_runtime` alone. Holds after: the tokens were interpreted again, and each
 //! function's value is, by the caller's zero test, what was derived.
 
-mod abbreviation;
 mod accuracy;
-mod block;
-mod check;
-mod choice;
 mod definition;
-mod describe;
-mod document;
 mod error;
 mod expression;
-mod function;
-mod fundamental;
 mod layout;
 mod literal;
 mod module;
 mod names;
-mod parameters;
-mod permission;
-mod prose;
 mod read_back;
-mod signals;
-mod tasks;
-mod terms;
-mod tuned;
-mod tuning;
-mod value;
 
 #[cfg(test)]
 mod tests;
@@ -42,19 +25,18 @@ pub use accuracy::{Accuracy, Cause, Loss, Worst};
 pub use error::EmitError;
 pub use literal::Scalar;
 
-pub use crate::program::Cost;
+pub use pebo_design::program::Cost;
 
 use proc_macro2::TokenStream;
 
-use crate::analysis::Derivation;
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr};
-use crate::plant::{Plant, Settings};
-use crate::program::{Undeclared, lower};
-use abbreviation::Abbreviations;
-use choice::Choice;
 use definition::Definitions;
+use definition::choice::Choice;
 use module::Module;
+use module::abbreviation::Abbreviations;
+use pebo_cas::{Arena, Expr, Rational};
+use pebo_design::analysis::Derivation;
+use pebo_design::plant::{Plant, Settings};
+use pebo_design::program::{Undeclared, lower};
 
 /// An emitted module. Serialises to its text and the name of its type.
 #[derive(Clone, Debug)]
@@ -94,7 +76,8 @@ pub fn emit(
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
     let (choice, accuracy) =
-        choice::choose(plant, derivation, (&parameters, scalar), &definitions, &is_zero).map_err(undeclared)?;
+        definition::choice::choose(plant, derivation, (&parameters, scalar), &definitions, &is_zero)
+            .map_err(undeclared)?;
     let Choice { definitions, staged, .. } = choice;
     if arena.budget().is_exhausted() {
         // What could not be enclosed was not measured.
@@ -113,11 +96,11 @@ pub fn emit(
     let asked = derivation.asked_of_parameters(plant);
     let values: Vec<Expr> = asked.iter().map(|(value, _)| *value).collect();
     let checked = lower(arena, &parameters, &values).map_err(undeclared)?;
-    let (asked, checked) = check::with_guards(arena, asked, &checked, &staged);
+    let (asked, checked) = module::check::with_guards(arena, asked, &checked, &staged);
     let rebase = derivation.can_rebase(plant);
     let definitions = &definitions;
     let (staged, asked_of) = (&staged, &asked);
-    let abbreviations = Abbreviations::of(arena, &document::formulas(plant, definitions, staged));
+    let abbreviations = Abbreviations::of(arena, &module::document::formulas(plant, definitions, staged));
     let module = Module {
         plant,
         derivation,
@@ -134,6 +117,6 @@ pub fn emit(
     let tokens = module.tokens()?;
     read_back::confirm(plant, definitions, (&asked, settings), scalar, &tokens, is_zero)?;
     let text = layout::text(&tokens)?;
-    let costs = document::costs(definitions, staged);
+    let costs = module::document::costs(definitions, staged);
     Ok(Emitted { tokens, text, type_name: names::camel(&plant.name), costs, accuracy })
 }

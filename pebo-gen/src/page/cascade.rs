@@ -1,10 +1,9 @@
 //! Claim 1: the rate of the transform term by term, what of it holds unmeasured signals, and what is left.
 
-use crate::analysis::{Class, Verdict};
-use crate::cas::rational::Rational;
-use crate::cas::zero::decide;
-use crate::cas::{Arena, Expr, Node, Symbol};
-use crate::plant::Plant;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::{Arena, Expr, Node, Rational, Symbol};
+use pebo_design::analysis::{Class, Verdict};
+use pebo_design::plant::Plant;
 
 use super::formula::{Setter, Steps, sum};
 use super::html::Html;

@@ -3,9 +3,8 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use crate::cas::facts::Relation;
-use crate::cas::mathml::escaped;
-use crate::cas::{Arena, Expr, Symbol};
+use pebo_cas::print::mathml::escaped;
+use pebo_cas::{Arena, Expr, Relation, Symbol};
 
 /// The length up to which a formula is set: some thousand names, which nobody reads.
 const MOST_OF_FORMULA: usize = 100_000;

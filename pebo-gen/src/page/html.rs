@@ -1,6 +1,6 @@
 //! HTML that is well-formed by construction: an element is closed where its content ends, and text is escaped.
 
-use crate::cas::mathml::escaped;
+use pebo_cas::print::mathml::escaped;
 
 /// A page as it is written.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! Claim 4: the unknowns are told apart, where they are not, and what excitation it takes.
 
-use crate::analysis::{Class, Derivation, Excitation, Gram, Motion, Verdict};
 use crate::report::notes;
+use pebo_design::analysis::{Class, Derivation, Excitation, Gram, Motion, Verdict};
 
 use super::formula::{Setter, Steps};
 use super::html::Html;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::analysis::{Origin, Verdict};
-use crate::cas::{Expr, Symbol};
 use crate::report::notes;
+use pebo_cas::{Expr, Symbol};
+use pebo_design::analysis::{Origin, Verdict};
 
 use super::formula::{Setter, Steps};
 use super::html::Html;

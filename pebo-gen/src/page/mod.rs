@@ -21,9 +21,9 @@ mod transform;
 mod usage;
 mod verdict;
 
-use crate::analysis::{Class, Derivation};
 use formula::Setter;
 use html::Html;
+use pebo_design::analysis::{Class, Derivation};
 
 pub use sections::Section;
 pub(crate) use sections::sections;

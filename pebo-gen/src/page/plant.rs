@@ -1,7 +1,7 @@
 //! The plant: its signals, its class with matrices, its equations, and what is assumed.
 
-use crate::cas::{Expr, Symbol};
-use crate::plant::{Class, Plant};
+use pebo_cas::{Expr, Symbol};
+use pebo_design::plant::{Class, Plant};
 
 use super::formula::{Setter, Steps};
 use super::html::Html;

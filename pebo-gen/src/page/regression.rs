@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::{Class, Regression, RegressionKind, Verdict};
-use crate::cas::asks::Want;
-use crate::cas::{Expr, Symbol};
-use crate::plant::Plant;
 use crate::report::notes;
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::{Expr, Symbol};
+use pebo_design::analysis::{Class, Regression, RegressionKind, Verdict};
+use pebo_design::plant::Plant;
 
 use super::formula::{Setter, Steps};
 use super::html::Html;

@@ -3,9 +3,9 @@
 
 use serde::Serialize;
 
-use crate::analysis::RegressionKind;
-use crate::plant::{Formula, Plant, TransformOrigin};
-use crate::source::Span;
+use pebo_design::analysis::RegressionKind;
+use pebo_design::plant::{Formula, Plant, TransformOrigin};
+use pebo_design::source::Span;
 
 use super::formula::Setter;
 use super::html::Html;

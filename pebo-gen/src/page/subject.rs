@@ -1,9 +1,9 @@
 //! What a page is about.
 
-use crate::analysis::Derivation;
 use crate::emit::Emitted;
-use crate::plant::Plant;
-use crate::source::{Diagnostic, Source};
+use pebo_design::analysis::Derivation;
+use pebo_design::plant::Plant;
+use pebo_design::source::{Diagnostic, Source};
 
 /// What a page is about.
 #[derive(Debug)]

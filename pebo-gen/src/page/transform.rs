@@ -1,6 +1,6 @@
 //! The transform, and where it is from.
 
-use crate::plant::TransformOrigin;
+use pebo_design::plant::TransformOrigin;
 
 use super::formula::{Setter, Steps};
 use super::html::Html;

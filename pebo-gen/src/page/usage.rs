@@ -1,7 +1,7 @@
 //! What the proofs rest on, and what to know in use.
 
-use crate::analysis::{Outcome, Verdict};
 use crate::report::remarks;
+use pebo_design::analysis::{Outcome, Verdict};
 
 use super::formula::{Setter, Steps};
 use super::html::Html;

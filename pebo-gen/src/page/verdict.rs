@@ -1,8 +1,8 @@
 //! The verdict on the model, and on each claim.
 
-use crate::analysis::{Outcome, Verdict};
 use crate::report::notes;
-use crate::source::{Colour, render};
+use pebo_design::analysis::{Outcome, Verdict};
+use pebo_design::source::{Colour, render};
 
 use super::html::Html;
 #[cfg(feature = "simulate")]

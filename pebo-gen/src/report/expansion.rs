@@ -1,8 +1,8 @@
 //! The plant that a class stands for: its equations, and what the class is known by.
 
-use crate::cas::{Expr, Symbol};
-use crate::plant::class::InVelocities;
-use crate::plant::{Class, Output, Plant, TransformOrigin};
+use pebo_cas::{Expr, Symbol};
+use pebo_design::plant::class::InVelocities;
+use pebo_design::plant::{Class, Output, Plant, TransformOrigin};
 
 /// What a class was expanded to, as formulas.
 pub(super) struct Expansion {

@@ -3,10 +3,10 @@
 //! In: a plant and its accepted derivation. Out: the operations of both, each as one straight-line program that computes
 //! every part once, with the parameters among its inputs; and the function that most of them go to.
 
-use crate::analysis::{Derivation, Outcome};
-use crate::cas::{Expr, Symbol};
-use crate::plant::{Class, Plant};
-use crate::program::{Cost, lower};
+use pebo_cas::{Expr, Symbol};
+use pebo_design::analysis::{Derivation, Outcome};
+use pebo_design::plant::{Class, Plant};
+use pebo_design::program::{Cost, lower};
 
 /// So many times the operations of what was written are many: all models and cases of this project stay below 4, and a left
 /// inverse that writes out a determinant of order 4 has 11.
@@ -91,7 +91,7 @@ fn operations(plant: &Plant, formulas: &[Expr]) -> Option<usize> {
 #[cfg(all(test, feature = "yaml"))]
 mod tests {
     use super::*;
-    use crate::source::Source;
+    use pebo_design::source::Source;
 
     /// A model with so many states, whose transform is their product with a matrix of parameters.
     fn growth(states: usize) -> Growth {

@@ -5,13 +5,13 @@ use serde::Serialize;
 
 use super::growth::Growth;
 use super::{conditions, expansion, printed};
-use crate::analysis::{
+use pebo_cas::{Arena, Expr, Symbol};
+use pebo_design::analysis::{
     Blind, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome, Regression,
     Witness,
 };
-use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::Plant;
-use crate::source::{Diagnostic, Located, Source};
+use pebo_design::plant::Plant;
+use pebo_design::source::{Diagnostic, Located, Source};
 
 /// The object of one model, which [`CHECK_SCHEMA`](super::CHECK_SCHEMA) describes.
 #[derive(Clone, Debug, Serialize)]

@@ -13,8 +13,7 @@ pub(crate) mod remarks;
 mod search;
 mod text;
 
-use crate::cas::facts::Relation;
-use crate::cas::{Arena, Expr};
+use pebo_cas::{Arena, Expr, Relation};
 
 #[cfg(feature = "yaml")]
 pub use json::Report;

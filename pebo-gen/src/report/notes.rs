@@ -1,8 +1,10 @@
 //! What there is to say of a claim beside its formulas, in a sentence each: the same in text and on a page.
 
-use crate::analysis::{Derivation, Excitation, Gram, Motion, Outcome, Positive, Regression, RegressionKind, Verdict};
-use crate::plant::{Plant, RelationForm};
-use crate::source::{counted, listed};
+use pebo_design::analysis::{
+    Derivation, Excitation, Gram, Motion, Outcome, Positive, Regression, RegressionKind, Verdict,
+};
+use pebo_design::plant::{Plant, RelationForm};
+use pebo_design::source::{counted, listed};
 
 /// Of the model: what its verdict means.
 pub(crate) fn meaning(derivation: &Derivation) -> &'static str {

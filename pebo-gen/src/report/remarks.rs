@@ -2,10 +2,10 @@
 //! model stands in the manual.
 
 use super::growth::Growth;
-use crate::analysis::{Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict};
-use crate::cas::{Expr, Symbol};
-use crate::plant::{Class as PlantClass, Plant};
-use crate::source::listed;
+use pebo_cas::{Expr, Symbol};
+use pebo_design::analysis::{Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict};
+use pebo_design::plant::{Class as PlantClass, Plant};
+use pebo_design::source::listed;
 
 /// A remark: its name, the values that it gives, and its lines.
 pub(crate) struct Remark {

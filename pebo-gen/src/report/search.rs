@@ -4,11 +4,11 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::printed;
-use crate::cas::Arena;
-use crate::plant::Plant;
-use crate::search::words::assumed;
-use crate::search::{Bound, Candidate, Search};
-use crate::source::{Diagnostic, Located, Source};
+use pebo_cas::Arena;
+use pebo_design::plant::Plant;
+use pebo_design::search::words::assumed;
+use pebo_design::search::{Bound, Candidate, Search};
+use pebo_design::source::{Diagnostic, Located, Source};
 
 /// The object of one search, which [`SOLVE_SCHEMA`](super::SOLVE_SCHEMA) describes.
 #[derive(Clone, Debug, Serialize)]
@@ -85,7 +85,7 @@ impl SearchReport {
             bound_affine: search.affine.as_ref().map(|found| bound(&plant.arena, found)),
             bound_generalised: search.generalised.as_ref().map(|found| bound(&plant.arena, found)),
             not_excluded: search.open(),
-            tried: search.tried.iter().map(crate::search::Tried::sentence).collect(),
+            tried: search.tried.iter().map(pebo_design::search::Tried::sentence).collect(),
             diagnostics: Vec::new(),
         }
     }
@@ -95,7 +95,7 @@ impl SearchReport {
         Self {
             schema: 1,
             model: name.to_owned(),
-            verdict: crate::search::Found::Undecided.word(),
+            verdict: pebo_design::search::Found::Undecided.word(),
             candidates: Vec::new(),
             assumed: None,
             bound: None,

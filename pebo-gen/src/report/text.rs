@@ -1,9 +1,9 @@
 //! The verdict as a person reads it.
 
 use super::notes;
-use crate::analysis::{Claim, Class, Derivation, Gram, Outcome, Regression, RegressionKind, Verdict};
-use crate::cas::{Arena, Expr, Symbol};
-use crate::plant::{Plant, TransformOrigin};
+use pebo_cas::{Arena, Expr, Symbol};
+use pebo_design::analysis::{Claim, Class, Derivation, Gram, Outcome, Regression, RegressionKind, Verdict};
+use pebo_design::plant::{Plant, TransformOrigin};
 
 /// As wide as the columns of names and verdicts: two spaces, 16, one, and nine.
 const INDENT: &str = "                            ";

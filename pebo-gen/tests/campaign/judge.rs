@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pebo_gen::cas::function::Value;
+use pebo_cas::graph::function::Value;
 use pebo_gen::model::formula::{Formula, Operator, Term};
 
 use super::draw::Draw;

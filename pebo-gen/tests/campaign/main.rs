@@ -16,10 +16,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use pebo_gen::cas::Arena;
-use pebo_gen::cas::domain::Domain;
-use pebo_gen::cas::facts::Relation;
-use pebo_gen::cas::zero::{Answer, decide};
+use pebo_cas::Arena;
+use pebo_cas::Domain;
+use pebo_cas::Relation;
+use pebo_cas::domain::zero::{Answer, decide};
 use pebo_gen::model::formula::{Estimates, Formula, Places, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 

@@ -1,8 +1,8 @@
 //! Where the claims hold: conditions that are listed, discharged, or met.
 
+use pebo_cas::Relation;
+use pebo_cas::graph::conditions::Want;
 use pebo_gen::analysis::{Equilibrium, Outcome, Verdict};
-use pebo_gen::cas::asks::Want;
-use pebo_gen::cas::facts::Relation;
 use pebo_gen::derive;
 use pebo_gen::source::{Code, Source};
 

@@ -1,7 +1,7 @@
 //! What a refusal says: its witness, its points, its mend, and what it leaves undone.
 
+use pebo_cas::{Expr, Symbol};
 use pebo_gen::analysis::Verdict;
-use pebo_gen::cas::{Expr, Symbol};
 
 use super::derived;
 use super::table::{Answer::Accepted, rows};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use pebo_gen::cas::function::{Asks, Function, Row};
-use pebo_gen::cas::{Arena, Expr};
+use pebo_cas::graph::function::{Asks, Function, Row};
+use pebo_cas::{Arena, Expr};
 use pebo_gen::model::{Estimator, json_schema};
 use pebo_gen::source::Code;
 use serde_yaml::Value;

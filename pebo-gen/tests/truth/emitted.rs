@@ -8,11 +8,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use pebo_cas::Rational;
+use pebo_cas::number::interval::{Interval, Precision};
+use pebo_cas::{Expr, Symbol};
 use pebo_gen::Derived;
 use pebo_gen::analysis::{Class, Outcome, RegressionKind};
-use pebo_gen::cas::interval::{Interval, Precision};
-use pebo_gen::cas::rational::Rational;
-use pebo_gen::cas::{Expr, Symbol};
 use pebo_gen::emit::{Emitted, Scalar};
 use pebo_gen::source::Source;
 

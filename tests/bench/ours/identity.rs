@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use pebo_cas::Domain;
+use pebo_cas::Relation;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::{Arena, Expr};
 use pebo_gen::analysis::Outcome;
-use pebo_gen::cas::domain::Domain;
-use pebo_gen::cas::facts::Relation;
-use pebo_gen::cas::zero::decide;
-use pebo_gen::cas::{Arena, Expr};
 use pebo_gen::derive;
 use pebo_gen::model::formula::{Estimates, Places, parse_formula};
 use pebo_gen::plant::{Scope, lower};

@@ -1,7 +1,7 @@
 //! Jobs about polynomials: products with a known number of terms, and known divisors.
 
-use pebo_gen::cas::integer::Integer;
-use pebo_gen::cas::poly::{Monomial, Poly, TooLarge, Work as Limit};
+use pebo_cas::Integer;
+use pebo_cas::poly::{Monomial, Poly, TooLarge, Work as Limit};
 use serde_json::Value;
 
 use crate::protocol::{Work, number, terms};

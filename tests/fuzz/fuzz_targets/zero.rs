@@ -2,12 +2,12 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pebo_gen::cas::domain::Domain;
-use pebo_gen::cas::facts::Relation;
-use pebo_gen::cas::function::Function;
-use pebo_gen::cas::rational::Rational;
-use pebo_gen::cas::zero::{Answer, decide};
-use pebo_gen::cas::{Arena, Expr};
+use pebo_cas::Domain;
+use pebo_cas::Relation;
+use pebo_cas::graph::function::Function;
+use pebo_cas::Rational;
+use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::{Arena, Expr};
 
 /// The most bytes of a program: longer ones only repeat.
 const LONGEST: usize = 64;

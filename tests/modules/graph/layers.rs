@@ -10,15 +10,17 @@ pub(super) const LAYERS: &[(&str, &[&str])] = &[
     ("analysis", &["plant", "cas", "source"]),
     ("search", &["analysis", "plant", "cas", "source"]),
     ("program", &["cas"]),
-    ("tuning", &["program", "analysis", "plant", "model", "cas", "source"]),
     ("emit", &["program", "analysis", "plant", "cas"]),
     ("report", &["program", "search", "analysis", "plant", "cas", "source"]),
     ("certificate", &["analysis", "plant", "model", "cas"]),
-    ("simulate", &["tuning", "program", "analysis", "plant", "model", "cas", "source"]),
+    // The settings of an observer, and what runs it.
+    ("lab", &["program", "analysis", "plant", "model", "cas", "source"]),
+    // What users of the library call of it.
+    ("simulate", &["lab"]),
     // What is typeset for a reader: sentences are those of the report.
     ("page", &["report", "emit", "analysis", "plant", "cas", "source"]),
     // From a source to an answer, and front ends.
-    ("derived", &["emit", "simulate", "tuning", "search", "analysis", "plant", "model", "cas", "source"]),
+    ("derived", &["emit", "lab", "search", "analysis", "plant", "model", "cas", "source"]),
     (
         "answer",
         &[
@@ -27,7 +29,7 @@ pub(super) const LAYERS: &[(&str, &[&str])] = &[
             "emit",
             "report",
             "certificate",
-            "simulate",
+            "lab",
             "search",
             "analysis",
             "plant",
@@ -53,10 +55,10 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("granit_parser", &["model"]),
     ("serde_yaml", &["model"]),
     ("annotate_snippets", &["source"]),
-    ("csv_core", &["simulate"]),
+    ("csv_core", &["lab"]),
     ("dashu_int", &["cas"]),
     // The emitter names it in the code it writes.
-    ("pebo_runtime", &["simulate", "emit"]),
+    ("pebo_runtime", &["lab", "emit"]),
     ("clap", &["cli"]),
 ];
 

@@ -1,6 +1,6 @@
 //! The module graph of the generator, read off its sources: which file uses which.
 //!
-//! In: a folder of sources. Out: its files, an arrow from each to every file whose items it names, and what is
+//! In: the folder of the generator, with its member crates. Out: their files, an arrow from each to every file whose items it names, and what is
 //! wrong with the arrows by the table of layers. A declaration (`mod`, `pub use`) is no use; a name that is
 //! exported again leads to the file where it is defined. What tests use does not count, and what only a method call shows
 //! is not seen.
@@ -19,7 +19,7 @@ use read::Module;
 /// How the sentence begins that says why the files of a circle are one thing.
 const REASON: &str = "One thing with ";
 
-/// The files of a crate and the arrows among them.
+/// The files of the generator's crates and the arrows among them.
 #[derive(Debug)]
 pub(crate) struct Graph {
     modules: Vec<Module>,
@@ -28,9 +28,9 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// Reads the sources below a folder.
-    pub(crate) fn read(source: &Path) -> Self {
-        let modules = read::modules(source);
+    /// Reads the sources of a package and of its member crates.
+    pub(crate) fn read(package: &Path) -> Self {
+        let modules = read::modules(package);
         let arrows = resolve::arrows(&modules);
         Self { modules, arrows }
     }

@@ -1,4 +1,4 @@
-//! The files of a crate as modules: what each declares, and which paths it names.
+//! The files of the generator's crates as modules: what each declares, and which paths it names.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -15,8 +15,10 @@ pub(super) type Segments = Vec<String>;
 pub(super) struct Module {
     /// Its name below the sources.
     pub(super) file: String,
-    /// Its module path, empty for a root.
+    /// Its module path below the layers, empty for a root.
     pub(super) path: Segments,
+    /// What `crate` stands for.
+    pub(super) root: Segments,
     /// Its lines, tests included.
     pub(super) lines: usize,
     /// Its documentation, in a line.
@@ -33,15 +35,42 @@ pub(super) struct Module {
     pub(super) named: BTreeSet<Segments>,
 }
 
-/// Every file below a folder but those of tests, in the order of their names.
-pub(super) fn modules(source: &Path) -> Vec<Module> {
+/// A crate: the folder of its sources, its name in paths, and the layer that it is, where it is one alone.
+struct Crate {
+    folder: &'static str,
+    name: &'static str,
+    layer: Option<&'static str>,
+}
+
+/// The crates of the generator. The layers of those that hold several stand side by side.
+const CRATES: [Crate; 4] = [
+    Crate { folder: "src", name: "pebo_gen", layer: None },
+    Crate { folder: "cas/src", name: "pebo_cas", layer: Some("cas") },
+    Crate { folder: "design/src", name: "pebo_design", layer: None },
+    Crate { folder: "lab/src", name: "pebo_lab", layer: Some("lab") },
+];
+
+/// What the name of a crate stands for.
+pub(super) fn root(name: &str) -> Option<Segments> {
+    let named = CRATES.iter().find(|each| each.name == name)?;
+    Some(named.layer.map(str::to_owned).into_iter().collect())
+}
+
+/// Every file of the generator but those of tests, in the order of crates and names.
+pub(super) fn modules(package: &Path) -> Vec<Module> {
+    let crates = CRATES.iter().filter(|each| package.join(each.folder).is_dir());
+    crates.flat_map(|each| modules_of(package, each)).collect()
+}
+
+fn modules_of(package: &Path, each: &Crate) -> Vec<Module> {
+    let source = &package.join(each.folder);
     let mut paths = files(source);
     paths.retain(|path| {
         let below = path.strip_prefix(source).expect("below the sources");
         !below.components().any(|part| part.as_os_str() == "tests" || part.as_os_str() == "tests.rs")
     });
     paths.sort();
-    paths.iter().map(|path| module(source, path)).collect()
+    paths.iter().map(|path| module(source, each.layer, path)).collect()
 }
 
 /// Every Rust file below a folder.
@@ -60,9 +89,9 @@ pub(super) fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-fn module(source: &Path, path: &Path) -> Module {
+fn module(source: &Path, layer: Option<&str>, path: &Path) -> Module {
     let text = std::fs::read_to_string(path).expect("a source file");
-    let below = path.strip_prefix(source).expect("below the sources");
+    let below = Path::new(layer.unwrap_or_default()).join(path.strip_prefix(source).expect("below the sources"));
     let file = below.display().to_string();
     let mut segments: Segments =
         below.with_extension("").iter().map(|part| part.to_string_lossy().into_owned()).collect();
@@ -70,7 +99,8 @@ fn module(source: &Path, path: &Path) -> Module {
         segments.pop();
     }
     let syntax = syn::parse_file(&text).unwrap_or_else(|error| panic!("{file}: {error}"));
-    let mut module = Module { file, path: segments, lines: text.lines().count(), ..Module::default() };
+    let root = layer.map(str::to_owned).into_iter().collect();
+    let mut module = Module { file, path: segments, root, lines: text.lines().count(), ..Module::default() };
     module.docs = docs(&text);
     module.visit_file(&syntax);
     module

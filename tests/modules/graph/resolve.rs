@@ -30,25 +30,28 @@ struct Names<'a> {
 
 impl<'a> Names<'a> {
     fn new(modules: &'a [Module]) -> Self {
-        // The program's root declares nothing that a library's file uses.
-        let library = modules.iter().enumerate().filter(|(_, module)| module.file != "main.rs");
-        Self { modules, places: library.map(|(at, module)| (module.path.as_slice(), at)).collect() }
+        let mut places = BTreeMap::new();
+        for (at, module) in modules.iter().enumerate() {
+            // The library's root stands for all: the roots of a program and of a member crate only declare layers.
+            places.entry(module.path.as_slice()).or_insert(at);
+        }
+        Self { modules, places }
     }
 
-    /// The file where what a path names is defined, if it is one of this crate's.
+    /// The file where what a path names is defined, if it is one of these crates'.
     fn file(&self, from: usize, path: &[String], deep: usize) -> Option<usize> {
         let here = &self.modules[from];
         let (first, mut rest) = path.split_first()?;
         let mut base: Segments = match first.as_str() {
-            "crate" | "pebo_gen" => Vec::new(),
+            "crate" => here.root.clone(),
             "self" => here.path.clone(),
             "super" => here.path[..here.path.len().checked_sub(1)?].to_vec(),
-            // A child, or a name that this file exports.
-            name if self.child(&here.path, name).is_some() || here.exports.contains(name) => {
+            // An item of a child, or a name that this file exports; alone, the name of a child is one of a variable.
+            name if (!rest.is_empty() && self.child(&here.path, name).is_some()) || here.exports.contains(name) => {
                 rest = path;
                 here.path.clone()
             }
-            _ => return None,
+            name => super::read::root(name)?,
         };
         while rest.first().is_some_and(|segment| segment == "super") {
             base.pop()?;

@@ -7,8 +7,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Node};
+use pebo_cas::{Arena, Expr, Node, Rational};
 
 /// A product: its number, and its powers.
 type Factors = (Rational, BTreeMap<Expr, Rational>);

@@ -9,10 +9,9 @@ use rustc_hash::FxHashMap;
 
 use super::super::literal::Scalar;
 use super::moved::{BITS, Moves};
-use super::places::Place;
-use crate::cas::interval::{Interval, Precision};
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Symbol};
+use super::points::Place;
+use pebo_cas::number::interval::{Interval, Precision};
+use pebo_cas::{Arena, Expr, Rational, Symbol};
 
 /// More units are a loss that no author expects.
 pub(super) const MOST: f64 = 100.0;
@@ -143,9 +142,9 @@ fn surely(value: &Interval) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::moved::MOVE;
     use super::*;
-    use crate::cas::Function;
+    use crate::emit::accuracy::moved::MOVE;
+    use pebo_cas::Function;
 
     const PLACE: [f64; 3] = [0.3, 1.7, -0.6];
 

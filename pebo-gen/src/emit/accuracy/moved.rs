@@ -8,9 +8,8 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::cas::interval::{Interval, Precision};
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Function, Node, Symbol};
+use pebo_cas::number::interval::{Interval, Precision};
+use pebo_cas::{Arena, Expr, Function, Node, Rational, Symbol};
 
 /// Bits of the enclosures: those of `f64`, and as many to be lost.
 pub(super) const BITS: u32 = 128;

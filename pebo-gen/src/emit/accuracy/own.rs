@@ -13,12 +13,12 @@ use super::super::literal::Scalar;
 use super::cause::Cause;
 use super::core::cores;
 use super::exact::{Exact, MOST, exact};
-use super::places::Place;
+use super::points::Place;
 use super::rounded::{round, run};
 use super::spot::Spot;
-use crate::cas::{Arena, Expr, Node, Symbol};
-use crate::plant::Plant;
-use crate::program::lower;
+use pebo_cas::{Arena, Expr, Node, Symbol};
+use pebo_design::plant::Plant;
+use pebo_design::program::lower;
 
 /// A loss up to so many times that of the author's formulas is theirs: a function that is made of several of them, as the
 /// rate of phi, adds up a few.

@@ -5,9 +5,9 @@
 //! those of the host: a unit in the last place from the target's, which is small beside what is looked for.
 
 use super::super::literal::Scalar;
-use crate::cas::Function;
-use crate::cas::function::Value;
-use crate::program::{Constant, Operand, Operation, Program};
+use pebo_cas::Function;
+use pebo_cas::graph::function::Value;
+use pebo_design::program::{Constant, Operand, Operation, Program};
 
 /// The nearest number of the scalar.
 pub(super) fn round(scalar: Scalar, value: f64) -> f64 {

@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap;
 
 use super::super::literal::Scalar;
 use super::exact::{Exact, Value, at_once, exact};
-use super::places::Place;
-use crate::cas::{Arena, Expr};
+use super::points::Place;
+use pebo_cas::{Arena, Expr};
 
 /// A place in the numbers of each scalar.
 pub(super) struct Spot {

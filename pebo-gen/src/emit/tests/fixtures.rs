@@ -2,16 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::analysis::{
+use crate::emit::read_back::value::{Scope, Value, expression};
+use pebo_cas::{Arena, Expr, Rational, Relation, Symbol};
+use pebo_design::analysis::{
     Cascade, Claim, Class, Derivation, Excitation, Identifiability, LeftInverse, Origin, Outcome, Regression,
     RegressionKind, Remarks, Verdict,
 };
-use crate::cas::facts::Relation;
-use crate::cas::rational::Rational;
-use crate::cas::{Arena, Expr, Symbol};
-use crate::emit::value::{Scope, Value, expression};
-use crate::plant::{Assumption, Formula, Output, Parameter, Plant, Proposal, State};
-use crate::source::Span;
+use pebo_design::plant::{Assumption, Formula, Output, Parameter, Plant, Proposal, State};
+use pebo_design::source::Span;
 
 /// A plant and its derivation as text. Formulas are in Rust's grammar, with floating-point numbers
 /// and `Real::sin(x)`.
@@ -183,7 +181,7 @@ impl Sketch {
             remarks: Remarks::default(),
         };
         let plant = Plant {
-            origin: crate::plant::TransformOrigin::Given,
+            origin: pebo_design::plant::TransformOrigin::Given,
             class: None,
             asked: None,
             relation_form: None,
@@ -249,9 +247,9 @@ pub(crate) fn vanishes(arena: &Arena, expr: Expr) -> bool {
         let values: BTreeMap<Symbol, Expr> =
             symbols.iter().enumerate().map(|(index, &symbol)| (symbol, number(index))).collect();
         let value = arena.substitute(expr, &values);
-        let program = crate::program::lower(arena, &[], &[value]).expect("no symbol is left");
+        let program = pebo_design::program::lower(arena, &[], &[value]).expect("no symbol is left");
         let mut result = [0.0];
-        crate::program::Interpreter::new(&program).run(&[], &mut result);
+        pebo_design::program::Interpreter::new(&program).run(&[], &mut result);
         result[0].abs() < 1e-9
     })
 }

@@ -1,16 +1,17 @@
 //! What is emitted, and what is refused.
 
+mod constructors;
+
 mod accuracy;
 pub(crate) mod fixtures;
 #[cfg(feature = "yaml")]
 mod names;
-mod tuned;
 
 use fixtures::{CUK, CUK_CASE2, PENDULUM, PMSM, Sketch, vanishes};
 
 use super::*;
-use crate::analysis::Outcome;
-use crate::cas::Node;
+use pebo_cas::Node;
+use pebo_design::analysis::Outcome;
 
 fn emitted(sketch: Sketch) -> String {
     emitted_as(sketch, Scalar::F64)

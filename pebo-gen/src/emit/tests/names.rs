@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use crate::emit::Scalar;
 use crate::emit::names::TYPES;
-use crate::program::{Interpreter, lower};
-use crate::source::Source;
 use crate::{Derived, derive};
+use pebo_design::program::{Interpreter, lower};
+use pebo_design::source::Source;
 
 fn derived(text: &str) -> Derived {
     let derived = derive(&Source::new("m", text).expect("a text")).expect("a model");

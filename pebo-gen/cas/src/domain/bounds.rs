@@ -1,0 +1,134 @@
+//! Signs over a box of values, by interval arithmetic with subdivision.
+//!
+//! In: an expression, and a domain that bounds each of its symbols from both sides. Out: its sign, if
+//! one holds throughout the box; the box contains the domain. The enclosures are rigorous, so is the
+//! answer; where the expression comes close to zero, there is none.
+
+use std::collections::BTreeMap;
+
+use crate::graph::arena::Arena;
+use crate::graph::expr::{Expr, Symbol};
+use crate::number::interval::{Interval, Precision};
+use crate::number::rational::half;
+use crate::{Domain, Rational};
+
+/// How many boxes a question of the normal form may take.
+const MOST_BOXES: usize = 256;
+
+/// Bits of the enclosures: the width of a box matters more.
+const PRECISION: Precision = Precision::new(64);
+
+/// A closed range for each symbol.
+pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
+
+impl Domain {
+    /// Whether the expression is positive (true) or negative (false) throughout the domain.
+    pub fn sign_over_box(&self, arena: &Arena, expr: Expr) -> Option<bool> {
+        let symbols = arena.symbols_of(&[expr]);
+        if symbols.is_empty() {
+            return None;
+        }
+        let ranges = self.bounds(arena, &symbols);
+        let whole: Ranges = symbols.iter().map(|s| Some((*s, ranges.get(s)?.clone()))).collect::<Option<_>>()?;
+        sign_on_box(arena, expr, whole, MOST_BOXES)
+    }
+}
+
+/// Whether the expression is positive (true) or negative (false) on the whole box, seen by dividing it
+/// into no more than so many boxes.
+pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
+    // Most expressions that have no sign show it at a corner, where they are zero or have another one.
+    let mut corners = corners(&whole).into_iter().map(|corner| sign(arena, expr, &corner));
+    let first = corners.next()??;
+    if !corners.all(|other| other == Some(first)) {
+        return None;
+    }
+    let mut open = vec![whole];
+    let mut found: Option<bool> = None;
+    for _ in 0..=most {
+        let Some(part) = open.pop() else { return found };
+        match sign(arena, expr, &part) {
+            Some(sign) if found.is_none_or(|known| known == sign) => found = Some(sign),
+            Some(_) => return None,
+            None => open.extend(halves(part)?),
+        }
+    }
+    None
+}
+
+/// The sign that one enclosure shows.
+fn sign(arena: &Arena, expr: Expr, part: &Ranges) -> Option<bool> {
+    let mut values = BTreeMap::new();
+    for (symbol, (low, high)) in part {
+        let ends = [low, high].map(|end| Interval::from_rational(end, PRECISION));
+        let [Some(low), Some(high)] = ends else { return None };
+        values.insert(*symbol, low.hull(&high));
+    }
+    let value = arena.enclose_over(&[expr], &values, PRECISION)?.pop()?;
+    (!value.contains_zero()).then(|| value.is_positive())
+}
+
+/// Points of the box: all its corners where these are few, else two opposite ones.
+fn corners(whole: &Ranges) -> Vec<Ranges> {
+    const MOST_SIDES: usize = 3;
+    let sides: Vec<Symbol> = whole.iter().filter(|(_, (low, high))| low != high).map(|(symbol, _)| *symbol).collect();
+    let end = |upper: bool, (low, high): &(Rational, Rational)| {
+        if upper { (high.clone(), high.clone()) } else { (low.clone(), low.clone()) }
+    };
+    let at = |upper: &dyn Fn(Symbol) -> bool| whole.iter().map(|(s, ends)| (*s, end(upper(*s), ends))).collect();
+    if sides.len() > MOST_SIDES {
+        return vec![at(&|_| false), at(&|_| true)];
+    }
+    let side = |symbol| sides.iter().position(|s| *s == symbol).unwrap_or(sides.len());
+    (0..1_u32 << sides.len()).map(|corner| at(&|symbol| corner >> side(symbol) & 1 == 1)).collect()
+}
+
+/// The box cut in two across its widest side; none of a point.
+fn halves(part: Ranges) -> Option<[Ranges; 2]> {
+    let widest = part.iter().max_by_key(|(_, (low, high))| high - low)?;
+    let (symbol, (low, high)) = (*widest.0, widest.1.clone());
+    if low == high {
+        return None;
+    }
+    let middle = &(&low + &high) * &half();
+    let mut parts = [part.clone(), part];
+    parts[0].insert(symbol, (low, middle.clone()));
+    parts[1].insert(symbol, (middle, high));
+    Some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Relation;
+    use crate::graph::function::Function;
+
+    /// The domain `low < x < high`, with an end at an irrational number where that is asked for.
+    fn between(arena: &Arena, low: Expr, high: Expr) -> Domain {
+        let x = arena.variable("x");
+        let mut domain = Domain::default();
+        domain.facts.assume(arena.sub(x, low), Relation::Positive);
+        domain.facts.assume(arena.sub(high, x), Relation::Positive);
+        domain
+    }
+
+    #[test]
+    fn signs_hold_throughout_or_not_at_all() {
+        let arena = Arena::new();
+        let number = |n: i64| arena.number(n);
+        let x = arena.variable("x");
+        let third = arena.scale(arena.pi(), &Rational::new(1, 3).expect("a third"));
+        let cosine = arena.call(Function::Cos, &[x]);
+        // Before the third of a half turn the cosine is above one half, and only there.
+        let above = arena.sub(cosine, arena.number(Rational::new(49, 100).expect("a rational")));
+        let below = arena.sub(cosine, arena.number(Rational::new(51, 100).expect("a rational")));
+        let domain = between(&arena, number(0), third);
+        assert_eq!(domain.sign_over_box(&arena, above), Some(true));
+        assert_eq!(domain.sign_over_box(&arena, arena.neg(above)), Some(false));
+        assert_eq!(domain.sign_over_box(&arena, below), None);
+        // Unbounded on one side, and zero within the box.
+        let y = arena.variable("y");
+        assert_eq!(domain.sign_over_box(&arena, arena.add(above, y)), None);
+        assert_eq!(between(&arena, number(-1), number(1)).sign_over_box(&arena, x), None);
+    }
+}

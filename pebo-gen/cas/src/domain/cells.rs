@@ -1,0 +1,290 @@
+//! The parts of a domain on each of which formulas are analytic.
+//!
+//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse sines.
+//! Out: the domain divided by the signs of what stands under these. What is seen at a point of a part holds almost
+//! everywhere in that part, and need not in another: `q + |q|` is no zero, and vanishes wherever q is negative.
+//!
+//! An angle that is taken back from its functions, as `asin(sin(q))`, is another straight line on each of infinitely many
+//! intervals. Where the normal form does not know on which, this is an obstacle.
+
+use crate::graph::expr::{Expr, Node};
+use crate::graph::function::Function;
+use crate::tower::{Field, Obstacle};
+use crate::{Arena, Domain, Facts, Rational, Relation};
+
+/// Parts that are looked at one by one.
+const MOST_PARTS: usize = 16;
+
+/// A part of a domain.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The points of the part.
+    pub domain: Domain,
+    /// What divides it from the others, and whether that is positive or negative in this part.
+    pub sides: Vec<(Expr, Side)>,
+}
+
+/// The sign of what divides.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Side {
+    /// `> 0`
+    Positive,
+    /// `< 0`
+    Negative,
+}
+
+impl Side {
+    /// As a formula writes it.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Positive => "> 0",
+            Self::Negative => "< 0",
+        }
+    }
+}
+
+impl Domain {
+    /// The parts on which the formulas are analytic in what varies; one, if they are so everywhere. An obstacle, where there
+    /// are too many or it is open whether one of them has points.
+    pub fn parts(&self, arena: &Arena, exprs: &[Expr], varies: impl Fn(Expr) -> bool) -> Result<Vec<Part>, Obstacle> {
+        let mut parts = Vec::new();
+        let mut open = vec![Part { domain: self.clone(), sides: Vec::new() }];
+        while let Some(part) = open.pop() {
+            // Of `sqrt((|q| - 1)^2)` each side of q = 0 has a border of its own.
+            let mut dividers = part.domain.dividers(arena, exprs)?.into_iter().filter(|divider| varies(*divider));
+            let finer = dividers.find_map(|divider| match part.divided(arena, divider) {
+                Ok(finer) => (finer.len() > 1).then_some(Ok(finer)),
+                Err(obstacle) => Some(Err(obstacle)),
+            });
+            match finer {
+                Some(finer) => open.extend(finer?.into_iter().rev()),
+                None => parts.push(part),
+            }
+            if parts.len() + open.len() > MOST_PARTS {
+                return Err(Obstacle::TooLarge);
+            }
+        }
+        for part in &parts {
+            part.domain.tell_angles_apart(arena, exprs, &varies)?;
+        }
+        Ok(parts)
+    }
+
+    /// The factors of what stands under absolute values, also where these are written as roots of squares or as other
+    /// functions: `exp(log(q^2)/2)` is `|q|`.
+    pub(crate) fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+        let mut under = arena.dividers(exprs);
+        let mut magnitudes: Vec<Expr> =
+            arena.magnitudes(exprs).into_iter().filter(|root| !arena.symbols_of(&[*root]).is_empty()).collect();
+        magnitudes.extend(arena.branched(exprs));
+        let field = Field::on(arena, &self.but_for_radicands(arena, &magnitudes), &magnitudes)?;
+        for magnitude in &magnitudes {
+            field.fraction(*magnitude)?;
+        }
+        let of_magnitude = |kernel: Expr| match arena.node(kernel) {
+            Node::Call(Function::Abs, argument) => Some(argument[0]),
+            _ => None,
+        };
+        under.extend(field.kernels().into_iter().filter_map(of_magnitude));
+        let field = Field::on(arena, self, &under)?;
+        let mut found = Vec::new();
+        for divider in under {
+            let fraction = field.fraction(divider)?;
+            for part in [fraction.numerator(), fraction.denominator()] {
+                for (factor, _) in part.factored(field.limit())?.factors {
+                    let factor = field.show(&field.of_polynomial(&factor)?);
+                    if !found.contains(&factor) {
+                        found.push(factor);
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The domain without what is assumed of radicands as they are written, which would be kept for it: that a root has a
+    /// value says nothing of where it bends.
+    pub fn but_for_radicands(&self, arena: &Arena, exprs: &[Expr]) -> Self {
+        let is_root = |(base, power): &(Expr, Rational)| (!power.is_integer()).then_some(*base);
+        let radicands: Vec<Expr> = arena
+            .postorder(exprs)
+            .into_iter()
+            .filter_map(|expr| match arena.node(expr) {
+                Node::Product(product) => Some(product.factors.iter().filter_map(is_root).collect::<Vec<Expr>>()),
+                _ => None,
+            })
+            .flatten()
+            .filter(|base| arena.as_symbol(*base).is_none())
+            .collect();
+        let mut facts = Facts::new();
+        for (fact, relation) in self.facts.iter().filter(|(fact, _)| !radicands.contains(fact)) {
+            facts.assume(fact, relation);
+        }
+        Self { facts, ..self.clone() }
+    }
+
+    /// An obstacle where an inverse circular function that stays in the normal form moves as a multiple of its arguments,
+    /// or as another one: what it differs by is then another number on each of many intervals. Equations of the domain are
+    /// left out: one that gives an output as an angle makes that no other function of its arguments.
+    fn tell_angles_apart(&self, arena: &Arena, exprs: &[Expr], varies: &impl Fn(Expr) -> bool) -> Result<(), Obstacle> {
+        let is_angle = |e: &Expr| {
+            let inverse = [Function::Asin, Function::Acos, Function::Atan, Function::Atan2];
+            matches!(arena.node(*e), Node::Call(function, _) if inverse.contains(&function)) && varies(*e)
+        };
+        let angles: Vec<Expr> = arena.postorder(exprs).into_iter().filter(is_angle).collect();
+        let mut known: Vec<(Expr, Vec<Expr>)> = Vec::new();
+        for angle in angles {
+            let field = Field::over(arena, &self.facts, &[angle])?;
+            let normal = field.show(&field.fraction(angle)?);
+            if !arena.postorder(&[normal]).iter().any(is_angle) {
+                continue;
+            }
+            let signals: Vec<_> =
+                arena.symbols_of(&[angle]).into_iter().filter(|symbol| varies(arena.of_symbol(*symbol))).collect();
+            if signals.is_empty() {
+                continue;
+            }
+            let slopes: Vec<Expr> = signals.iter().map(|signal| arena.derivative(normal, *signal)).collect();
+            let field = Field::over(arena, &self.facts, &slopes)?;
+            let shown = slopes.iter().map(|slope| Ok(field.show(&field.fraction(*slope)?)));
+            let shown = shown.collect::<Result<Vec<Expr>, Obstacle>>()?;
+            if shown.iter().all(|slope| !varies(*slope)) {
+                return Err(Obstacle::Kernel(arena.print(angle)));
+            }
+            for (other, slopes) in &known {
+                let twice = |slope: &Expr| arena.scale(*slope, &Rational::from(2));
+                let alike = |own: &[Expr], other: &[Expr]| {
+                    let minus: Vec<Expr> = other.iter().map(|slope| arena.neg(*slope)).collect();
+                    own == other || own == minus
+                };
+                let (double, others): (Vec<Expr>, Vec<Expr>) =
+                    (shown.iter().map(twice).collect(), slopes.iter().map(twice).collect());
+                if alike(&shown, slopes) || alike(&double, slopes) || alike(&shown, &others) {
+                    return Err(Obstacle::Related(arena.print(*other), arena.print(angle)));
+                }
+            }
+            known.push((angle, shown));
+        }
+        Ok(())
+    }
+}
+
+impl Part {
+    /// What of the part is on either side.
+    fn divided(&self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
+        let sides = [(Side::Positive, divisor), (Side::Negative, arena.neg(divisor))];
+        if sides.iter().any(|(_, positive)| self.domain.implies(arena, *positive, Relation::NonNegative)) {
+            return Ok(vec![self.clone()]);
+        }
+        let one = |(side, positive): (Side, Expr)| {
+            let mut part = self.clone();
+            part.domain.facts.assume(positive, Relation::Positive);
+            part.sides.push((divisor, side));
+            let met = part.domain.points(arena, &[divisor]).next().is_some();
+            if met { Ok(part) } else { Err(Obstacle::NoPoint) }
+        };
+        sides.into_iter().map(one).collect()
+    }
+}
+
+impl Arena {
+    /// What stands under absolute values, also where these are written as other functions: where it passes zero, formulas
+    /// bend or jump.
+    pub fn dividers(&self, exprs: &[Expr]) -> Vec<Expr> {
+        let mut found = Vec::new();
+        let mut open = exprs.to_vec();
+        while !open.is_empty() {
+            let nodes = self.postorder(&std::mem::take(&mut open));
+            for node in nodes {
+                let Node::Call(function, arguments) = self.node(node) else { continue };
+                match function.row().in_terms {
+                    Some(in_terms) => open.push(in_terms(self, &arguments)),
+                    None if function == Function::Abs && !found.contains(&arguments[0]) => found.push(arguments[0]),
+                    None => {}
+                }
+            }
+        }
+        found
+    }
+
+    /// The expressions that hold roots or logarithms: what these make together may be a magnitude.
+    pub fn branched(&self, exprs: &[Expr]) -> Vec<Expr> {
+        let is_one = |expr: Expr| match self.node(expr) {
+            Node::Product(product) => product.factors.iter().any(|(_, power)| !power.is_integer()),
+            Node::Call(function, _) => matches!(function, Function::Log | Function::Acosh),
+            _ => false,
+        };
+        let holds =
+            |expr: &Expr| !self.symbols_of(&[*expr]).is_empty() && self.postorder(&[*expr]).into_iter().any(is_one);
+        exprs.iter().copied().filter(holds).collect()
+    }
+
+    /// What may be the magnitude of something: even roots, and the cosines of inverse sines and cosines.
+    fn magnitudes(&self, exprs: &[Expr]) -> Vec<Expr> {
+        let mut found = Vec::new();
+        for node in self.postorder(exprs) {
+            match self.node(node) {
+                Node::Product(product) => {
+                    let is_even_root = |power: &Rational| power.denominator().trailing_zeros() > 0;
+                    let roots = product.factors.iter().filter(|(_, power)| is_even_root(power));
+                    found.extend(roots.map(|(base, power)| self.power(*base, power)));
+                }
+                Node::Call(Function::Asin | Function::Acos, argument) => {
+                    let square = self.mul(argument[0], argument[0]);
+                    found.push(self.sqrt(self.sub(self.one(), square)));
+                }
+                _ => {}
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(assumed: &[fn(&Arena, Expr) -> Expr], formula: fn(&Arena, [Expr; 2]) -> Expr) -> Vec<String> {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        for fact in assumed {
+            domain.facts.assume(fact(&arena, b), Relation::Positive);
+        }
+        let shown = |part: Part| {
+            let sides = part.sides.iter().map(|(divisor, side)| format!("{} {}", arena.print(*divisor), side.sign()));
+            sides.collect::<Vec<_>>().join(", ")
+        };
+        domain.parts(&arena, &[formula(&arena, [a, b])], |_| true).unwrap().into_iter().map(shown).collect()
+    }
+
+    #[test]
+    fn a_domain_is_divided_where_formulas_bend_and_has_points_on_both_sides() {
+        let size = |arena: &Arena, [a, b]: [Expr; 2]| arena.add(a, arena.call(Function::Abs, &[b]));
+        assert_eq!(parts(&[], |arena, [a, b]| arena.mul(a, arena.call(Function::Sin, &[b]))), [""]);
+        assert_eq!(parts(&[], size), ["b > 0", "b < 0"]);
+        assert_eq!(parts(&[|arena, b| arena.sub(b, arena.one())], size), [""]);
+        let both = |arena: &Arena, [a, b]: [Expr; 2]| {
+            arena.mul(arena.call(Function::Sign, &[a]), arena.call(Function::Max, &[a, b]))
+        };
+        assert_eq!(parts(&[], both).len(), 4);
+        // Three of four: a > 1 and a < -1 exclude each other.
+        assert_eq!(parts(&[], |arena, [a, _]| arena.call(Function::Sat, &[a])).len(), 3);
+    }
+
+    #[test]
+    fn magnitudes_are_seen_however_they_are_written() {
+        let by_logarithm = |arena: &Arena, [a, _]: [Expr; 2]| {
+            let log = arena.call(Function::Log, &[arena.mul(a, a)]);
+            arena.call(Function::Exp, &[arena.scale(log, &Rational::new(1, 2).unwrap())])
+        };
+        assert_eq!(parts(&[], by_logarithm), ["a > 0", "a < 0"]);
+        // sqrt((|a| - 1)^2)
+        let within = |arena: &Arena, [a, _]: [Expr; 2]| {
+            let square = arena.mul(a, a);
+            let root = arena.sqrt(square);
+            arena.sqrt(arena.sum([square, arena.one(), arena.scale(root, &Rational::from(-2))]))
+        };
+        assert_eq!(parts(&[], within).len(), 4, "{:?}", parts(&[], within));
+    }
+}

@@ -1,0 +1,198 @@
+//! Whether the assumptions tell how an expression compares with zero.
+//!
+//! In: a domain and an expression. Out: yes, where a fact, algebra over the facts and the equations, or an enclosure over
+//! the box that they state shows it; what cannot be decided is not shown.
+
+use crate::graph::arena::Arena;
+use crate::graph::expr::Expr;
+use crate::tower::{Field, Fraction, Obstacle};
+use crate::{Domain, Relation};
+
+/// How many places where an expression bends are looked at, each from both sides.
+const MOST_BORDERS: usize = 2;
+
+/// Signs that a value has somewhere.
+#[derive(Default)]
+struct Signs {
+    positive: bool,
+    negative: bool,
+}
+
+impl Domain {
+    /// Whether what a formula asks is granted: of numbers it holds, or the facts show it.
+    pub fn grants(&self, arena: &Arena, ask: (Expr, Relation)) -> bool {
+        arena.holds_of_number(ask) || self.implies(arena, ask.0, ask.1)
+    }
+
+    /// Whether the facts show that the expression compares so with zero, wherever it has a value.
+    pub fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        self.implies_across(arena, expr, relation, MOST_BORDERS)
+    }
+
+    /// The same with a look at either side of so many places where the expression bends.
+    fn implies_across(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
+        if self.facts.iter().any(|fact| fact == (expr, relation)) {
+            return true;
+        }
+        // A proof of a sign takes algebra; that there is none, often one point tells.
+        let seen = self.signs_seen(arena, expr);
+        let signed = match relation {
+            Relation::Positive | Relation::NonNegative => !seen.negative,
+            Relation::NonZero => !(seen.negative && seen.positive),
+        };
+        let shown = |field: Result<Field<'_>, Obstacle>| {
+            let field = field?;
+            let fraction = field.fraction(expr)?;
+            match relation {
+                Relation::Positive => field.signs().is_positive(&fraction),
+                Relation::NonNegative => field.signs().is_not_negative(&fraction),
+                Relation::NonZero => Ok((!seen.negative && field.signs().is_positive(&fraction)?)
+                    || (!seen.positive && field.signs().is_positive(&fraction.opposite())?)),
+            }
+        };
+        let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
+        (signed && shown(Field::over(arena, &self.facts, &[expr])).unwrap_or(false))
+            || (signed && !self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
+            || divides()
+            || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
+            || (signed && borders > 0 && self.implies_on_both_sides(arena, expr, relation, borders - 1))
+    }
+
+    /// Whether the expression compares so on either side of a place where it bends: there it has no magnitude of what
+    /// passes zero. `max(q, 1)` is q where that is at least 1, and 1 elsewhere.
+    fn implies_on_both_sides(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
+        let sides = |divider: Expr| [divider, arena.neg(divider)];
+        let is_open = |divider: &Expr| {
+            !sides(*divider).into_iter().any(|side| self.implies_across(arena, side, Relation::NonNegative, 0))
+        };
+        let Some(divider) = arena.dividers(&[expr]).into_iter().find(is_open) else { return false };
+        sides(divider).into_iter().all(|side| {
+            let mut there = self.clone();
+            there.facts.assume(side, Relation::NonNegative);
+            there.implies_across(arena, expr, relation, borders)
+        })
+    }
+
+    /// The signs that the expression provably has at some points of the domain.
+    fn signs_seen(&self, arena: &Arena, expr: Expr) -> Signs {
+        let mut seen = Signs::default();
+        for value in self.glimpses(arena, &[expr]).filter_map(|point| arena.separated_from_zero(expr, &point)) {
+            *(if value.is_positive() { &mut seen.positive } else { &mut seen.negative }) = true;
+            if seen.positive && seen.negative {
+                break;
+            }
+        }
+        seen
+    }
+
+    /// Whether the expression vanishes only where something does that is assumed not to: its factors are among those
+    /// of the facts, as `d - 1` is of `L*(1 - d) != 0`, or among those of their squares, as `cos(q)^2 - 1` is of
+    /// `sin(q) != 0`.
+    fn divides(&self, arena: &Arena, expr: Expr) -> Result<bool, Obstacle> {
+        let symbols = arena.symbols_of(&[expr]);
+        let facts = self.facts.iter().filter(|(fact, relation)| {
+            *relation != Relation::NonNegative && !arena.symbols_of(&[*fact]).is_disjoint(&symbols)
+        });
+        let facts: Vec<Expr> = facts.map(|(fact, _)| fact).collect();
+        if facts.is_empty() {
+            return Ok(false);
+        }
+        let field = Field::over(arena, &self.facts, &[facts.as_slice(), &[expr]].concat())?;
+        let is_signed = |fraction: &Fraction| {
+            Ok::<_, Obstacle>(
+                fraction.to_constant().is_some()
+                    || field.signs().is_positive(fraction)?
+                    || field.signs().is_positive(&fraction.opposite())?,
+            )
+        };
+        let own = field.fraction(expr)?;
+        if own.is_zero() {
+            return Ok(false);
+        }
+        let mut known = Vec::new();
+        for fact in facts {
+            let fact = field.fraction(fact)?;
+            // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
+            if is_signed(&field.of_polynomial(fact.denominator())?)? {
+                known.extend(square(&field, &fact)?);
+                known.push(fact);
+            }
+        }
+        for own in square(&field, &own)?.into_iter().chain([own]) {
+            let mut rest = own.numerator().clone();
+            for fact in &known {
+                loop {
+                    let common = rest.gcd(fact.numerator(), field.limit())?;
+                    if common.is_constant() {
+                        break;
+                    }
+                    let Some(quotient) = rest.div_exact(&common, field.limit())? else { break };
+                    rest = quotient;
+                }
+            }
+            if is_signed(&field.of_polynomial(&rest)?)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// The square of a short fraction, where that is more than a product: `sin(q)` has `1 - cos(q)^2`.
+fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Obstacle> {
+    const MOST_TERMS: usize = 16;
+    let is_worth_it = fraction.weight() <= MOST_TERMS && field.has_relations(fraction);
+    is_worth_it.then(|| field.mul(fraction, fraction)).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Function;
+    use crate::Rational;
+
+    #[test]
+    fn what_vanishes_with_a_fact_does_not_vanish() {
+        let arena = Arena::new();
+        let [q, k] = ["q", "k"].map(|name| arena.variable(name));
+        let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
+        let square = arena.sub(arena.mul(cosine, cosine), arena.one());
+        let implied = |fact, expr| {
+            let mut domain = Domain::default();
+            domain.facts.assume(fact, Relation::NonZero);
+            domain.implies(&arena, expr, Relation::NonZero)
+        };
+        assert!(implied(sine, square) && implied(square, sine));
+        assert!(implied(arena.mul(k, sine), square));
+        assert!(!implied(cosine, square) && !implied(arena.add(sine, k), square));
+    }
+
+    #[test]
+    fn signs_are_looked_for_on_both_sides_of_a_bend() {
+        use Relation::{NonNegative, NonZero, Positive};
+
+        let arena = Arena::new();
+        let [q, k] = ["q", "k"].map(|name| arena.variable(name));
+        let number = |n: i64| arena.number(Rational::from(n));
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let cases = [
+            (call(Function::Max, &[q, number(1)]), Positive, true),
+            (call(Function::Max, &[q, number(1)]), NonZero, true),
+            (call(Function::Max, &[q, number(0)]), NonNegative, true),
+            (call(Function::Max, &[q, number(0)]), Positive, false),
+            (arena.add(call(Function::Max, &[q, number(-1)]), number(1)), NonZero, false),
+            (arena.add(call(Function::Max, &[q, number(-1)]), number(2)), NonZero, true),
+            (arena.add(call(Function::Sat, &[q]), number(2)), Positive, true),
+            (arena.add(call(Function::Sat, &[q]), number(1)), Positive, false),
+            (arena.add(call(Function::Sign, &[q]), number(2)), NonZero, true),
+            (arena.add(call(Function::Sign, &[q]), number(1)), NonZero, false),
+            (arena.sub(number(-1), call(Function::Max, &[k, number(1)])), NonZero, true),
+            (arena.sub(call(Function::Abs, &[q]), q), NonNegative, true),
+            (arena.sub(call(Function::Abs, &[q]), q), Positive, false),
+        ];
+        for (expr, relation, expected) in cases {
+            let implied = Domain::default().implies(&arena, expr, relation);
+            assert_eq!(implied, expected, "{} {}", arena.print(expr), relation.sign());
+        }
+    }
+}

@@ -1,0 +1,498 @@
+//! The equations that hold on a domain, solved for some of their symbols.
+//!
+//! In: expressions that are zero, and symbols in groups, in the order in which they are solved for. Out: steps, each
+//! for one symbol s that the later ones do without,
+//!
+//! ```text
+//! s = middle                              where s stands to the first power
+//! s = middle +- radicand^(1/degree)       where it stands to the second, or in one power alone
+//! ```
+//!
+//! There are two readers. The normal form takes *exact* steps: what they divide by is zero nowhere, so they lose no
+//! solution. Points are completed by any steps: a point at which something is divided by zero is not taken. An equation
+//! that no step solves is *open*: it holds all the same, but nothing is concluded from it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::graph::arena::Arena;
+use crate::graph::enclosure::Point;
+use crate::graph::expr::{Expr, Symbol};
+use crate::poly::Poly;
+use crate::tower::{Field, Fraction, Obstacle};
+use crate::{Facts, Rational};
+
+/// A kernel, and the coefficients of its powers.
+type Powers = (u32, BTreeMap<u32, Fraction>);
+
+/// A power of a symbol beyond which no root is taken.
+const MOST_DEGREE: u32 = 12;
+
+/// Equations, and which symbols they are solved for.
+#[derive(Clone, Debug, Default)]
+pub struct Manifold {
+    equations: Vec<Expr>,
+    /// The first group is what results must not depend on: an equation that holds one of it is solved exactly for no
+    /// other. The last are constants: they are solved for to find points, never in the normal form.
+    groups: Vec<BTreeSet<Symbol>>,
+    exact: Solution,
+}
+
+/// Steps, and the equations that are left.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solution {
+    pub steps: Vec<Step>,
+    pub open: Vec<Expr>,
+}
+
+/// What a symbol is on the manifold.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    pub symbol: Symbol,
+    pub middle: Expr,
+    pub root: Option<Root>,
+}
+
+/// `(symbol - middle)^degree = radicand`
+#[derive(Clone, Debug)]
+pub(crate) struct Root {
+    pub degree: u32,
+    pub radicand: Expr,
+    partner: Option<Partner>,
+}
+
+/// A symbol in which the radicand is quadratic, with its coefficients, the constant first.
+#[derive(Clone, Debug)]
+struct Partner {
+    symbol: Symbol,
+    coefficients: [Expr; 3],
+}
+
+/// What a trial chooses: a rational number, and a sign.
+pub(crate) type Choice = (Rational, bool);
+
+impl Manifold {
+    /// The manifold of these equations. The first of the groups is what results must not depend on, the last are
+    /// constants.
+    pub fn new(arena: &Arena, facts: &Facts, equations: Vec<Expr>, groups: Vec<BTreeSet<Symbol>>) -> Self {
+        let solver = Solver { arena, facts, groups: &groups, exact: true };
+        let exact =
+            solver.solve(equations.clone()).unwrap_or_else(|_| Solution { steps: Vec::new(), open: equations.clone() });
+        Self { equations, groups, exact }
+    }
+
+    /// Whether there is no equation.
+    pub fn is_empty(&self) -> bool {
+        self.equations.is_empty()
+    }
+
+    /// The equations: expressions that are zero.
+    pub fn equations(&self) -> &[Expr] {
+        &self.equations
+    }
+
+    /// What the normal form does not know of: an equation that no exact step solves.
+    pub fn open(&self) -> Option<Expr> {
+        self.exact.open.first().copied()
+    }
+
+    /// All of them.
+    pub(crate) fn left_open(&self) -> &[Expr] {
+        &self.exact.open
+    }
+
+    /// The exact step for a symbol.
+    pub(crate) fn steps(&self) -> &[Step] {
+        &self.exact.steps
+    }
+
+    /// Whether every equation that concerns the point's symbols holds there exactly.
+    pub(crate) fn contains(&self, arena: &Arena, point: &Point) -> bool {
+        let concerned = |e: &&Expr| arena.symbols_of(&[**e]).iter().any(|symbol| point.contains_key(symbol));
+        self.equations.iter().filter(concerned).all(|equation| {
+            let value = arena.substitute(*equation, point);
+            arena.symbols_of(&[value]).is_empty() && vanishes(arena, value)
+        })
+    }
+
+    /// Steps that complete a point with these values; none where an equation cannot be solved, or cannot hold.
+    pub(crate) fn plan(&self, arena: &Arena, equations: &[Expr], fixed: &Point) -> Option<Solution> {
+        let equations = arena.substitute_all(equations, fixed);
+        let facts = Facts::new();
+        let solution = Solver { arena, facts: &facts, groups: &self.groups, exact: false }.solve(equations).ok()?;
+        solution.open.is_empty().then_some(solution)
+    }
+}
+
+fn vanishes(arena: &Arena, constant: Expr) -> bool {
+    arena.is_zero(constant)
+        || Field::over(arena, &Facts::new(), &[constant])
+            .and_then(|field| field.fraction(constant))
+            .is_ok_and(|fraction| fraction.is_zero())
+}
+
+/// How equations are solved.
+struct Solver<'a> {
+    arena: &'a Arena,
+    facts: &'a Facts,
+    groups: &'a [BTreeSet<Symbol>],
+    /// Whether every solution has to be kept.
+    exact: bool,
+}
+
+/// A way to solve an equation; the least is taken.
+struct Way {
+    /// Whether what is divided by is no number; the symbol's group; terms of the equation.
+    cost: (bool, usize, usize),
+    equation: usize,
+    step: Step,
+}
+
+impl Solver<'_> {
+    fn solve(&self, equations: Vec<Expr>) -> Result<Solution, Obstacle> {
+        let arena = self.arena;
+        let mut open = equations;
+        let mut steps: Vec<Step> = Vec::new();
+        loop {
+            let ways = self.ways(&mut open, &|degree| degree == 1)?;
+            let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { break };
+            open.remove(way.equation);
+            let value = BTreeMap::from([(way.step.symbol, way.step.middle)]);
+            open = arena.substitute_all(&open, &value);
+            for step in &mut steps {
+                step.middle = arena.substitute(step.middle, &value);
+            }
+            steps.push(way.step);
+        }
+        // A root is not put into the others: each takes symbols that the roots before it do without.
+        let mut held: BTreeSet<Symbol> = BTreeSet::new();
+        loop {
+            let mut ways = self.ways(&mut open, &|degree| degree > 1)?;
+            ways.retain(|way| !held.contains(&way.step.symbol));
+            let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { break };
+            held.extend(arena.symbols_of(&[open.remove(way.equation)]));
+            steps.push(way.step);
+        }
+        self.join_partners(&mut steps)?;
+        Ok(Solution { steps, open })
+    }
+
+    /// The ways to solve the equations; those that hold everywhere are dropped.
+    fn ways(&self, open: &mut Vec<Expr>, wanted: &dyn Fn(u32) -> bool) -> Result<Vec<Way>, Obstacle> {
+        let field = Field::over(self.arena, self.facts, open)?;
+        let mut numerators = Vec::new();
+        let mut left = Vec::new();
+        for equation in open.iter() {
+            let fraction = field.fraction(*equation)?;
+            if !fraction.is_zero() {
+                numerators.push(fraction.numerator().clone());
+                left.push(*equation);
+            }
+        }
+        *open = left;
+        let mut ways = Vec::new();
+        for (equation, numerator) in numerators.iter().enumerate() {
+            let occurring = self.arena.symbols_of(&[open[equation]]);
+            let groups = self.groups.iter().enumerate().filter(|(place, _)| self.admits(*place, &occurring));
+            for (place, symbol) in groups.flat_map(|(place, group)| group.iter().map(move |symbol| (place, *symbol))) {
+                if !occurring.contains(&symbol) {
+                    continue;
+                }
+                if let Some((step, divided)) = self.step(&field, numerator, symbol, wanted)? {
+                    let cost = (!divided, place, numerator.term_count());
+                    ways.push(Way { cost, equation, step });
+                }
+            }
+        }
+        Ok(ways)
+    }
+
+    /// Whether an equation with these symbols may be solved for those of a group.
+    fn admits(&self, place: usize, occurring: &BTreeSet<Symbol>) -> bool {
+        if !self.exact {
+            return true;
+        }
+        let hidden = self.groups.first().is_some_and(|hidden| !hidden.is_disjoint(occurring));
+        place + 1 < self.groups.len() && (place == 0 || !hidden)
+    }
+
+    /// The step for a symbol, where it stands in one kernel, its own; and whether it is divided by a number.
+    fn step(
+        &self,
+        field: &Field<'_>,
+        numerator: &Poly,
+        symbol: Symbol,
+        wanted: &dyn Fn(u32) -> bool,
+    ) -> Result<Option<(Step, bool)>, Obstacle> {
+        let Some((kernel, powers)) = self.powers_of(field, numerator, symbol)? else { return Ok(None) };
+        let degree = numerator.degree(kernel);
+        let inner = powers.iter().any(|(power, _)| *power > 0 && *power < degree);
+        if !wanted(degree) || degree > MOST_DEGREE || (degree > 2 && inner) {
+            return Ok(None);
+        }
+        let at = |power: u32| powers.get(&power).cloned().unwrap_or_else(Fraction::zero);
+        let leading = at(degree);
+        let number = leading.to_constant().is_some();
+        if self.exact
+            && !number
+            && !field.signs().is_positive(&leading)?
+            && !field.signs().is_positive(&leading.opposite())?
+        {
+            return Ok(None);
+        }
+        let constant = field.div(&at(0), &leading)?.opposite();
+        if degree == 1 {
+            return Ok(Some((Step { symbol, middle: field.show(&constant), root: None }, number)));
+        }
+        // Only a quadratic has a middle.
+        let middle = match degree {
+            2 => field.scale(&field.div(&at(1), &leading)?, &Rational::new(-1, 2).unwrap_or(Rational::ONE))?,
+            _ => Fraction::zero(),
+        };
+        let radicand = field.show(&field.add(&constant, &field.mul(&middle, &middle)?)?);
+        let root = Some(Root { degree, radicand, partner: None });
+        Ok(Some((Step { symbol, middle: field.show(&middle), root }, number)))
+    }
+
+    /// The coefficients of the powers of a symbol, if it stands in no kernel but its own.
+    fn powers_of(&self, field: &Field<'_>, poly: &Poly, symbol: Symbol) -> Result<Option<Powers>, Obstacle> {
+        let kernels = field.kernels_of(&BTreeSet::from([symbol]));
+        let mut kernels = poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
+        let (Some(kernel), None) = (kernels.next(), kernels.next()) else { return Ok(None) };
+        if self.arena.as_symbol(field.kernel(kernel)) != Some(symbol) {
+            return Ok(None);
+        }
+        let powers = poly.coefficients_in(kernel).into_iter();
+        let powers = powers.map(|(power, coefficient)| Ok((power, field.of_polynomial(&coefficient)?)));
+        Ok(Some((kernel, powers.collect::<Result<_, Obstacle>>()?)))
+    }
+
+    /// Gives square roots a symbol that no other step needs and in which the radicand is quadratic.
+    fn join_partners(&self, steps: &mut [Step]) -> Result<(), Obstacle> {
+        let arena = self.arena;
+        if self.exact {
+            return Ok(());
+        }
+        for index in 0..steps.len() {
+            let Some(Root { degree: 2, radicand, .. }) = steps[index].root else { continue };
+            let others = steps.iter().enumerate().filter(|(other, _)| *other != index);
+            let taken: BTreeSet<Symbol> = others.flat_map(|(_, step)| step.needs(arena)).collect();
+            let own: BTreeSet<Symbol> = steps.iter().map(|step| step.symbol).collect();
+            let field = Field::over(arena, self.facts, &[radicand])?;
+            let fraction = field.fraction(radicand)?;
+            for symbol in arena.symbols_of(&[radicand]) {
+                let below = field.kernels_of(&BTreeSet::from([symbol]));
+                let divides = fraction.denominator().variables().iter().any(|kernel| below.contains(kernel));
+                if divides || taken.contains(&symbol) || own.contains(&symbol) {
+                    continue;
+                }
+                let Some((kernel, powers)) = self.powers_of(&field, fraction.numerator(), symbol)? else { continue };
+                if fraction.numerator().degree(kernel) != 2 {
+                    continue;
+                }
+                let below = field.of_polynomial(fraction.denominator())?;
+                let shown = |power: u32| match powers.get(&power) {
+                    Some(coefficient) => field.div(coefficient, &below).map(|quotient| field.show(&quotient)),
+                    None => Ok(arena.zero()),
+                };
+                let coefficients = [shown(0)?, shown(1)?, shown(2)?];
+                if let Some(root) = &mut steps[index].root {
+                    root.partner = Some(Partner { symbol, coefficients });
+                }
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Step {
+    fn needs(&self, arena: &Arena) -> BTreeSet<Symbol> {
+        let radicand = self.root.as_ref().map(|root| root.radicand);
+        arena.symbols_of(&[Some(self.middle), radicand].into_iter().flatten().collect::<Vec<_>>())
+    }
+
+    /// The symbol's value where the point has those of all others; none where there is none.
+    fn take(&self, arena: &Arena, point: &mut Point, (share, negative): Choice) -> Option<()> {
+        let offset = match &self.root {
+            None => arena.zero(),
+            Some(root) => root.at(arena, point, &share, negative)?,
+        };
+        let value = arena.add(arena.substitute(self.middle, point), offset);
+        arena.exists_at(value, &Point::new()).then(|| point.insert(self.symbol, value))?;
+        Some(())
+    }
+}
+
+impl Root {
+    /// The root, apart from zero: there the manifold is a graph over the other symbols.
+    fn at(&self, arena: &Arena, point: &mut Point, share: &Rational, negative: bool) -> Option<Expr> {
+        if let Some(offset) = self.partner.as_ref().and_then(|partner| partner.turn(arena, point, share)) {
+            return Some(if negative { arena.neg(offset) } else { offset });
+        }
+        let radicand = arena.substitute(self.radicand, point);
+        let positive = arena.separated_from_zero(radicand, &Point::new())?.is_positive();
+        let exponent = Rational::new(1, i64::from(self.degree))?;
+        if self.degree % 2 == 1 {
+            let size = arena.power(if positive { radicand } else { arena.neg(radicand) }, &exponent);
+            return Some(if positive { size } else { arena.neg(size) });
+        }
+        let root = positive.then(|| arena.power(radicand, &exponent))?;
+        Some(if negative { arena.neg(root) } else { root })
+    }
+}
+
+impl Partner {
+    /// Where the radicand is `height - slope (t - top)^2` with both positive, t and the root run over an ellipse, whose
+    /// points are rational functions of one number q:
+    ///
+    /// ```text
+    /// t = top + sqrt(height/slope) 2 q/(1 + q^2)      root = sqrt(height) (1 - q^2)/(1 + q^2)
+    /// ```
+    fn turn(&self, arena: &Arena, point: &mut Point, share: &Rational) -> Option<Expr> {
+        let [constant, linear, square] = self.coefficients.map(|e| arena.substitute(e, point));
+        let positive = |e: Expr| arena.separated_from_zero(e, &Point::new()).is_some_and(|value| value.is_positive());
+        let slope = arena.neg(square);
+        if share.abs().is_one() || !positive(slope) {
+            return None;
+        }
+        let top = arena.div(linear, arena.scale(slope, &Rational::from(2)));
+        let height = arena.add(constant, arena.product([slope, top, top]));
+        if !positive(height) {
+            return None;
+        }
+        let squared = share * share;
+        let below = (&Rational::ONE + &squared).recip()?;
+        let sine = &(share * &Rational::from(2)) * &below;
+        let cosine = &(&Rational::ONE - &squared) * &below;
+        let across = arena.scale(arena.sqrt(arena.div(height, slope)), &sine);
+        point.insert(self.symbol, arena.add(top, across));
+        Some(arena.scale(arena.sqrt(height), &cosine))
+    }
+}
+
+impl Solution {
+    /// The symbols that the steps give.
+    pub(crate) fn symbols(&self) -> BTreeSet<Symbol> {
+        self.steps.iter().map(|step| step.symbol).collect()
+    }
+
+    /// Completes a point that has the values of all other symbols; none where a step has no value there.
+    pub(crate) fn complete(&self, arena: &Arena, point: &mut Point, mut choose: impl FnMut() -> Choice) -> Option<()> {
+        let mut waiting: Vec<&Step> = self.steps.iter().collect();
+        while !waiting.is_empty() {
+            let ready = |step: &&Step| step.needs(arena).iter().all(|symbol| point.contains_key(symbol));
+            let step = waiting.remove(waiting.iter().position(ready)?);
+            step.take(arena, point, choose())?;
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Domain;
+    use crate::Relation;
+    use crate::domain::zero::{Answer, decide};
+
+    /// The domain of equations in a, b, c, with p as what must not remain.
+    fn domain(arena: &Arena, equations: &[Expr]) -> Domain {
+        let group = |names: &[&str]| names.iter().map(|name| arena.symbol(name)).collect();
+        let groups = vec![group(&["p"]), group(&["a", "b", "c"]), group(&["r"])];
+        let manifold = Manifold::new(arena, &Facts::new(), equations.to_vec(), groups);
+        Domain { manifold, ..Domain::default() }
+    }
+
+    fn symbols(arena: &Arena) -> [Expr; 4] {
+        ["a", "b", "c", "p"].map(|name| arena.variable(name))
+    }
+
+    fn circle(arena: &Arena, squared: i64) -> Expr {
+        let [a, b, ..] = symbols(arena);
+        arena.sub(arena.add(arena.mul(a, a), arena.mul(b, b)), arena.number(squared))
+    }
+
+    #[test]
+    fn what_vanishes_on_a_circle_is_zero_and_what_differs_there_has_a_point_on_it() {
+        let arena = Arena::new();
+        let [a, b, c, p] = symbols(&arena);
+        // A circle with rational points, one without.
+        for squared in [1, 3] {
+            let circle = circle(&arena, squared);
+            let domain = domain(&arena, &[circle]);
+            assert!(decide(&arena, arena.mul(circle, p), &domain).is_zero());
+            let quotient = arena.sub(arena.div(arena.number(squared), a), arena.add(a, arena.div(arena.mul(b, b), a)));
+            assert!(decide(&arena, quotient, &domain).is_zero());
+            let Answer::NonZero(witness) = decide(&arena, arena.mul(a, c), &domain) else { panic!("a*c is not zero") };
+            assert!(domain.contains(&arena, &witness.point), "{squared}: {:?}", witness.point);
+            // Off the circle only: at its points this is r - squared = 0.
+            assert!(!matches!(decide(&arena, arena.mul(circle, c), &domain), Answer::NonZero(_)));
+        }
+    }
+
+    #[test]
+    fn small_circles_have_points_too() {
+        let arena = Arena::new();
+        let [a, b, ..] = symbols(&arena);
+        let far = arena.sub(a, arena.number(1000));
+        let size = arena.number(Rational::new(1, 1_000_000).unwrap());
+        let domain = domain(&arena, &[arena.sub(arena.add(arena.mul(far, far), arena.mul(b, b)), size)]);
+        let points: Vec<Point> = domain.points(&arena, &[a]).take(5).collect();
+        assert_eq!(points.len(), 5);
+        for point in points {
+            assert!(domain.contains(&arena, &point));
+            assert!(point.values().all(|value| arena.as_number(*value).is_some()), "{point:?}");
+        }
+    }
+
+    #[test]
+    fn a_factor_that_may_vanish_loses_no_solution() {
+        let arena = Arena::new();
+        let [a, b, ..] = symbols(&arena);
+        // a*b = 0 has two branches: neither a nor b is zero on both.
+        let domain = domain(&arena, &[arena.mul(a, b)]);
+        assert!(domain.manifold.open().is_some());
+        assert!(!decide(&arena, a, &domain).is_zero() && !decide(&arena, b, &domain).is_zero());
+        // a^2 = b^2 likewise: a - b vanishes on one branch, and one over it has no value there.
+        let squares = arena.sub(arena.mul(a, a), arena.mul(b, b));
+        let lines = self::domain(&arena, &[squares]);
+        let difference = arena.sub(a, b);
+        assert!(matches!(decide(&arena, difference, &lines), Answer::NonZero(_)));
+        assert!(decide(&arena, squares, &lines).is_zero());
+    }
+
+    #[test]
+    fn an_equation_of_the_hidden_is_solved_for_the_hidden() {
+        let arena = Arena::new();
+        let [a, b, _, p] = symbols(&arena);
+        // p = a - b, although a comes first by name.
+        let domain = domain(&arena, &[arena.sub(arena.sub(a, b), p)]);
+        assert_eq!(domain.manifold.steps()[0].symbol, arena.symbol("p"));
+        assert!(domain.manifold.open().is_none());
+        // Of y = exp(p) nothing is known of p in the normal form, but points there are.
+        let curve = self::domain(&arena, &[arena.sub(a, arena.call(crate::Function::Exp, &[p]))]);
+        assert!(curve.manifold.open().is_some());
+        assert!(curve.points(&arena, &[a]).next().is_some());
+    }
+
+    #[test]
+    fn signs_are_decided_on_the_manifold() {
+        let arena = Arena::new();
+        let [a, b, ..] = symbols(&arena);
+        let sum = arena.add(arena.mul(a, a), arena.mul(b, b));
+        assert!(domain(&arena, &[circle(&arena, 1)]).implies(&arena, sum, Relation::Positive));
+        assert!(!Domain::default().implies(&arena, sum, Relation::Positive));
+    }
+
+    #[test]
+    fn equations_that_exclude_one_another_have_no_point() {
+        let arena = Arena::new();
+        let [a, b, ..] = symbols(&arena);
+        let line = arena.add(a, b);
+        let domain = domain(&arena, &[arena.sub(line, arena.one()), arena.sub(line, arena.number(2))]);
+        assert!(domain.points(&arena, &[a]).next().is_none());
+        let two = self::domain(&arena, &[circle(&arena, 1), arena.sub(a, arena.mul(b, b))]);
+        // Solved one after the other or not at all: nothing outside counts as a point.
+        assert!(two.points(&arena, &[a]).all(|point| two.contains(&arena, &point)));
+    }
+}

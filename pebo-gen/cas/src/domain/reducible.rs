@@ -1,0 +1,139 @@
+//! Equations that hold in several ways: `a^2 - b^2 = 0` on two lines, of which a plant may stay on one.
+//!
+//! In: a domain with equations. Out: one that is a product of factors each of which may be zero, as far as linear factors
+//! and squares under roots tell. Holds after: where one comes out, what is seen at a point of the domain need not hold at
+//! almost every other.
+
+use super::manifold::Step;
+use crate::graph::arena::Arena;
+use crate::graph::expr::Expr;
+use crate::poly::Poly;
+use crate::tower::{Field, Obstacle};
+use crate::{Domain, Relation};
+
+/// An equation of the domain with several factors that may be zero, as the expression that is zero; of those that concern
+/// what is asked.
+pub fn reducible(arena: &Arena, domain: &Domain, concerns: impl Fn(Expr) -> bool) -> Option<Expr> {
+    // Of the assumptions alone: where the equations hold, each factor is zero or not by the part.
+    let assumed = domain.everywhere();
+    let roots = domain.manifold.steps().iter().filter_map(|step| squared(arena, step));
+    let equations = roots.chain(domain.manifold.left_open().iter().copied());
+    equations.filter(|equation| concerns(*equation)).find(|equation| {
+        // What could not be worked out is not known to hold in one way.
+        holds_in_several_ways(arena, &assumed, *equation).unwrap_or(true)
+    })
+}
+
+/// What is zero where a root was taken: `(symbol - middle)^degree - radicand`.
+fn squared(arena: &Arena, step: &Step) -> Option<Expr> {
+    let root = step.root.as_ref()?;
+    let distance = arena.sub(arena.of_symbol(step.symbol), step.middle);
+    Some(arena.sub(arena.power(distance, &i64::from(root.degree).into()), root.radicand))
+}
+
+fn holds_in_several_ways(arena: &Arena, domain: &Domain, equation: Expr) -> Result<bool, Obstacle> {
+    let field = Field::over(arena, &domain.facts, &[equation])?;
+    let may_vanish = |factor: &Poly| -> Result<bool, Obstacle> {
+        let factor = field.show(&field.of_polynomial(factor)?);
+        Ok(!domain.implies(arena, factor, Relation::NonZero))
+    };
+    let mut ways = 0;
+    for (factor, _) in field.fraction(equation)?.numerator().factored(field.limit())?.factors {
+        if !may_vanish(&factor)? {
+            continue;
+        }
+        // A polynomial in one symbol may have as many roots as its degree; two of them are looked at below.
+        let mut ways_of_factor = match factor.variables() {
+            [variable] if factor.degree(*variable) > 2 => 2,
+            _ => 1,
+        };
+        for &variable in factor.variables() {
+            if let Some([above, below]) = two_roots(&field, &factor, variable)? {
+                // Each of the two, where the domain does not exclude it.
+                let open = |root: &Expr| !domain.implies(arena, *root, Relation::NonZero);
+                ways_of_factor = [above, below].iter().filter(|root| open(root)).count().max(1);
+                break;
+            }
+        }
+        ways += ways_of_factor;
+    }
+    Ok(ways > 1)
+}
+
+/// Two expressions of which one is zero where the polynomial is, linear in a variable in which it is quadratic: there are
+/// such where the discriminant is a positive number times a square.
+fn two_roots(field: &Field<'_>, factor: &Poly, variable: u32) -> Result<Option<[Expr; 2]>, Obstacle> {
+    if factor.degree(variable) != 2 {
+        return Ok(None);
+    }
+    let mut powers = [Poly::zero(), Poly::zero(), Poly::zero()];
+    for (power, coefficient) in factor.coefficients_in(variable) {
+        powers[power as usize] = coefficient;
+    }
+    let [constant, linear, leading] = powers.map(|poly| field.of_polynomial(&poly));
+    let (constant, linear, leading) = (constant?, linear?, leading?);
+    let product = field.scale(&field.mul(&leading, &constant)?, &4.into())?;
+    let discriminant = field.sub(&field.mul(&linear, &linear)?, &product)?;
+    if discriminant.is_zero() {
+        return Ok(None);
+    }
+    let parts = discriminant.numerator().factored(field.limit())?;
+    if parts.content.is_negative() || parts.factors.iter().any(|(_, exponent)| exponent % 2 != 0) {
+        return Ok(None);
+    }
+    let arena = field.arena();
+    let square = field.show(&discriminant);
+    let root = parts.factors.iter().map(|(factor, exponent)| {
+        Ok(arena.power(field.show(&field.of_polynomial(factor)?), &i64::from(exponent / 2).into()))
+    });
+    let root = arena.product(root.collect::<Result<Vec<Expr>, Obstacle>>()?);
+    let scale = arena.sqrt(arena.div(square, arena.mul(root, root)));
+    let root = arena.mul(scale, root);
+    // 2 a v + b -+ root
+    let middle =
+        arena.add(arena.mul(arena.scale(field.show(&leading), &2.into()), field.kernel(variable)), field.show(&linear));
+    Ok(Some([arena.sub(middle, root), arena.add(middle, root)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::domain::manifold::Manifold;
+
+    #[test]
+    fn equations_that_hold_in_several_ways_are_found() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let square = |e| arena.mul(e, e);
+        let apart = |equations: &[Expr], positive: &[Expr]| {
+            let mut domain = Domain::default();
+            for fact in positive {
+                domain.facts.assume(*fact, Relation::Positive);
+            }
+            let symbols = [a, b, c].iter().filter_map(|e| arena.as_symbol(*e)).collect();
+            domain.manifold = Manifold::new(&arena, &domain.facts, equations.to_vec(), vec![symbols, BTreeSet::new()]);
+            reducible(&arena, &domain, |_| true).is_some()
+        };
+        let one = arena.one();
+        let lines = arena.sub(square(a), square(b));
+        for (equations, expected) in [
+            (vec![lines], true),
+            (vec![arena.sub(square(a), one)], true),
+            (vec![arena.sub(square(a), arena.scale(square(b), &2.into()))], true),
+            (vec![arena.mul(a, arena.sub(b, one))], true),
+            (vec![arena.sub(arena.mul(a, square(a)), a)], true),
+            (vec![arena.sub(square(a), b), arena.sub(b, square(c))], true),
+            (vec![arena.sub(arena.add(square(a), square(b)), one)], false),
+            (vec![arena.sub(square(a), b)], false),
+            (vec![arena.mul(a, arena.add(square(b), one))], false),
+            (vec![arena.sub(a, b), arena.sub(b, c)], false),
+        ] {
+            let text: Vec<String> = equations.iter().map(|e| arena.print(*e)).collect();
+            assert_eq!(apart(&equations, &[]), expected, "{text:?}");
+        }
+        assert!(!apart(&[lines], &[a, b]));
+        assert!(!apart(&[arena.sub(square(a), one)], &[a]));
+    }
+}

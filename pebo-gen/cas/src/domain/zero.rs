@@ -1,0 +1,111 @@
+//! The zero test: proved, refuted with a witness, or open with the obstacle.
+//!
+//! Proved: the normal form is zero, and the expression has a value at a point of the domain (so that
+//! the proof is not about nothing). Refuted: at an exact point of the domain a rigorous enclosure of
+//! the value excludes zero. Neither relies on floating point or on the kernels being independent.
+
+use crate::Domain;
+use crate::forms::shared::vanishes_over_shared_sums;
+use crate::graph::arena::Arena;
+use crate::graph::enclosure::Point;
+use crate::graph::expr::Expr;
+use crate::number::interval::{Interval, Precision};
+use crate::tower::{Field, Obstacle};
+
+/// Points of the domain that a search looks at: an analytic expression that vanishes at so many, or has
+/// no value there, is not one that more of them would help with.
+pub const MOST_POINTS: usize = 64;
+
+/// Points at which the least precision is tried before the normal form.
+const GLIMPSES: usize = 3;
+
+/// Subexpressions of a short formula.
+const SHORT: usize = 50;
+
+/// The answer to whether an expression is zero.
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// It is zero wherever it has a value.
+    Zero,
+    /// It is not zero at a point.
+    NonZero(Witness),
+    /// It could not be decided.
+    Open(Obstacle),
+}
+
+/// A point at which an expression provably is not zero.
+#[derive(Clone, Debug)]
+pub struct Witness {
+    /// The values of the symbols.
+    pub point: Point,
+    /// An enclosure of the value, which excludes zero.
+    pub value: Interval,
+}
+
+impl Answer {
+    /// Whether the expression was proved to be zero.
+    pub fn is_zero(&self) -> bool {
+        matches!(self, Self::Zero)
+    }
+}
+
+/// Decides whether the expression is zero on the domain.
+pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
+    if arena.is_zero(expr) {
+        return Answer::Zero;
+    }
+    // A cheap look first: what plainly differs from zero needs no normal form.
+    // Of a short formula the normal form costs no more than another look.
+    let glimpses = if arena.postorder(&[expr]).len() < SHORT { 1 } else { GLIMPSES };
+    let mut exists = false;
+    for point in domain.points(arena, &[expr]).take(glimpses) {
+        let Some(value) = arena.enclose(expr, &point, Precision::new(64)) else { continue };
+        if !value.contains_zero() {
+            return Answer::NonZero(Witness { point, value });
+        }
+        exists = true;
+    }
+    let vanishes = |field: Result<Field<'_>, Obstacle>| {
+        let field = field?;
+        let fraction = field.fraction(expr)?;
+        if fraction.is_zero() { Ok(()) } else { Err(field.doubt(&fraction)) }
+    };
+    let mut normal = if vanishes_over_shared_sums(arena, &domain.facts, expr) {
+        Ok(())
+    } else {
+        vanishes(Field::of_long_sums(arena, &domain.facts, &[expr]))
+    };
+    // What vanishes everywhere does so on the manifold; the converse is false.
+    if normal.is_err() && !domain.manifold.is_empty() {
+        let unsolved = domain.manifold.open().map(|equation| Obstacle::Unsolved(arena.print(equation)));
+        normal = vanishes(Field::on(arena, domain, &[expr])).map_err(|obstacle| unsolved.unwrap_or(obstacle));
+    }
+    match normal {
+        Ok(()) if exists || point_of(arena, expr, domain).is_some() => Answer::Zero,
+        Ok(()) => Answer::Open(Obstacle::NoPoint),
+        Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
+    }
+}
+
+/// Whether all of the expressions are proved to be zero, over the kernels of all at once: what they share is brought to
+/// normal form once. If not, nothing is said of any.
+pub fn all_zero(arena: &Arena, exprs: &[Expr], domain: &Domain) -> bool {
+    let values = |point: Point| arena.enclose_all(exprs, &point, Precision::new(64));
+    let Some(values) = domain.points(arena, exprs).take(GLIMPSES).find_map(values) else { return false };
+    values.iter().all(Interval::contains_zero)
+        && Field::of_long_sums(arena, &domain.facts, exprs)
+            .is_ok_and(|field| exprs.iter().all(|e| field.fraction(*e).is_ok_and(|fraction| fraction.is_zero())))
+}
+
+/// Looks for a point of the domain at which the expression provably is not zero.
+pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
+    domain.points(arena, &[expr]).take(MOST_POINTS).find_map(|point| {
+        let value = arena.separated_from_zero(expr, &point)?;
+        Some(Witness { point, value })
+    })
+}
+
+/// Looks for a point of the domain at which the expression provably has a value.
+pub fn point_of(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Point> {
+    domain.points(arena, &[expr]).take(MOST_POINTS).find(|point| arena.exists_at(expr, point))
+}

@@ -1,0 +1,10 @@
+//! Equal forms of an expression, for people and for code.
+
+mod as_sign;
+mod hyperbolic;
+mod near_zero;
+pub mod opaque;
+pub mod oriented;
+pub mod scaled;
+pub(crate) mod shared;
+pub mod tidy;

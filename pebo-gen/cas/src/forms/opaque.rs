@@ -1,0 +1,292 @@
+//! Formulas some of whose functions and sums stay as they are written.
+//!
+//! In: formulas, and the symbols that a question is about. Out: the same over fresh symbols, one for each function, each
+//! root and each factor that is a sum, if it is free of those symbols; and the way back. Or in: formulas and some of their
+//! functions, for which the symbols stand then. What is solved over them is an identity whatever they stand for, so it is
+//! one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))` and `(T - 300)^3`, which a normal form would
+//! write with exponentials, with powers of a cosine, with `q - 1` below the bar, and as a polynomial whose terms cancel to
+//! nothing near T = 300. What needs a relation among them is not seen this way.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::tower::Field;
+use crate::{Arena, Domain, Expr, Node, Rational, Symbol};
+
+/// The fresh symbols, with what they stand for.
+pub struct Frozen<'a> {
+    arena: &'a Arena,
+    which: Which<'a>,
+    /// Over the symbols: what was replaced; of sums also their multiples, by their own with leading coefficient 1.
+    symbols: FxHashMap<Expr, Expr>,
+    values: BTreeMap<Symbol, Expr>,
+}
+
+/// What is replaced.
+enum Which<'a> {
+    /// Functions, roots and factors of what is free of these symbols.
+    FreeOf(&'a BTreeSet<Symbol>),
+    /// These functions.
+    Calls(&'a BTreeSet<Expr>),
+}
+
+impl<'a> Frozen<'a> {
+    /// For a question about these symbols.
+    pub fn new(arena: &'a Arena, about: &'a BTreeSet<Symbol>) -> Self {
+        Self { arena, which: Which::FreeOf(about), symbols: FxHashMap::default(), values: BTreeMap::new() }
+    }
+
+    /// For a question in which these functions are to stay.
+    pub(crate) fn calls(arena: &'a Arena, calls: &'a BTreeSet<Expr>) -> Self {
+        Self { arena, which: Which::Calls(calls), symbols: FxHashMap::default(), values: BTreeMap::new() }
+    }
+
+    /// Formulas over the fresh symbols.
+    pub fn freeze(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+        let arena = self.arena;
+        let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+        let parts = arena.postorder(exprs);
+        let whole = whole_sums(arena, &parts);
+        for expr in parts {
+            let frozen = match arena.node(expr) {
+                Node::Call(..) if self.stays(expr) => self.symbol_of(expr),
+                Node::Product(product) => {
+                    let factors: Vec<(Expr, Rational)> = product
+                        .factors
+                        .iter()
+                        .map(|(base, exponent)| match Rational::new(1, exponent.denominator()) {
+                            // A power of the root.
+                            Some(share) if !exponent.is_integer() && self.factors_stay(*base) => {
+                                let root = self.symbol_of(arena.power(*base, &share));
+                                (root, Rational::from(exponent.numerator()))
+                            }
+                            _ if whole.contains(base) && self.factors_stay(*base) => {
+                                (self.sum(*base), exponent.clone())
+                            }
+                            _ => (known[base], exponent.clone()),
+                        })
+                        .collect();
+                    arena.multiply(&product.coefficient, factors)
+                }
+                _ => arena.rebuild(expr, &known),
+            };
+            known.insert(expr, frozen);
+        }
+        exprs.iter().map(|expr| known[expr]).collect()
+    }
+
+    /// Whether nothing was replaced.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// A formula with what the fresh symbols stand for.
+    pub fn thaw(&self, expr: Expr) -> Expr {
+        if self.is_empty() { expr } else { upright(self.arena, self.arena.substitute(expr, &self.values)) }
+    }
+
+    /// Whether a function is replaced.
+    fn stays(&self, expr: Expr) -> bool {
+        match &self.which {
+            Which::FreeOf(about) => {
+                let symbols = self.arena.symbols_of(&[expr]);
+                !symbols.is_empty() && symbols.is_disjoint(about)
+            }
+            Which::Calls(calls) => calls.contains(&expr),
+        }
+    }
+
+    /// Whether a root of this is replaced, and this where it is a factor.
+    fn factors_stay(&self, base: Expr) -> bool {
+        matches!(self.which, Which::FreeOf(_)) && self.stays(base)
+    }
+
+    /// The symbol of a sum, or the multiple of that of a sum in proportion: `q0 - q` after `q - q0`.
+    fn sum(&mut self, expr: Expr) -> Expr {
+        let arena = self.arena;
+        let Node::Sum(sum) = arena.node(expr) else { return self.symbol_of(expr) };
+        let lead = sum.terms[0].1.clone();
+        let multiple = |factor: &Rational| arena.combine(&Rational::ZERO, [(expr, factor.clone())]);
+        let Some(share) = lead.recip() else { return self.symbol_of(expr) };
+        let unit = multiple(&share);
+        if let Some(known) = self.symbols.get(&unit) {
+            return arena.scale(*known, &lead);
+        }
+        let symbol = self.symbol_of(expr);
+        self.symbols.insert(unit, arena.scale(symbol, &share));
+        symbol
+    }
+
+    fn symbol_of(&mut self, expr: Expr) -> Expr {
+        if let Some(symbol) = self.symbols.get(&expr) {
+            return *symbol;
+        }
+        let symbol = self.arena.generated(&format!("signal{}", self.values.len() + 1));
+        self.values.insert(symbol, expr);
+        self.symbols.insert(expr, self.arena.of_symbol(symbol));
+        self.arena.of_symbol(symbol)
+    }
+}
+
+/// Of expressions with what they consist of, operands first, the sums without divisions but by powers, as `1 + (q/K)^10`:
+/// what others are divided by goes over their common denominator, as in `L - M^2/J`.
+fn whole_sums(arena: &Arena, parts: &[Expr]) -> FxHashSet<Expr> {
+    let mut whole = FxHashSet::default();
+    for part in parts {
+        let Node::Sum(sum) = arena.node(*part) else { continue };
+        let is_whole = sum.terms.iter().all(|(term, _)| match arena.node(*term) {
+            Node::Product(product) => {
+                let magnitude = product.factors[0].1.abs();
+                let is_quotient = product.factors.len() > 1 && !magnitude.is_one();
+                is_quotient && product.factors.iter().all(|(_, exponent)| exponent.abs() == magnitude)
+                    || product.factors.iter().all(|(base, exponent)| {
+                        !exponent.is_negative() && (!matches!(arena.node(*base), Node::Sum(_)) || whole.contains(base))
+                    })
+            }
+            _ => true,
+        });
+        if is_whole {
+            whole.insert(*part);
+        }
+    }
+    whole
+}
+
+/// A product whose sums have no more minus than plus signs: `z/(1 + q - z)` rather than `-z/(z - q - 1)`.
+fn upright(arena: &Arena, expr: Expr) -> Expr {
+    let Node::Product(product) = arena.node(expr) else { return expr };
+    let mut coefficient = product.coefficient.clone();
+    let mut factors = product.factors.clone();
+    let balance = |base: Expr| match arena.node(base) {
+        Node::Sum(sum) => {
+            let signs = sum.terms.iter().map(|(_, factor)| factor).chain([&sum.constant]);
+            Some(signs.map(Rational::signum).map(i64::from).sum::<i64>())
+        }
+        _ => None,
+    };
+    let is_odd = |exponent: &Rational| exponent.is_integer() && exponent.numerator().trailing_zeros() == 0;
+    let mut turned = false;
+    for (base, exponent) in &mut factors {
+        if is_odd(exponent) && balance(*base).is_some_and(|balance| balance < 0) {
+            *base = arena.neg(*base);
+            coefficient = -&coefficient;
+            turned = true;
+        }
+    }
+    // A minus that this leaves goes into a difference above; below, entries of one matrix share what they divide by.
+    if turned
+        && coefficient.is_negative()
+        && let Some((base, _)) = factors.iter_mut().find(|(base, power)| power.is_one() && balance(*base) == Some(0))
+    {
+        *base = arena.neg(*base);
+        coefficient = -&coefficient;
+    }
+    if turned { arena.multiply(&coefficient, factors) } else { expr }
+}
+
+/// The normal form of an expression over what is free of the symbols as it is written, where there is one.
+pub fn as_written(arena: &Arena, domain: &Domain, expr: Expr, about: &BTreeSet<Symbol>) -> Option<Expr> {
+    let mut frozen = Frozen::new(arena, about);
+    let signals = frozen.freeze(&[expr]);
+    if frozen.is_empty() {
+        return None;
+    }
+    let field = Field::over(arena, &domain.facts, &signals).ok()?;
+    let fraction = field.fraction(signals[0]).ok()?;
+    Some(frozen.thaw(field.show(&fraction)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::zero::decide;
+    use crate::graph::function::Function;
+
+    #[test]
+    fn sums_of_signals_that_are_factors_are_replaced_and_come_back() {
+        let arena = Arena::new();
+        let [x, y, r] = ["x", "y", "r"].map(|name| arena.variable(name));
+        let about = arena.symbols_of(&[x]);
+        let offset = arena.sub(y, r);
+        let power = |base, exponent: i64| arena.power(base, &Rational::from(exponent));
+        let twice = arena.combine(&Rational::ZERO, [(offset, Rational::from(-2))]);
+        let cases = [
+            (arena.add(x, power(offset, 3)), "x + signal1^3"),
+            (arena.mul(x, twice), "-2*x*signal1"),
+            (arena.div(x, arena.add(arena.one(), power(arena.div(y, r), 4))), "x/signal2"),
+            // The common denominator of a fraction in a fraction goes below.
+            (arena.div(x, arena.sub(r, arena.div(power(y, 2), r))), "x/(r - y^2/r)"),
+            (arena.div(x, power(offset, 8)), "x/signal1^8"),
+            // What is not a factor may cancel.
+            (arena.add(x, offset), "x + y - r"),
+            (arena.mul(y, arena.add(x, offset)), "y*(x + y - r)"),
+            (arena.mul(x, arena.add(arena.one(), power(offset, 2))), "x*signal3"),
+        ];
+        let mut frozen = Frozen::new(&arena, &about);
+        for (written, expected) in cases {
+            let formula = frozen.freeze(&[written])[0];
+            assert_eq!(arena.print(formula), expected);
+            let difference = arena.sub(frozen.thaw(formula), written);
+            assert!(decide(&arena, difference, &Domain::default()).is_zero(), "{expected}");
+        }
+    }
+
+    #[test]
+    fn products_stand_upright() {
+        let arena = Arena::new();
+        let [z, q, r] = ["z", "q", "r"].map(|name| arena.variable(name));
+        let low = arena.sum([z, arena.neg(q), arena.number(-1)]);
+        let difference = arena.sub(q, z);
+        let cases = [
+            (arena.neg(arena.div(z, low)), "z/(1 - z + q)"),
+            (arena.div(difference, low), "(z - q)/(1 - z + q)"),
+            (arena.mul(r, difference), "r*(q - z)"),
+            (arena.neg(arena.mul(r, difference)), "-r*(q - z)"),
+            (arena.neg(arena.div(r, difference)), "-r/(q - z)"),
+            (arena.mul(r, arena.power(low, &Rational::from(2))), "r*(z - q - 1)^2"),
+        ];
+        for (written, expected) in cases {
+            assert_eq!(arena.print(upright(&arena, written)), expected);
+        }
+    }
+
+    #[test]
+    fn functions_of_signals_are_replaced_and_come_back() {
+        let arena = Arena::new();
+        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
+        let about = arena.symbols_of(&[x]);
+        let half = Rational::new(1, 2).unwrap();
+        let sine = arena.call(Function::Sin, &[y]);
+        let written = [
+            arena.mul(x, arena.call(Function::Tanh, &[sine])),
+            arena.div(x, arena.add(arena.one(), arena.power(y, &half))),
+            arena.power(y, &(&half + &Rational::ONE)),
+            arena.call(Function::Sin, &[arena.add(x, sine)]),
+            arena.power(arena.add(x, y), &half),
+            arena.call(Function::Sin, &[arena.one()]),
+        ];
+        let mut frozen = Frozen::new(&arena, &about);
+        let formulas = frozen.freeze(&written);
+        let shown: Vec<String> = formulas.iter().map(|formula| arena.print(*formula)).collect();
+        let expected =
+            ["x*signal2", "x/signal4", "signal3^3", "sin(x + signal1)", "sqrt(x + y)", "sin(1)"].map(str::to_owned);
+        assert_eq!(shown, expected);
+        assert!(!frozen.is_empty());
+        let back: Vec<Expr> = formulas.iter().map(|formula| frozen.thaw(*formula)).collect();
+        assert_eq!(back, written);
+    }
+    #[test]
+    fn functions_that_stay_leave_the_others_to_the_normal_form() {
+        let arena = Arena::new();
+        let x = arena.variable("x");
+        let [sine, tanh] = [Function::Sin, Function::Tanh].map(|function| arena.call(function, &[x]));
+        let root = arena.sqrt(arena.mul(x, x));
+        let calls = BTreeSet::from([tanh]);
+        let mut frozen = Frozen::calls(&arena, &calls);
+        let whole = arena.sum([arena.mul(sine, tanh), root, arena.call(Function::Exp, &[tanh])]);
+        let shown: Vec<Expr> = frozen.freeze(&[whole]);
+        assert_eq!(arena.print(shown[0]), "sqrt(x^2) + sin(x)*signal1 + exp(signal1)");
+        assert_eq!(frozen.thaw(shown[0]), whole);
+    }
+}

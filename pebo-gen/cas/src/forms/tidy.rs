@@ -1,0 +1,497 @@
+//! The shortest of several equal forms of a result, for people and for emitted code.
+//!
+//! A form counts only if it has a value wherever the result has: `sqrt(q) - 1` over `q - 1` does not stand for
+//! `1/(1 + sqrt(q))`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::as_sign::as_sign;
+use super::hyperbolic::without_differences;
+use super::near_zero::near_zero;
+use super::opaque::Frozen;
+use super::oriented::Orientation;
+use super::scaled::scaled;
+use super::shared::Shared;
+use crate::domain::zero::decide;
+use crate::graph::conditions::Want;
+use crate::graph::function::{Asks, Function};
+use crate::tower::Field;
+use crate::{Arena, Domain, Expr, Facts, Node, Rational, Relation};
+
+/// Terms of a numerator that may be a product of sums worth looking for, as `(p - 1)*(q - 1)`.
+const PRODUCT_TERMS: std::ops::RangeInclusive<usize> = 4..=12;
+
+/// Terms of a normal form up to which it is written out in any case: what its factors have in common may save more.
+const LONG: usize = 500;
+
+/// The shortest of an expression and the ways to write its normal form.
+pub fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+    shortest_turned(arena, &Orientation::new(arena, domain), expr)
+}
+
+/// As [`shortest`], of one of several expressions that are turned alike.
+pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
+    if is_shortest(arena, expr) {
+        return expr;
+    }
+    let expr = as_sign(arena, expr);
+    // Of a long one over what it holds several times: written out, that would make it longer.
+    if operations(arena, expr) > LONG
+        && let Some(shared) = Shared::of(arena, expr)
+    {
+        return shared.opened(arena, shortest_turned(arena, orientation, shared.expr));
+    }
+    let domain = orientation.domain();
+    let own = functions(arena, &[expr]);
+    let kept = |form: Expr| {
+        functions(arena, &[form]).iter().all(|call| {
+            own.contains(call) || domain.written.contains(call) || own.iter().any(|own| is_root_of(arena, *call, *own))
+        }) && !dissolves(arena, &[expr], form)
+    };
+    let mut forms = vec![expr];
+    if let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) {
+        forms.extend(written(&field, expr));
+        if forms.iter().skip(1).all(|form| !kept(*form)) {
+            forms.extend(in_own_functions(&field, &domain.facts, expr, &own, kept));
+        }
+    }
+    forms.extend(forms.iter().filter_map(|form| without_differences(arena, *form)).collect::<Vec<Expr>>());
+    let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
+    // Several ways to write it often give the same form.
+    let mut seen = FxHashSet::default();
+    let forms = forms.flat_map(|form| [form, scaled(arena, form)]).map(|form| as_sign(arena, form));
+    let forms = forms.filter(|form| seen.insert(*form));
+    let cancels = |form: Expr| !root_differences(arena, form).is_subset(&root_differences(arena, expr));
+    let (mut best, mut fewest) = (expr, operations(arena, expr));
+    for form in forms {
+        let taken = operations(arena, form);
+        if taken < fewest
+            && kept(form)
+            && divides_as(arena, expr, form)
+            && !cancels(form)
+            && asks_no_more(arena, domain, expr, form)
+        {
+            (best, fewest) = (form, taken);
+        }
+    }
+    best
+}
+
+/// The other ways to write an expression with at most so many operations that have a value wherever it has, those with the
+/// fewest first. They may be in other functions than the author's and divide by other sums: that they are equal, the caller
+/// decides.
+pub fn others(arena: &Arena, domain: &Domain, expr: Expr, most: usize) -> impl Iterator<Item = Expr> {
+    let mut forms: Vec<(usize, Expr)> = Vec::new();
+    for form in ways(arena, domain, expr) {
+        let taken = operations(arena, form);
+        if form != expr && taken <= most && !forms.contains(&(taken, form)) {
+            forms.push((taken, form));
+        }
+    }
+    forms.sort_by_key(|(taken, _)| *taken);
+    // Whether a form has a value takes long to see: of those that are not looked at it is not asked.
+    forms.into_iter().map(|(_, form)| form).filter(move |form| asks_no_more(arena, domain, expr, *form))
+}
+
+/// The ways to write an expression, some of them several times.
+fn ways(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
+    let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) else { return Vec::new() };
+    let orientation = Orientation::new(arena, domain);
+    let own = functions(arena, &[expr]);
+    let in_kernels_of = |field: &Field<'_>| {
+        let mut ways = written(field, expr);
+        if let Ok(fraction) = field.fraction(expr) {
+            ways.extend(field.show_without_sines(&fraction));
+            ways.extend(field.show_rationalised(&fraction));
+        }
+        ways
+    };
+    let mut ways = in_kernels_of(&field);
+    // In absolute angles a divisor `sin(q)` is none.
+    ways.extend(Field::over(arena, &domain.facts, &[expr]).iter().flat_map(in_kernels_of));
+    ways.extend(in_own_functions(&field, &domain.facts, expr, &own, |form| functions(arena, &[form]).is_subset(&own)));
+    ways.extend([expr].iter().chain(&ways).filter_map(|form| near_zero(arena, *form)).collect::<Vec<Expr>>());
+    ways.into_iter().flat_map(|form| [orientation.of(form), form]).collect()
+}
+
+/// The ways to write the normal form; none where it is long and has more terms than the expression has operations, as a
+/// determinant that is written by its minors: each term is an operation at least.
+fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
+    let Ok(fraction) = field.fraction(expr) else { return Vec::new() };
+    let terms = fraction.weight();
+    if terms > LONG && terms > operations(field.arena(), expr) {
+        return Vec::new();
+    }
+    let few = PRODUCT_TERMS.contains(&fraction.numerator().term_count());
+    let factored = few.then(|| field.show_factored(&fraction));
+    let forms =
+        [Some(field.show(&fraction)), Some(field.show_apart(&fraction)), field.show_by_angles(&fraction), factored];
+    forms.into_iter().flatten().collect()
+}
+
+/// The same of a normal form that leaves those functions alone which it would write with others: that `tanh(u)` would
+/// be a quotient of exponentials does not keep `sqrt(q^2) - q^2/sqrt(q^2)` beside it from cancelling.
+fn in_own_functions(
+    field: &Field<'_>,
+    facts: &Facts,
+    expr: Expr,
+    own: &BTreeSet<Expr>,
+    kept: impl Fn(Expr) -> bool,
+) -> Vec<Expr> {
+    let arena = field.arena();
+    let foreign = |call: &Expr| field.fraction(*call).is_ok_and(|fraction| !kept(field.show(&fraction)));
+    let is_call = |call: &Expr| matches!(arena.node(*call), Node::Call(..));
+    let calls: BTreeSet<Expr> = own.iter().copied().filter(|call| is_call(call) && foreign(call)).collect();
+    let mut frozen = Frozen::calls(arena, &calls);
+    let over = frozen.freeze(&[expr])[0];
+    if frozen.is_empty() {
+        return Vec::new();
+    }
+    let Ok(field) = Field::of_long_sums(arena, facts, &[over]) else { return Vec::new() };
+    written(&field, over).into_iter().map(|form| frozen.thaw(form)).collect()
+}
+
+/// Whether a call is the root of an even power: `abs(q)` is `sqrt(q^2)`.
+fn is_root_of(arena: &Arena, call: Expr, radicand: Expr) -> bool {
+    let (Node::Call(Function::Abs, inside), Node::Product(product)) = (arena.node(call), arena.node(radicand)) else {
+        return false;
+    };
+    let is_even = |power: &Rational| power.is_integer() && power.numerator().trailing_zeros() > 0;
+    product.factors.iter().any(|(base, power)| *base == inside[0] && is_even(power))
+}
+
+/// Whether no way to write the normal form is shorter: of a number, of a symbol, and of a sum of symbols with numbers for
+/// factors unless one of these divides all others, so that it becomes one where it is taken out.
+fn is_shortest(arena: &Arena, expr: Expr) -> bool {
+    match arena.node(expr) {
+        Node::Number(_) | Node::Symbol(_) => true,
+        Node::Sum(sum) if sum.terms.iter().all(|(term, _)| arena.as_symbol(*term).is_some()) => {
+            let least = sum.terms.iter().map(|(_, factor)| factor.abs()).min();
+            least.is_some_and(|least| {
+                !least.is_one()
+                    && sum.terms.iter().any(|(_, f)| f.checked_div(&least).is_some_and(|ratio| !ratio.is_integer()))
+            })
+        }
+        _ => false,
+    }
+}
+
+/// The calls of expressions, and what their roots are taken of. A form with others is not the author's: `tanh(100*w)`
+/// as a quotient of exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
+pub fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
+    let mut found = BTreeSet::new();
+    for e in arena.postorder(exprs) {
+        match arena.node(e) {
+            Node::Call(..) => {
+                found.insert(e);
+            }
+            Node::Product(product) => {
+                found.extend(
+                    product.factors.iter().filter(|(_, exponent)| !exponent.is_integer()).map(|(base, _)| *base),
+                );
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Whether a form of expressions writes a hyperbolic function of theirs with powers of exponentials: `exp(q)^4 - 1` over
+/// `exp(q)^4 + 1` is `tanh(2*q)`, and overflows.
+pub fn dissolves(arena: &Arena, exprs: &[Expr], form: Expr) -> bool {
+    let hyperbolic = |exprs: &[Expr]| -> BTreeSet<Expr> {
+        let is_hyperbolic =
+            |call: &Expr| matches!(arena.node(*call), Node::Call(Function::Sinh | Function::Cosh | Function::Tanh, _));
+        functions(arena, exprs).into_iter().filter(is_hyperbolic).collect()
+    };
+    !hyperbolic(exprs).is_subset(&hyperbolic(&[form]))
+        && !powers_of_exp(arena, &[form]).is_subset(&powers_of_exp(arena, exprs))
+}
+
+/// The powers of exponentials, but for the first.
+fn powers_of_exp(arena: &Arena, exprs: &[Expr]) -> BTreeSet<(Expr, Rational)> {
+    let mut found = BTreeSet::new();
+    for expr in arena.postorder(exprs) {
+        let Node::Product(product) = arena.node(expr) else { continue };
+        let is_power = |(base, exponent): &&(Expr, Rational)| {
+            matches!(arena.node(*base), Node::Call(Function::Exp, _)) && !exponent.abs().is_one()
+        };
+        found.extend(product.factors.iter().filter(is_power).cloned());
+    }
+    found
+}
+
+/// The sums in which a square root has another sign than a term beside it: they lose digits where the two are near, as
+/// `(sqrt(4*z + 1) - 1)/2` does for small z and `2*z/(sqrt(4*z + 1) + 1)` does not. Up to their signs.
+pub fn root_differences(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
+    let is_root = |term: Expr| match arena.node(term) {
+        Node::Product(product) => product.factors.iter().any(|(_, exponent)| !exponent.is_integer()),
+        _ => false,
+    };
+    let mut found = BTreeSet::new();
+    for e in arena.postorder(&[expr]) {
+        let Node::Sum(sum) = arena.node(e) else { continue };
+        let signs = |positive: bool| {
+            let constant = !sum.constant.is_zero() && sum.constant.is_negative() != positive;
+            constant || sum.terms.iter().any(|(_, factor)| factor.is_negative() != positive)
+        };
+        if sum.terms.iter().any(|(term, factor)| is_root(*term) && signs(factor.is_negative())) {
+            found.insert(e.min(arena.neg(e)));
+        }
+    }
+    found
+}
+
+/// Whether a form divides by nothing by which the expression does not divide, and by nothing more often: `cos(q)^2 - 1`
+/// in place of `sin(q)^2` has lost its digits where it is small, and what is over `sin(q)^2` and not over `sin(q)` has
+/// a numerator that cancels there.
+fn divides_as(arena: &Arena, expr: Expr, form: Expr) -> bool {
+    let own = divisors(arena, expr);
+    let within = |(base, times): (&Expr, &Rational)| {
+        let allowed = own.get(base).or_else(|| own.get(&arena.neg(*base)));
+        allowed.is_some_and(|allowed| times <= allowed)
+    };
+    divisors(arena, form).iter().all(within)
+}
+
+/// The sums and functions by which an expression divides, and how often along one path at most. By `cos(q)^2 - 1` it
+/// divides as by `sin(q)^2`.
+fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
+    let mut known: FxHashMap<Expr, BTreeMap<Expr, Rational>> = FxHashMap::default();
+    for e in arena.postorder(&[expr]) {
+        let mut found: BTreeMap<Expr, Rational> = BTreeMap::new();
+        match arena.node(e) {
+            Node::Product(product) => {
+                for (base, exponent) in &product.factors {
+                    let magnitude = exponent.abs();
+                    for (inner, times) in &known[base] {
+                        let times = times * &magnitude;
+                        found.entry(*inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
+                    }
+                    if exponent.is_negative() && matches!(arena.node(*base), Node::Sum(_) | Node::Call(..)) {
+                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &magnitude + &magnitude));
+                        for (inner, times) in sine.into_iter().chain([(*base, magnitude)]) {
+                            found.entry(inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
+                        }
+                    }
+                }
+            }
+            _ => {
+                for (inner, times) in arena.operands(e).iter().flat_map(|operand| &known[operand]) {
+                    let most = found.entry(*inner).or_insert_with(|| times.clone());
+                    if times > most {
+                        *most = times.clone();
+                    }
+                }
+            }
+        }
+        known.insert(e, found);
+    }
+    known.remove(&expr).unwrap_or_default()
+}
+
+/// `sin(q)`, of `cos(q)^2 - 1` or a multiple of it.
+fn sine_of_square(arena: &Arena, expr: Expr) -> Option<Expr> {
+    let Node::Sum(sum) = arena.node(expr) else { return None };
+    let [(term, slope)] = sum.terms.as_slice() else { return None };
+    let Node::Product(product) = arena.node(*term) else { return None };
+    let [(base, power)] = product.factors.as_slice() else { return None };
+    let Node::Call(Function::Cos, arguments) = arena.node(*base) else { return None };
+    let is_square = *power == Rational::from(2) && *slope == -&sum.constant;
+    is_square.then(|| arena.call(Function::Sin, &arguments))
+}
+
+/// Of equal forms the shortest in the functions of the author's formula; the first where none keeps to them.
+pub fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
+    let own = functions(arena, &[written]);
+    let keeps = |form: &Expr| functions(arena, &[*form]).is_subset(&own) && divides_as(arena, written, *form);
+    let kept = forms.iter().copied().filter(keeps);
+    kept.min_by_key(|form| operations(arena, *form)).or_else(|| forms.first().copied())
+}
+
+/// Whether a form asks for nothing, to have a value, but what the expression asks too or what the domain shows.
+pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
+    let own = asks_of_code(arena, expr);
+    let mut more = asks_of_code(arena, form);
+    more.retain(|ask| !own.contains(ask));
+    if more.is_empty() {
+        return true;
+    }
+    // That proofs leave a place out is no reason to divide by zero there: signs are known, and what is asked anyway.
+    let mut facts = Facts::new();
+    let signs = domain.facts.iter().filter(|(_, relation)| *relation != Relation::NonZero);
+    for (part, relation) in signs.chain(own) {
+        facts.assume(part, relation);
+    }
+    let there = Domain { facts, ..domain.clone() };
+    more.into_iter().all(|(part, relation)| there.implies(arena, part, relation))
+}
+
+/// What an expression asks to be computed: unlike a proof, code has a value for the sign of 0.
+fn asks_of_code(arena: &Arena, expr: Expr) -> Asks {
+    let mut found = Asks::new();
+    for part in arena.postorder(&[expr]) {
+        if matches!(arena.node(part), Node::Call(Function::Sign, _)) {
+            continue;
+        }
+        for ask in arena.asked_by(part, Want::Value) {
+            if !found.contains(&ask) && !arena.holds_of_number(ask) {
+                found.push(ask);
+            }
+        }
+    }
+    found
+}
+
+/// The first of the candidates that asks for less than the expression of what the domain does not show and is proved
+/// equal to it: of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
+pub fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+    let unshown = |form: Expr| {
+        let asked = asks_of_code(arena, form).into_iter();
+        asked.filter(|(part, relation)| !domain.implies(arena, *part, *relation)).count()
+    };
+    let most = unshown(expr);
+    if most == 0 {
+        return expr;
+    }
+    let equal = |form: Expr| decide(arena, arena.sub(form, expr), domain).is_zero();
+    candidates.iter().copied().find(|form| unshown(*form) < most && equal(*form)).unwrap_or(expr)
+}
+
+/// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
+pub fn proved_shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
+    let candidate = shortest(arena, domain, expr);
+    shortest_equal(arena, domain, expr, &[candidate])
+}
+
+/// The one of two equal expressions that takes fewer operations; the first where they are level.
+pub fn shorter(arena: &Arena, first: Expr, second: Expr) -> Expr {
+    if operations(arena, second) < operations(arena, first) { second } else { first }
+}
+
+/// The first of the candidates by length that is proved equal to the expression.
+pub fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+    let mut best = expr;
+    for &candidate in candidates {
+        if operations(arena, candidate) < operations(arena, best)
+            && asks_no_more(arena, domain, expr, candidate)
+            && decide(arena, arena.sub(candidate, expr), domain).is_zero()
+        {
+            best = candidate;
+        }
+    }
+    best
+}
+
+/// The number of operations of an expression, shared parts once; functions weigh more.
+pub fn operations(arena: &Arena, expr: Expr) -> usize {
+    operations_of(arena, &[expr])
+}
+
+/// As [`operations`], of several expressions together.
+pub fn operations_of(arena: &Arena, exprs: &[Expr]) -> usize {
+    const FUNCTION: usize = 10;
+    arena
+        .postorder(exprs)
+        .into_iter()
+        .map(|e| match arena.node(e) {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,
+            Node::Sum(sum) => {
+                let scaled = sum.terms.iter().filter(|(_, c)| !c.abs().is_one()).count();
+                sum.terms.len() + scaled - usize::from(sum.constant.is_zero())
+            }
+            Node::Product(product) => {
+                let powers: usize = product
+                    .factors
+                    .iter()
+                    .map(|(_, exponent)| match exponent.abs().to_i64() {
+                        Some(1) => 1,
+                        Some(_) => 2,
+                        None => FUNCTION,
+                    })
+                    .sum();
+                let scaled = usize::from(!product.coefficient.abs().is_one());
+                let inverted = usize::from(product.factors.iter().all(|(_, exponent)| exponent.is_negative()));
+                (powers + scaled + inverted).saturating_sub(1)
+            }
+            Node::Call(..) => FUNCTION,
+        })
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Relation;
+
+    #[test]
+    fn a_sine_is_divided_by_and_not_the_square_of_a_cosine_less_one() {
+        let arena = Arena::new();
+        let [q, k] = ["q", "k"].map(|name| arena.variable(name));
+        let [s, c] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
+        let square = arena.scale(arena.sub(arena.mul(c, c), arena.one()), &Rational::from(2));
+        let cases = [
+            (arena.div(arena.mul(k, s), square), "-k/(2*sin(q))"),
+            // The author has no sine.
+            (arena.div(k, square), "k/(2*(cos(q)^2 - 1))"),
+            (arena.div(k, arena.mul(s, s)), "k/sin(q)^2"),
+            // Of one sine it has no two.
+            (arena.div(k, s), "k/sin(q)"),
+        ];
+        for (written, expected) in cases {
+            assert_eq!(arena.print(shortest(&arena, &Domain::default(), written)), expected);
+        }
+    }
+
+    #[test]
+    fn what_cancels_leaves_beside_functions_that_stay() {
+        let arena = Arena::new();
+        let [p, q, u] = ["p", "q", "u"].map(|name| arena.variable(name));
+        let call = |function, argument| arena.call(function, &[argument]);
+        let root = arena.sqrt(arena.mul(q, q));
+        let over = arena.div(arena.mul(q, q), root);
+        let cancelled = arena.sub(root, over);
+        let speed = arena.scale(u, &Rational::from(5));
+        let wave = call(Function::Sin, arena.scale(p, &Rational::from(24)));
+        let pythagoras = arena.sum([
+            arena.power(call(Function::Sin, q), &Rational::from(2)),
+            arena.power(call(Function::Cos, q), &Rational::from(2)),
+            arena.number(-1),
+        ]);
+        let larger = arena.call(Function::Max, &[q, u]);
+        for (own, expected) in [
+            (call(Function::Tanh, speed), "tanh(5*u)"),
+            (call(Function::Sat, speed), "sat(5*u)"),
+            (arena.sub(call(Function::Sat, speed), larger), "sat(5*u) - max(q, u)"),
+            (wave, "sin(24*p)"),
+        ] {
+            for vanishing in [cancelled, arena.mul(p, cancelled), arena.mul(p, pythagoras)] {
+                let form = shortest(&arena, &Domain::default(), arena.add(own, vanishing));
+                assert_eq!(arena.print(form), expected, "{}", arena.print(vanishing));
+            }
+            let doubled = arena.sum([own, root, over]);
+            let form = shortest(&arena, &Domain::default(), doubled);
+            let shown = arena.print(form);
+            assert!(
+                shown.contains("2*abs(q)") && functions(&arena, &[form]).is_superset(&functions(&arena, &[own])),
+                "{shown}"
+            );
+        }
+    }
+
+    /// The magnitude is what the root is, and no way to write another function.
+    #[test]
+    fn a_magnitude_stands_for_the_root_of_a_square_alone() {
+        let arena = Arena::new();
+        let [p, q] = ["p", "q"].map(|name| arena.variable(name));
+        let larger = arena.call(Function::Max, &[p, q]);
+        let form = shortest(&arena, &Domain::default(), arena.mul(larger, arena.sub(p, q)));
+        assert!(!arena.print(form).contains("abs"), "{}", arena.print(form));
+        let root = arena.sqrt(arena.mul(q, q));
+        let mut domain = Domain::default();
+        domain.facts.assume(q, Relation::Positive);
+        assert_eq!(arena.print(shortest(&arena, &domain, root)), "q");
+    }
+}

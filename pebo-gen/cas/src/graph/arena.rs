@@ -1,0 +1,273 @@
+//! The expression graph: every expression once.
+//!
+//! In: nodes. Out: handles. After a node is entered, an equal node yields the same handle.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::hash::BuildHasher;
+
+use hashbrown::HashTable;
+use rustc_hash::{FxBuildHasher, FxHashMap};
+
+use super::expr::{Expr, Node, Symbol};
+use crate::number::notation::Notation;
+use crate::{Budget, Rational};
+
+/// Steps that looking at a node takes, or at one that was seen before as an operand of another.
+const STEPS_OF_A_LOOK: u64 = 2;
+
+/// Which walk through the graph came to each node last: a set of nodes that takes no time to empty.
+#[derive(Default, Debug)]
+struct Visits {
+    last: Vec<u32>,
+    walk: u32,
+}
+
+impl Visits {
+    /// Begins a walk through so many nodes.
+    fn begin(&mut self, nodes: usize) -> u32 {
+        if self.walk == u32::MAX {
+            *self = Self::default();
+        }
+        self.walk += 1;
+        self.last.resize(nodes, 0);
+        self.walk
+    }
+}
+
+/// Owns the nodes of all expressions of one question.
+///
+/// Constructors take `&self`, so that they nest as the formula does.
+#[derive(Debug)]
+pub struct Arena {
+    budget: Budget,
+    nodes: RefCell<Vec<Node>>,
+    table: RefCell<HashTable<Expr>>,
+    visits: RefCell<Visits>,
+    names: RefCell<Vec<String>>,
+    /// The authors' symbols by their names.
+    symbols: RefCell<FxHashMap<String, Symbol>>,
+    /// The generator's own by theirs: another space of names.
+    generated: RefCell<FxHashMap<String, Symbol>>,
+    notation: Notation,
+}
+
+impl Arena {
+    /// An arena without expressions, and without a limit on what is asked of them.
+    pub fn new() -> Self {
+        Self::within(Budget::unlimited())
+    }
+
+    /// An arena without expressions; all that is asked of them draws from the budget.
+    pub fn within(budget: Budget) -> Self {
+        Self {
+            budget,
+            nodes: RefCell::default(),
+            table: RefCell::default(),
+            visits: RefCell::default(),
+            names: RefCell::default(),
+            symbols: RefCell::default(),
+            generated: RefCell::default(),
+            notation: Notation::default(),
+        }
+    }
+
+    /// What all questions about the expressions may take together.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
+    /// How the author wrote numbers.
+    pub fn notation(&self) -> &Notation {
+        &self.notation
+    }
+
+    /// What the expression is.
+    pub fn node(&self, expr: Expr) -> Node {
+        self.nodes.borrow()[expr.0 as usize].clone()
+    }
+
+    /// Enters a node that is already in canonical form.
+    pub(crate) fn intern(&self, node: Node) -> Expr {
+        let hash = hash_of(&node);
+        let mut nodes = self.nodes.borrow_mut();
+        let mut table = self.table.borrow_mut();
+        if let Some(&found) = table.find(hash, |e| nodes[e.0 as usize] == node) {
+            return found;
+        }
+        let expr = Expr(u32::try_from(nodes.len()).expect("fewer than 2^32 expressions"));
+        nodes.push(node);
+        table.insert_unique(hash, expr, |e| hash_of(&nodes[e.0 as usize]));
+        expr
+    }
+
+    /// The symbol that an author calls by this name.
+    pub fn symbol(&self, name: &str) -> Symbol {
+        self.entered(&self.symbols, name)
+    }
+
+    /// The generator's own symbol of this name: never one that an author calls so, though both are shown alike.
+    pub fn generated(&self, name: &str) -> Symbol {
+        self.entered(&self.generated, name)
+    }
+
+    fn entered(&self, space: &RefCell<FxHashMap<String, Symbol>>, name: &str) -> Symbol {
+        if let Some(&symbol) = space.borrow().get(name) {
+            return symbol;
+        }
+        let mut names = self.names.borrow_mut();
+        let symbol = Symbol(u32::try_from(names.len()).expect("fewer than 2^32 symbols"));
+        names.push(name.to_owned());
+        space.borrow_mut().insert(name.to_owned(), symbol);
+        symbol
+    }
+
+    /// The name that a symbol is shown by.
+    pub fn name(&self, symbol: Symbol) -> String {
+        self.names.borrow()[symbol.index()].clone()
+    }
+
+    /// The symbol that an author calls by this name, as an expression.
+    pub fn variable(&self, name: &str) -> Expr {
+        let symbol = self.symbol(name);
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// A symbol as an expression.
+    pub fn of_symbol(&self, symbol: Symbol) -> Expr {
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// The number as an expression.
+    pub fn number(&self, value: impl Into<Rational>) -> Expr {
+        self.intern(Node::Number(value.into()))
+    }
+
+    /// Zero.
+    pub fn zero(&self) -> Expr {
+        self.number(0)
+    }
+
+    /// One.
+    pub fn one(&self) -> Expr {
+        self.number(1)
+    }
+
+    /// The circle constant.
+    pub fn pi(&self) -> Expr {
+        self.intern(Node::Pi)
+    }
+
+    /// A whole turn, `2*pi`.
+    pub fn turn(&self) -> Expr {
+        self.scale(self.pi(), &Rational::from(2))
+    }
+
+    /// The value, if the expression is a number.
+    pub fn as_number(&self, expr: Expr) -> Option<Rational> {
+        match &self.nodes.borrow()[expr.0 as usize] {
+            Node::Number(value) => Some(value.clone()),
+            _ => None,
+        }
+    }
+
+    /// The symbol, if the expression is one.
+    pub fn as_symbol(&self, expr: Expr) -> Option<Symbol> {
+        match self.nodes.borrow()[expr.0 as usize] {
+            Node::Symbol(symbol) => Some(symbol),
+            _ => None,
+        }
+    }
+
+    /// Whether the expression is the number zero.
+    pub fn is_zero(&self, expr: Expr) -> bool {
+        matches!(&self.nodes.borrow()[expr.0 as usize], Node::Number(value) if value.is_zero())
+    }
+
+    /// The operands of an expression, in order.
+    pub fn operands(&self, expr: Expr) -> Vec<Expr> {
+        let mut operands = Vec::new();
+        push_operands(&self.nodes.borrow()[expr.0 as usize], &mut operands);
+        operands
+    }
+
+    /// How many operands an expression has.
+    pub(crate) fn operand_count(&self, expr: Expr) -> u64 {
+        let count = match &self.nodes.borrow()[expr.0 as usize] {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,
+            Node::Sum(sum) => sum.terms.len(),
+            Node::Product(product) => product.factors.len(),
+            Node::Call(_, arguments) => arguments.len(),
+        };
+        count as u64
+    }
+
+    /// Every expression that the roots consist of, operands before what uses them.
+    pub fn postorder(&self, roots: &[Expr]) -> Vec<Expr> {
+        let nodes = self.nodes.borrow();
+        let mut visits = self.visits.borrow_mut();
+        let visit = visits.begin(nodes.len());
+        let mut found = Vec::new();
+        let mut open: Vec<Expr> = roots.to_vec();
+        let mut looks: u64 = 0;
+        while let Some(expr) = open.pop() {
+            looks += 1;
+            let last = &mut visits.last[expr.0 as usize];
+            if *last != visit {
+                *last = visit;
+                found.push(expr);
+                push_operands(&nodes[expr.0 as usize], &mut open);
+            }
+        }
+        // Each is also put in order.
+        self.budget.take(STEPS_OF_A_LOOK.saturating_mul(looks.saturating_add(found.len() as u64)));
+        // Operands are entered before what uses them, so ascending handles are a topological order.
+        found.sort_unstable();
+        found
+    }
+
+    /// The symbols that the roots depend on.
+    pub fn symbols_of(&self, roots: &[Expr]) -> BTreeSet<Symbol> {
+        self.postorder(roots).into_iter().filter_map(|e| self.as_symbol(e)).collect()
+    }
+
+    /// Whether the expression contains one of the symbols.
+    pub fn depends_on(&self, expr: Expr, symbols: &BTreeSet<Symbol>) -> bool {
+        !self.symbols_of(&[expr]).is_disjoint(symbols)
+    }
+}
+
+impl Default for Arena {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn push_operands(node: &Node, to: &mut Vec<Expr>) {
+    match node {
+        Node::Number(_) | Node::Pi | Node::Symbol(_) => {}
+        Node::Sum(sum) => to.extend(sum.terms.iter().map(|term| term.0)),
+        Node::Product(product) => to.extend(product.factors.iter().map(|factor| factor.0)),
+        Node::Call(_, arguments) => to.extend(arguments.iter()),
+    }
+}
+
+fn hash_of(node: &Node) -> u64 {
+    FxBuildHasher.hash_one(node)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_generated_symbol_is_no_author_s() {
+        let arena = Arena::new();
+        let (own, generated) = (arena.symbol("eta1"), arena.generated("eta1"));
+        assert_ne!(own, generated);
+        assert_eq!((arena.name(own), arena.name(generated)), ("eta1".to_owned(), "eta1".to_owned()));
+        assert_eq!((arena.symbol("eta1"), arena.generated("eta1")), (own, generated));
+        let difference = arena.sub(arena.of_symbol(own), arena.of_symbol(generated));
+        assert!(!arena.is_zero(difference));
+    }
+}

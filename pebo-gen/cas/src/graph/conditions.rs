@@ -1,0 +1,246 @@
+//! What an expression asks of its parts to have a value, or to be differentiable.
+//!
+//! In: an expression, or an operation that is about to be built. Out: comparisons with zero. The rows of the
+//! operations stand here, those of the functions in [`super::function`]; what is written, derived or emitted asks these.
+
+use super::arena::Arena;
+use super::enclosure::Point;
+use super::expr::{Expr, Node};
+use super::function::{Asks, Function};
+use crate::{Rational, Relation};
+
+/// What is wanted of an operation.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Want {
+    /// A value.
+    Value,
+    /// A value and a derivative.
+    Slope,
+}
+
+impl Arena {
+    /// What `base ^ exponent` asks of its base.
+    ///
+    /// A root has a slope of its own at zero only from an exponent of one on: `p^(3/2)` has, `p^(1/2)` has not.
+    pub fn asked_by_power(&self, base: Expr, exponent: &Rational, want: Want) -> Option<(Expr, Relation)> {
+        let relation = match (exponent.is_integer(), exponent.is_negative()) {
+            (true, false) => return None,
+            (true, true) => Relation::NonZero,
+            (false, true) => Relation::Positive,
+            (false, false) if want == Want::Slope && *exponent < Rational::ONE => Relation::Positive,
+            (false, false) => Relation::NonNegative,
+        };
+        Some((base, relation))
+    }
+
+    /// What `base ^ exponent` asks where the exponent is not a number: it is `exp(exponent * log(base))`.
+    pub fn asked_by_symbolic_power(&self, base: Expr) -> (Expr, Relation) {
+        (base, Relation::Positive)
+    }
+
+    /// What a division asks of what stands below: of a root that its radicand is not zero, which takes more to see of the
+    /// root.
+    pub fn asked_by_division(&self, below: Expr) -> Asks {
+        let Node::Product(product) = self.node(below) else { return vec![(below, Relation::NonZero)] };
+        let roots = product.factors.iter().filter(|(_, exponent)| !exponent.is_integer());
+        let mut asks: Asks = roots.map(|(base, _)| (*base, Relation::Positive)).collect();
+        if asks.len() < product.factors.len() {
+            asks.push((below, Relation::NonZero));
+        }
+        asks
+    }
+
+    /// What a function asks of its arguments.
+    pub fn asked_by_call(&self, function: Function, arguments: &[Expr], want: Want) -> Asks {
+        let row = function.row();
+        match row.smooth {
+            Some(smooth) if want == Want::Slope => smooth(self, arguments),
+            _ => (row.asks)(self, arguments),
+        }
+    }
+
+    /// What the outermost operation asks of its operands.
+    pub fn asked_by(&self, expr: Expr, want: Want) -> Asks {
+        match self.node(expr) {
+            Node::Product(product) => product
+                .factors
+                .iter()
+                .filter_map(|(base, exponent)| self.asked_by_power(*base, exponent, want))
+                .collect(),
+            Node::Call(function, arguments) => self.asked_by_call(function, &arguments, want),
+            Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum(_) => Vec::new(),
+        }
+    }
+
+    /// What the expressions and their parts ask, each once, operands first; not what holds of numbers anyway.
+    pub fn asks(&self, exprs: &[Expr], want: Want) -> Asks {
+        let mut found = Asks::new();
+        for part in self.postorder(exprs) {
+            for ask in self.asked_by(part, want) {
+                if !found.contains(&ask) && !self.holds_of_number(ask) {
+                    found.push(ask);
+                }
+            }
+        }
+        found
+    }
+
+    /// Whether this is a comparison of a number with zero that provably holds.
+    pub fn holds_of_number(&self, (expr, relation): (Expr, Relation)) -> bool {
+        if !self.symbols_of(&[expr]).is_empty() {
+            return false;
+        }
+        if self.is_zero(expr) {
+            return relation == Relation::NonNegative;
+        }
+        let value = self.separated_from_zero(expr, &Point::new());
+        value.is_some_and(|value| relation == Relation::NonZero || value.is_positive())
+    }
+
+    /// Whether this is a comparison of a number with zero that provably fails.
+    pub fn fails_of_number(&self, (expr, relation): (Expr, Relation)) -> bool {
+        if !self.symbols_of(&[expr]).is_empty() {
+            return false;
+        }
+        if self.is_zero(expr) {
+            return relation != Relation::NonNegative;
+        }
+        let negative = || self.separated_from_zero(expr, &Point::new()).is_some_and(|value| value.is_negative());
+        relation != Relation::NonZero && negative()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Asks as `part relation`.
+    type Shown = &'static [&'static str];
+
+    /// The asks as `part relation`, for a formula in a and b.
+    fn asked(build: impl Fn(&Arena, Expr, Expr) -> Expr, want: Want) -> Vec<String> {
+        let arena = Arena::new();
+        let expr = build(&arena, arena.variable("a"), arena.variable("b"));
+        let shown = |(part, relation): &(Expr, Relation)| format!("{} {}", arena.print(*part), relation.sign());
+        arena.asks(&[expr], want).iter().map(shown).collect()
+    }
+
+    fn power(numerator: i64, denominator: i64) -> impl Fn(&Arena, Expr, Expr) -> Expr {
+        move |arena, a, _| arena.power(a, &Rational::new(numerator, denominator).expect("a rational"))
+    }
+
+    fn call(function: Function) -> impl Fn(&Arena, Expr, Expr) -> Expr {
+        move |arena, a, b| {
+            let arguments = if function.row().arity == 2 { vec![a, b] } else { vec![a] };
+            arena.call(function, &arguments)
+        }
+    }
+
+    #[test]
+    fn powers_ask_of_their_base() {
+        let cases: [((i64, i64), Shown, Shown); 6] = [
+            ((3, 1), &[], &[]),
+            ((-1, 1), &["a != 0"], &["a != 0"]),
+            ((1, 2), &["a >= 0"], &["a > 0"]),
+            ((3, 2), &["a >= 0"], &["a >= 0"]),
+            ((-1, 2), &["a > 0"], &["a > 0"]),
+            ((1, 3), &["a >= 0"], &["a > 0"]),
+        ];
+        for ((n, d), value, slope) in cases {
+            assert_eq!(asked(power(n, d), Want::Value), value, "{n}/{d}");
+            assert_eq!(asked(power(n, d), Want::Slope), slope, "{n}/{d}");
+        }
+        assert_eq!(asked(|arena, a, b| arena.div(b, a), Want::Value), ["a != 0"]);
+        assert_eq!(asked(Arena::raise, Want::Value), ["a > 0"]);
+    }
+
+    #[test]
+    fn a_division_by_a_root_asks_of_the_radicand() {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let cases: [(Expr, Shown); 4] = [
+            (a, &["a != 0"]),
+            (arena.mul(a, b), &["a*b != 0"]),
+            (arena.sqrt(a), &["a > 0"]),
+            (arena.mul(arena.sqrt(a), b), &["a > 0", "sqrt(a)*b != 0"]),
+        ];
+        for (below, expected) in cases {
+            let asks = arena.asked_by_division(below);
+            let shown = asks.iter().map(|(part, relation)| format!("{} {}", arena.print(*part), relation.sign()));
+            assert_eq!(shown.collect::<Vec<_>>(), expected);
+        }
+    }
+
+    #[test]
+    fn functions_ask_of_their_arguments() {
+        let cases: [(Function, Shown, Shown); 16] = [
+            (Function::Sin, &[], &[]),
+            (Function::Tanh, &[], &[]),
+            (Function::Asinh, &[], &[]),
+            (Function::Acosh, &["a - 1 >= 0"], &["a - 1 > 0"]),
+            (Function::Atanh, &["1 - a^2 > 0"], &["1 - a^2 > 0"]),
+            (Function::Tan, &["cos(a) != 0"], &["cos(a) != 0"]),
+            (Function::Log, &["a > 0"], &["a > 0"]),
+            (Function::Asin, &["1 - a^2 >= 0"], &["1 - a^2 > 0"]),
+            (Function::Acos, &["1 - a^2 >= 0"], &["1 - a^2 > 0"]),
+            (Function::Sqrt, &["a >= 0"], &["a > 0"]),
+            (Function::Abs, &[], &["a != 0"]),
+            (Function::Sign, &["a != 0"], &["a != 0"]),
+            (Function::Min, &[], &["a - b != 0"]),
+            (Function::Max, &[], &["a - b != 0"]),
+            (Function::Sat, &[], &["1 - a^2 != 0"]),
+            (
+                Function::Atan2,
+                &["a^2 + b^2 != 0"],
+                // The root of the radius is a part of the second ask, not of the formula.
+                &["b + sqrt(a^2 + b^2) > 0"],
+            ),
+        ];
+        for (function, value, slope) in cases {
+            assert_eq!(asked(call(function), Want::Value), value, "{function:?}");
+            assert_eq!(asked(call(function), Want::Slope), slope, "{function:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_answer_for_themselves() {
+        let arena = Arena::new();
+        let ask = |value: Expr, relation: Relation| {
+            (arena.holds_of_number((value, relation)), arena.fails_of_number((value, relation)))
+        };
+        let number = |n: i64| arena.number(n);
+        let short = arena.sub(arena.pi(), number(4));
+        let cases = [
+            (number(0), Relation::NonNegative, (true, false)),
+            (number(0), Relation::Positive, (false, true)),
+            (number(0), Relation::NonZero, (false, true)),
+            (number(-1), Relation::NonZero, (true, false)),
+            (number(-1), Relation::NonNegative, (false, true)),
+            (short, Relation::Positive, (false, true)),
+            (arena.neg(short), Relation::Positive, (true, false)),
+            (arena.variable("a"), Relation::Positive, (false, false)),
+        ];
+        for (value, relation, expected) in cases {
+            assert_eq!(ask(value, relation), expected, "{} {relation:?}", arena.print(value));
+        }
+    }
+
+    #[test]
+    fn what_a_row_asks_is_where_its_enclosure_exists() {
+        let arena = Arena::new();
+        let (a, b) = (arena.variable("a"), arena.variable("b"));
+        let symbols = [a, b].map(|e| arena.as_symbol(e).expect("a symbol"));
+        let values = [-2, -1, 0, 1, 2].map(Rational::from);
+        for row in Function::table() {
+            let arguments = if row.arity == 2 { vec![a, b] } else { vec![a] };
+            let expr = arena.call(row.function, &arguments);
+            for (u, v) in values.iter().flat_map(|u| values.iter().map(move |v| (u, v))) {
+                let point: Point = symbols.into_iter().zip([u, v].map(|value| arena.number(value.clone()))).collect();
+                let at = &point;
+                let asked = arena.asked_by_call(row.function, &arguments, Want::Value);
+                let held = asked.iter().all(|(e, r)| arena.holds_of_number((arena.substitute(*e, at), *r)));
+                assert_eq!(arena.exists_at(expr, &point), held, "{} at {u:?}, {v:?}", row.name);
+            }
+        }
+    }
+}

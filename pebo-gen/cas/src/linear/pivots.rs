@@ -1,0 +1,61 @@
+//! Ranks that enclosures prove: elimination whose pivots exclude zero.
+//!
+//! Apart from exact elimination, since nothing is ever known to be zero here: an entry that may be is passed over, the largest
+//! is the pivot because its quotients widen least, and each step may fail.
+
+use crate::Budget;
+use crate::number::interval::{Interval, Precision};
+
+/// Rows that are provably independent, as many as the elimination finds, in the order of their columns; none where an
+/// entry is too large to be represented, or the budget ends.
+///
+/// A row more or less than these proves nothing: an enclosure that contains zero may enclose another number.
+pub fn pivots(rows: Vec<Vec<Interval>>, columns: usize, precision: Precision, budget: &Budget) -> Option<Vec<usize>> {
+    let mut rest: Vec<(usize, Vec<Interval>)> = rows.into_iter().enumerate().collect();
+    let mut chosen = Vec::new();
+    for column in 0..columns {
+        let candidates = rest.iter().enumerate().filter(|(_, (_, row))| !row[column].contains_zero());
+        let best = candidates.max_by(|(_, (_, a)), (_, (_, b))| size(&a[column]).total_cmp(&size(&b[column])));
+        let Some((place, _)) = best else { continue };
+        let (index, pivot) = rest.swap_remove(place);
+        chosen.push(index);
+        for (_, row) in &mut rest {
+            // A product and a difference for each entry.
+            if !budget.take(precision.steps().saturating_mul(2 * (columns - column) as u64)) {
+                return None;
+            }
+            let factor = row[column].div(&pivot[column], precision)?;
+            for other in column..columns {
+                row[other] = row[other].sub(&factor.mul(&pivot[other], precision)?, precision)?;
+            }
+        }
+    }
+    Some(chosen)
+}
+
+fn size(value: &Interval) -> f64 {
+    value.lo().abs().min(value.hi().abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Rational;
+
+    const PRECISION: Precision = Precision::new(64);
+
+    fn chosen(rows: &[&[i64]]) -> Vec<usize> {
+        let entry = |value: &i64| Interval::from_rational(&Rational::from(*value), PRECISION).unwrap();
+        let rows = rows.iter().map(|row| row.iter().map(entry).collect()).collect();
+        pivots(rows, 3, PRECISION, &Budget::unlimited()).unwrap()
+    }
+
+    #[test]
+    fn dependent_rows_are_no_pivots() {
+        assert_eq!(chosen(&[&[1, 2, 3], &[2, 4, 6], &[0, 0, 0]]).len(), 1);
+        assert_eq!(chosen(&[&[1, 2, 3], &[2, 4, 7], &[3, 6, 10]]).len(), 2);
+        assert_eq!(chosen(&[&[1, 2, 3], &[2, 4, 7], &[3, 5, 10]]).len(), 3);
+        // The largest entry of the first column, then what is left of the others.
+        assert_eq!(chosen(&[&[0, 1, 0], &[5, 0, 0], &[1, 0, 0]]), [1, 0]);
+    }
+}

@@ -1,0 +1,81 @@
+//! The rank of matrices over a domain, and what their rows annihilate.
+//!
+//! In: rows of formulas. Out: a rank that is seen at exact points of the domain by a rigorous elimination, hence the least
+//! that there is almost everywhere, if the formulas are analytic there (`analytic`); and by exact algebra the vectors that every row provably annihilates.
+
+use super::Echelon;
+use super::pivots::pivots;
+use crate::domain::zero::decide;
+use crate::graph::enclosure::Point;
+use crate::number::interval::{Interval, Precision};
+use crate::tower::{Field, Fraction, Obstacle};
+use crate::{Arena, Domain, Expr};
+
+/// Points that are tried before a rank counts as deficient.
+const MOST_POINTS: usize = 6;
+
+/// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere in the part of it on
+/// which the entries are analytic and that the point is of.
+pub fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
+    rows.len() >= columns && rank_seen(arena, domain, rows, columns) == columns
+}
+
+/// The largest rank that the matrix provably has at a point of the domain; almost everywhere it is no smaller.
+pub fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
+    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
+    let mut most = 0;
+    for point in domain.points(arena, &entries).take(MOST_POINTS) {
+        most = most.max(rank_at(arena, &entries, columns, &point));
+        if most == columns {
+            break;
+        }
+    }
+    most
+}
+
+/// Whether a matrix, whose entries are given row by row, provably has full column rank at a point.
+pub fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> bool {
+    rank_at(arena, entries, columns, point) == columns
+}
+
+const PRECISION: Precision = Precision::new(256);
+
+fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> usize {
+    values_at(arena, entries, columns, point).map_or(0, |rows| rank_of(arena, rows, columns))
+}
+
+fn values_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> Option<Vec<Vec<Interval>>> {
+    let values = arena.enclose_all(entries, point, PRECISION)?;
+    Some(values.chunks(columns).map(<[Interval]>::to_vec).collect())
+}
+
+fn rank_of(arena: &Arena, rows: Vec<Vec<Interval>>, columns: usize) -> usize {
+    pivots(rows, columns, PRECISION, arena.budget()).map_or(0, |chosen| chosen.len())
+}
+
+/// Vectors that every row provably annihilates.
+pub fn null_vectors(
+    arena: &Arena,
+    domain: &Domain,
+    rows: &[Vec<Expr>],
+    columns: usize,
+) -> Result<Vec<Vec<Expr>>, Obstacle> {
+    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
+    let field = Field::on(arena, domain, &entries)?;
+    let matrix = rows
+        .iter()
+        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
+        .collect::<Result<Vec<_>, _>>()?;
+    let (echelon, _) = Echelon::of(&field, matrix, columns)?;
+    let vectors: Vec<Vec<Expr>> =
+        echelon.null_space().iter().map(|vector| vector.iter().map(|e| field.show(e)).collect()).collect();
+    for vector in &vectors {
+        for row in rows {
+            let product = arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, *b)));
+            if !decide(arena, product, domain).is_zero() {
+                return Err(Obstacle::NoWitness);
+            }
+        }
+    }
+    Ok(vectors)
+}

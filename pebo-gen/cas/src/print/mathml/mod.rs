@@ -1,0 +1,333 @@
+//! Expressions as presentation `MathML`: what [`Arena::print`] writes in a line, as a page sets it.
+//!
+//! In: an expression. Out: one `math` element, or what stands in it, well-formed as XML and as HTML, without named
+//! entities, in the names of the model: `theta1` is a theta with an index, `L_1` an L. Quotients are fractions, square roots have a bar, and
+//! functions stand upright by the names of the one table. Parentheses stand where reading needs them, and no others.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+
+use super::arranged::{Factor, Summand, is_root, quotient, summands};
+use super::letter::{greek, parts};
+use crate::Rational;
+use crate::graph::arena::Arena;
+use crate::graph::expr::{Expr, Node, Product, Sum, Symbol};
+use crate::graph::function::Function;
+
+/// The length up to which a formula is set, with all of its parts.
+const MOST_CHARACTERS: usize = 10_000_000;
+
+/// A function before its arguments: no sign is seen.
+const APPLY: &str = "<mo>&#x2061;</mo>";
+
+/// Between factors: no sign is seen.
+const TIMES: &str = "<mo>&#x2062;</mo>";
+
+/// Between factors that would read as one.
+const DOT: &str = "<mo>⋅</mo>";
+
+const MINUS: &str = "<mo>−</mo>";
+
+/// How tightly the outermost operation binds, as far as the eye needs signs to see it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Binding {
+    Sum,
+    Product,
+    /// Fractions and powers: a factor as they are, no base.
+    Factor,
+    Atom,
+}
+
+/// The elements of an expression, how they may be embedded, and how they look at their two ends.
+#[derive(Clone, Debug)]
+struct Row {
+    elements: String,
+    binding: Binding,
+    ends: Ends,
+}
+
+/// What stands at the ends of a row, for the sign between two factors.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Ends {
+    /// A digit.
+    Digit,
+    /// A name of several letters, a function.
+    Word,
+    /// A letter, a fraction, a parenthesis.
+    Plain,
+}
+
+impl Row {
+    fn new(elements: impl Into<String>, binding: Binding, ends: Ends) -> Self {
+        Self { elements: elements.into(), binding, ends }
+    }
+
+    fn atom(elements: impl Into<String>) -> Self {
+        Self::new(elements, Binding::Atom, Ends::Plain)
+    }
+
+    /// As an operand of something that binds at least as tightly as `least`.
+    fn within(&self, least: Binding) -> Self {
+        if self.binding >= least { self.clone() } else { Self::atom(parenthesised(&self.elements)) }
+    }
+
+    /// As one element.
+    fn element(&self) -> String {
+        format!("<mrow>{}</mrow>", self.elements)
+    }
+}
+
+impl Arena {
+    /// The expression as a `math` element.
+    ///
+    /// What is shared is set wherever it is used; of a formula that no page holds, the element says no more than how
+    /// long it is.
+    ///
+    /// ```
+    /// use pebo_gen::cas::Arena;
+    ///
+    /// let arena = Arena::new();
+    /// let [theta, c] = ["theta1", "C"].map(|name| arena.of_symbol(arena.symbol(name)));
+    /// let fraction = "<mfrac><mrow><msub><mi>θ</mi><mn>1</mn></msub></mrow><mrow><mi>C</mi></mrow></mfrac>";
+    /// assert_eq!(arena.mathml(arena.div(theta, c)), format!("<math>{fraction}</math>"));
+    /// ```
+    pub fn mathml(&self, expr: Expr) -> String {
+        format!("<math>{}</math>", self.mathml_elements(expr, &BTreeMap::new()))
+    }
+
+    /// What stands in the `math` element, for a larger formula; a symbol of `shown` is set as the formula beside it, in
+    /// parentheses where reading needs them, so that a substitution is seen before anything is made of it.
+    pub fn mathml_elements(&self, expr: Expr, shown: &BTreeMap<Symbol, Expr>) -> String {
+        let mut known: FxHashMap<Expr, Row> = FxHashMap::default();
+        let mut written = 0;
+        let replaced: Vec<Expr> = shown.values().copied().collect();
+        for e in self.postorder(&replaced) {
+            known.insert(e, self.typeset(e, &known));
+            written += known[&e].elements.len();
+            if written > MOST_CHARACTERS {
+                return too_long();
+            }
+        }
+        let replaced: BTreeMap<Symbol, Row> = shown.iter().map(|(symbol, e)| (*symbol, known[e].clone())).collect();
+        known.clear();
+        for e in self.postorder(&[expr]) {
+            let row = match self.as_symbol(e).and_then(|symbol| replaced.get(&symbol)) {
+                Some(row) => row.clone(),
+                None => self.typeset(e, &known),
+            };
+            written += row.elements.len();
+            if written > MOST_CHARACTERS {
+                return too_long();
+            }
+            known.insert(e, row);
+        }
+        known.remove(&expr).map(|row| row.elements).unwrap_or_default()
+    }
+
+    /// The rate of a signal, as a point over its letter.
+    pub fn mathml_rate(&self, symbol: Symbol) -> String {
+        let rate = |letter: String| {
+            // The point takes the place of a letter's own.
+            let letter = match letter.as_str() {
+                "<mi>i</mi>" => "<mi>ı</mi>",
+                "<mi>j</mi>" => "<mi>ȷ</mi>",
+                other => other,
+            };
+            format!("<mover accent=\"true\">{letter}<mo stretchy=\"false\">˙</mo></mover>")
+        };
+        named(&self.name(symbol), rate).elements
+    }
+
+    /// The value of a parameter: a decimal if it has a short one, as most authors write it.
+    pub fn mathml_value(&self, value: &Rational) -> String {
+        self.typeset_number_in(value, false).elements
+    }
+
+    /// An expression of whose parts these are set.
+    fn typeset(&self, expr: Expr, known: &FxHashMap<Expr, Row>) -> Row {
+        match self.node(expr) {
+            Node::Number(value) => self.typeset_number(&value),
+            Node::Pi => Row::atom("<mi>π</mi>"),
+            Node::Symbol(symbol) => named(&self.name(symbol), |letter| letter),
+            Node::Sum(sum) => self.typeset_sum(&sum, known),
+            Node::Product(product) => self.typeset_product(&product, known),
+            Node::Call(function, arguments) => {
+                let arguments: Vec<&str> = arguments.iter().map(|a| known[a].elements.as_str()).collect();
+                call(function, &arguments.join("<mo>,</mo>"))
+            }
+        }
+    }
+
+    fn typeset_sum(&self, sum: &Sum, known: &FxHashMap<Expr, Row>) -> Row {
+        let mut elements = String::new();
+        for (index, (negative, summand)) in summands(self, sum).into_iter().enumerate() {
+            elements.push_str(match (index, negative) {
+                (0, false) => "",
+                (_, true) => MINUS,
+                (_, false) => "<mo>+</mo>",
+            });
+            let summand = match summand {
+                Summand::Number(value) => self.typeset_number(&value),
+                Summand::Expr(term) => known[&term].clone(),
+                Summand::Product(product) => self.typeset_product(&product, known),
+            };
+            elements.push_str(&summand.within(Binding::Product).elements);
+        }
+        Row::new(elements, Binding::Sum, Ends::Plain)
+    }
+
+    fn typeset_product(&self, product: &Product, known: &FxHashMap<Expr, Row>) -> Row {
+        let factor = |factor: &Factor<'_>| match factor {
+            Factor::Number(value) => self.typeset_number(value),
+            Factor::Power(base, exponent) => power(&known[base], &exponent.abs()),
+        };
+        let (above, below) = quotient(self, product);
+        let [above, below] = [above, below].map(|side| side.iter().map(factor).collect::<Vec<Row>>());
+        let row = if below.is_empty() {
+            side(&above, Binding::Factor)
+        } else {
+            let [above, below] = [above, below].map(|factors| side(&factors, Binding::Sum).element());
+            let fraction = format!("<mfrac>{above}{below}</mfrac>");
+            Row::new(fraction, Binding::Factor, Ends::Plain)
+        };
+        if product.coefficient.is_negative() {
+            // A minus before a factor binds as a sum does: (−a)b and (−a)² keep their parentheses.
+            Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends)
+        } else {
+            row
+        }
+    }
+
+    fn typeset_number(&self, value: &Rational) -> Row {
+        self.typeset_number_in(value, self.notation().as_fraction(&value.abs()))
+    }
+
+    /// A number as a fraction, or as a decimal if it has a short one.
+    fn typeset_number_in(&self, value: &Rational, fraction: bool) -> Row {
+        let magnitude = value.abs();
+        let row = match self.notation().decimal(&magnitude) {
+            _ if magnitude.is_integer() => Row::new(format!("<mn>{magnitude}</mn>"), Binding::Atom, Ends::Digit),
+            Some(text) if !fraction => match text.split_once("e-") {
+                Some((digits, exponent)) => {
+                    let ten = format!("<msup><mn>10</mn><mrow>{MINUS}<mn>{exponent}</mn></mrow></msup>");
+                    Row::new(format!("<mn>{digits}</mn>{DOT}{ten}"), Binding::Factor, Ends::Digit)
+                }
+                None => Row::new(format!("<mn>{text}</mn>"), Binding::Atom, Ends::Digit),
+            },
+            _ => {
+                let (above, below) = (magnitude.numerator(), magnitude.denominator());
+                Row::new(format!("<mfrac><mn>{above}</mn><mn>{below}</mn></mfrac>"), Binding::Factor, Ends::Plain)
+            }
+        };
+        if value.is_negative() { Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends) } else { row }
+    }
+}
+
+/// Factors beside one another; a single one binds at least as tightly as `least`.
+fn side(factors: &[Row], least: Binding) -> Row {
+    match factors {
+        [] => Row::new("<mn>1</mn>", Binding::Atom, Ends::Digit),
+        [alone] => alone.within(least),
+        [first, rest @ ..] => {
+            let first = first.within(Binding::Factor);
+            let (mut elements, mut before) = (first.elements.clone(), first.ends);
+            for factor in rest.iter().map(|factor| factor.within(Binding::Factor)) {
+                let merge = factor.ends == Ends::Digit || before == Ends::Word || factor.ends == Ends::Word;
+                elements.push_str(if merge { DOT } else { TIMES });
+                elements.push_str(&factor.elements);
+                before = factor.ends;
+            }
+            Row::new(elements, Binding::Product, Ends::Plain)
+        }
+    }
+}
+
+/// `base ^ exponent` for a positive exponent.
+fn power(base: &Row, exponent: &Rational) -> Row {
+    if exponent.is_one() {
+        return base.clone();
+    }
+    if is_root(exponent) {
+        return Row::atom(format!("<msqrt>{}</msqrt>", base.elements));
+    }
+    let base = base.within(Binding::Atom);
+    let above = if exponent.is_integer() {
+        format!("<mn>{exponent}</mn>")
+    } else {
+        format!("<mrow><mn>{}</mn><mo>/</mo><mn>{}</mn></mrow>", exponent.numerator(), exponent.denominator())
+    };
+    Row::new(format!("<msup>{}{above}</msup>", base.element()), Binding::Factor, base.ends)
+}
+
+fn call(function: Function, arguments: &str) -> Row {
+    match function {
+        Function::Abs => Row::atom(format!("<mrow><mo>|</mo>{arguments}<mo>|</mo></mrow>")),
+        Function::Sqrt => Row::atom(format!("<msqrt>{arguments}</msqrt>")),
+        _ => {
+            let name = function.row().typeset();
+            let call = format!("<mrow><mi>{name}</mi>{APPLY}{}</mrow>", parenthesised(arguments));
+            Row::new(call, Binding::Atom, Ends::Word)
+        }
+    }
+}
+
+fn parenthesised(elements: &str) -> String {
+    format!("<mrow><mo>(</mo>{elements}<mo>)</mo></mrow>")
+}
+
+/// What stands for a formula that no page holds.
+fn too_long() -> String {
+    format!("<mtext>(a formula of more than {MOST_CHARACTERS} characters)</mtext>")
+}
+
+/// A name: its letter with what is put on it, its index below; several indices with commas between them.
+fn named(name: &str, put: impl Fn(String) -> String) -> Row {
+    let (base, index) = parts(name);
+    let letter = put(identifier(base));
+    let ends = if greek(base).is_some() || base.chars().count() == 1 { Ends::Plain } else { Ends::Word };
+    let indices: Vec<String> = index.split('_').filter(|part| !part.is_empty()).map(subscript).collect();
+    let elements = match indices.as_slice() {
+        [] => letter,
+        [one] => format!("<msub>{letter}{one}</msub>"),
+        several => format!("<msub>{letter}<mrow>{}</mrow></msub>", several.join("<mo>,</mo>")),
+    };
+    Row::new(elements, Binding::Atom, ends)
+}
+
+fn subscript(index: &str) -> String {
+    if index.chars().all(|character| character.is_ascii_digit()) {
+        format!("<mn>{index}</mn>")
+    } else {
+        identifier(index)
+    }
+}
+
+fn identifier(name: &str) -> String {
+    match greek(name) {
+        Some(letter) => format!("<mi>{letter}</mi>"),
+        None => format!("<mi>{}</mi>", escaped(name)),
+    }
+}
+
+/// A text as XML and HTML hold it; what they cannot hold in any form is shown as replaced.
+pub fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            '\u{FFFE}' | '\u{FFFF}' => escaped.push('\u{FFFD}'),
+            '\n' | '\t' => escaped.push(character),
+            c if c.is_control() => escaped.push('\u{FFFD}'),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests;

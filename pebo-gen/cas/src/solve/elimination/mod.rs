@@ -1,0 +1,341 @@
+//! Symbols at which equations hold: one equation at a time, for one symbol at a time.
+//!
+//! In: formulas that are to vanish, states and inputs to determine, and a check of what comes out. Out: the first values
+//! that the check accepts, in symbols that stay free, or a formula that no rule makes vanish.
+//!
+//! What is linear is solved together first ([`joint`]). Then an equation is taken for a symbol in which one of its factors
+//! is linear, which is replaced in all others; where none is, a factor may be quadratic, or inverse functions may help.
+//! Division by what vanishes somewhere can lose solutions, never add one, and where a product vanishes, each factor in
+//! turn is tried. So this is a search, and no elimination of a matrix: what a pivot would be may vanish.
+
+mod joint;
+mod values;
+
+use std::cell::Cell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::poly::Poly;
+use crate::tower::{Field, Fraction, Obstacle};
+use crate::{Arena, Domain, Expr, Rational, Relation, Symbol};
+
+use super::{Equation, solve};
+use values::Values;
+
+/// What is to be determined.
+pub struct Elimination<'a> {
+    /// Owns the formulas.
+    pub arena: &'a Arena,
+    /// Where the symbols lie.
+    pub domain: &'a Domain,
+    /// Symbols to determine first.
+    pub states: BTreeSet<Symbol>,
+    /// Symbols to determine where the states leave equations: the author would rather choose them.
+    pub inputs: BTreeSet<Symbol>,
+}
+
+/// A factor of an equation.
+struct Factor {
+    equation: usize,
+    poly: Poly,
+}
+
+/// A symbol that makes a factor of an equation vanish.
+struct Step {
+    cost: Cost,
+    equation: usize,
+    symbol: Symbol,
+    /// The factor's coefficients by powers of the symbol, the constant first: two, or three.
+    coefficients: Vec<Fraction>,
+}
+
+/// How little a step assumes; the least is taken.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Cost {
+    /// The factor's degree in the symbol: the number of its values.
+    degree: u32,
+    /// Whether the symbol's factor holds states, which may vanish.
+    bends: bool,
+    /// Whether the symbol is an input.
+    input: bool,
+    /// Whether the factor holds inputs.
+    driven: bool,
+    /// Terms of factor and rest.
+    terms: usize,
+}
+
+/// The partial solutions that a search visits at most from one start. One without alternatives visits as many as there
+/// are symbols to determine.
+const MOST_VISITS: usize = 100;
+
+/// Parts of all equations together, past which a branch is given up: elimination makes them longer at each step, and
+/// what would come out nobody reads.
+const MOST_PARTS: usize = 600;
+
+/// How far the search from one start has come.
+struct Progress {
+    visits: Cell<usize>,
+    /// Whether linear equations are solved together: until what follows from that fails.
+    together: Cell<bool>,
+}
+
+/// The kernels of what is not determined.
+struct Unknown {
+    symbols: BTreeSet<Symbol>,
+    /// Those that depend on each symbol.
+    of_each: BTreeMap<Symbol, BTreeSet<u32>>,
+    of_states: BTreeSet<u32>,
+    of_inputs: BTreeSet<u32>,
+}
+
+impl Elimination<'_> {
+    /// The first solution that the check accepts, by the first of the starts that has one; else a formula that was not
+    /// made to vanish. A start is values to begin with.
+    pub fn run<T>(
+        &self,
+        equations: &[Expr],
+        starts: &[Values],
+        accept: &mut impl FnMut(&Values) -> Option<T>,
+    ) -> Result<Result<T, Expr>, Obstacle> {
+        let mut stuck = None;
+        let mut obstacle = None;
+        for start in starts {
+            let progress = Progress { visits: Cell::new(0), together: Cell::new(true) };
+            match self.search(equations, start, accept, &progress, &mut stuck) {
+                Ok(Some(found)) => return Ok(Ok(found)),
+                Ok(None) => {}
+                Err(other) => obstacle = obstacle.or(Some(other)),
+            }
+        }
+        match (stuck, obstacle) {
+            (Some(stuck), _) => Ok(Err(stuck)),
+            (None, Some(obstacle)) => Err(obstacle),
+            (None, None) => Err(Obstacle::TooLarge),
+        }
+    }
+
+    fn search<T>(
+        &self,
+        equations: &[Expr],
+        values: &Values,
+        accept: &mut impl FnMut(&Values) -> Option<T>,
+        progress: &Progress,
+        stuck: &mut Option<Expr>,
+    ) -> Result<Option<T>, Obstacle> {
+        progress.visits.set(progress.visits.get() + 1);
+        if progress.visits.get() > MOST_VISITS {
+            return Ok(None);
+        }
+        let arena = self.arena;
+        let equations = arena.substitute_all(equations, values);
+        if arena.postorder(&equations).len() > MOST_PARTS {
+            return Err(Obstacle::TooLarge);
+        }
+        let field = Field::over(arena, &self.domain.facts, &equations)?;
+        let mut open = Vec::new();
+        for equation in &equations {
+            let fraction = field.fraction(*equation)?;
+            if !fraction.is_zero() {
+                open.push((field.show(&fraction), fraction));
+            }
+        }
+        let Some((first, _)) = open.first() else { return Ok(accept(values)) };
+        let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+        let unknown = self.unknown(&field, values);
+        if progress.together.get() {
+            // What cannot be solved together may be found one at a time.
+            let found = self.states_together(&field, &open, &unknown).unwrap_or_default();
+            // No equation is left where each gave a state: the check sees whether they hold.
+            if found.len() > 1
+                && found.len() == open.len()
+                && let Some(accepted) = accept(&extended(arena, values, &found))
+            {
+                return Ok(Some(accepted));
+            }
+            if found.len() > 1
+                && let Ok(Some(accepted)) = self.advance(&formulas, values, &found, accept, (progress, &mut *stuck))
+            {
+                return Ok(Some(accepted));
+            }
+        }
+        let mut factors = Vec::new();
+        let kernels: Vec<u32> = unknown.of_states.union(&unknown.of_inputs).copied().collect();
+        for (equation, (_, fraction)) in open.iter().enumerate() {
+            let polys = fraction.numerator().factors_in(&kernels, field.limit())?;
+            // No choice of the unknowns makes this one vanish.
+            if polys.is_empty() {
+                stuck.get_or_insert(open[equation].0);
+                return Ok(None);
+            }
+            factors.extend(polys.into_iter().map(|poly| Factor { equation, poly }));
+        }
+        let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.together.get())?;
+        for found in alternatives {
+            // Where another equation has no value, or none that is understood, there may be a better one.
+            match self.advance(&formulas, values, &found, accept, (progress, &mut *stuck)) {
+                Ok(None) | Err(Obstacle::DivisionByZero | Obstacle::Kernel(_)) => {}
+                found => return found,
+            }
+        }
+        stuck.get_or_insert(*first);
+        Ok(None)
+    }
+
+    /// Goes on with what was found. Where several at once lead nowhere, from then on it is one at a time, as if they had
+    /// not been tried.
+    fn advance<T>(
+        &self,
+        formulas: &[Expr],
+        values: &Values,
+        found: &Values,
+        accept: &mut impl FnMut(&Values) -> Option<T>,
+        (progress, stuck): (&Progress, &mut Option<Expr>),
+    ) -> Result<Option<T>, Obstacle> {
+        let (visits, before) = (progress.visits.get(), *stuck);
+        let result = self.search(formulas, &extended(self.arena, values, found), accept, progress, stuck);
+        if found.len() > 1 && !matches!(result, Ok(Some(_))) {
+            progress.together.set(false);
+            progress.visits.set(visits);
+            *stuck = before;
+            return Ok(None);
+        }
+        result
+    }
+
+    /// The states that linear equations determine together, with inputs in their coefficients.
+    fn states_together(
+        &self,
+        field: &Field<'_>,
+        open: &[(Expr, Fraction)],
+        unknown: &Unknown,
+    ) -> Result<Values, Obstacle> {
+        let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
+        joint::solved(self.arena, field, equations, &unknown.of_states, [&BTreeSet::new(), &unknown.of_inputs])
+    }
+
+    /// The symbols that are not determined, states and inputs, and where they stand.
+    fn unknown(&self, field: &Field<'_>, values: &Values) -> Unknown {
+        let open = |symbols: &BTreeSet<Symbol>| -> BTreeSet<Symbol> {
+            symbols.iter().copied().filter(|s| !values.contains_key(s)).collect()
+        };
+        let (states, inputs) = (open(&self.states), open(&self.inputs));
+        let symbols: BTreeSet<Symbol> = states.union(&inputs).copied().collect();
+        let of_each = symbols.iter().map(|symbol| (*symbol, field.kernels_of(&BTreeSet::from([*symbol])))).collect();
+        Unknown { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
+    }
+
+    /// The ways to make one equation vanish, the one that assumes least first; before them several at once, if inputs are
+    /// to be found.
+    fn alternatives(
+        &self,
+        field: &Field<'_>,
+        open: &[(Expr, Fraction)],
+        factors: &[Factor],
+        unknown: &Unknown,
+        together: bool,
+    ) -> Result<Vec<Values>, Obstacle> {
+        let mut steps = Vec::new();
+        for factor in factors {
+            self.steps(field, factor, unknown, &mut steps)?;
+        }
+        steps.sort_by_key(|step| step.cost);
+        let chosen = steps.first().map(|step| step.equation);
+        let mut found = Vec::new();
+        let mut several = Values::new();
+        if together && steps.first().is_some_and(|step| step.cost.input && step.cost.degree == 1 && !step.cost.bends) {
+            let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
+            let solved =
+                joint::solved(self.arena, field, equations, &unknown.of_inputs, [&unknown.of_states, &BTreeSet::new()]);
+            several = solved.unwrap_or_default();
+        }
+        for step in steps.iter().filter(|step| Some(step.equation) == chosen) {
+            found.extend(self.values(field, step)?.into_iter().map(|value| (step.symbol, value)));
+        }
+        if chosen.is_none() {
+            let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+            found.extend(self.inverted(&together, &unknown.symbols)?);
+        }
+        for factor in factors.iter().filter(|factor| chosen.is_none_or(|chosen| factor.equation == chosen)) {
+            let formula = field.show(&field.of_polynomial(&factor.poly)?);
+            found.extend(self.inverted(&[formula], &unknown.symbols)?);
+            // For each state by itself too, as if the others were given.
+            for symbol in &unknown.symbols {
+                found.extend(self.inverted(&[formula], &BTreeSet::from([*symbol]))?);
+            }
+        }
+        let several = Some(several).filter(|several| several.len() > 1);
+        Ok(several.into_iter().chain(found.into_iter().map(|one| Values::from([one]))).collect())
+    }
+
+    /// The symbols that stand to the first or second power in a factor, in no kernel but themselves.
+    fn steps(
+        &self,
+        field: &Field<'_>,
+        factor: &Factor,
+        unknown: &Unknown,
+        steps: &mut Vec<Step>,
+    ) -> Result<(), Obstacle> {
+        let arena = self.arena;
+        for (symbol, kernels) in &unknown.of_each {
+            let mut kernels = factor.poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
+            let (Some(kernel), None) = (kernels.next(), kernels.next()) else { continue };
+            let degree = factor.poly.degree(kernel);
+            if degree > 2 || arena.as_symbol(field.kernel(kernel)) != Some(*symbol) {
+                continue;
+            }
+            let mut coefficients = vec![Fraction::zero(); degree as usize + 1];
+            for (power, coefficient) in factor.poly.collect(&[kernel]) {
+                let exponent = power.powers().first().map_or(0, |(_, exponent)| *exponent);
+                coefficients[exponent as usize] = field.of_polynomial(&coefficient)?;
+            }
+            let nowhere_zero = || self.domain.implies(arena, arena.of_symbol(*symbol), Relation::NonZero);
+            if coefficients[0].is_zero() && nowhere_zero() {
+                continue;
+            }
+            let slope = &coefficients[degree as usize];
+            let holds = |kernels: &BTreeSet<u32>| slope.variables().any(|kernel| kernels.contains(&kernel));
+            let cost = Cost {
+                degree,
+                bends: holds(&unknown.of_states),
+                input: self.inputs.contains(symbol),
+                driven: holds(&unknown.of_inputs),
+                terms: coefficients.iter().map(|c| c.numerator().term_count()).sum(),
+            };
+            steps.push(Step { cost, equation: factor.equation, symbol: *symbol, coefficients });
+        }
+        Ok(())
+    }
+
+    /// The roots of a step's polynomial.
+    fn values(&self, field: &Field<'_>, step: &Step) -> Result<Vec<Expr>, Obstacle> {
+        let arena = self.arena;
+        let [rest, slope, bend @ ..] = step.coefficients.as_slice() else { return Ok(Vec::new()) };
+        let [bend] = bend else { return Ok(vec![field.show(&field.div(rest, slope)?.opposite())]) };
+        let middle = field.div(slope, &field.scale(bend, &Rational::from(-2))?)?;
+        let apart = field.sub(&field.mul(&middle, &middle)?, &field.div(rest, bend)?)?;
+        let (middle, apart) = (field.show(&middle), arena.sqrt(field.show(&apart)));
+        Ok(vec![arena.add(middle, apart), arena.sub(middle, apart)])
+    }
+
+    /// States that inverse functions give.
+    fn inverted(&self, formulas: &[Expr], unknown: &BTreeSet<Symbol>) -> Result<Vec<(Symbol, Expr)>, Obstacle> {
+        let arena = self.arena;
+        let unknown: Vec<Symbol> = unknown.intersection(&self.states).copied().collect();
+        let equations: Vec<Equation> =
+            formulas.iter().map(|formula| Equation { formula: *formula, value: arena.zero() }).collect();
+        let candidates = solve(arena, self.domain, &equations, &unknown)?;
+        let free = |(symbol, values): (Symbol, Vec<Expr>)| {
+            values
+                .into_iter()
+                .filter(|value| !arena.depends_on(*value, &BTreeSet::from([symbol])))
+                .map(|value| (symbol, value))
+                .collect::<Vec<_>>()
+        };
+        Ok(candidates.into_iter().flat_map(free).collect())
+    }
+}
+
+/// Values with more of them, which replace their symbols in the others.
+fn extended(arena: &Arena, values: &Values, more: &Values) -> Values {
+    let known = values.iter().map(|(symbol, known)| (*symbol, arena.substitute(*known, more)));
+    known.chain(more.iter().map(|(symbol, value)| (*symbol, *value))).collect()
+}

@@ -1,0 +1,135 @@
+//! Products of unknowns: as polar coordinates, and by their exponents.
+//!
+//! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle and
+//! the magnitude, from `p*s` and `p*s^2` the quotient of the two.
+
+use super::equation::{Equation, angle_of, unpower};
+use crate::graph::expr::Expr;
+use crate::graph::function::Function;
+use crate::tower::Field;
+use crate::{Arena, Domain, Node, Rational};
+
+/// What products give for the kernels in them.
+pub(super) fn apart(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
+    let products: Vec<Product> = known.iter().filter_map(|equation| Product::of(arena, *equation)).collect();
+    let mut found = polar(arena, domain, &products);
+    found.extend(by_exponents(arena, domain, &products));
+    found
+}
+
+/// A product of kernels with its value.
+struct Product {
+    factors: Vec<(Expr, Rational)>,
+    value: Expr,
+}
+
+impl Product {
+    fn of(arena: &Arena, Equation { formula, value }: Equation) -> Option<Self> {
+        match arena.node(formula) {
+            Node::Product(product) => Some(Self { factors: product.factors.clone(), value }),
+            Node::Symbol(_) | Node::Call(..) => Some(Self { factors: vec![(formula, Rational::ONE)], value }),
+            _ => None,
+        }
+    }
+}
+
+/// Magnitude and angle where both `m*sin(a)` and `m*cos(a)` are known and the sign of m is.
+fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
+    let mut found = Vec::new();
+    for Product { factors, value: across } in products {
+        for (at, (factor, exponent)) in factors.iter().enumerate() {
+            let Node::Call(Function::Sin, argument) = arena.node(*factor) else { continue };
+            let mut others = factors.clone();
+            drop(others.remove(at));
+            if !exponent.is_one() || others.is_empty() {
+                continue;
+            }
+            let magnitude = arena.multiply(&Rational::ONE, others);
+            let wanted = arena.mul(magnitude, arena.call(Function::Cos, &argument));
+            let along = products.iter().find(|p| arena.multiply(&Rational::ONE, p.factors.iter().cloned()) == wanted);
+            let (Some(along), Some(positive)) = (along, sign(arena, domain, magnitude)) else { continue };
+            let turned = |value| if positive { value } else { arena.neg(value) };
+            let [across, along] = [*across, along.value].map(turned);
+            found.push(Equation { formula: argument[0], value: angle_of(arena, domain, across, along) });
+            let length = arena.sqrt(arena.add(arena.mul(across, across), arena.mul(along, along)));
+            found.extend(single(arena, domain, magnitude, turned(length)));
+        }
+    }
+    found
+}
+
+/// Whether what is not zero is positive or negative throughout the domain, if it is either.
+fn sign(arena: &Arena, domain: &Domain, expr: Expr) -> Option<bool> {
+    let field = Field::over(arena, &domain.facts, &[expr]).ok()?;
+    let fraction = field.fraction(expr).ok()?;
+    let opposite = fraction.opposite();
+    let mut signs = [(&fraction, true), (&opposite, false)].into_iter();
+    signs.find_map(|(part, positive)| field.signs().is_positive(part).ok()?.then_some(positive))
+}
+
+/// A power of a kernel turned into the kernel; a product of several stays as it is.
+fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<Equation> {
+    match arena.node(formula) {
+        Node::Product(product) => match product.factors.as_slice() {
+            [(base, exponent)] => unpower(arena, domain, *base, exponent, value),
+            _ => Some(Equation { formula, value }),
+        },
+        _ => Some(Equation { formula, value }),
+    }
+}
+
+/// Kernels as products of powers of the values, where the exponents determine them.
+fn by_exponents(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
+    let mut kernels: Vec<Expr> = products.iter().flat_map(|p| p.factors.iter().map(|(base, _)| *base)).collect();
+    kernels.sort_unstable();
+    kernels.dedup();
+    // A row of exponents beside the powers of the values that have them.
+    let mut rows: Vec<(Vec<Rational>, Vec<Rational>)> = Vec::new();
+    for (index, product) in products.iter().enumerate() {
+        let of = |kernel: &Expr| {
+            let factor = product.factors.iter().find(|(base, _)| base == kernel);
+            factor.map_or(Rational::ZERO, |(_, exponent)| exponent.clone())
+        };
+        let powers = (0..products.len()).map(|other| Rational::from(i64::from(other == index)));
+        rows.push((kernels.iter().map(of).collect(), powers.collect()));
+    }
+    if products.iter().filter(|product| product.factors.len() > 1).count() < 2 {
+        // Each of the others is inverted alone.
+        return Vec::new();
+    }
+    let mut pivots = Vec::new();
+    for column in 0..kernels.len() {
+        let Some(row) = (pivots.len()..rows.len()).find(|row| !rows[*row].0[column].is_zero()) else { continue };
+        rows.swap(pivots.len(), row);
+        let pivot = rows[pivots.len()].clone();
+        for (index, row) in rows.iter_mut().enumerate() {
+            if index == pivots.len() || row.0[column].is_zero() {
+                continue;
+            }
+            let Some(factor) = row.0[column].checked_div(&pivot.0[column]) else { return Vec::new() };
+            let less = |own: &mut [Rational], other: &[Rational]| {
+                for (own, other) in own.iter_mut().zip(other) {
+                    *own = &*own - &(&factor * other);
+                }
+            };
+            less(&mut row.0, &pivot.0);
+            less(&mut row.1, &pivot.1);
+        }
+        pivots.push(column);
+    }
+    let alone = |(index, column): (usize, &usize)| {
+        let (exponents, powers) = &rows[index];
+        if exponents.iter().filter(|exponent| !exponent.is_zero()).count() > 1 {
+            return None;
+        }
+        // Whole exponents on both sides: only then is a root a matter of signs.
+        let whole = powers.iter().chain([&exponents[*column]]).try_fold(Rational::ONE, |whole, power| {
+            let denominator = Rational::new((power * &whole).denominator(), 1)?;
+            Some(&whole * &denominator)
+        })?;
+        let value = products.iter().zip(powers).map(|(product, power)| (product.value, power * &whole));
+        let value = arena.multiply(&Rational::ONE, value.filter(|(_, power)| !power.is_zero()));
+        unpower(arena, domain, kernels[*column], &(&exponents[*column] * &whole), value)
+    };
+    pivots.iter().enumerate().filter_map(alone).collect()
+}

@@ -1,0 +1,241 @@
+//! Polynomials over a coprime base: products of powers of polynomials of which no two have a factor in common.
+//!
+//! In: what a root, a logarithm or an absolute value is taken of. Out: a sign and powers of elements of the base. A
+//! field keeps one base: where a new polynomial shares a factor with an element, that one is split, and the field starts
+//! again with the finer base. Holds after: any two elements that occur are coprime, so `sqrt(a*b)` and `sqrt(a)` are seen
+//! to be related.
+//!
+//! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of
+//! sums of sines and cosines are looked for ([`square`]).
+
+mod square;
+
+use crate::Integer;
+use crate::graph::expr::Expr;
+use crate::poly::{Poly, TooLarge, Work};
+
+use super::{Field, Obstacle};
+
+/// A coprime base: square-free polynomials of which no two have a factor in common.
+#[derive(Default, Debug)]
+pub(in crate::tower) struct CoprimeBase {
+    /// The polynomials of this round.
+    entered: Vec<Poly>,
+    /// What was found in earlier rounds and is yet to be entered in this one, as expressions: kernels may get other
+    /// numbers.
+    pending: Vec<Expr>,
+}
+
+/// A polynomial over a coprime base.
+struct Split {
+    /// Elements of the base, whose product it is.
+    parts: Vec<Poly>,
+    /// Whether an element had to be split: what was made of it before does not go with its parts.
+    finer: bool,
+}
+
+impl CoprimeBase {
+    /// Writes a square-free polynomial over the base, which grows by what is new in it.
+    fn split(&mut self, poly: Poly, work: &Work) -> Result<Split, TooLarge> {
+        let (mut rest, mut parts, mut finer) = (poly, Vec::new(), false);
+        let mut index = 0;
+        while let Some(element) = self.entered.get(index).filter(|_| !rest.is_constant()).cloned() {
+            let common = rest.gcd(&element, work)?;
+            if !common.is_constant() {
+                rest = rest.div_exact(&common, work)?.unwrap_or(rest);
+                if common != element
+                    && let Some(other) = element.div_exact(&common, work)?
+                {
+                    self.entered[index] = common.clone();
+                    self.entered.push(other.primitive().1);
+                    finer = true;
+                }
+                parts.push(common);
+            }
+            index += 1;
+        }
+        if !rest.is_constant() {
+            self.entered.push(rest.clone());
+            parts.push(rest);
+        }
+        Ok(Split { parts, finer })
+    }
+
+    /// Enters what an earlier round has found.
+    fn enter(&mut self, poly: Poly) {
+        if !poly.is_constant() && !self.entered.contains(&poly) {
+            self.entered.push(poly);
+        }
+    }
+
+    /// Keeps what this round has found for the next one.
+    fn keep(&mut self, shown: impl Fn(&Poly) -> Expr) {
+        self.pending.extend(std::mem::take(&mut self.entered).iter().map(shown));
+        self.pending.sort_unstable();
+        self.pending.dedup();
+        self.pending.reverse();
+    }
+}
+
+/// A sign and powers of parts.
+#[derive(Debug)]
+pub(in crate::tower) struct Product {
+    /// Whether the product of the powers must be negated.
+    pub negative: bool,
+    /// Parts with their exponents: each primitive with a positive leading coefficient.
+    pub powers: Vec<(Poly, u32)>,
+    /// What the product of the powers must be divided by.
+    pub divisor: Integer,
+}
+
+impl Field<'_> {
+    /// A primitive polynomial as a product of powers of parts.
+    pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<Product, Obstacle> {
+        let mut powers: Vec<(Poly, u32)> = Vec::new();
+        let mut rest = poly.clone();
+        for (sine, square) in self.sines_of(poly)? {
+            let mut times = 0;
+            while let Some(quotient) = rest.div_exact(&square, self.limit())? {
+                rest = quotient;
+                times += 2;
+            }
+            if times > 0 {
+                powers.push((Poly::variable(sine), times));
+            }
+        }
+        let mut found = rest.square_free(self.limit())?;
+        let mut divisor = Integer::ONE;
+        if let [(factor, 1)] = found.factors.as_slice() {
+            for negative in [false, true] {
+                if let Some((root, multiple)) = self.hidden_root(&if negative { -factor } else { factor.clone() })? {
+                    divisor = multiple;
+                    if negative {
+                        found.content = -found.content;
+                    }
+                    found.factors = vec![(root, 2)];
+                    break;
+                }
+            }
+        }
+        for (factor, times) in found.factors {
+            let monomial = factor.monomial_content();
+            let mut rest = factor;
+            for &(variable, exponent) in monomial.powers() {
+                let variable = Poly::variable(variable);
+                powers.push((variable.clone(), exponent * times));
+                rest = rest.div_exact(&variable.pow(exponent, self.limit())?, self.limit())?.unwrap_or(rest);
+            }
+            for part in self.over_base(rest)? {
+                powers.push((part, times));
+            }
+        }
+        Ok(Product { negative: found.content.is_negative(), powers, divisor })
+    }
+
+    /// A square-free polynomial without monomial factors over the coprime base.
+    fn over_base(&self, poly: Poly) -> Result<Vec<Poly>, Obstacle> {
+        self.enter_pending()?;
+        let Split { parts, finer } = self.base.borrow_mut().split(poly, self.limit())?;
+        if finer {
+            self.round.finer.set(true);
+        }
+        Ok(parts)
+    }
+
+    /// Enters what earlier rounds have found. Reading it may itself use the base.
+    fn enter_pending(&self) -> Result<(), Obstacle> {
+        loop {
+            let Some(expr) = self.base.borrow_mut().pending.pop() else { return Ok(()) };
+            let poly = self.fraction(expr)?.num.primitive().1;
+            self.base.borrow_mut().enter(poly);
+        }
+    }
+
+    /// Keeps the base for the next round.
+    pub(in crate::tower) fn keep_base(&self) {
+        self.base.borrow_mut().keep(|poly| self.show_polynomial(poly));
+    }
+
+    /// The sine kernels of the angles whose cosines occur, each with its square.
+    fn sines_of(&self, poly: &Poly) -> Result<Vec<(u32, Poly)>, Obstacle> {
+        let mut sines = Vec::new();
+        for &variable in poly.variables() {
+            if let Some(sine) = self.sine_beside(variable) {
+                sines.push((sine, &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?));
+            }
+        }
+        Ok(sines)
+    }
+
+    /// The polynomial with squared cosines replaced by squared sines, if there are any.
+    pub(in crate::tower) fn with_sines(&self, poly: &Poly) -> Result<Option<Poly>, Obstacle> {
+        let mut other = poly.clone();
+        for &variable in poly.variables() {
+            if let Some(sine) = self.sine_beside(variable) {
+                let square = &Poly::one() - &Poly::variable(sine).pow(2, self.limit())?;
+                other = other.reduce_power(variable, 2, &square, self.limit())?;
+            }
+        }
+        Ok((other != *poly).then_some(other))
+    }
+
+    /// The sine kernel of the same angle, for a cosine kernel.
+    pub(in crate::tower) fn sine_beside(&self, variable: u32) -> Option<u32> {
+        use crate::graph::expr::Node;
+        use crate::graph::function::Function;
+        let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) else { return None };
+        let sine = self.arena.call(Function::Sin, &arguments);
+        self.round.kernels.borrow().number_of(sine)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A product of `x + n`, one for each number.
+    fn product(numbers: &[i64]) -> Poly {
+        let work = Work::new(1_000_000);
+        numbers.iter().fold(Poly::one(), |product, number| {
+            product.mul(&(&Poly::variable(0) + &Poly::constant(*number)), &work).unwrap()
+        })
+    }
+
+    #[test]
+    fn elements_of_a_base_have_no_factor_in_common() {
+        let work = Work::new(1_000_000);
+        let mut base = CoprimeBase::default();
+        let mut split = |numbers: &[i64]| {
+            let split = base.split(product(numbers), &work).unwrap();
+            let whole = split.parts.iter().fold(Poly::one(), |product, part| product.mul(part, &work).unwrap());
+            assert_eq!(whole, product(numbers));
+            for (index, one) in base.entered.iter().enumerate() {
+                assert!(base.entered[..index].iter().all(|other| one.gcd(other, &work).unwrap().is_constant()));
+            }
+            (split.parts.len(), split.finer)
+        };
+        assert_eq!(split(&[1, 2]), (1, false), "new as a whole");
+        assert_eq!(split(&[1, 2]), (1, false), "known as a whole");
+        assert_eq!(split(&[2, 3]), (2, true), "shares a factor with what is known");
+        assert_eq!(split(&[1, 3]), (2, false), "of elements that are there");
+        assert_eq!(split(&[1, 2, 3, 4, 5]), (4, false), "with something new");
+        assert_eq!(split(&[5]), (1, true));
+    }
+
+    #[test]
+    fn the_next_round_begins_with_what_this_one_found() {
+        let arena = crate::Arena::new();
+        let work = Work::new(1_000_000);
+        let mut base = CoprimeBase::default();
+        base.split(product(&[1]), &work).unwrap();
+        base.split(product(&[2]), &work).unwrap();
+        let names = [arena.variable("a"), arena.variable("b")];
+        base.keep(|poly| names[usize::from(*poly == product(&[2]))]);
+        assert!(base.entered.is_empty());
+        assert_eq!(base.pending.len(), 2);
+        base.enter(product(&[1]));
+        base.enter(product(&[1]));
+        base.enter(Poly::one());
+        assert_eq!(base.entered, [product(&[1])], "once each, and no numbers");
+    }
+}

@@ -1,0 +1,87 @@
+//! Squares of sums of sines and cosines, which `sin^2 = 1 - cos^2` hides.
+//!
+//! In: a polynomial over sines and cosines. Out: one whose square it is, up to an integer. With
+//! `t = tan(a/2)`, sines and cosines are rational functions of t without relations among them
+//! (Weierstrass), so that an ordinary square root of polynomials decides.
+
+use crate::Integer;
+use crate::poly::{Monomial, Poly};
+
+use crate::tower::{Field, Obstacle};
+
+/// The angles that a square is looked for in.
+const MOST_ANGLES: usize = 3;
+
+/// The terms of a polynomial that may be a square.
+const MOST_TERMS: usize = 60;
+
+impl Field<'_> {
+    /// A primitive polynomial and an integer n with `root^2 = n * poly`, if there are any.
+    pub(in crate::tower) fn hidden_root(&self, poly: &Poly) -> Result<Option<(Poly, Integer)>, Obstacle> {
+        let angles = self.angles_in(poly);
+        if angles.is_empty() || angles.len() > MOST_ANGLES || poly.term_count() > MOST_TERMS {
+            return Ok(None);
+        }
+        let mut over_tangents = poly.clone();
+        let mut halves = Vec::new();
+        for &(cos, sin) in &angles {
+            let (converted, half) = self.with_tangent(&over_tangents, cos, sin)?;
+            over_tangents = converted;
+            halves.push(half);
+        }
+        let (content, rest) = over_tangents.primitive();
+        if content.is_negative() {
+            return Ok(None);
+        }
+        let Some(mut root) = rest.sqrt_exact(self.limit())? else { return Ok(None) };
+        for (&(cos, sin), &half) in angles.iter().zip(&halves) {
+            root = self.with_sine_and_cosine(&root, cos, sin, half)?;
+        }
+        let (_, root) = self.reduce(&root)?.primitive();
+        let square = self.reduce(&root.mul(&root, self.limit())?)?;
+        let multiple = square.content();
+        Ok((square == poly.scale(&multiple)).then_some((root, multiple)))
+    }
+
+    /// The cosine and sine kernels of the angles of which both occur: over one alone the relation hides no square.
+    fn angles_in(&self, poly: &Poly) -> Vec<(u32, u32)> {
+        let count = self.round.kernels.borrow().count();
+        let pairs = (0..count).filter_map(|cos| Some((cos, self.sine_beside(cos)?)));
+        pairs.filter(|(cos, sin)| poly.degree(*cos) > 0 && poly.degree(*sin) > 0).collect()
+    }
+
+    /// The numerator over `(1 + t^2)^(2 half)`, with t in place of the sine.
+    fn with_tangent(&self, poly: &Poly, cos: u32, sin: u32) -> Result<(Poly, u32), Obstacle> {
+        let parts = poly.collect(&[cos, sin]);
+        let degree = |m: &Monomial| m.exponent(cos) + m.exponent(sin);
+        let half = parts.iter().map(|(m, _)| degree(m)).max().unwrap_or(0).div_ceil(2);
+        let t = Poly::variable(sin);
+        let square = t.mul(&t, self.limit())?;
+        let (below, above) = (&Poly::one() + &square, &Poly::one() - &square);
+        let mut total = Poly::zero();
+        for (monomial, coefficient) in parts {
+            let mut term = coefficient;
+            term = term.mul(&t.scale(&Integer::from(2)).pow(monomial.exponent(sin), self.limit())?, self.limit())?;
+            term = term.mul(&above.pow(monomial.exponent(cos), self.limit())?, self.limit())?;
+            term = term.mul(&below.pow(2 * half - degree(&monomial), self.limit())?, self.limit())?;
+            total = &total + &term;
+        }
+        Ok((total, half))
+    }
+
+    /// What `poly(t) / (1 + t^2)^half` is in sine and cosine, up to a power of two.
+    fn with_sine_and_cosine(&self, poly: &Poly, cos: u32, sin: u32, half: u32) -> Result<Poly, Obstacle> {
+        let (c, s) = (Poly::variable(cos), Poly::variable(sin));
+        let (up, down) = (&Poly::one() + &c, &Poly::one() - &c);
+        let mut total = Poly::zero();
+        for (exponent, coefficient) in poly.coefficients_in(sin) {
+            let odd = exponent % 2;
+            let Some(rest) = half.checked_sub(exponent.div_ceil(2)) else { return Ok(Poly::zero()) };
+            let mut term = coefficient.mul(&s.pow(odd, self.limit())?, self.limit())?;
+            term = term.mul(&up.pow(rest, self.limit())?, self.limit())?;
+            term = term.mul(&down.pow(exponent / 2, self.limit())?, self.limit())?;
+            total = &total + &term;
+        }
+        Ok(total)
+    }
+}

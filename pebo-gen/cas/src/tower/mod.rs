@@ -1,0 +1,232 @@
+//! The normal form: expressions as quotients of polynomials over independent kernels.
+//!
+//! ```text
+//! expressions, facts -> kernels (symbols, sin, cos, exp, log, roots) -> fractions -> expressions
+//! ```
+//!
+//! A kernel is what a polynomial may take as a variable. Angles are first split into an integer basis
+//! (so that `sin(2*q + p)` becomes a polynomial in the sines and cosines of q and p), exponents
+//! likewise, roots into roots of coprime parts. What relates kernels (`sin^2 = 1 - cos^2`, `r^2 = a`)
+//! is reduced away, and so is what relates symbols on a manifold.
+//!
+//! Holds after: every rewriting is an identity wherever the expressions have values, up to points in
+//! whose neighbourhood they have values too, so a fraction that is zero proves that the expression is
+//! zero. The converse needs the kernels to be independent. They are, and the answer is complete, for
+//! what is built of
+//!
+//! - rational functions of symbols,
+//! - sines, cosines and exponentials of rational functions, split into arguments that are linearly
+//!   independent over the rationals modulo constants (Ax 1971, theorem 3),
+//! - logarithms of coprime polynomials (the same theorem, for the inverse functions),
+//! - roots of coprime square-free polynomials, and magnitudes of polynomials that have both signs
+//!   (Kummer theory; Besicovitch 1940 for roots of primes),
+//! - cosines of rational multiples of pi and square roots of rationals (Gauss 1811).
+//!
+//! It is not known to be for relations among constants (e, pi, sin(1): Schanuel's conjecture), roots of
+//! sums of roots that do not denest, and inverse trigonometric functions beyond sums of three. Nothing
+//! here relies on independence for a verdict: what refutes is an enclosure (see [`crate::domain::zero`]).
+//!
+//! One thing with `domain`, `manifold` and all files of this room: a kernel has arguments in normal form, a normal form
+//! consists of kernels, and which kernels are equal depends on their signs on the domain, which normal forms decide.
+
+mod convert;
+mod coprime;
+mod express;
+mod fourier;
+mod fraction;
+mod kernel;
+mod obstacle;
+pub mod residue;
+mod sign;
+mod sines;
+pub mod straight;
+
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet};
+
+use rustc_hash::FxHashMap;
+
+use super::poly::{Poly, Work};
+use crate::domain::manifold::Step;
+use crate::graph::arena::Arena;
+use crate::graph::expr::{Expr, Symbol};
+use crate::{Domain, Facts};
+
+pub use fraction::Fraction;
+pub use obstacle::Obstacle;
+pub use sign::Signs;
+
+use coprime::CoprimeBase;
+use kernel::Kernels;
+use kernel::absolute::absolute_angles;
+use kernel::argument::{Atoms, Units};
+use kernel::inverse::{InverseAngle, domain_of};
+use kernel::radical::ProductRoot;
+use kernel::trigonometric::Pair;
+use sign::SignMemory;
+
+/// How often the bases of angles and exponents may be refined before the field is given up.
+const MOST_ROUNDS: usize = 12;
+
+/// Which argument a basis serves.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Family {
+    /// Arguments of sine and cosine.
+    Angle,
+    /// Arguments of the exponential.
+    Exponent,
+    /// Radicands.
+    Root,
+}
+
+/// The kernels of one question, and the arithmetic over them.
+#[derive(Debug)]
+pub struct Field<'a> {
+    arena: &'a Arena,
+    work: Work,
+    /// What is assumed.
+    domain: Domain,
+    /// What symbols are on the manifold.
+    steps: BTreeMap<Symbol, Step>,
+    /// What the kernels are made for.
+    roots: Vec<Expr>,
+    /// The step of which all multiples of an atom are integer multiples.
+    units: RefCell<Units>,
+    /// The m of `cos(pi/m)`, of which all other multiples of pi are multiples.
+    finest: Cell<Option<u32>>,
+    /// What roots, logarithms and magnitudes are taken of.
+    base: RefCell<CoprimeBase>,
+    /// What [`Signs`] keeps.
+    sign_memory: SignMemory,
+    round: Round,
+}
+
+/// What is forgotten where the kernels turn out to be too coarse, and is made anew.
+#[derive(Default, Debug)]
+struct Round {
+    kernels: RefCell<Kernels>,
+    /// The normal forms so far.
+    fractions: RefCell<FxHashMap<Expr, Fraction>>,
+    atoms: RefCell<Atoms>,
+    /// Inverse functions that are kernels.
+    inverses: RefCell<Vec<InverseAngle>>,
+    /// Arguments of sines and cosines.
+    angles: RefCell<Vec<(Fraction, Pair)>>,
+    /// Roots of products.
+    products: RefCell<Vec<ProductRoot>>,
+    /// Whether something became finer that kernels were made of.
+    finer: Cell<bool>,
+}
+
+impl<'a> Field<'a> {
+    /// The field that holds all the roots; afterwards [`Self::fraction`] answers for each of them and
+    /// for whatever is built of the same kernels. An angle that is a sum of symbols is split into these, so that what is
+    /// measured and what is not come apart.
+    pub fn over(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
+        Self::of(arena, facts, &[], &[], roots)
+    }
+
+    /// The field of the roots on the domain's manifold: a symbol for which an equation is solved is what it is there.
+    ///
+    /// Holds after: every rewriting is an identity where the equations hold. What an equation that was not solved
+    /// would make zero is not seen to be zero.
+    pub fn on(arena: &'a Arena, domain: &Domain, roots: &[Expr]) -> Result<Self, Obstacle> {
+        Self::of(arena, &domain.facts, domain.manifold.steps(), &[], roots)
+    }
+
+    /// As [`Self::over`], for what does not ask which symbols a kernel holds: long sums of angles may be kernels as they are.
+    pub fn of_long_sums(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
+        Self::of(arena, facts, &[], &absolute_angles(arena, roots), roots)
+    }
+
+    fn of(
+        arena: &'a Arena,
+        facts: &Facts,
+        steps: &[Step],
+        absolute: &[Expr],
+        roots: &[Expr],
+    ) -> Result<Self, Obstacle> {
+        let mut field = Self {
+            arena,
+            work: Work::within(arena.budget().of_one_question(), arena.budget()),
+            domain: domain_of(facts),
+            steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
+            roots: roots.to_vec(),
+            units: RefCell::default(),
+            finest: Cell::default(),
+            base: RefCell::default(),
+            sign_memory: SignMemory::default(),
+            round: Round::default(),
+        };
+        for _ in 0..MOST_ROUNDS {
+            if arena.budget().is_exhausted() {
+                return Err(Obstacle::OutOfBudget);
+            }
+            for angle in absolute {
+                field.take_for_atom(Family::Angle, *angle)?;
+            }
+            for root in roots {
+                field.fraction(*root)?;
+            }
+            if !field.round.finer.get() {
+                return Ok(field);
+            }
+            field.keep_base();
+            field.round = Round::default();
+            field.sign_memory.start_again();
+        }
+        Err(Obstacle::TooLarge)
+    }
+
+    fn work(&self) -> &Work {
+        &self.work
+    }
+
+    /// The arena of the expressions.
+    pub fn arena(&self) -> &'a Arena {
+        self.arena
+    }
+
+    /// The numbers of the kernels that depend on one of the symbols.
+    pub fn kernels_of(&self, symbols: &BTreeSet<Symbol>) -> BTreeSet<u32> {
+        let kernels = self.round.kernels.borrow();
+        kernels.iter().filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
+    }
+
+    /// What all kernels stand for.
+    pub fn kernels(&self) -> Vec<Expr> {
+        self.round.kernels.borrow().iter().map(|(_, kernel)| kernel.expr).collect()
+    }
+
+    /// What a kernel stands for.
+    pub fn kernel(&self, number: u32) -> Expr {
+        self.round.kernels.borrow()[number].expr
+    }
+
+    /// Why a fraction that is not zero may stand for zero all the same: its last two kernels that are
+    /// not symbols, which no rule has shown to be independent.
+    pub fn doubt(&self, fraction: &Fraction) -> Obstacle {
+        let exprs: BTreeSet<u32> = fraction.numerator().variables().iter().copied().collect();
+        let made = |number: &u32| self.arena.as_symbol(self.kernel(*number)).is_none();
+        let mut last = exprs.into_iter().rev().filter(made).map(|number| self.arena.print(self.kernel(number)));
+        match (last.next(), last.next()) {
+            (Some(b), Some(a)) => Obstacle::Related(a, b),
+            _ => Obstacle::NoWitness,
+        }
+    }
+
+    /// A polynomial over the kernels as a fraction.
+    pub fn of_polynomial(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
+        self.fraction_of(poly, &Poly::one())
+    }
+
+    /// The fraction of two polynomials over the kernels.
+    pub fn quotient(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
+        self.fraction_of(num, den)
+    }
+
+    /// The work limit, for polynomial arithmetic on numerators.
+    pub fn limit(&self) -> &Work {
+        &self.work
+    }
+}

@@ -1,0 +1,68 @@
+//! Signs of what is quadratic in a power of a variable, by its discriminant.
+
+use crate::Integer;
+use crate::poly::Poly;
+
+use super::{Sign, Signs};
+use crate::tower::Obstacle;
+
+impl Signs<'_, '_> {
+    /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
+    /// out.
+    pub(in crate::tower) fn by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        const MOST_TERMS: usize = 40;
+        const DEEPEST: u32 = 3;
+        // Each step asks for the signs of polynomials in one variable less.
+        let depth = self.memory.round.depth.get();
+        if poly.term_count() > MOST_TERMS || depth == DEEPEST {
+            return Ok(None);
+        }
+        self.memory.round.depth.set(depth + 1);
+        let sign = self.as_quadratic(poly);
+        self.memory.round.depth.set(depth);
+        sign
+    }
+
+    fn as_quadratic(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        for &variable in poly.variables() {
+            // Also in a power of the variable.
+            let degree = poly.degree(variable);
+            let (mut a, mut b, mut c) = (Poly::zero(), Poly::zero(), Poly::zero());
+            let mut quadratic = degree.is_multiple_of(2);
+            for (exponent, coefficient) in poly.coefficients_in(variable) {
+                match exponent {
+                    0 => c = coefficient,
+                    _ if exponent == degree => a = coefficient,
+                    _ if 2 * exponent == degree => b = coefficient,
+                    _ => quadratic = false,
+                }
+            }
+            if !quadratic {
+                continue;
+            }
+            if b.is_zero() || c.is_zero() {
+                continue;
+            }
+            let Some(upward) = self.of_polynomial(&a)? else { continue };
+            let four = Integer::from(4);
+            let below = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
+            // 4 a poly = (2 a v^k + b)^2 + below; where a is zero, b is not unless below is zero.
+            let least = match self.of_polynomial(&below)? {
+                Some(Sign::Positive) => Sign::Positive,
+                Some(Sign::NonNegative | Sign::Zero)
+                    if matches!(upward, Sign::Positive | Sign::Negative)
+                        || self.of_polynomial(&c)?.is_some_and(Sign::is_positive_or_zero) =>
+                {
+                    Sign::NonNegative
+                }
+                _ => continue,
+            };
+            return Ok(match (upward, least) {
+                (Sign::Negative, Sign::Positive) => Some(Sign::Negative),
+                (Sign::Negative, _) => None,
+                (_, least) => Some(least),
+            });
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,83 @@
+//! What is known of the signs of kernels, and which of it is for good.
+//!
+//! In: questions as they are begun and ended, one within another. Out: answers. One that was found within another question
+//! holds for that question alone, because what is being asked is not asked again within itself: asked by itself, the
+//! same kernel may show more. It is used until the outermost question ends, and then forgotten.
+
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashMap;
+
+use super::Sign;
+
+/// A kernel, and how many facts are known: with more of them its sign may be another.
+pub(super) type State = (u32, usize);
+
+/// The memo.
+#[derive(Default, Debug)]
+pub(in crate::tower) struct Memo {
+    answers: FxHashMap<State, Option<Sign>>,
+    /// Kernels that are being asked for.
+    open: BTreeSet<u32>,
+    /// Answers that were found within another question.
+    provisional: Vec<State>,
+}
+
+impl Memo {
+    /// What is known.
+    pub(super) fn answer(&self, state: State) -> Option<&Option<Sign>> {
+        self.answers.get(&state)
+    }
+
+    /// Begins a question; false if the kernel is being asked for already.
+    pub(super) fn begin(&mut self, kernel: u32) -> bool {
+        self.open.insert(kernel)
+    }
+
+    /// Ends it with an answer; `outermost` where no other kind of question is open around it.
+    pub(super) fn end(&mut self, state: State, sign: Option<Sign>, outermost: bool) {
+        self.open.remove(&state.0);
+        if self.open.is_empty() && outermost {
+            for state in self.provisional.drain(..) {
+                self.answers.remove(&state);
+            }
+        } else {
+            self.provisional.push(state);
+        }
+        self.answers.insert(state, sign);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_within_another_question_ends_with_it() {
+        let mut memo = Memo::default();
+        assert!(memo.begin(1));
+        assert!(memo.begin(2));
+        assert!(!memo.begin(1), "a question is not asked within itself");
+        memo.end((2, 0), None, true);
+        assert_eq!(memo.answer((2, 0)), Some(&None), "until then it is used");
+        memo.end((1, 0), Some(Sign::Positive), true);
+        assert_eq!(memo.answer((2, 0)), None);
+        assert_eq!(memo.answer((1, 0)), Some(&Some(Sign::Positive)));
+        assert_eq!(memo.answer((1, 1)), None, "another fact may change it");
+        // By itself the second may show more.
+        assert!(memo.begin(2));
+        memo.end((2, 0), Some(Sign::Negative), true);
+        assert_eq!(memo.answer((2, 0)), Some(&Some(Sign::Negative)));
+    }
+
+    #[test]
+    fn within_another_kind_of_question_nothing_is_for_good() {
+        let mut memo = Memo::default();
+        assert!(memo.begin(1));
+        memo.end((1, 0), None, false);
+        assert!(memo.begin(2));
+        memo.end((2, 0), Some(Sign::Positive), true);
+        assert_eq!(memo.answer((1, 0)), None);
+        assert_eq!(memo.answer((2, 0)), Some(&Some(Sign::Positive)));
+    }
+}

@@ -1,0 +1,294 @@
+//! Signs of polynomials by what is above a bound: on p > 3, `p^3 - 27 = t^3 + 9 t^2 + 27 t` with t = p - 3 > 0; and
+//! between two bounds: on 0 < p < 1, `(1 + t)^2 (1 - p^2) = 1 + 2 t` with t = p/(1 - p) > 0.
+//!
+//! In: a polynomial, and facts that are affine in a variable with a number as its factor. Out: the sign that all
+//! terms have after such variables are written as bound plus distance (or, from above, bound minus distance), or as
+//! `(near + far t)/(1 + t)`. The rewriting is exact, so the sign is.
+
+use std::collections::BTreeMap;
+
+use crate::poly::Poly;
+use crate::{Integer, Relation as Compared};
+
+use super::{Sign, Signs, sign_of_terms};
+use crate::tower::Obstacle;
+
+/// How many ways of shifting are tried.
+const MOST_TRIES: u32 = 24;
+
+/// Larger polynomials are left alone: shifting writes their powers out.
+const MOST_TERMS: usize = 24;
+const MOST_DEGREE: u64 = 12;
+
+/// Variables that stand for a distance from a bound, with the sign of that.
+type Distances = BTreeMap<u32, Sign>;
+
+impl Signs<'_, '_> {
+    /// The sign after variables are measured from their bounds.
+    pub(in crate::tower) fn by_shift(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
+        if poly.term_count() > MOST_TERMS || poly.total_degree() > MOST_DEGREE {
+            return Ok(None);
+        }
+        let facts = self.memory.round.facts.borrow().clone();
+        let mut tries = MOST_TRIES;
+        self.shifted(poly, &facts, &Distances::new(), &mut tries)
+    }
+
+    fn shifted(
+        &self,
+        poly: &Poly,
+        facts: &[(Poly, Compared)],
+        distances: &Distances,
+        tries: &mut u32,
+    ) -> Result<Option<Sign>, Obstacle> {
+        let mut found = None;
+        for &variable in poly.variables() {
+            if distances.contains_key(&variable) {
+                continue;
+            }
+            // A fact in which a distance stands for its variable would say something else.
+            let foreign = |fact: &Poly| fact.variables().iter().any(|v| distances.contains_key(v));
+            let bounds = facts.iter().filter(|(fact, compared)| *compared != Compared::NonZero && !foreign(fact));
+            let bounds: Vec<Bound> =
+                bounds.filter_map(|(fact, compared)| Bound::of(fact, *compared, variable)).collect();
+            let above = bounds.iter().map(|near| (near, None));
+            // Where the far bound may be reached, t may be infinite, which is no number.
+            let far = |near: &Bound| {
+                let (near_is_below, is_far) = (near.is_below, |far: &&Bound| far.distance == Sign::Positive);
+                bounds.iter().filter(is_far).find(|far| far.is_below != near_is_below)
+            };
+            let between = bounds.iter().filter_map(|near| Some((near, Some(far(near)?))));
+            for (near, far) in above.chain(between) {
+                if *tries == 0 {
+                    return Ok(found);
+                }
+                *tries -= 1;
+                let moved = self.measured(poly, variable, near, far)?;
+                let mut distances = distances.clone();
+                distances.insert(variable, near.distance);
+                let of = |v: u32| distances.get(&v).copied().or_else(|| self.of_kernel(v));
+                let mut sign = sign_of_terms(&moved, of);
+                if sign.is_none() && moved.term_count() <= 4 * MOST_TERMS {
+                    sign = self.shifted(&moved, facts, &distances, tries)?;
+                }
+                match sign {
+                    // Another bound may show more.
+                    Some(Sign::NonNegative) => found = sign,
+                    Some(_) => return Ok(sign),
+                    None => {}
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The polynomial, times something positive, with the variable written in its distance from the near bound, or in
+    /// the quotient of those from the near and the far one; it takes the variable's place.
+    fn measured(&self, poly: &Poly, variable: u32, near: &Bound, far: Option<&Bound>) -> Result<Poly, Obstacle> {
+        let t = Poly::variable(variable);
+        // The variable is value/scale.
+        let (value, scale) = match far {
+            None if near.is_below => (&near.rest + &t, Poly::constant(near.slope.clone())),
+            None => (&near.rest - &t, Poly::constant(near.slope.clone())),
+            Some(far) => {
+                let (slope, rest) = (&far.rest.scale(&near.slope), near.rest.scale(&far.slope));
+                let both = Poly::constant(&near.slope * &far.slope);
+                (&rest + &slope.mul(&t, self.field.limit())?, &both + &both.mul(&t, self.field.limit())?)
+            }
+        };
+        let degree = poly.degree(variable);
+        let mut total = Poly::zero();
+        for (power, coefficient) in poly.coefficients_in(variable) {
+            let term = value
+                .pow(power, self.field.limit())?
+                .mul(&coefficient, self.field.limit())?
+                .mul(&scale.pow(degree - power, self.field.limit())?, self.field.limit())?;
+            total = &total + &term;
+        }
+        Ok(total)
+    }
+}
+
+/// A bound `rest/slope` of a variable, with a number for the slope.
+struct Bound {
+    is_below: bool,
+    slope: Integer,
+    rest: Poly,
+    /// Of the variable from the bound.
+    distance: Sign,
+}
+
+impl Bound {
+    /// The bound that a fact sets; none where it is not affine in the variable with a number as factor.
+    fn of(fact: &Poly, compared: Compared, variable: u32) -> Option<Self> {
+        if fact.degree(variable) != 1 {
+            return None;
+        }
+        let slope = fact.leading_coefficient_in(variable).to_constant()?;
+        let is_below = !slope.is_negative();
+        let rest = fact - &Poly::variable(variable).scale(&slope);
+        let distance = if compared == Compared::Positive { Sign::Positive } else { Sign::NonNegative };
+        Some(Self { is_below, slope: slope.abs(), rest: if is_below { -&rest } else { rest }, distance })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Rational;
+    use crate::{Arena, Expr};
+    use crate::{Facts, Relation};
+
+    use super::Sign;
+    use crate::tower::sign::Field;
+
+    /// Facts and a question, of three symbols, with the sign.
+    type Case = (fn(&Arena, [Expr; 3]) -> Vec<(Expr, Relation)>, fn(&Arena, [Expr; 3]) -> Expr, Option<Sign>);
+
+    fn less(arena: &Arena, a: Expr, number: i64) -> Expr {
+        arena.sub(a, arena.number(number))
+    }
+
+    fn power(arena: &Arena, a: Expr, exponent: i64) -> Expr {
+        arena.power(a, &Rational::from(exponent))
+    }
+
+    const CASES: &[(&str, Case)] = &[
+        (
+            "between two bounds",
+            (
+                |a, [p, ..]| vec![(p, Relation::Positive), (a.sub(a.one(), p), Relation::NonNegative)],
+                |a, [p, ..]| a.sub(a.sub(a.number(2), p), power(a, p, 2)),
+                Some(Sign::NonNegative),
+            ),
+        ),
+        (
+            "between bounds that are not reached",
+            (
+                |a, [p, ..]| vec![(p, Relation::Positive), (a.sub(a.one(), p), Relation::Positive)],
+                |a, [p, ..]| less(a, power(a, p, 2), 1),
+                Some(Sign::Negative),
+            ),
+        ),
+        (
+            "between symbols, of two variables",
+            (
+                |a, [p, q, r]| {
+                    let positive = [p, q, r, a.sub(r, p), a.sub(r, q)];
+                    positive.map(|fact| (fact, Relation::Positive)).to_vec()
+                },
+                |a, [p, q, r]| a.sub(power(a, r, 2), a.mul(p, q)),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "both bounds reached show nothing here",
+            (
+                |a, [p, ..]| vec![(p, Relation::NonNegative), (a.sub(a.one(), p), Relation::NonNegative)],
+                |a, [p, ..]| a.sub(a.add(a.one(), p), a.scale(power(a, p, 2), &Rational::from(3))),
+                None,
+            ),
+        ),
+        (
+            "a cube above its bound",
+            (
+                |a, [p, ..]| vec![(less(a, p, 3), Relation::Positive)],
+                |a, [p, ..]| less(a, power(a, p, 3), 27),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "at the bound it may vanish",
+            (
+                |a, [p, ..]| vec![(less(a, p, 3), Relation::NonNegative)],
+                |a, [p, ..]| less(a, power(a, p, 3), 27),
+                Some(Sign::NonNegative),
+            ),
+        ),
+        (
+            "below the bound it may not",
+            (|a, [p, ..]| vec![(less(a, p, 3), Relation::Positive)], |a, [p, ..]| less(a, power(a, p, 3), 28), None),
+        ),
+        (
+            "from above",
+            (
+                |a, [p, ..]| vec![(a.sub(a.number(-2), p), Relation::Positive)],
+                |a, [p, ..]| a.add(power(a, p, 3), a.number(8)),
+                Some(Sign::Negative),
+            ),
+        ),
+        (
+            "a bound that is no integer",
+            (
+                |a, [p, ..]| vec![(less(a, a.scale(p, &Rational::from(2)), 1), Relation::Positive)],
+                |a, [p, ..]| less(a, a.scale(power(a, p, 4), &Rational::from(16)), 1),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "two variables",
+            (
+                |a, [p, q, _]| vec![(less(a, p, 1), Relation::Positive), (less(a, q, 2), Relation::Positive)],
+                |a, [p, q, _]| less(a, a.mul(p, power(a, q, 2)), 4),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "one from above and one from below",
+            (
+                |a, [p, q, _]| vec![(less(a, p, 1), Relation::Positive), (a.sub(a.number(-1), q), Relation::Positive)],
+                |a, [p, q, _]| a.add(a.mul(p, power(a, q, 3)), a.one()),
+                Some(Sign::Negative),
+            ),
+        ),
+        (
+            "a bound that is a symbol",
+            (
+                |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive), (q, Relation::Positive)],
+                |a, [p, q, _]| a.sub(power(a, p, 3), power(a, q, 3)),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "a chain of bounds",
+            (
+                |a, [p, q, r]| {
+                    vec![
+                        (a.sub(p, q), Relation::Positive),
+                        (a.sub(q, r), Relation::NonNegative),
+                        (r, Relation::Positive),
+                    ]
+                },
+                |a, [p, _, r]| a.sub(power(a, p, 2), a.mul(p, r)),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "of the other sign where nothing bounds it",
+            (
+                |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive)],
+                |a, [p, q, _]| a.sub(power(a, p, 2), power(a, q, 2)),
+                None,
+            ),
+        ),
+        (
+            "what only does not vanish is no bound",
+            (|a, [p, ..]| vec![(less(a, p, 3), Relation::NonZero)], |a, [p, ..]| less(a, power(a, p, 3), 27), None),
+        ),
+    ];
+
+    #[test]
+    fn bounds_show_signs() {
+        for (what, (facts, question, expected)) in CASES {
+            let arena = Arena::new();
+            let symbols = ["p", "q", "r"].map(|name| arena.variable(name));
+            let mut assumed = Facts::new();
+            for (expr, relation) in facts(&arena, symbols) {
+                assumed.assume(expr, relation);
+            }
+            let question = question(&arena, symbols);
+            let field = Field::over(&arena, &assumed, &[question]).expect("polynomials");
+            let fraction = field.fraction(question).expect("a polynomial");
+            assert_eq!(field.signs().of(&fraction).expect("little work"), *expected, "{what}");
+        }
+    }
+}

@@ -1,0 +1,378 @@
+//! Claim 1, the cascade: the transform moves by known signals.
+//!
+//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and
+//! h(y, u) with `Lambda phi + h` on the right ([`gpebo`]), or what keeps the derivative from being free of
+//! x, a point that shows it, and a mended transform if adding multiples of the outputs makes one (Ortega et al.
+//! 2015, eq. 3).
+
+mod bounded;
+mod gpebo;
+mod killing;
+mod momentum;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::plant::class::Mechanical;
+use crate::plant::{self, Formula, Plant, TransformOrigin};
+use crate::source::{Code, Diagnostic, listed};
+use pebo_cas::domain::zero::{Answer, decide, point_of};
+use pebo_cas::forms::opaque::as_written;
+use pebo_cas::linear::combination::combine;
+use pebo_cas::linear::contrast::contrast;
+use pebo_cas::number::interval::Precision;
+use pebo_cas::tower::{Field, Obstacle};
+use pebo_cas::{Domain, Expr, Symbol};
+
+use super::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
+use super::{affine, blame, pencil};
+use pebo_cas::forms::tidy::{asking_less, authors, proved_shortest, shortest};
+
+/// One component of the derivative of the transform.
+enum Component {
+    /// Free of x.
+    Free(Expr),
+    /// Not free of x: the part that varies with x, and where it is seen.
+    Bound { residual: Expr, witness: Witness, through: Vec<Symbol> },
+    /// It could not be decided.
+    Open(Obstacle),
+}
+
+/// Proves or refutes the cascade: the plain one, and where that fails or is not asked for, the generalised one.
+pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
+    let lie = plant.derivative_of_transform();
+    let components: Vec<Component> =
+        lie.iter().enumerate().map(|(index, rate)| component_of(plant, domain, index, *rate)).collect();
+    if plant.asked != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
+        let h = components.iter().filter_map(Component::free).collect();
+        return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(Cascade { h, ..Cascade::default() }) });
+    }
+    let row = |(rate, component): (&Expr, &Component)| match component {
+        Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
+        Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
+        // Quadratic in momenta: points show that it is not affine.
+        Component::Bound { .. } if is_implicit(plant) => {
+            affine::refuted(plant, domain, *rate).map_or(Err(Obstacle::NoWitness), |_| Ok(None))
+        }
+        Component::Bound { .. } | Component::Open(_) => gpebo::row(plant, domain, *rate),
+    };
+    let rows: Vec<Result<Option<affine::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
+    let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
+    let mends = mends(plant, domain, &lie, &components);
+    if generalised && plant.asked != Some(Class::Pebo) {
+        let result = gpebo::cascade(plant, domain, rows.into_iter().filter_map(|row| row.ok()?).collect());
+        let plain = components.iter().any(|c| c.free().is_none()).then(|| mends.into_iter().collect()).flatten();
+        let result = Cascade { mend: plain, ..result };
+        return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
+    }
+    if plant.asked == Some(Class::Pebo) {
+        let mut refusals = Vec::new();
+        let claim = pencil::refuse(plant, domain, &mut refusals);
+        let claim = claim.unwrap_or_else(|| refuse(plant, domain, (&components, &mends), |_| Ok(None), &mut refusals));
+        let note =
+            "d(phi)/dt is Lambda(y, u) phi + h(y, u): without `class: pebo` this phi gives a generalised observer";
+        found.extend(refusals.into_iter().map(|refusal| if generalised { refusal.note(note) } else { refusal }));
+        return (Class::Pebo, claim);
+    }
+    let mut refusals = Vec::new();
+    let claim = refuse(plant, domain, (&components, &mends), |index| rows[index].clone(), &mut refusals);
+    let note = "d(phi)/dt is not of the form Lambda(y, u) phi + h(y, u) either, which a generalised observer needs";
+    let noted = |refusal: Diagnostic| if refusal.code == Code::CascadeRefuted { refusal.note(note) } else { refusal };
+    found.extend(refusals.into_iter().map(noted));
+    (Class::Pebo, claim)
+}
+
+/// What stands against the cascade, component by component, but for those that are affine in the transform by `row`
+/// and stand against a plain one alone.
+fn refuse(
+    plant: &Plant,
+    domain: &Domain,
+    (components, mends): (&[Component], &[Option<Expr>]),
+    row: impl Fn(usize) -> Result<Option<affine::Row>, Obstacle>,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Cascade> {
+    let mut residuals = vec![plant.arena.zero(); components.len()];
+    let mut first = None;
+    for (index, component) in components.iter().enumerate() {
+        match (component, row(index)) {
+            (Component::Free(_), _) | (_, Ok(Some(_))) => {}
+            (Component::Open(obstacle), _) => found.push(undecided(plant, index, obstacle)),
+            (Component::Bound { .. }, Err(obstacle)) => found.push(undecided(plant, index, &obstacle)),
+            (Component::Bound { residual, witness, through }, Ok(None)) => {
+                let refusal = refuted(plant, index, *residual, witness, through, mends[index]);
+                let refusal = blame::cascade(plant, domain, index, refusal);
+                found.push(structure(plant, domain, index, refusal));
+                residuals[index] = *residual;
+                first.get_or_insert_with(|| witness.clone());
+            }
+        }
+    }
+    match first {
+        Some(_) => {
+            let result = Cascade { residual: residuals, witness: first, ..Cascade::default() };
+            Claim { verdict: Verdict::Refuted, result: Some(result) }
+        }
+        None => Claim { verdict: Verdict::Undecided, result: None },
+    }
+}
+
+impl Component {
+    fn free(&self) -> Option<Expr> {
+        match self {
+            Self::Free(rate) => Some(*rate),
+            _ => None,
+        }
+    }
+}
+
+/// One component, by what the class knows of it where it knows.
+fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Component {
+    let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
+    if plant.origin == TransformOrigin::Found {
+        return component_found(plant, domain, mechanical, (plant.phi[index].expr, rate));
+    }
+    match killing::is_killing(&plant.arena, domain, mechanical, &mechanical.frame.column(index)) {
+        Ok(true) => Component::Free(momentum::rate(plant, domain, mechanical, index)),
+        Ok(false) => match &mechanical.in_velocities {
+            // The rate has no normal form that could be looked at; that it varies, points show.
+            Some(shown) => {
+                let varying = killing::quadratic(&plant.arena, mechanical, index, &shown.velocities);
+                let rate = Seen { rate, shown: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
+                bound(plant, domain, rate).unwrap_or(Component::Open(Obstacle::NoWitness))
+            }
+            None => component(plant, domain, rate),
+        },
+        Err(obstacle) => Component::Open(obstacle),
+    }
+}
+
+/// A component that was searched for, and its rate: the class knows of its own T alone, not of this one. Of momenta along
+/// a Killing field the rate is what it is at rest.
+fn component_found(
+    plant: &Plant,
+    domain: &Domain,
+    mechanical: &Mechanical,
+    (momentum, rate): (Expr, Expr),
+) -> Component {
+    let (arena, hidden) = (&plant.arena, plant.hidden());
+    let rest: BTreeMap<Symbol, Expr> = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
+    let field: Vec<Expr> = plant.x.iter().map(|state| arena.derivative(momentum, state.symbol)).collect();
+    let is_linear = !field.iter().any(|entry| arena.depends_on(*entry, &hidden))
+        && decide(arena, arena.substitute(momentum, &rest), domain).is_zero();
+    if is_linear && killing::is_killing(arena, domain, mechanical, &field) == Ok(true) {
+        return Component::Free(proved_shortest(arena, domain, arena.substitute(rate, &rest)));
+    }
+    component(plant, domain, rate)
+}
+
+fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    if !arena.depends_on(rate, &hidden) {
+        return match point_of(arena, rate, domain) {
+            Some(_) => Component::Free(proved_shortest(arena, domain, rate)),
+            None => Component::Open(Obstacle::NoPoint),
+        };
+    }
+    let tidy = |field: Result<Field<'_>, Obstacle>| {
+        let field = field?;
+        let fraction = field.fraction(rate)?;
+        Ok(field.show(&fraction))
+    };
+    let everywhere = tidy(Field::over(arena, &domain.facts, &[rate]));
+    let tidied = match everywhere {
+        // On the manifold the rate may be free of x.
+        Ok(tidied) if !domain.manifold.is_empty() && arena.depends_on(tidied, &hidden) => {
+            tidy(Field::on(arena, domain, &[rate])).or(Ok(tidied))
+        }
+        other => other,
+    };
+    let tidied = match tidied {
+        Ok(tidied) => tidied,
+        // What no normal form reaches may differ at points all the same.
+        Err(obstacle) => {
+            return bound(plant, domain, Seen { rate, shown: rate, varying: None })
+                .unwrap_or(Component::Open(obstacle));
+        }
+    };
+    // Of a number there is no other form.
+    if arena.as_number(tidied).is_some() {
+        return match point_of(arena, rate, domain) {
+            Some(_) => Component::Free(tidied),
+            None => Component::Open(Obstacle::NoPoint),
+        };
+    }
+    if !arena.depends_on(tidied, &hidden) {
+        // The normal form is free of x; that it equals the rate is what the zero test confirms.
+        return match decide(arena, arena.sub(rate, tidied), domain) {
+            // It does not depend on x, so its value at any x will do: there the author's own form may have more values.
+            Answer::Zero => {
+                let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
+                let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
+                // What is free of x as it is written, then what cancels, then the normal form.
+                let forms = as_written(arena, domain, rate, &hidden);
+                let forms = forms.into_iter().chain([shortest(arena, domain, rate), plain]);
+                let equal = |form: &Expr| {
+                    !arena.depends_on(*form, &hidden) && decide(arena, arena.sub(*form, tidied), domain).is_zero()
+                };
+                let forms: Vec<Expr> = forms.filter(equal).chain([tidied]).collect();
+                let own = authors(arena, rate, &forms).unwrap_or(tidied);
+                Component::Free(asking_less(arena, domain, own, &forms))
+            }
+            Answer::Open(obstacle) => Component::Open(obstacle),
+            Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
+        };
+    }
+    bound(plant, domain, Seen { rate, shown: tidied, varying: None }).unwrap_or(Component::Open(Obstacle::NoWitness))
+}
+
+/// A rate and how it is shown.
+struct Seen {
+    rate: Expr,
+    shown: Expr,
+    /// The part of what is shown that varies with x, if that is known.
+    varying: Option<Expr>,
+}
+
+/// What varies with x, with two points of the domain that show it: the same y, u and parameters, another value.
+///
+/// The part of what is shown that varies is its difference to what it is at the second point, if it is not known.
+fn bound(plant: &Plant, domain: &Domain, Seen { rate, shown, varying }: Seen) -> Option<Component> {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
+    let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
+    let read = if varying.is_some() { rate } else { shown };
+    let through: Vec<Symbol> = arena.symbols_of(&[read]).intersection(&hidden).copied().collect();
+    let fixed: BTreeMap<Symbol, Expr> = through.iter().filter_map(|s| Some((*s, *reference.get(s)?))).collect();
+    let residual =
+        varying.unwrap_or_else(|| shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed))));
+    let difference = here.sub(there, Precision::new(256))?;
+    let compared = Comparison::of([shown, read], &points, &hidden);
+    let witness = Witness {
+        expr: residual,
+        point: points.points[0].iter().map(|(symbol, value)| (*symbol, *value)).collect(),
+        bounds: (difference.lo(), difference.hi()),
+        compared: Some(compared),
+    };
+    Some(Component::Bound { residual, witness, through })
+}
+
+/// The components that are free of x, and the others mended, where that can be.
+fn mends(plant: &Plant, domain: &Domain, lie: &[Expr], components: &[Component]) -> Vec<Option<Expr>> {
+    let component = |((rate, component), phi): ((&Expr, &Component), &Formula)| match component {
+        Component::Free(_) => Some(phi.expr),
+        Component::Bound { .. } => mend(plant, domain, *rate, phi.expr),
+        Component::Open(_) => None,
+    };
+    lie.iter().zip(components).zip(&plant.phi).map(component).collect()
+}
+
+/// The component with constant multiples of outputs added so that its derivative is free of x.
+fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
+    let arena = &plant.arena;
+    let measured: Vec<(Symbol, Expr)> = plant.y.iter().filter_map(|o| o.rate.map(|r| (o.symbol, r.expr))).collect();
+    if is_implicit(plant) {
+        // Quadratic in momenta that no multiple of a velocity cancels.
+        return None;
+    }
+    let mut roots = vec![rate];
+    roots.extend(measured.iter().map(|m| m.1));
+    let field = Field::over(arena, &domain.facts, &roots).ok()?;
+    let mut basis = vec![arena.one()];
+    basis.extend(measured.iter().map(|m| m.1));
+    let coefficients = combine(&field, rate, &basis, &plant.hidden()).ok()??;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let mut mended = phi;
+    for ((output, _), coefficient) in measured.iter().zip(&coefficients[1..]) {
+        let coefficient = field.show(coefficient);
+        if !arena.symbols_of(&[coefficient]).is_subset(&constants) {
+            return None;
+        }
+        mended = arena.sub(mended, arena.mul(coefficient, arena.of_symbol(*output)));
+    }
+    // A component that no longer holds a state, or is zero by an output's value, would be of no use.
+    let useful = mended != phi && arena.depends_on(mended, &plant.hidden()) && !decide(arena, mended, domain).is_zero();
+    let proved = || matches!(component(plant, domain, arena.directional(mended, &plant.rates())), Component::Free(_));
+    (useful && proved()).then_some(mended)
+}
+
+/// Characters of a formula that a reader takes in at a glance.
+const LONGEST: usize = 60;
+
+fn refuted(
+    plant: &Plant,
+    index: usize,
+    residual: Expr,
+    witness: &Witness,
+    through: &[Symbol],
+    mend: Option<Expr>,
+) -> Diagnostic {
+    let arena = &plant.arena;
+    let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
+    let shown = arena.print(residual);
+    // What the label shows at length is not said again.
+    let term = if shown.len() <= LONGEST { format!("`{shown}`") } else { "this term".to_owned() };
+    let component = index + 1;
+    let diagnostic = Diagnostic::error(
+        Code::CascadeRefuted,
+        plant.phi[index].span,
+        format!(
+            "the derivative of phi component {component} is not free of {}",
+            listed(names.iter().map(String::as_str))
+        ),
+    )
+    .label(format!("its derivative keeps the term `{shown}`"))
+    .note(format!("d(phi)/dt must be a function of y and u alone, but {term} remains in z{component}'"))
+    .note(
+        witness
+            .compared
+            .as_ref()
+            .map_or_else(|| witness.sentence(arena), |compared| compared.sentence(arena, &format!("z{component}'"))),
+    );
+    match mend {
+        Some(mend) => diagnostic.help(format!("use `{}` for this component", arena.print(mend))),
+        None => diagnostic.help("choose a phi whose derivative along the plant is free of the unmeasured states"),
+    }
+}
+
+/// Whether the plant is a mechanical one whose inverse of M is not written out.
+fn is_implicit(plant: &Plant) -> bool {
+    matches!(&plant.class, Some(plant::Class::Mechanical(mechanical)) if mechanical.in_velocities.is_some())
+}
+
+/// For a mechanical plant, the entries of Assumption 3 that do not vanish.
+fn structure(plant: &Plant, domain: &Domain, index: usize, refusal: Diagnostic) -> Diagnostic {
+    let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return refusal };
+    if plant.origin == TransformOrigin::Found {
+        return refusal;
+    }
+    let arena = &plant.arena;
+    let name = index + 1;
+    if mechanical.in_velocities.is_some() {
+        return refusal.help(killing_help(name));
+    }
+    let Ok(entries) = killing::offending(arena, domain, mechanical, index) else { return refusal };
+    let noted = entries.into_iter().fold(refusal, |refusal, (row, column, entry)| {
+        let entry = arena.print(shortest(arena, domain, entry));
+        refusal.note(format!(
+            "in Assumption 3, B_({name}) + B_({name})' has the nonzero entry ({}, {}) = {entry}",
+            row + 1,
+            column + 1
+        ))
+    });
+    noted.help(killing_help(name))
+}
+
+fn killing_help(name: usize) -> String {
+    format!("choose for column {name} of T a Killing field of M: one along which M does not change")
+}
+
+fn undecided(plant: &Plant, index: usize, obstacle: &Obstacle) -> Diagnostic {
+    Diagnostic::error(
+        Code::CascadeUndecided,
+        plant.phi[index].span,
+        format!("it could not be decided whether the derivative of phi component {} is free of x", index + 1),
+    )
+    .note(format!("obstacle: {obstacle}"))
+    .help("write the formulas with fewer functions, or state signs under `assume`")
+}

@@ -1,0 +1,167 @@
+//! The conditions under which the formulas have values, less those that the assumptions discharge.
+//!
+//! In: what the plant's formulas ask of their parts, and those that were derived of it. Out: one list of what remains
+//! to be seen to, by factors: the proofs hold wherever these hold. What no list can mend is told apart: that a formula
+//! asks of an extension, which may have any values, or that it asks for a sign which the plant itself does not.
+
+use std::collections::BTreeMap;
+
+use crate::plant::Plant;
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::tower::{Field, Obstacle};
+use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Relation, Symbol};
+
+use super::design::{Cascade, LeftInverse, Regression};
+
+/// A comparison with zero.
+pub(super) type Ask = (Expr, Relation);
+
+/// What the proofs rest on besides the assumptions, each once.
+pub(super) struct Conditions {
+    /// What is listed, in the order it was met; a key by which equal conditions are known stands with each.
+    listed: Vec<(Expr, Ask)>,
+    /// The assumptions, and the signs that are listed.
+    known: Domain,
+}
+
+impl Conditions {
+    /// What the plant's own formulas ask.
+    pub(super) fn of(plant: &Plant) -> Self {
+        let mut conditions = Self { listed: Vec::new(), known: plant.assumed() };
+        // Signs first: they may show that something does not vanish.
+        let (signs, others): (Vec<_>, Vec<_>) =
+            plant.conditions.iter().map(|c| (c.expr, c.relation)).partition(|ask| ask.1 != Relation::NonZero);
+        let strict_first = |ask: &&Ask| ask.1 == Relation::Positive;
+        signs.iter().filter(strict_first).for_each(|ask| conditions.list(&plant.arena, *ask));
+        signs.iter().filter(|ask| !strict_first(ask)).for_each(|ask| conditions.list(&plant.arena, *ask));
+        for ask in others {
+            conditions.list(&plant.arena, ask);
+        }
+        conditions
+    }
+
+    /// Lists what the domain does not show: of what must not vanish, each factor. Of a magnitude or a square, which are never
+    /// negative, it is asked only that it does not vanish.
+    pub(super) fn list(&mut self, arena: &Arena, ask: Ask) {
+        let only_zero = ask.1 == Relation::Positive && is_magnitude(arena, ask.0);
+        let relation = if only_zero { Relation::NonZero } else { ask.1 };
+        let parts = match relation {
+            Relation::NonZero => factors(arena, &self.known, ask.0),
+            _ => vec![(ask.0, ask.0)],
+        };
+        for (key, part) in parts {
+            let known = self.listed.iter().any(|(other, (_, listed))| *other == key && *listed == relation);
+            if !known && !self.known.grants(arena, (part, relation)) {
+                self.listed.push((key, (part, relation)));
+                self.known.facts.assume(part, relation);
+            }
+        }
+        if only_zero {
+            self.known.facts.assume(ask.0, ask.1);
+        }
+    }
+
+    /// The assumptions together with what is listed.
+    pub(super) fn domain(&self) -> &Domain {
+        &self.known
+    }
+
+    /// The list: of what is at least zero and must not be zero, that it is positive.
+    pub(super) fn listed(self) -> Vec<Ask> {
+        let has =
+            |key: Expr, wanted: Relation| self.listed.iter().any(|(k, (_, relation))| (*k, *relation) == (key, wanted));
+        let merged = |(key, (part, relation)): &(Expr, Ask)| match relation {
+            Relation::NonZero if has(*key, Relation::NonNegative) => None,
+            Relation::NonNegative if has(*key, Relation::NonZero) => Some((*part, Relation::Positive)),
+            _ => Some((*part, *relation)),
+        };
+        self.listed.iter().filter_map(merged).collect()
+    }
+
+    /// What the formulas of the cascade ask.
+    pub(super) fn ask_cascade(&mut self, plant: &Plant, cascade: &Cascade) -> Option<Ask> {
+        let formulas: Vec<Expr> = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()).copied().collect();
+        self.ask(plant, &formulas, &BTreeMap::new())
+    }
+
+    /// What the left inverse asks of z = phi(x, y); estimates of z may lie elsewhere.
+    pub(super) fn ask_left_inverse(&mut self, plant: &Plant, inverse: &LeftInverse) -> Option<Ask> {
+        let transform = plant.z.iter().copied().zip(plant.transform()).collect();
+        let formulas: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+        self.ask(plant, &formulas, &transform)
+    }
+
+    /// What the regression asks, for all values of the extension, and its way back to theta of the functions of theta.
+    pub(super) fn ask_regression(&mut self, plant: &Plant, regression: &Regression) -> Option<Ask> {
+        let rows = [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten();
+        let formulas = rows.chain(&regression.phi_0).chain(&regression.primitive_0).chain(&regression.eta).copied();
+        let back = regression.eta_symbols.iter().copied().zip(regression.eta.iter().copied()).collect();
+        let formulas: Vec<Expr> = formulas.collect();
+        self.ask(plant, &formulas, &BTreeMap::new()).or_else(|| self.ask(plant, &regression.theta, &back))
+    }
+
+    /// Lists what the formulas ask at these values; the first ask that cannot be listed is handed back.
+    ///
+    /// Read off the formulas as they stand: what they are at the values may simplify.
+    fn ask(&mut self, plant: &Plant, formulas: &[Expr], values: &BTreeMap<Symbol, Expr>) -> Option<Ask> {
+        let arena = &plant.arena;
+        for (part, relation) in arena.asks(formulas, Want::Value) {
+            let ask = (arena.substitute(part, values), relation);
+            if self.known.grants(arena, ask) {
+                continue;
+            }
+            let free = arena.symbols_of(&[ask.0]).iter().any(|symbol| plant.is_of_extension(*symbol));
+            if free || relation != Relation::NonZero {
+                return Some(ask);
+            }
+            self.list(arena, ask);
+        }
+        None
+    }
+}
+
+/// The factors of what must not vanish, each with a key that is the same for all that vanish where it does.
+fn factors(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<(Expr, Expr)> {
+    let written: Vec<Expr> = match arena.node(expr) {
+        Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
+        _ => vec![expr],
+    };
+    let written = written.into_iter().map(|base| inside(arena, base));
+    written.flat_map(|base| split(arena, domain, base).unwrap_or_else(|_| vec![(base, base)])).collect()
+}
+
+/// Whether it is a product of magnitudes and even powers.
+fn is_magnitude(arena: &Arena, expr: Expr) -> bool {
+    match arena.node(expr) {
+        Node::Call(Function::Abs, _) => true,
+        Node::Product(product) => {
+            let is_even = |exponent: &Rational| exponent.to_i64().is_some_and(|exponent| exponent % 2 == 0);
+            product.coefficient.signum() > 0
+                && product.factors.iter().all(|(base, exponent)| is_even(exponent) || is_magnitude(arena, *base))
+        }
+        _ => false,
+    }
+}
+
+/// What vanishes where the expression does: the argument of a magnitude.
+fn inside(arena: &Arena, expr: Expr) -> Expr {
+    match arena.node(expr) {
+        Node::Call(Function::Abs, arguments) => inside(arena, arguments[0]),
+        _ => expr,
+    }
+}
+
+/// The factors of a sum; itself, as it is written, where it has but one.
+fn split(arena: &Arena, domain: &Domain, expr: Expr) -> Result<Vec<(Expr, Expr)>, Obstacle> {
+    let field = Field::over(arena, &domain.facts, &[expr])?;
+    let fraction = field.fraction(expr)?;
+    let mut parts = Vec::new();
+    for factor in fraction.numerator().distinct_factors(field.limit())? {
+        parts.push(inside(arena, field.show(&field.of_polynomial(&factor)?)));
+    }
+    Ok(match parts.as_slice() {
+        [] => vec![(expr, expr)],
+        [only] => vec![(*only, expr)],
+        _ => parts.into_iter().map(|part| (part, part)).collect(),
+    })
+}

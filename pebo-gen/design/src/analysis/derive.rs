@@ -1,0 +1,336 @@
+//! The order of the claims: what each builds on.
+
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic};
+use pebo_cas::domain::zero::MOST_POINTS;
+use pebo_cas::{Domain, Expr, Relation};
+
+use super::advice::remarks::Remarks;
+use super::conditions::{Ask, Conditions};
+use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
+use super::left_inverse::checking::at_phi;
+use super::limited::{ended, limited, unfinished};
+use super::{cascade, forms, identifiability, identities, left_inverse, permitted, regression};
+
+impl Derivation {
+    /// Derives the observer of a plant: every claim with its verdict.
+    pub fn derive(plant: &Plant) -> Self {
+        let domain = plant.domain();
+        let mut found: Vec<Diagnostic> = Vec::new();
+        let standing = identities::prove(plant, &domain, &mut found);
+        if standing != Verdict::Proved {
+            return Self::without_claims(standing, found);
+        }
+        let mut class = Class::Pebo;
+        let mut cascade = limited(plant, "the cascade", &mut found, |found| {
+            let (kind, claim) = cascade::prove(plant, &domain, found);
+            class = kind;
+            permitted::cascade(plant, claim, found)
+        });
+        let mut left_inverse = limited(plant, "the left inverse", &mut found, |found| {
+            let claim = left_inverse::prove(plant, &domain, found);
+            permitted::left_inverse(plant, claim, found)
+        });
+        let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
+        let (mut regression, mut identifiability) = match &cascade.result {
+            Some(result) if cascade.verdict == Verdict::Proved => {
+                regressed(plant, &domain, (class, result, inverse), &mut found)
+            }
+            _ => (Claim::skipped(), Claim::skipped()),
+        };
+        let settled = found.len();
+        let mut conditions = Conditions::of(plant);
+        for constant in identifiability.result.iter().flat_map(|result| &result.constants) {
+            conditions.list(&plant.arena, (*constant, Relation::NonZero));
+        }
+        let unmet = [
+            (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.ask_cascade(plant, result))),
+            (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.ask_left_inverse(plant, r))),
+            (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.ask_regression(plant, r))),
+        ];
+        found.extend(unmet.into_iter().filter_map(|(code, what, ask)| Some(without_value(plant, code, what, ask?))));
+        if !is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref()) {
+            found.push(nowhere(plant));
+            cascade.doubt();
+            left_inverse.doubt();
+            regression.doubt();
+            identifiability.doubt();
+        }
+        if plant.arena.budget().is_exhausted() {
+            // What was not shown by then may hold.
+            found.truncate(settled);
+        }
+        if ended(plant, &found) {
+            found.retain(|diagnostic| diagnostic.code != Code::NeverIdentifiable);
+            identifiability = unfinished(plant, "the conditions", &mut found);
+        }
+        let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
+        Self {
+            outcome: outcome(&verdicts),
+            class,
+            cascade,
+            left_inverse,
+            regression,
+            identifiability,
+            conditions: conditions.listed(),
+            diagnostics: found,
+            remarks: Remarks::default(),
+        }
+    }
+
+    /// What is derived of a plant without a transform: nothing.
+    pub fn without_transform(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::without_claims(Verdict::Undecided, diagnostics)
+    }
+
+    /// What is derived where the identities do not stand: nothing.
+    fn without_claims(standing: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
+        Self {
+            outcome: outcome(&[standing]),
+            class: Class::Pebo,
+            cascade: Claim::skipped(),
+            left_inverse: Claim::skipped(),
+            regression: Claim::skipped(),
+            identifiability: Claim::skipped(),
+            conditions: Vec::new(),
+            diagnostics,
+            remarks: Remarks::default(),
+        }
+    }
+
+    /// The derivation, if every claim is proved; else what to tell the author.
+    pub fn admit(&self) -> Result<&Self, &[Diagnostic]> {
+        if self.outcome == Outcome::Accepted { Ok(self) } else { Err(&self.diagnostics) }
+    }
+}
+
+impl Outcome {
+    /// The verdict on a model of which no plant was made: undecided where all that is said is that something could not
+    /// be worked out.
+    pub fn of_unread(diagnostics: &[Diagnostic]) -> Self {
+        if diagnostics.iter().all(|diagnostic| diagnostic.code.is_open()) { Self::Undecided } else { Self::Rejected }
+    }
+}
+
+/// What a stronger regression settles.
+const OPEN: [Code; 2] = [Code::NeverIdentifiable, Code::IdentifiabilityUndecided];
+
+/// What becomes of unknowns that a regression does not identify with all that the plant's equations say besides; none
+/// if that is nothing.
+fn strengthened(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, inverse): (&Cascade, Option<&LeftInverse>),
+    (regression, verdict): (&Regression, Verdict),
+    found: &mut Vec<Diagnostic>,
+) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
+    let mut said = Vec::new();
+    let together = regression::together(plant, domain, cascade, inverse, regression, &mut said);
+    let mut last = None;
+    let class = if cascade.lambda.is_some() { Class::Gpebo } else { Class::Pebo };
+    for claim in together.regressions {
+        let claim = permitted::regression(plant, class, claim, &mut said);
+        let Some(more) = claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved) else { continue };
+        let mut others = Vec::new();
+        let seen = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
+        let proved = seen.verdict == Verdict::Proved;
+        last = Some((claim, seen, others));
+        if proved {
+            break;
+        }
+    }
+    if let Some((claim, seen, others)) = last {
+        let said_more = verdict == Verdict::Refuted && (seen.verdict == Verdict::Undecided || together.complete);
+        if seen.verdict == Verdict::Proved || said_more {
+            found.retain(|d| !OPEN.contains(&d.code));
+            found.extend(said.into_iter().chain(others));
+            return Some((claim, seen));
+        }
+    }
+    if together.complete || verdict == Verdict::Undecided {
+        return None;
+    }
+    found.retain(|d| !OPEN.contains(&d.code));
+    found.push(identifiability::not_all_used(plant));
+    let claim = Claim { verdict: Verdict::Proved, result: Some(regression.clone()) };
+    Some((claim, Claim { verdict: Verdict::Undecided, result: None }))
+}
+
+impl<T> Claim<T> {
+    pub(super) fn skipped() -> Self {
+        Self { verdict: Verdict::Skipped, result: None }
+    }
+
+    /// What a proved claim's formulas ask that can be neither shown nor listed: then it is not proved.
+    fn settle(&mut self, ask: impl FnOnce(&T) -> Option<Ask>) -> Option<Ask> {
+        let result = self.result.as_ref().filter(|_| self.verdict == Verdict::Proved)?;
+        let unmet = ask(result)?;
+        self.doubt();
+        Some(unmet)
+    }
+
+    /// Makes what is proved undecided.
+    fn doubt(&mut self) {
+        if self.verdict == Verdict::Proved {
+            self.verdict = Verdict::Undecided;
+        }
+    }
+}
+
+fn outcome(verdicts: &[Verdict]) -> Outcome {
+    if verdicts.contains(&Verdict::Refuted) {
+        Outcome::Rejected
+    } else if verdicts.iter().all(|v| *v == Verdict::Proved) {
+        Outcome::Accepted
+    } else {
+        Outcome::Undecided
+    }
+}
+
+/// The claims on regression and identifiability under a proved cascade: of the first of the forms of the regression that
+/// identifies the unknowns, or of the one that is asked for.
+fn regressed(
+    plant: &Plant,
+    domain: &Domain,
+    claims: (Class, &Cascade, Option<&LeftInverse>),
+    found: &mut Vec<Diagnostic>,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let (class, cascade, inverse) = claims;
+    let before = found.len();
+    let regression = limited(plant, "the regression", found, |found| {
+        let claim = regression::prove(plant, domain, cascade, inverse, found);
+        permitted::regression(plant, class, claim, found)
+    });
+    let identifiability = match &regression.result {
+        Some(result) if regression.verdict == Verdict::Proved => limited(plant, "identifiability", found, |found| {
+            identifiability::prove(plant, domain, cascade, result, inverse, found)
+        }),
+        _ => Claim::skipped(),
+    };
+    let given = forms::preferred(plant, domain, claims, (regression, identifiability), found, before);
+    let given = by_values(plant, domain, claims, given, found, before);
+    let given = from_identities(plant, domain, claims, given, found);
+    let mut given = without_others(plant, domain, claims, given, found, before);
+    if let Some(result) = &given.0.result
+        && matches!(given.1.verdict, Verdict::Refuted | Verdict::Undecided)
+        && !plant.arena.budget().is_exhausted()
+        && let Some(more) = strengthened(plant, domain, (cascade, inverse), (result, given.1.verdict), found)
+    {
+        given = more;
+    }
+    forms::standing(plant, domain, claims, given, found, before)
+}
+
+/// Outputs that are given by their value stand by it wherever that identifies as much as their rates; else the given.
+/// Of the diagnostics, those from `before` on are of these claims.
+fn by_values(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let Some(rates) = given.0.result.as_ref().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
+    let mut said = Vec::new();
+    let Some(other) = regression::by_values(plant, domain, cascade, inverse, rates, &mut said) else { return given };
+    match forms::proved(plant, domain, (class, cascade, inverse), other, &mut said) {
+        Some(both) if !forms::at_once(&given.1) || forms::at_once(&both.1) => {
+            found.truncate(before);
+            found.extend(said);
+            both
+        }
+        _ => given,
+    }
+}
+
+/// Where a rate has no usable form, those that are affine in phi may do, or those that are made of functions of theta: else
+/// the given.
+fn without_others(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let is_given = given.0.verdict == Verdict::Proved || plant.relation_form.is_some();
+    if is_given || plant.arena.budget().is_exhausted() {
+        return given;
+    }
+    for affine in [true, false] {
+        let mut said = Vec::new();
+        let other = if affine {
+            regression::of_affine_rates(plant, domain, cascade, inverse)
+        } else {
+            regression::of_separable_rates(plant, domain, cascade, inverse, &mut said)
+        };
+        let both = other.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
+        if let Some(both) = both {
+            found.truncate(before);
+            found.extend(said);
+            return both;
+        }
+    }
+    given
+}
+
+/// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.
+fn from_identities(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    if given.1.verdict != Verdict::Refuted || plant.identities.is_empty() {
+        return given;
+    }
+    let mut others = Vec::new();
+    let other = regression::from_identities(plant, domain, cascade, inverse, &mut others);
+    let Some(both) = forms::proved(plant, domain, (class, cascade, inverse), other, &mut others) else { return given };
+    found.retain(|d| d.code != Code::NeverIdentifiable);
+    found.extend(others);
+    both
+}
+
+/// Formulas that have no value where the claim is made.
+fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -> Diagnostic {
+    let arena = &plant.arena;
+    let ask = format!("{} {}", arena.print(part), relation.sign());
+    let diagnostic =
+        Diagnostic::error(code, at_phi(plant), format!("{what} was not shown to have a value throughout the domain"))
+            .label(format!("this needs `{ask}`"));
+    if arena.symbols_of(&[part]).iter().any(|symbol| plant.is_of_extension(*symbol)) {
+        return diagnostic
+            .note(
+                "the states of the extension and theta may have any values: they are not confined to the range of phi",
+            )
+            .help("choose a phi in which the rates of the outputs are polynomials, exponentials, sines and cosines");
+    }
+    diagnostic.help(format!("if it holds, write `{ask}` under `assume`"))
+}
+
+/// Whether a point of the domain was found at which all formulas have values together.
+fn is_somewhere(plant: &Plant, domain: &Domain, cascade: Option<&Cascade>, regression: Option<&Regression>) -> bool {
+    let arena = &plant.arena;
+    let mut formulas: Vec<Expr> = plant.transform();
+    formulas.extend(plant.rates().into_values());
+    formulas.extend(plant.assumptions.iter().map(|assumption| assumption.expr));
+    formulas.extend(cascade.iter().flat_map(|c| c.h.iter().chain(c.lambda.iter().flatten().flatten())));
+    formulas.extend(regression.iter().flat_map(|r| r.phi_0.iter().chain(r.phi_1.iter().flatten())));
+    let exist = |point: &_| formulas.iter().all(|formula| arena.exists_at(*formula, point));
+    domain.points(arena, &formulas).take(MOST_POINTS).any(|point| exist(&point))
+}
+
+/// A claim about no values at all is true, and worth nothing.
+fn nowhere(plant: &Plant) -> Diagnostic {
+    let span = match (plant.assumptions.first(), plant.assumptions.last()) {
+        (Some(first), Some(last)) => first.span.to(last.span),
+        _ => at_phi(plant),
+    };
+    let message = "no values were found at which all assumptions hold and all formulas have values";
+    Diagnostic::error(Code::ContradictoryAssumptions, span, message)
+        .note("claims about an empty domain say nothing, so no claim is called proved")
+        .help("check that the assumptions do not exclude one another, or give numeric bounds for each symbol")
+}

@@ -1,0 +1,363 @@
+//! What was derived of a plant: each claim with its verdict.
+
+pub use crate::plant::CascadeClass as Class;
+use crate::plant::{Plant, RelationForm};
+use crate::source::Diagnostic;
+use pebo_cas::domain::cells::Side;
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
+
+use super::advice::remarks::Remarks;
+
+/// The verdict on one claim.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Verdict {
+    /// Exact algebra showed it.
+    Proved,
+    /// A point exists where it fails.
+    Refuted,
+    /// Neither could be shown.
+    Undecided,
+    /// Not looked at, because a claim it builds on is not proved.
+    Skipped,
+}
+
+/// The verdict on the model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Outcome {
+    /// Every claim is proved.
+    Accepted,
+    /// A claim is refuted.
+    Rejected,
+    /// No claim is refuted, but one is undecided.
+    Undecided,
+}
+
+/// A claim: its verdict, and what was derived where anything was.
+#[derive(Clone, Debug)]
+pub struct Claim<T> {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What was derived.
+    pub result: Option<T>,
+}
+
+/// Claim 1: the transform moves by known signals.
+#[derive(Clone, Debug, Default)]
+pub struct Cascade {
+    /// The known part of z', free of x, a component each.
+    pub h: Vec<Expr>,
+    /// The matrix Lambda(y, u) by rows, for the generalised cascade.
+    pub lambda: Option<Vec<Vec<Expr>>>,
+    /// What keeps z' from being free of x, a component each; empty where the claim is proved.
+    pub residual: Vec<Expr>,
+    /// A point at which a residual is bounded away from zero.
+    pub witness: Option<Witness>,
+    /// What becomes of the fundamental matrix of a generalised cascade: no part of the claim.
+    pub fundamental: Option<Fundamental>,
+    /// Beside a generalised cascade, a transform with a plain one: phi with multiples of the outputs added.
+    pub mend: Option<Vec<Expr>>,
+}
+
+/// What becomes of `Psi' = Lambda(y, u) Psi`, `Psi(0) = I`, along every trajectory.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Fundamental {
+    /// It stays bounded.
+    Bounded {
+        /// Whether its determinant dies out at a constant rate: directions of theta are then forgotten.
+        fades: bool,
+    },
+    /// It grows without bound.
+    Grows,
+    /// Neither was shown.
+    NotShown,
+}
+
+/// A point at which an expression provably is not zero.
+#[derive(Clone, Debug)]
+pub struct Witness {
+    /// The expression.
+    pub expr: Expr,
+    /// The values of its symbols: constants, rational ones as a rule.
+    pub point: Vec<(Symbol, Expr)>,
+    /// Bounds of its value there, outward rounded; both of one sign.
+    pub bounds: (f64, f64),
+    /// The points of the domain that were compared, where it took more than one.
+    pub compared: Option<Comparison>,
+}
+
+/// Points of the domain with the same y, u and parameters, and the values that an expression has there.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The expression as it is shown.
+    pub expr: Expr,
+    /// The expression whose values were compared: it may read more than is shown of it.
+    pub read: Expr,
+    /// The unmeasured states and signals at each point.
+    pub points: Vec<Vec<(Symbol, Expr)>>,
+    /// What all points share.
+    pub known: Vec<(Symbol, Expr)>,
+    /// Bounds of the expression's value at each point, outward rounded.
+    pub values: Vec<(f64, f64)>,
+}
+
+/// Claim 2: the states are recovered from z and y.
+#[derive(Clone, Debug)]
+pub struct LeftInverse {
+    /// The states with their formulas in z1.. and y.
+    pub x: Vec<(Symbol, Expr)>,
+    /// Periods of the states that are recovered as angles.
+    pub modulo: Vec<(Symbol, Expr)>,
+    /// Whether the author gave it.
+    pub origin: Origin,
+    /// A point at which the author's formula fails.
+    pub witness: Option<Witness>,
+}
+
+/// Where a left inverse is from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Origin {
+    /// The model file gives it.
+    Given,
+    /// It was solved for.
+    Derived,
+}
+
+/// What the regression's left side is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum RegressionKind {
+    /// y' = `Phi_0` + `Phi_1` eta.
+    Dynamic,
+    /// `Phi_0` = `Phi_1` eta.
+    Static,
+    /// `d/dt(P_0 + P_1 eta)` = `Phi_0` + `Phi_1` eta.
+    Implicit,
+}
+
+/// Claim 3: the unknowns enter linearly.
+#[derive(Clone, Debug)]
+pub struct Regression {
+    /// What stands on the left.
+    pub kind: RegressionKind,
+    /// Positions in the plant's outputs of the rows, for a dynamic regression.
+    pub rows: Vec<usize>,
+    /// `Phi_0` by rows, in chi1.. (xi1.. and Psi11.. for the generalised cascade), y and u.
+    pub phi_0: Vec<Expr>,
+    /// `Phi_1` by rows, an entry for each eta.
+    pub phi_1: Vec<Vec<Expr>>,
+    /// `P_0` by rows, for an implicit regression.
+    pub primitive_0: Vec<Expr>,
+    /// `P_1` by rows, for an implicit regression.
+    pub primitive_1: Vec<Vec<Expr>>,
+    /// The unknowns as functions of theta1..; theta itself where the parameterisation is linear.
+    pub eta: Vec<Expr>,
+    /// theta as functions of eta1.., an entry for each theta.
+    pub theta: Vec<Expr>,
+    /// The symbols eta1..
+    pub eta_symbols: Vec<Symbol>,
+    /// States that the outputs show only up to multiples of a constant, with that constant, without being declared angles.
+    pub steps: Vec<(Symbol, Expr)>,
+    /// The other form of the relation that the regression is made of, if it has one.
+    pub alternative: Option<Alternative>,
+}
+
+/// A form of the regression that a model may ask for instead.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Alternative {
+    /// Which.
+    pub form: RelationForm,
+    /// How many unknowns it has.
+    pub unknowns: usize,
+}
+
+impl Regression {
+    /// Whether the unknowns are theta itself.
+    pub fn is_linear(&self, plant: &Plant) -> bool {
+        self.eta.len() == plant.theta.len()
+            && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
+    }
+
+    /// Positions of the equations that tell the estimator nothing: of known rates, in which no unknown stands.
+    pub fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
+        if self.kind == RegressionKind::Static {
+            return Vec::new();
+        }
+        let nothing = |row: Option<&Vec<Expr>>| row.into_iter().flatten().all(|factor| arena.is_zero(*factor));
+        let is_idle = |row: &usize| nothing(self.phi_1.get(*row)) && nothing(self.primitive_1.get(*row));
+        (0..self.phi_0.len()).filter(is_idle).collect()
+    }
+
+    /// The equations that an observer runs: all of them where each `serves`, else those with an unknown. An equation
+    /// without one serves a gate, which looks at the sample of its output, and the output form, in which the output
+    /// itself is estimated.
+    #[must_use]
+    pub fn computed(&self, arena: &Arena, serves: bool) -> Self {
+        let idle = if serves { Vec::new() } else { self.without_unknowns(arena) };
+        let mut computed = self.clone();
+        if idle.is_empty() {
+            return computed;
+        }
+        retain(&mut computed.rows, &idle);
+        retain(&mut computed.phi_0, &idle);
+        retain(&mut computed.phi_1, &idle);
+        retain(&mut computed.primitive_0, &idle);
+        retain(&mut computed.primitive_1, &idle);
+        computed
+    }
+}
+
+/// Takes the entries at these positions out of a list of all rows.
+fn retain<T>(rows: &mut Vec<T>, left_out: &[usize]) {
+    let mut row = 0..;
+    rows.retain(|_| row.next().is_none_or(|row| !left_out.contains(&row)));
+}
+
+/// Claim 4: the unknowns can be told apart.
+#[derive(Clone, Debug)]
+pub struct Identifiability {
+    /// How.
+    pub kind: Excitation,
+    /// Where the regressor loses rank, each as a readable condition.
+    pub singular_where: Vec<String>,
+    /// Whether the regressor was shown to have full rank everywhere else.
+    pub everywhere_else: bool,
+    /// Combinations of parameters without a known sign that must not vanish for the rank to be what it is.
+    pub constants: Vec<Expr>,
+    /// A direction of eta that no trajectory shows, where there is one.
+    pub direction: Option<Vec<Expr>>,
+    /// What has to move, where one moment does not show the unknowns.
+    pub motion: Option<Motion>,
+    /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
+    pub gram: Option<Gram>,
+}
+
+/// What has to move for unknowns to be seen that one moment does not show.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Whether no input has to: with all of them constant the rank over time is full on almost every motion. None where
+    /// that was not decided.
+    pub by_itself: Option<bool>,
+    /// Whether nothing has to: with outputs that are constant too it is full.
+    pub at_rest: bool,
+    /// Motions on which it is not full.
+    pub blind: Vec<Blind>,
+    /// Whether there are no others, of those with constant inputs.
+    pub everywhere: bool,
+    /// Whether the combinations of the parameters were worked out at which the rank is full on no motion.
+    pub parameters: bool,
+}
+
+/// Motions on which the regression does not show all unknowns: proved.
+#[derive(Clone, Debug)]
+pub struct Blind {
+    /// Which motions.
+    pub place: Place,
+    /// What is seen of the unknowns: of z1.. where they are theta, else of eta1..
+    pub seen: Vec<Expr>,
+    /// Directions that are not seen.
+    pub hidden: Vec<Vec<Expr>>,
+}
+
+/// What holds at all times.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// All inputs and outputs are constant.
+    Rest,
+    /// These inputs are constant.
+    Constant(Vec<Symbol>),
+    /// The input has this value.
+    Value(Symbol, Expr),
+    /// All inputs are constant, and the input or parameter has this value.
+    Steady(Symbol, Expr),
+    /// This stays zero, where rows with all their derivatives may be of a lower rank: what is seen then was not decided.
+    Unshown(Expr),
+    /// The plant rests and this stays zero: likewise.
+    UnshownAtRest(Expr),
+    /// These keep their signs: the regressor bends where one changes.
+    Part(Vec<(Expr, Side)>),
+    /// These keep their signs, and the other holds.
+    Within(Vec<(Expr, Side)>, Box<Place>),
+}
+
+/// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.
+#[derive(Clone, Debug)]
+pub struct Gram {
+    /// By rows.
+    pub matrix: Vec<Vec<Expr>>,
+    /// Its determinant.
+    pub determinant: Expr,
+    /// What shows that the determinant is positive throughout the assumed domain, if anything does.
+    pub positive: Option<Positive>,
+}
+
+/// What shows that a determinant is positive.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Positive {
+    /// Its factors have signs by the assumptions.
+    Assumed,
+    /// Enclosures on the parts of the closed box that the assumptions bound, at the values of the parameters.
+    Divided,
+}
+
+/// What identifying the unknowns takes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Excitation {
+    /// `Phi_1` has full column rank at almost every point.
+    Instant,
+    /// It has over time, along almost every trajectory.
+    Excitation,
+    /// It never has.
+    Never,
+}
+
+impl Derivation {
+    /// What the way from estimates back to x asks of them to have a value, beside what is assumed of y: an estimate
+    /// of z (or, where the regression has functions of theta, of these) may lie where the true one cannot.
+    pub fn asked_of_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
+        let arena = &plant.arena;
+        let (mut formulas, mut estimates) = (Vec::new(), plant.z.clone());
+        formulas.extend(self.left_inverse.result.iter().flat_map(|inverse| &inverse.x).map(|(_, formula)| *formula));
+        if let Some(regression) = &self.regression.result {
+            formulas.extend(&regression.theta);
+            estimates.extend(&regression.eta_symbols);
+        }
+        let domain = self.domain(plant);
+        let mut asked = arena.asks(&formulas, Want::Value);
+        asked.retain(|(part, relation)| {
+            let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
+            free && !domain.implies(arena, *part, *relation)
+        });
+        asked
+    }
+
+    /// Where the proofs hold: the plant's domain, without what the conditions exclude.
+    pub fn domain(&self, plant: &Plant) -> Domain {
+        let mut domain = plant.domain();
+        self.conditions.iter().for_each(|(expr, relation)| domain.facts.assume(*expr, *relation));
+        domain
+    }
+}
+
+/// What was derived of a plant.
+#[derive(Debug)]
+pub struct Derivation {
+    /// The verdict on the model.
+    pub outcome: Outcome,
+    /// How the transform moves.
+    pub class: Class,
+    /// Claim 1.
+    pub cascade: Claim<Cascade>,
+    /// Claim 2.
+    pub left_inverse: Claim<LeftInverse>,
+    /// Claim 3.
+    pub regression: Claim<Regression>,
+    /// Claim 4.
+    pub identifiability: Claim<Identifiability>,
+    /// What the proofs rest on besides the assumptions: expressions that must compare so with zero for
+    /// the formulas to have values.
+    pub conditions: Vec<(Expr, Relation)>,
+    /// What to tell the author.
+    pub diagnostics: Vec<Diagnostic>,
+    /// What no claim rests on.
+    pub remarks: Remarks,
+}

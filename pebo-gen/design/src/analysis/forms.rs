@@ -1,0 +1,118 @@
+//! Which form a relation between the components of the transform takes.
+//!
+//! In: the regression and its identifiability as they were proved of the plant's equations as they stand. Out: the same,
+//! or those of a relation under the derivative, where these are to be preferred; and whatever there is, a regression of the
+//! form that the model asks for, or a refusal.
+
+use crate::plant::{Plant, RelationForm};
+use crate::source::Diagnostic;
+use pebo_cas::{Domain, Expr};
+
+use super::design::{
+    Alternative, Cascade, Claim, Class, Excitation, Identifiability, LeftInverse, Regression, RegressionKind, Verdict,
+};
+use super::{identifiability, permitted, regression};
+
+/// The two claims in the form to be preferred. Of the diagnostics, those from `before` on are of these claims.
+pub(super) fn preferred(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    (mut given, seen): (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let is_static = given.result.as_ref().is_none_or(|result| result.kind == RegressionKind::Static);
+    let asks = plant.asks_for(RelationForm::Differentiated);
+    if plant.arena.budget().is_exhausted() || !(is_static || asks) {
+        return (given, seen);
+    }
+    let Some(mut other) = regression::differentiated(plant, domain, cascade, inverse, &given) else {
+        return if asks { refused(plant, found) } else { (given, seen) };
+    };
+    let unknowns = |claim: &Claim<Regression>| claim.result.as_ref().map(|result| result.eta.len());
+    let (of_given, of_other) = (unknowns(&given), unknowns(&other));
+    let offer = |claim: &mut Claim<Regression>, form, unknowns: Option<usize>| {
+        if let (Some(result), Some(unknowns)) = (&mut claim.result, unknowns) {
+            result.alternative = Some(Alternative { form, unknowns });
+        }
+    };
+    // An author's own identity is used as it is written.
+    let wanted = match plant.relation_form {
+        Some(_) => asks,
+        None => plant.identities.is_empty() || given.verdict != Verdict::Proved,
+    };
+    if wanted {
+        let mut said = Vec::new();
+        offer(&mut other, RelationForm::Static, of_given.filter(|_| is_static));
+        match proved(plant, domain, (class, cascade, inverse), other, &mut said) {
+            Some((other, shown)) if asks || !at_once(&seen) || at_once(&shown) => {
+                found.truncate(before);
+                found.extend(said);
+                return (other, shown);
+            }
+            _ if asks => return refused(plant, found),
+            _ => {}
+        }
+    } else {
+        offer(&mut given, RelationForm::Differentiated, of_other);
+    }
+    (given, seen)
+}
+
+/// Whether one moment shows all unknowns.
+pub(super) fn at_once(claim: &Claim<Identifiability>) -> bool {
+    claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
+}
+
+/// The two claims with a relation as it holds at every instant, where the model asks for that and the given regression has
+/// none. Of the diagnostics, those from `before` on are of these claims.
+pub(super) fn standing(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    given: (Claim<Regression>, Claim<Identifiability>),
+    found: &mut Vec<Diagnostic>,
+    before: usize,
+) -> (Claim<Regression>, Claim<Identifiability>) {
+    let stands = |regression: &Regression| match regression.kind {
+        RegressionKind::Static => true,
+        RegressionKind::Dynamic => false,
+        RegressionKind::Implicit => {
+            let held = regression.primitive_0.iter().zip(&regression.primitive_1);
+            let nothing = |expr: &Expr| plant.arena.is_zero(*expr);
+            held.into_iter().any(|(known, factor)| nothing(known) && factor.iter().all(nothing))
+        }
+    };
+    if !plant.asks_for(RelationForm::Static) || given.0.result.as_ref().is_none_or(stands) {
+        return given;
+    }
+    let mut said = Vec::new();
+    let other = regression::from_identities(plant, domain, cascade, inverse, &mut said);
+    let Some(both) = proved(plant, domain, (class, cascade, inverse), other, &mut said) else {
+        return refused(plant, found);
+    };
+    found.truncate(before);
+    found.extend(said);
+    both
+}
+
+/// A regression with its identifiability, where both claims are proved, and what is to be said of them.
+pub(super) fn proved(
+    plant: &Plant,
+    domain: &Domain,
+    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
+    regression: Claim<Regression>,
+    said: &mut Vec<Diagnostic>,
+) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
+    let regression = permitted::regression(plant, class, regression, said);
+    let result = regression.result.as_ref().filter(|_| regression.verdict == Verdict::Proved)?;
+    let shown = identifiability::prove(plant, domain, cascade, result, inverse, said);
+    (shown.verdict == Verdict::Proved).then_some((regression, shown))
+}
+
+/// The claims where a form is asked for that there is not.
+fn refused(plant: &Plant, found: &mut Vec<Diagnostic>) -> (Claim<Regression>, Claim<Identifiability>) {
+    found.extend(plant.relation_form.map(|asked| regression::no_such_form(plant, asked)));
+    (Claim { verdict: Verdict::Undecided, result: None }, Claim::skipped())
+}

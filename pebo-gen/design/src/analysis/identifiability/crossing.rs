@@ -1,0 +1,149 @@
+//! Whether what two parts of a domain show comes together on one motion.
+//!
+//! In: parts of which none shows all unknowns, with the rows that each sees. Out: whether every part has a neighbour into
+//! which motions pass, with which it shows them all. Of `p + s*sign(q)` a motion on which q changes its sign shows p and s;
+//! where q' = q*v none does. Motions pass from one part into another where what divides them vanishes and moves the same
+//! way on both sides. There the rows of both are taken at one point, so that all that the motion keeps is the same in both.
+//! What is of inputs alone changes its sign at once: then all but the inputs is the same.
+
+use std::collections::BTreeSet;
+
+use crate::analysis::design::Cascade;
+use crate::plant::Plant;
+use pebo_cas::domain::cells::{Part, Side};
+use pebo_cas::domain::manifold::Manifold;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::graph::enclosure::Point;
+use pebo_cas::linear::rank::full_rank_at;
+use pebo_cas::tower::{Field, Obstacle};
+use pebo_cas::{Arena, Domain, Expr, Facts, Symbol};
+
+use super::flow::Flow;
+
+/// Points of a border that are looked at.
+const MOST_POINTS: usize = 16;
+
+/// Points beyond a border that are looked at for one on this side.
+const FEW_POINTS: usize = 2;
+
+/// A part, and the rows that are seen in it.
+pub(super) struct Seen<'a> {
+    pub(super) part: &'a Part,
+    pub(super) rows: Vec<Vec<Expr>>,
+}
+
+/// Whether every part shows all unknowns together with another into which motions pass.
+pub(super) fn all_shown(
+    plant: &Plant,
+    cascade: &Cascade,
+    varies: impl Fn(Expr) -> bool,
+    parts: &[Seen<'_>],
+    unknowns: usize,
+) -> Result<bool, Obstacle> {
+    let mut shown = vec![false; parts.len()];
+    for first in 0..parts.len() {
+        for second in first + 1..parts.len() {
+            let Some(border) = border(parts[first].part, parts[second].part) else { continue };
+            if shown[first] && shown[second] {
+                continue;
+            }
+            let pair = [&parts[first], &parts[second]];
+            if passes(plant, cascade, &varies, pair, border, unknowns)? {
+                shown[first] = true;
+                shown[second] = true;
+            }
+        }
+    }
+    Ok(shown.into_iter().all(|shown| shown))
+}
+
+/// What divides two parts, if it is one formula alone.
+fn border(first: &Part, second: &Part) -> Option<Expr> {
+    let is_of = |part: &Part, side: &(Expr, Side)| part.sides.contains(side);
+    let mut apart = first.sides.iter().filter(|side| !is_of(second, side));
+    let (expr, _) = apart.next()?;
+    let same = first.sides.len() == second.sides.len() && second.sides.iter().any(|(other, _)| other == expr);
+    (same && apart.next().is_none()).then_some(*expr)
+}
+
+/// Whether motions pass from one of the parts into the other at a point at which their rows have full rank together.
+fn passes(
+    plant: &Plant,
+    cascade: &Cascade,
+    varies: &impl Fn(Expr) -> bool,
+    pair: [&Seen<'_>; 2],
+    border: Expr,
+    unknowns: usize,
+) -> Result<bool, Obstacle> {
+    let arena = &plant.arena;
+    let inputs: BTreeSet<Symbol> = plant.commanded().collect();
+    let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+    if arena.symbols_of(&[border]).difference(&parameters).all(|symbol| inputs.contains(symbol)) {
+        return Ok(jumps(arena, &inputs, pair, unknowns));
+    }
+    let mut rates = Vec::new();
+    let mut rows = Vec::new();
+    for seen in pair {
+        let domain = &seen.part.domain;
+        let rate = Flow::new(plant, domain, cascade)?.rate(arena, border);
+        let entries: Vec<Expr> = seen.rows.iter().flatten().copied().chain([rate]).collect();
+        let mut sides = as_on(arena, domain, &entries)?;
+        if arena.dividers(&sides).into_iter().any(varies) {
+            // Not one formula up to the border.
+            return Ok(false);
+        }
+        rates.extend(sides.pop());
+        rows.extend(sides);
+    }
+    let there = on_border(plant, &pair[0].part.domain, border);
+    let product = arena.product(rates);
+    let all: Vec<Expr> = rows.iter().copied().chain([product, border]).collect();
+    let found = there.points(arena, &all).take(MOST_POINTS).any(|point| {
+        let same_way = arena.separated_from_zero(product, &point).is_some_and(|product| product.is_positive());
+        same_way && full_rank_at(arena, &rows, unknowns, &point)
+    });
+    Ok(found)
+}
+
+/// Whether the rows of two parts have full rank together at points that differ in the inputs alone.
+fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&Seen<'_>; 2], unknowns: usize) -> bool {
+    let [here, there] = pair.map(|seen| seen.rows.concat());
+    let both = [here.as_slice(), &there].concat();
+    // The derivatives of inputs are other symbols, and are the same: that is enough.
+    pair[0].part.domain.points(arena, &both).take(MOST_POINTS).any(|point| {
+        let domain = pair[1].part.domain.beside(&point, inputs);
+        let mut others = domain.points(arena, &both).take(FEW_POINTS);
+        others.any(|other| {
+            let values = [arena.substitute_all(&here, &point), arena.substitute_all(&there, &other)].concat();
+            full_rank_at(arena, &values, unknowns, &Point::new())
+        })
+    })
+}
+
+/// Formulas as they are on a part, which have values at its border too.
+fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let field = Field::on(arena, &domain.but_for_radicands(arena, exprs), exprs)?;
+    exprs.iter().map(|expr| Ok(field.show(&field.fraction(*expr)?))).collect()
+}
+
+/// The points of the border, with what else is assumed of a part.
+fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
+    let arena = &plant.arena;
+    let assumed = plant.assumed();
+    let equations: Vec<Expr> = assumed.manifold.equations().iter().copied().chain([border]).collect();
+    let symbols: BTreeSet<Symbol> = arena.symbols_of(&equations);
+    let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+    let signals = symbols.difference(&parameters).copied().collect();
+    let manifold = Manifold::new(arena, &assumed.facts, equations, vec![signals, parameters]);
+    let met = Domain { manifold: manifold.clone(), ..assumed.clone() };
+    let mut facts = Facts::new();
+    for (fact, relation) in part.facts.iter() {
+        // That the border is not met is what makes it one, unless the author says so.
+        let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
+        let is_border = decide(arena, fact, &met).is_zero();
+        if is_own || !is_border {
+            facts.assume(fact, relation);
+        }
+    }
+    Domain { facts, manifold, ..part.clone() }
+}

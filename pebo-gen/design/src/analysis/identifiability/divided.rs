@@ -1,0 +1,258 @@
+//! Identifiability where formulas bend: part by part.
+//!
+//! In: how the question is answered where all formulas are analytic. Out: the answer on the whole domain. A rank that is seen
+//! at a point, and a direction that is not seen there, are so almost everywhere in the part of the point alone: with
+//! `p*max(q, 0)` p is seen while q is positive; with `a + b*sign(w)` both are seen once w has had both signs.
+
+use std::collections::BTreeSet;
+
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic};
+use pebo_cas::domain::cells::Part;
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr};
+
+use super::crossing::{Seen, all_shown};
+use super::trajectory::seen;
+use crate::analysis::design::{Blind, Cascade, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
+use crate::analysis::left_inverse::checking::at_phi;
+
+/// An answer where all formulas are analytic.
+pub(super) struct Decided {
+    /// The verdict.
+    pub(super) claim: Claim<Identifiability>,
+    /// The directions of the unknowns that are never seen.
+    pub(super) hidden: Vec<Vec<Expr>>,
+    /// The rows of the regressor, with the derivatives that were looked at.
+    pub(super) rows: Vec<Vec<Expr>>,
+}
+
+impl Decided {
+    fn kind(&self) -> Option<Excitation> {
+        self.claim.result.as_ref().map(|result| result.kind)
+    }
+}
+
+impl From<Claim<Identifiability>> for Decided {
+    fn from(claim: Claim<Identifiability>) -> Self {
+        Self { claim, hidden: Vec::new(), rows: Vec::new() }
+    }
+}
+
+/// What may bend.
+pub(super) struct Formulas {
+    /// The regressor.
+    pub(super) regressor: Vec<Expr>,
+    /// All rates.
+    pub(super) rates: Vec<Expr>,
+    /// What is zero on the domain: it bends with them.
+    pub(super) identities: Vec<Expr>,
+}
+
+impl Formulas {
+    fn of_regressor(&self) -> Vec<Expr> {
+        [self.regressor.as_slice(), &self.identities].concat()
+    }
+
+    fn all(&self) -> Vec<Expr> {
+        [self.regressor.as_slice(), &self.rates, &self.identities].concat()
+    }
+}
+
+/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is open.
+pub(super) fn decide(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, regression): (&Cascade, &Regression),
+    formulas: &Formulas,
+    found: &mut Vec<Diagnostic>,
+    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+) -> Result<Claim<Identifiability>, Obstacle> {
+    let arena = &plant.arena;
+    let mut told = Vec::new();
+    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut told, &on)?;
+    let identified =
+        |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
+    if identified(&whole) {
+        let parts = domain.parts(arena, &formulas.all(), |expr| !varies(plant, expr))?;
+        for part in parts.iter().filter(|part| !part.sides.is_empty()) {
+            let claim = on_parts(plant, &part.domain, (cascade, regression), formulas, &mut Vec::new(), &on)?;
+            let at_once = |claim: &Claim<Identifiability>| {
+                claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
+            };
+            if !identified(&claim) || at_once(&whole) && !at_once(&claim) {
+                found.push(depends_on_signs(plant, part));
+                return Ok(Claim { verdict: Verdict::Undecided, result: None });
+            }
+        }
+    }
+    found.extend(told);
+    Ok(whole)
+}
+
+/// Whether an expression is not of the parameters alone.
+fn varies(plant: &Plant, expr: Expr) -> bool {
+    let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
+    plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
+}
+
+/// With parameters of other signs there is another answer.
+fn depends_on_signs(plant: &Plant, part: &Part) -> Diagnostic {
+    let sides: Vec<String> =
+        part.sides.iter().map(|(expr, side)| format!("`{} {}`", plant.arena.print(*expr), side.sign())).collect();
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "whether the unknowns can be identified depends on the signs of parameters",
+    )
+    .label(format!("it was not shown for parameters with {}", sides.join(", ")))
+    .help("state the signs of the parameters under `assume`")
+}
+
+/// None of the parts shows all unknowns, and no motion was found that passes from one into another and shows them.
+fn parted(plant: &Plant, parts: &[Part]) -> Diagnostic {
+    let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
+    let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
+    Diagnostic::error(Code::IdentifiabilityUndecided, at_phi(plant), "no motion was found that identifies the unknowns")
+        .label(format!(
+            "while {} {} one sign, not all of them are seen",
+            dividers.join(", "),
+            if dividers.len() == 1 { "keeps" } else { "keep" }
+        ))
+        .note("and no motion was found that passes to another sign and shows them all")
+        .help("choose a phi of what is seen on one side alone, and state that side under `assume`")
+}
+
+/// The motions within parts on which not all unknowns are seen: of all parts together, where all have the same.
+fn of_parts(plant: &Plant, within: &[(&Part, Vec<Blind>)], parts: usize) -> Vec<Blind> {
+    let key = |blind: &Blind| (blind.place(plant), blind.seen.clone());
+    let mut found: Vec<Blind> = Vec::new();
+    for (part, motions) in within {
+        for motion in motions {
+            let is_same = |(_, others): &&(&Part, Vec<Blind>)| others.iter().any(|other| key(other) == key(motion));
+            let place = if within.iter().filter(is_same).count() == parts {
+                motion.place.clone()
+            } else {
+                Place::Within(part.sides.clone(), Box::new(motion.place.clone()))
+            };
+            let motion = Blind { place, ..motion.clone() };
+            if !found.iter().any(|other| key(other) == key(&motion)) {
+                found.push(motion);
+            }
+        }
+    }
+    found
+}
+
+/// Answers on a domain by the answers on its parts.
+fn on_parts(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, regression): (&Cascade, &Regression),
+    formulas: &Formulas,
+    found: &mut Vec<Diagnostic>,
+    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+) -> Result<Claim<Identifiability>, Obstacle> {
+    let arena = &plant.arena;
+    let varies = |expr: Expr| varies(plant, expr);
+    let mut told = Vec::new();
+    let whole = on(domain, &mut told);
+    let instant = |part: &Part| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
+    if whole.kind() == Some(Excitation::Instant) {
+        let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
+        let everywhere = match domain.parts(arena, &formulas.of_regressor(), varies) {
+            Ok(parts) => parts.len() == 1 || parts.iter().all(instant),
+            // Where the rank drops is told even so.
+            Err(Obstacle::TooLarge | Obstacle::OutOfBudget | Obstacle::NoPoint) if listed => true,
+            Err(obstacle) => return Err(obstacle),
+        };
+        if everywhere {
+            found.extend(told);
+            return Ok(whole.claim);
+        }
+    }
+    let parts = domain.parts(arena, &formulas.all(), varies)?;
+    if parts.len() == 1 {
+        found.extend(told);
+        return Ok(whole.claim);
+    }
+    let mut blind = Vec::new();
+    let mut within: Vec<(&Part, Vec<Blind>)> = Vec::new();
+    let mut shown = Vec::new();
+    let mut constants: Vec<Expr> = Vec::new();
+    let mut parameters = true;
+    let (mut by_itself, mut at_rest) = (Some(true), true);
+    let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
+    for part in &parts {
+        let mut told = Vec::new();
+        let decided = on(&part.domain, &mut told);
+        match decided.kind() {
+            None => {
+                found.extend(told);
+                return Ok(decided.claim);
+            }
+            Some(Excitation::Instant) => {}
+            Some(Excitation::Excitation) => {
+                let motion = decided.claim.result.as_ref().and_then(|result| result.motion.as_ref());
+                let also = motion.and_then(|motion| motion.by_itself);
+                by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
+                at_rest &= motion.is_some_and(|motion| motion.at_rest);
+                within.extend(motion.map(|motion| (part, motion.blind.clone())));
+            }
+            Some(Excitation::Never) => {
+                let (seen, hidden) = (seen(arena, symbols, &decided.hidden), decided.hidden.clone());
+                blind.push(Blind { place: Place::Part(part.sides.clone()), seen, hidden });
+            }
+        }
+        shown.push(Seen { part, rows: decided.rows });
+        if let Some(result) = decided.claim.result {
+            parameters &= result.motion.is_none_or(|motion| motion.parameters);
+            for constant in result.constants {
+                if !constants.contains(&constant) {
+                    constants.push(constant);
+                }
+            }
+        }
+    }
+    if blind.len() == parts.len() {
+        // One direction that no part sees: said of the whole domain, it must be the same in all.
+        let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
+        if whole.kind() == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
+            found.extend(told);
+            return Ok(whole.claim);
+        }
+        // A fundamental matrix is another at every moment, so that rows of two moments do not compare.
+        let entries: Vec<Expr> = shown.iter().flat_map(|seen| seen.rows.concat()).collect();
+        let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
+        if by_psi {
+            return Err(Obstacle::NoWitness);
+        }
+        if !all_shown(plant, cascade, varies, &shown, regression.eta.len())? {
+            found.push(parted(plant, &parts));
+            return Ok(Claim { verdict: Verdict::Undecided, result: None });
+        }
+    }
+    // What several parts show together, they show while the plant moves from one to the other.
+    let by_itself = by_itself.filter(|_| blind.len() < parts.len());
+    let at_rest = at_rest && by_itself == Some(true);
+    blind.extend(of_parts(plant, &within, parts.len()));
+    // On the borders too a column may vanish.
+    let on_whole = whole.claim.result.and_then(|result| result.motion).map(|motion| motion.blind);
+    let undecided = on_whole.into_iter().flatten().filter(|motion| matches!(motion.place, Place::Unshown(_)));
+    let others: Vec<Blind> =
+        undecided.filter(|motion| blind.iter().all(|other| other.place(plant) != motion.place(plant))).collect();
+    blind.extend(others);
+    let motion = Motion { by_itself, at_rest, blind, everywhere: false, parameters };
+    Ok(Claim {
+        verdict: Verdict::Proved,
+        result: Some(Identifiability {
+            kind: Excitation::Excitation,
+            singular_where: Vec::new(),
+            everywhere_else: false,
+            constants,
+            direction: None,
+            motion: Some(motion),
+            gram: None,
+        }),
+    })
+}

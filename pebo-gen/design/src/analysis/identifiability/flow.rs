@@ -1,0 +1,139 @@
+//! How everything moves: the plant with the extension of its observer.
+//!
+//! In: rates of states and outputs, the cascade, identities. Out: the rate of any formula along the motion. Inputs, and
+//! signals without an equation, are free functions of time, but for what the identities leave them: their derivatives
+//! are new symbols.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::analysis::design::Cascade;
+use crate::plant::Plant;
+use pebo_cas::domain::zero::{decide, refute};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Arena, Domain, Expr, Symbol};
+
+/// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
+pub(super) fn effective(arena: &Arena, flow: &Flow, phi_1: &[Vec<Expr>], primitive_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let mut rows = phi_1.to_vec();
+    for (row, primitive) in rows.iter_mut().zip(primitive_1) {
+        for (entry, factor) in row.iter_mut().zip(primitive) {
+            *entry = arena.sub(*entry, flow.rate(arena, *factor));
+        }
+    }
+    rows
+}
+
+/// The plant's motion with its observer's extension: rates of all that moves.
+pub(super) struct Flow {
+    rates: BTreeMap<Symbol, Expr>,
+    free: Vec<Symbol>,
+}
+
+impl Flow {
+    pub(super) fn new(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Self, Obstacle> {
+        Self::along(plant, domain, cascade, &BTreeSet::new(), &BTreeMap::new())
+    }
+
+    /// The motions on which some signals are constant and inputs are functions of others.
+    pub(super) fn along(
+        plant: &Plant,
+        domain: &Domain,
+        cascade: &Cascade,
+        held: &BTreeSet<Symbol>,
+        equal: &BTreeMap<Symbol, Expr>,
+    ) -> Result<Self, Obstacle> {
+        let arena = &plant.arena;
+        let mut rates = plant.rates();
+        match &cascade.lambda {
+            None => rates.extend(plant.chi.iter().copied().zip(cascade.h.iter().copied())),
+            Some(lambda) => {
+                let of = |row: &[Expr], vector: &[Symbol]| {
+                    arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, arena.of_symbol(*b))))
+                };
+                for (index, row) in lambda.iter().enumerate() {
+                    rates.insert(plant.xi[index], arena.add(of(row, &plant.xi), cascade.h[index]));
+                    for column in 0..plant.z.len() {
+                        let psi: Vec<Symbol> = plant.psi.iter().map(|r| r[column]).collect();
+                        rates.insert(plant.psi[index][column], of(row, &psi));
+                    }
+                }
+            }
+        }
+        let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
+        let free = plant.commanded().chain(plant.w.iter().copied()).chain(unruled);
+        let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
+        for rate in rates.values_mut() {
+            *rate = arena.substitute(*rate, equal);
+        }
+        rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
+        let mut flow = Self { rates, free };
+        flow.advance(plant);
+        flow.bind(plant, domain)?;
+        Ok(flow)
+    }
+
+    /// Gives a signal without an equation the rate that an identity leaves it: it is not free then. Whether an identity
+    /// binds one must be decided, or a rank could be seen that no motion has.
+    fn bind(&mut self, plant: &Plant, domain: &Domain) -> Result<(), Obstacle> {
+        let arena = &plant.arena;
+        for identity in &plant.identities {
+            let moved = self.rate(arena, identity.expr);
+            let slopes: Vec<Expr> = self.free.iter().map(|derivative| arena.derivative(moved, *derivative)).collect();
+            let bound = slopes.iter().position(|slope| refute(arena, *slope, domain).is_some());
+            let Some(index) = bound else {
+                if slopes.iter().all(|slope| decide(arena, *slope, domain).is_zero()) {
+                    continue;
+                }
+                return Err(Obstacle::Unsolved(arena.print(identity.expr)));
+            };
+            let slope = slopes[index];
+            let derivative = self.free.remove(index);
+            let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
+            let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
+            for rate in self.rates.values_mut() {
+                *rate = arena.substitute(*rate, &value);
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the latest derivatives of the free signals rates of their own.
+    pub(super) fn advance(&mut self, plant: &Plant) {
+        let arena = &plant.arena;
+        self.free = self
+            .free
+            .iter()
+            .map(|signal| {
+                let rate = arena.generated(&format!("{}'", arena.name(*signal)));
+                self.rates.insert(*signal, arena.of_symbol(rate));
+                rate
+            })
+            .collect();
+    }
+
+    pub(super) fn rate(&self, arena: &Arena, expr: Expr) -> Expr {
+        arena.directional(expr, &self.rates)
+    }
+
+    /// The rates of the entries of a matrix; none where the budget ends with them, as each may be many times as long as
+    /// its entry.
+    pub(super) fn rates(&self, arena: &Arena, rows: &[Vec<Expr>]) -> Result<Vec<Vec<Expr>>, Obstacle> {
+        let rate = |entry: &Expr| {
+            if arena.budget().is_exhausted() { Err(Obstacle::OutOfBudget) } else { Ok(self.rate(arena, *entry)) }
+        };
+        rows.iter().map(|row| row.iter().map(rate).collect()).collect()
+    }
+}
+
+/// The regressor with the fundamental matrix at its initial value: being invertible at all times, it takes
+/// nothing from the rank.
+pub(super) fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let arena = &plant.arena;
+    let identity: BTreeMap<Symbol, Expr> = plant
+        .psi
+        .iter()
+        .enumerate()
+        .flat_map(|(i, row)| row.iter().enumerate().map(move |(j, symbol)| (*symbol, arena.number(i64::from(i == j)))))
+        .collect();
+    phi_1.iter().map(|row| arena.substitute_all(row, &identity)).collect()
+}

@@ -1,0 +1,393 @@
+//! Claim 4, identifiability: the unknowns can be told apart.
+//!
+//! In: the regression. Out: `instant` where `Phi_1` has full column rank at almost every point (shown by a
+//! point at which a rigorous elimination finds it), `excitation` where it has only together with its
+//! time derivatives along the plant, `never` where a direction of the unknowns stays unseen by every
+//! derivative (shown by exact linear algebra). Inputs, and signals without an equation, are free
+//! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
+//! et al. 2015, remark R3).
+
+mod trajectory;
+
+mod crossing;
+mod divided;
+mod excitation;
+mod flow;
+mod singular;
+
+use crate::plant::{Class, Plant};
+use crate::source::{Code, Diagnostic, Span};
+use pebo_cas::domain::reducible::reducible;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::linear::rank::{full_rank, null_vectors, rank_seen};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Arena, Domain, Expr, Symbol};
+
+use self::divided::{Decided, Formulas};
+use self::flow::{Flow, effective, without_psi};
+use self::singular::{Places, Volume};
+use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
+use super::left_inverse::checking::at_phi;
+use super::pencil;
+
+/// Decides how the unknowns are identified.
+pub(super) fn prove(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Identifiability> {
+    let regressor: Vec<Expr> = regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect();
+    let identities: Vec<Expr> = plant.identities.iter().map(|identity| identity.expr).collect();
+    let formulas = Formulas { rates: moving(plant, cascade, &regressor, &identities), regressor, identities };
+    let hidden = plant.hidden();
+    let sees_states = depends_on_states(plant, &formulas, cascade);
+    let concerns = |equation| sees_states || !plant.arena.depends_on(equation, &hidden);
+    if let Some(equation) = reducible(&plant.arena, domain, concerns) {
+        found.push(falls_apart(plant, equation));
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
+    let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
+        where_analytic(plant, domain, cascade, regression, left_inverse, found)
+    };
+    divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
+        .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
+}
+
+/// The rates that the regressor's derivatives hold; all, where they hold inputs, which may have to be what the rates leave
+/// them.
+fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Expr]) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let mut rates = plant.rates();
+    let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };
+    rates.extend(extension.iter().copied().zip(cascade.h.iter().copied()));
+    let lambda: Vec<Expr> = cascade.lambda.iter().flatten().flatten().copied().collect();
+    let held = [regressor, identities, &lambda].concat();
+    let mut reached = arena.symbols_of(&held);
+    let mut open: Vec<Symbol> = reached.iter().copied().collect();
+    while let Some(rate) = open.pop().map(|symbol| rates.get(&symbol)) {
+        let symbols = rate.map(|rate| arena.symbols_of(&[*rate])).unwrap_or_default();
+        open.extend(symbols.into_iter().filter(|symbol| reached.insert(*symbol)));
+    }
+    let needs_all = plant.commanded().any(|input| reached.contains(&input));
+    let own = rates.into_iter().filter(|(symbol, _)| needs_all || reached.contains(symbol)).map(|(_, rate)| rate);
+    own.chain(lambda).collect()
+}
+
+/// Whether the regressor or a derivative of it along the plant depends on the unmeasured states: through the rates of outputs
+/// that it holds. If not, equations that hold states do not restrict its arguments.
+fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> bool {
+    let arena = &plant.arena;
+    let moves = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten());
+    let mut held: Vec<Expr> = formulas.regressor.iter().chain(moves).copied().collect();
+    for _ in 0..=plant.y.len() {
+        let symbols = arena.symbols_of(&held);
+        let rates =
+            plant.y.iter().filter(|output| symbols.contains(&output.symbol)).filter_map(|output| output.rate.as_ref());
+        held.extend(rates.map(|rate| rate.expr));
+    }
+    !arena.symbols_of(&held).is_disjoint(&plant.hidden())
+}
+
+/// A domain of several parts, on one of which a plant may stay.
+fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
+    let zero = plant.arena.print(equation);
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        plant.identities.first().map_or_else(|| at_phi(plant), |identity| identity.span),
+        "the identities hold on several parts of the domain, and a rank at a point of one says nothing of the others",
+    )
+    .label(format!("`{zero} = 0` holds in several ways"))
+    .help("write the factor that is zero under `identities`, or exclude the others under `assume`")
+}
+
+/// Decides it where the formulas are analytic, so that what is seen at a point holds almost everywhere.
+fn where_analytic(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Decided {
+    let (arena, unknowns) = (&plant.arena, regression.eta.len());
+    // Of an implicit regression the rates are part of what multiplies the unknowns.
+    let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
+    let flow = Flow::new(plant, domain, cascade);
+    let mut stack = match &flow {
+        Ok(flow) => effective(arena, flow, &regression.phi_1, &regression.primitive_1),
+        Err(_) if !by_rates => regression.phi_1.clone(),
+        Err(obstacle) => return open(plant, obstacle, found).into(),
+    };
+    let answer = |kind, direction, verdict| Claim {
+        verdict,
+        result: Some(Identifiability {
+            kind,
+            singular_where: Vec::new(),
+            everywhere_else: false,
+            constants: Vec::new(),
+            direction,
+            motion: None,
+            gram: None,
+        }),
+    };
+    if full_rank(arena, domain, &stack, unknowns) {
+        let phi_1 = without_psi(plant, &stack);
+        let (places, gram) =
+            if by_rates { (of_rates(plant, domain, &phi_1), None) } else { excitation::of(plant, domain, &phi_1) };
+        let result = Identifiability {
+            kind: Excitation::Instant,
+            singular_where: places.signals,
+            everywhere_else: places.all,
+            constants: places.constants,
+            direction: None,
+            motion: None,
+            gram,
+        };
+        return Claim { verdict: Verdict::Proved, result: Some(result) }.into();
+    }
+    let mut flow = match flow {
+        Ok(flow) => flow,
+        Err(obstacle) => return open(plant, &obstacle, found).into(),
+    };
+    let excited = || {
+        // What is to be said of motions does not use up what the other claims need.
+        let (motion, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
+        let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
+        if let Some(result) = &mut claim.result {
+            result.motion = Some(motion);
+            result.constants = constants;
+        }
+        claim
+    };
+    if excited_in_motion(plant, domain, cascade, &stack, unknowns) {
+        return excited().into();
+    }
+    let mut latest = stack.clone();
+    let mut unseen = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
+        Ok(unseen) => unseen,
+        Err(obstacle) => return open(plant, &obstacle, found).into(),
+    };
+    for _ in 1..unknowns {
+        latest = match flow.rates(arena, &latest) {
+            Ok(rates) => rates,
+            Err(obstacle) => return open(plant, &obstacle, found).into(),
+        };
+        stack.extend(latest.iter().cloned());
+        if full_rank(arena, domain, &stack, unknowns) {
+            return excited().into();
+        }
+        flow.advance(plant);
+        let next = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
+            Ok(next) => next,
+            Err(obstacle) => return open(plant, &obstacle, found).into(),
+        };
+        // No derivative adds to a rank that one derivative did not raise.
+        let settled = next.directions.len() == unseen.directions.len();
+        unseen = next;
+        if settled {
+            break;
+        }
+    }
+    let Some(direction) = unseen.directions.first().cloned() else {
+        return open(plant, &Obstacle::NoWitness, found).into();
+    };
+    // What is constant along every motion and holds what moves may be another constant elsewhere if it can bend: the quotient
+    // of v and |v|.
+    let bends = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
+    if bends && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
+        return open(plant, &Obstacle::NoWitness, found).into();
+    }
+    // What does not identify functions of theta may identify theta.
+    if !regression.is_linear(plant)
+        && let Some(doubt) = of_theta(plant, domain, &stack, regression, &direction)
+    {
+        found.push(doubt);
+        return Claim { verdict: Verdict::Undecided, result: None }.into();
+    }
+    let refusal = never(plant, domain, &direction, regression, left_inverse);
+    found.push(if unseen.special_values {
+        refusal.note("this holds for the given values of the parameters, not for general values")
+    } else {
+        refusal
+    });
+    Decided {
+        claim: answer(Excitation::Never, Some(direction), Verdict::Refuted),
+        hidden: unseen.directions,
+        rows: stack,
+    }
+}
+
+/// Why theta itself may be identified although its functions are not; none where a direction of theta is provably
+/// unseen by the rows, which are all that the derivatives show.
+fn of_theta(
+    plant: &Plant,
+    domain: &Domain,
+    stack: &[Vec<Expr>],
+    regression: &Regression,
+    direction: &[Expr],
+) -> Option<Diagnostic> {
+    let arena = &plant.arena;
+    let slope = |row: &Vec<Expr>, theta: Symbol| {
+        arena
+            .sum(row.iter().zip(&regression.eta).map(|(factor, eta)| arena.mul(*factor, arena.derivative(*eta, theta))))
+    };
+    let rows: Vec<Vec<Expr>> =
+        stack.iter().map(|row| plant.theta.iter().map(|theta| slope(row, *theta)).collect()).collect();
+    let apart = full_rank(arena, domain, &rows, plant.theta.len());
+    if !apart && null_vectors(arena, domain, &rows, plant.theta.len()).is_ok_and(|vectors| !vectors.is_empty()) {
+        return None;
+    }
+    let eta: Vec<String> = regression.eta.iter().map(|e| arena.print(*e)).collect();
+    let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
+    let doubt = Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "no linear regression was found that identifies the unknowns",
+    )
+    .label(format!("the outputs do not change when ({}) moves along ({})", eta.join(", "), entries.join(", ")));
+    let doubt = if apart {
+        doubt.note(
+            "theta itself can be identified near almost every value, but not by a linear estimator of these functions",
+        )
+    } else {
+        doubt.note("it could not be decided whether theta itself can be identified")
+    };
+    Some(doubt.help(
+        "take the products of states that occur in the rates as components of phi: if their own rates are linear in phi \
+         again, the cascade is a generalised one and the regression is linear",
+    ))
+}
+
+/// Where a regressor with the rates of outputs in it loses rank: what parameters and signals alone make zero. What states
+/// make zero is no place that an observer could know.
+fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
+    let arena = &plant.arena;
+    let found = || Volume::of(arena, domain, rows)?.places(plant, domain);
+    let Places { signals, zeros, constants, all, together } = arena.budget().share(8, found).unwrap_or_default();
+    let hidden = plant.hidden();
+    let (known, other): (Vec<_>, Vec<_>) =
+        signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));
+    let (signals, zeros) = known.into_iter().unzip();
+    Places { signals, zeros, constants, all: all && other.is_empty(), together }
+}
+
+/// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
+fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
+    let arena = &plant.arena;
+    let Ok(mut flow) = Flow::new(plant, domain, cascade) else { return false };
+    let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
+    let mut rank = rank_seen(arena, domain, &stack, unknowns);
+    for _ in 1..unknowns {
+        let Ok(rates) = flow.rates(arena, &latest) else { return false };
+        latest = rates;
+        stack.extend(latest.iter().cloned());
+        let next = rank_seen(arena, domain, &stack, unknowns);
+        // No derivative adds to a rank that one derivative did not raise.
+        if next == rank || next == unknowns {
+            return next == unknowns;
+        }
+        rank = next;
+        flow.advance(plant);
+    }
+    false
+}
+
+/// Whether formulas hold what moves: all but the parameters and signals whose rate is zero.
+fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -> bool {
+    let arena = &plant.arena;
+    let Ok(flow) = Flow::new(plant, domain, cascade) else { return true };
+    let rests = |symbol: Symbol| decide(arena, flow.rate(arena, arena.of_symbol(symbol)), domain).is_zero();
+    arena.symbols_of(formulas).into_iter().any(|symbol| !rests(symbol))
+}
+
+/// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
+/// parameters where these values are nothing special.
+fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Unseen, Obstacle> {
+    let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &domain.fixed)).collect();
+    let special = null_vectors(arena, domain, &valued, columns)?;
+    let general = null_vectors(arena, domain, rows, columns)?;
+    let special_values = special.len() > general.len();
+    Ok(Unseen { directions: if special_values { special } else { general }, special_values })
+}
+
+/// Directions of the unknowns that no row sees.
+struct Unseen {
+    directions: Vec<Vec<Expr>>,
+    /// Whether other values of the parameters leave fewer.
+    special_values: bool,
+}
+
+fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Claim<Identifiability> {
+    found.push(
+        Diagnostic::error(
+            Code::IdentifiabilityUndecided,
+            at_phi(plant),
+            "it could not be decided whether the unknowns can be identified",
+        )
+        .note(format!("obstacle: {obstacle}"))
+        .help("give the parameters values, or state signs under `assume`"),
+    );
+    Claim { verdict: Verdict::Undecided, result: None }
+}
+
+/// The regression leaves unknowns unseen, but there are equations that it could not use.
+pub(super) fn not_all_used(plant: &Plant) -> Diagnostic {
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "it could not be decided whether the unknowns can be identified",
+    )
+    .note("this regression does not identify all unknowns, but it leaves outputs or identities of the plant unused")
+    .help("measure another output, or write what relates phi to the outputs under `identities`")
+}
+
+fn never(
+    plant: &Plant,
+    domain: &Domain,
+    direction: &[Expr],
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+) -> Diagnostic {
+    let arena = &plant.arena;
+    let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
+    let linear = regression.eta.iter().all(|e| arena.as_symbol(*e).is_some_and(|s| plant.theta.contains(&s)));
+    let unknown = if linear { "theta" } else { "eta" };
+    let moving = regression.eta.iter().zip(direction).filter(|(_, d)| linear && !arena.is_zero(**d));
+    let component = |e: Expr| plant.theta.iter().position(|theta| arena.as_symbol(e) == Some(*theta));
+    let moving: Vec<Span> = moving.filter_map(|(e, _)| Some(plant.phi.get(component(*e)?)?.span)).collect();
+    let (first, others) = moving.split_first().map_or((at_phi(plant), &[][..]), |(first, rest)| (*first, rest));
+    let diagnostic =
+        Diagnostic::error(Code::NeverIdentifiable, first, format!("no input and no trajectory identifies {unknown}"));
+    let diagnostic =
+        others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(*other, "together with this component"));
+    let mut diagnostic =
+        diagnostic.label(format!("the outputs do not change when {unknown} moves along ({})", entries.join(", ")));
+    if linear && let Some(left_inverse) = left_inverse {
+        let harmless = left_inverse.x.iter().all(|(_, formula)| {
+            let slope = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(*formula, *z), *d));
+            decide(arena, arena.sum(slope), domain).is_zero()
+        });
+        diagnostic = diagnostic.note(if harmless {
+            "the states do not change along this direction: phi_left cancels it, so x is recoverable although theta is not"
+        } else {
+            "the states change along this direction, so x cannot be recovered either"
+        });
+        if harmless {
+            return diagnostic.help("drop the redundant components of phi");
+        }
+    }
+    let blind = match &plant.class {
+        Some(Class::Linear(linear)) => pencil::blindness(plant, domain, linear).ok().flatten(),
+        _ => None,
+    };
+    match blind {
+        Some(blind) => diagnostic
+            .note(blind)
+            .note("the cascade exists, but theta needs an observable plant (Proposition 2, claims C2 and C3)")
+            .help("measure another output"),
+        None => diagnostic.help("measure another output, or choose another phi"),
+    }
+}

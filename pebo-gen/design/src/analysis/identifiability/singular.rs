@@ -1,0 +1,411 @@
+//! Where a regressor loses rank, as conditions a reader can check.
+//!
+//! In: `Phi_1` of full generic column rank. Out: the zero set of det(`Phi_1`' `Phi_1`) by factors, each
+//! solved for a signal where it is linear in one (`d = 1`); factors that the assumptions keep from zero are left out,
+//! and those without signals come apart.
+//!
+//! What rows and columns have in common as they are written is taken out first. A zero of what is left is one of the
+//! determinant only where its denominator does not vanish too: a denominator with a root or a magnitude is made
+//! rational by a factor that both then have, as in `(1 - |w|)/(1 - w^2)`, which is never zero.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::plant::Plant;
+use pebo_cas::linear::Echelon;
+use pebo_cas::linear::determinant::determinant;
+use pebo_cas::poly::Poly;
+use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::{Arena, Domain, Expr, Facts, Node, Rational, Relation, Symbol};
+
+/// Where a determinant vanishes.
+#[derive(Default)]
+pub(super) struct Places {
+    /// Conditions on signals, each of which makes it vanish.
+    pub signals: Vec<String>,
+    /// What is zero there, in the same order.
+    pub zeros: Vec<Expr>,
+    /// Combinations of the parameters that make it vanish, of which no sign is known: nothing that a signal could mend.
+    pub constants: Vec<Expr>,
+    /// Whether there is no other place.
+    pub all: bool,
+    /// Whether values of the parameters are not excluded that make a factor vanish at all signals, by several equations.
+    pub together: bool,
+}
+
+impl Places {
+    /// Whether it vanishes nowhere.
+    pub(super) fn are_none(&self) -> bool {
+        self.all && self.signals.is_empty() && self.constants.is_empty()
+    }
+}
+
+/// The root of det(`Phi_1`' `Phi_1`) for a square regressor, that itself for any other: powers of what was taken out, and
+/// the determinant of the rest.
+pub(super) struct Volume<'a> {
+    arena: &'a Arena,
+    field: Field<'a>,
+    powers: Vec<(Expr, Rational)>,
+    rest: Vec<Vec<Expr>>,
+    core: Fraction,
+    /// Whether this is the root.
+    pub square: bool,
+}
+
+impl<'a> Volume<'a> {
+    /// The volume of a regressor with as many rows as columns or more.
+    pub(super) fn of(arena: &'a Arena, domain: &Domain, phi_1: &[Vec<Expr>]) -> Result<Self, Obstacle> {
+        let columns = phi_1.first().map_or(0, Vec::len);
+        let square = phi_1.len() == columns;
+        let (rest, mut powers) = without_common_factors(arena, phi_1, square);
+        let bases = powers.iter().map(|(base, _)| *base);
+        let field = Field::on(arena, domain, &rest.iter().flatten().copied().chain(bases).collect::<Vec<_>>())?;
+        let core = core_of(&field, &rest)?;
+        if !square {
+            for (_, power) in &mut powers {
+                *power = &*power + &*power;
+            }
+        }
+        Ok(Self { arena, field, powers, rest, core, square })
+    }
+
+    /// As an expression, in factors.
+    pub(super) fn shown(&self) -> Expr {
+        let core = self.field.show_factored(&self.core);
+        let powers = self.powers.iter().map(|(base, power)| (self.split(*base).unwrap_or(*base), power.clone()));
+        self.arena.multiply(&Rational::ONE, powers.chain([(core, Rational::ONE)]))
+    }
+
+    /// A polynomial in factors, if it has several.
+    fn split(&self, base: Expr) -> Option<Expr> {
+        let fraction = self.field.fraction(base).ok()?;
+        let parts = fraction.numerator().factored(self.field.limit()).ok()?;
+        (fraction.denominator().is_constant() && parts.factors.len() > 1).then(|| self.field.show_factored(&fraction))
+    }
+
+    /// Where it vanishes.
+    pub(super) fn places(&self, plant: &Plant, domain: &Domain) -> Result<Places, Obstacle> {
+        let mut places = Places { all: true, ..Places::default() };
+        for (base, power) in &self.powers {
+            if !power.is_negative() {
+                self.zeros_of(&self.field.fraction(*base)?, &[vec![*base]], plant, domain, &mut places)?;
+            }
+        }
+        self.zeros_of(&self.core, &self.rest, plant, domain, &mut places)?;
+        Ok(places)
+    }
+
+    /// Adds the zeros of a fraction, which is the determinant of a matrix as it is written.
+    fn zeros_of(
+        &self,
+        fraction: &Fraction,
+        written: &[Vec<Expr>],
+        plant: &Plant,
+        domain: &Domain,
+        places: &mut Places,
+    ) -> Result<(), Obstacle> {
+        let field = &self.field;
+        let open = |factor: &Poly| -> Result<bool, Obstacle> {
+            let formula = field.show(&field.of_polynomial(factor)?);
+            let is_known =
+                || domain.implies(self.arena, formula, Relation::NonZero) || self.contradicts(formula, domain);
+            Ok(!field.signs().never_zero(factor) && !is_known())
+        };
+        let mut shared = false;
+        for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
+            if !open(&factor)? {
+                continue;
+            }
+            if field.may_vanish_together(&factor, fraction.denominator())? {
+                shared = true;
+            } else {
+                self.add(&factor, plant, domain, places)?;
+            }
+        }
+        if !shared {
+            return Ok(());
+        }
+        // Where the fraction vanishes, the denominator of its inverse does.
+        let inverse = field.div(&Fraction::one(), fraction)?;
+        for (factor, _) in inverse.denominator().factored(field.limit())?.factors {
+            if !open(&factor)? {
+                continue;
+            }
+            let there = self.solved(&factor, plant)?.and_then(|(kernel, value)| {
+                let signal = self.arena.as_symbol(kernel)?;
+                // As it is written: the fraction has no value there.
+                let values = BTreeMap::from([(signal, value)]);
+                let rows: Vec<_> = written.iter().map(|row| self.arena.substitute_all(row, &values)).collect();
+                let there = Field::over(self.arena, &domain.facts, &rows.concat()).ok()?;
+                let value = core_of(&there, &rows).ok()?;
+                Some((value.is_zero(), there.show(&value)))
+            });
+            match there {
+                Some((true, _)) => self.add(&factor, plant, domain, places)?,
+                Some((false, there)) if domain.implies(self.arena, there, Relation::NonZero) => {}
+                _ => places.all = false,
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a polynomial is zero nowhere, as far as the assumptions tell.
+    fn never_zero(&self, poly: &Poly, domain: &Domain) -> Result<bool, Obstacle> {
+        let formula = self.field.show(&self.field.of_polynomial(poly)?);
+        Ok(self.field.signs().never_zero(poly)
+            || domain.implies(self.arena, formula, Relation::NonZero)
+            || self.contradicts(formula, domain))
+    }
+
+    /// Whether what is assumed not to be zero would be where a formula is: it divides the square of that, as `cos(q) - 1`
+    /// divides `sin(q)^2`.
+    fn contradicts(&self, formula: Expr, domain: &Domain) -> bool {
+        let arena = self.arena;
+        let symbols = arena.symbols_of(&[formula]);
+        let divides = |fact: Expr| -> Result<bool, Obstacle> {
+            let square = arena.mul(fact, fact);
+            let field = Field::over(arena, &Facts::default(), &[formula, square])?;
+            let (formula, square) = (field.fraction(formula)?, field.fraction(square)?);
+            let whole = square.denominator().is_constant();
+            Ok(whole && square.numerator().div_exact(formula.numerator(), field.limit())?.is_some())
+        };
+        let mut facts = domain.facts.iter().filter(|(fact, relation)| {
+            *relation != Relation::NonNegative && symbols.is_superset(&arena.symbols_of(&[*fact]))
+        });
+        facts.any(|(fact, _)| divides(fact).unwrap_or(false))
+    }
+
+    /// Adds the zeros of a factor.
+    fn add(&self, factor: &Poly, plant: &Plant, domain: &Domain, places: &mut Places) -> Result<(), Obstacle> {
+        let formula = self.field.show(&self.field.of_polynomial(factor)?);
+        if self.arena.symbols_of(&[formula]).is_subset(&constants(plant)) {
+            if !places.constants.contains(&formula) {
+                places.constants.push(formula);
+            }
+            return Ok(());
+        }
+        places.together |= self.may_be_nothing(factor, plant, domain)?;
+        let place = match self.solved(factor, plant)? {
+            Some((kernel, value)) => format!("{} = {}", self.arena.print(kernel), self.arena.print(value)),
+            None => format!("{} = 0", self.arena.print(formula)),
+        };
+        if !places.signals.contains(&place) {
+            places.signals.push(place);
+            places.zeros.push(formula);
+        }
+        Ok(())
+    }
+
+    /// Whether parameters may make all coefficients of a factor, as a polynomial in what varies, zero.
+    fn may_be_nothing(&self, factor: &Poly, plant: &Plant, domain: &Domain) -> Result<bool, Obstacle> {
+        let constants = constants(plant);
+        let varies = |v: &u32| !self.arena.symbols_of(&[self.field.kernel(*v)]).is_subset(&constants);
+        let moving: Vec<u32> = factor.variables().iter().copied().filter(varies).collect();
+        let coefficients: Vec<Poly> = factor.collect(&moving).into_iter().map(|(_, coefficient)| coefficient).collect();
+        for coefficient in &coefficients {
+            if self.never_zero(coefficient, domain)? {
+                return Ok(false);
+            }
+        }
+        // `k - m` and `k + m` vanish together only where k does.
+        let monomials: BTreeSet<_> = coefficients.iter().flat_map(|poly| poly.terms().map(|(m, _)| m)).collect();
+        let number = |poly: &Poly, monomial| {
+            poly.coefficient(monomial)
+                .map_or(Fraction::zero(), |value| Fraction::constant(&Rational::from(value.clone())))
+        };
+        let row = |poly: &Poly| monomials.iter().map(|monomial| number(poly, monomial)).collect();
+        let (reduced, _) = Echelon::of(&self.field, coefficients.iter().map(row).collect(), monomials.len())?;
+        for (_, row) in reduced.rows() {
+            let mut sum = Fraction::zero();
+            for (value, monomial) in row.iter().zip(&monomials) {
+                let power = self.field.of_polynomial(&Poly::from_terms([(monomial.clone(), 1.into())])?)?;
+                sum = self.field.add(&sum, &self.field.mul(value, &power)?)?;
+            }
+            if self.never_zero(sum.numerator(), domain)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// A signal, or a function of it, and the one value at which a factor vanishes, if it is linear in that and nothing
+    /// else in it varies.
+    fn solved(&self, factor: &Poly, plant: &Plant) -> Result<Option<(Expr, Expr)>, Obstacle> {
+        let constants = constants(plant);
+        let varies = |v: &u32| !self.arena.symbols_of(&[self.field.kernel(*v)]).is_subset(&constants);
+        let moving: Vec<u32> = factor.variables().iter().copied().filter(varies).collect();
+        let [variable] = moving.as_slice() else { return Ok(None) };
+        if factor.degree(*variable) != 1 {
+            return Ok(None);
+        }
+        let mut slope = Poly::zero();
+        let mut rest = Poly::zero();
+        for (power, coefficient) in factor.coefficients_in(*variable) {
+            if power == 1 { slope = coefficient } else { rest = coefficient }
+        }
+        // Where the slope vanishes, the factor may be zero at every value.
+        if !self.field.signs().never_zero(&slope) {
+            return Ok(None);
+        }
+        Ok(Some((self.field.kernel(*variable), self.field.show(&self.field.quotient(&-&rest, &slope)?))))
+    }
+}
+
+/// The determinant of a square matrix, of any other that of `M' M`.
+fn core_of(field: &Field<'_>, matrix: &[Vec<Expr>]) -> Result<Fraction, Obstacle> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let rows = matrix
+        .iter()
+        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>())
+        .collect::<Result<Vec<_>, _>>()?;
+    determinant(field, if rows.len() == columns { rows } else { gram(field, &rows, columns)? })
+}
+
+fn constants(plant: &Plant) -> BTreeSet<Symbol> {
+    plant.parameters.iter().map(|p| p.symbol).collect()
+}
+
+/// The matrix without the factors that all entries of a column have as they are written, and of a square matrix those of
+/// the rows, with the powers that were taken out.
+fn without_common_factors(
+    arena: &Arena,
+    matrix: &[Vec<Expr>],
+    rows_too: bool,
+) -> (Vec<Vec<Expr>>, Vec<(Expr, Rational)>) {
+    let mut rest = matrix.to_vec();
+    let mut powers = Vec::new();
+    if rows_too {
+        for row in &mut rest {
+            powers.extend(take_common(arena, row));
+        }
+    }
+    for column in 0..rest.first().map_or(0, Vec::len) {
+        let mut entries: Vec<Expr> = rest.iter().map(|row| row[column]).collect();
+        powers.extend(take_common(arena, &mut entries));
+        for (row, entry) in rest.iter_mut().zip(entries) {
+            row[column] = entry;
+        }
+    }
+    (rest, powers)
+}
+
+/// Takes out of the entries that are not zero what they have in common.
+fn take_common(arena: &Arena, entries: &mut [Expr]) -> Vec<(Expr, Rational)> {
+    let mut factors = entries.iter().filter(|e| !arena.is_zero(**e)).map(|e| factors(arena, *e));
+    let Some(mut common) = factors.next() else { return Vec::new() };
+    for factors in factors {
+        common.retain_mut(|(base, power)| {
+            let other = factors.iter().find(|(other, _)| other == base);
+            // Only powers of one sign: of others nothing is common.
+            match other.filter(|(_, other)| other.is_negative() == power.is_negative()) {
+                Some((_, other)) => {
+                    if other.abs() < power.abs() {
+                        *power = other.clone();
+                    }
+                    true
+                }
+                None => false,
+            }
+        });
+    }
+    for entry in entries.iter_mut().filter(|e| !arena.is_zero(**e)) {
+        let inverse = common.iter().map(|(base, power)| (*base, -power));
+        *entry = arena.multiply(&Rational::ONE, inverse.chain([(*entry, Rational::ONE)]));
+    }
+    common
+}
+
+/// The factors of a product as it is written.
+fn factors(arena: &Arena, expr: Expr) -> Vec<(Expr, Rational)> {
+    match arena.node(expr) {
+        Node::Product(product) => product.factors.clone(),
+        Node::Number(_) => Vec::new(),
+        _ => vec![(expr, Rational::ONE)],
+    }
+}
+
+/// `Phi' Phi`
+pub(super) fn gram(
+    field: &Field<'_>,
+    matrix: &[Vec<Fraction>],
+    columns: usize,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+    let mut gram = vec![vec![Fraction::zero(); columns]; columns];
+    for i in 0..columns {
+        for j in i..columns {
+            let mut entry = Fraction::zero();
+            for row in matrix {
+                entry = field.add(&entry, &field.mul(&row[i], &row[j])?)?;
+            }
+            gram[j][i] = entry.clone();
+            gram[i][j] = entry;
+        }
+    }
+    Ok(gram)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::{Derivation, Positive};
+    use crate::model::Model;
+    use crate::plant::Plant;
+    use crate::source::Source;
+
+    /// Where the regressor of p' and q' as functions of a and b, with b in q', loses rank; the root of the determinant.
+    fn of(assume: &str, rate: &str) -> String {
+        of_both(assume, [rate, "b"])
+    }
+
+    /// The same for a q' of any kind.
+    fn of_both(assume: &str, [rate, other]: [&str; 2]) -> String {
+        let text = format!(
+            "model: m\nparameters: [k, l]\nx: [a, b]\ny: [p, q, w]\nu: [d, e]\nassume: [{assume}]\n\
+             f_x: {{a: d, b: e}}\nf_y: {{p: {rate}, q: {other}, w: d}}\nphi: [a, b]\n"
+        );
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let derivation = Derivation::derive(&plant);
+        let result = derivation.identifiability.result.as_ref().expect("identifiable");
+        let gram = result.gram.as_ref().expect("a determinant");
+        let positive = gram.positive == Some(Positive::Assumed);
+        let constants: Vec<String> = result.constants.iter().map(|e| plant.arena.print(*e)).collect();
+        assert!(result.everywhere_else, "{rate}");
+        assert_eq!(positive, result.singular_where.is_empty() && constants.is_empty(), "{rate}");
+        let all = [result.singular_where.clone(), constants.iter().map(|e| format!("{e} != 0")).collect()].concat();
+        format!("{} | {}", all.join(", "), plant.arena.print(gram.determinant))
+    }
+
+    #[test]
+    fn factors_are_told_apart_and_those_that_do_not_vanish_are_dropped() {
+        let phases = "(1 - d)*(1 - e)*a";
+        assert_eq!(of("k > 0", phases), "d = 1, e = 1 | (1 - d)^2*(1 - e)^2");
+        assert_eq!(of("0 < d < 1", phases), "e = 1 | (1 - d)^2*(1 - e)^2");
+        assert_eq!(of("0 < d < 1, 0 < e < 1", phases), " | (1 - d)^2*(1 - e)^2");
+        // As it comes out of sums.
+        assert_eq!(of("0 < d < 1", "(1 - d - e + d*e)*a + d*b"), "e = 1 | (1 - d)^2*(e - 1)^2");
+        assert_eq!(of("k > 0", "(d^2 - e^2)*a"), "d + e = 0, d - e = 0 | (d + e)^2*(d - e)^2");
+        // A quotient stays as it is written.
+        assert_eq!(of("d > 0", "(1 - 1/d^2)*a"), "d = 1 | (1 - 1/d^2)^2");
+        // Of powers the least is common.
+        let powers = of_both("k > 0", ["(1 - d)^2*a + (1 - d)*b", "a + b"]);
+        assert_eq!(powers, "d = 0, d = 1 | d^2*(d - 1)^2");
+        // The sine would be zero there too.
+        assert!(of("sin(d) > 0", "(1 - cos(d))*a").starts_with(" | "));
+        assert!(of("cos(d) > 0", "(1 - cos(d))*a").starts_with("cos(d) = 1 | "));
+        // Parameters alone are no signal's business.
+        assert_eq!(of("d > 0", "d*(k - l)*a"), "k - l != 0 | d^2*(k - l)^2");
+    }
+
+    #[test]
+    fn what_a_denominator_takes_away_is_no_place() {
+        for (rate, determinant) in
+            [("a/(1 + abs(w))", "1/(abs(w) + 1)^2"), ("a/(1 + sqrt(1 + w^2))", "1/(sqrt(w^2 + 1) + 1)^2")]
+        {
+            assert_eq!(of("k > 0", rate), format!(" | {determinant}"));
+        }
+        assert!(of("k > 0", "(1 + 1/(1 + abs(w)))*a").starts_with(" | "));
+        assert!(of("k > 0", "(1 - abs(w))*a").starts_with("abs(w) = 1 | "));
+        assert!(of("w > 0", "(sqrt(w) - 2)*a").starts_with("sqrt(w) = 2 | "));
+        // 1/(1 + |w|) - 1/2 vanishes at both.
+        let both = of("k > 0", "(1/(1 + abs(w)) - 1/2)*a");
+        assert!(both.contains("w = 1") && both.contains("w = -1"), "{both}");
+    }
+}

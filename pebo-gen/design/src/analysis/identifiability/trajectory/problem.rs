@@ -1,0 +1,121 @@
+//! The one question about a motion: which directions of the unknowns no derivative of the rows shows on it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::analysis::design::{Cascade, Regression};
+use crate::analysis::identifiability::flow::{Flow, effective, without_psi};
+use crate::plant::Plant;
+use pebo_cas::linear::rank::{null_vectors, rank_seen};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Arena, Domain, Expr, Symbol};
+
+/// Parts of the rows with their derivatives up to which directions are solved for.
+pub(super) const MOST_PARTS: usize = 600;
+
+/// A question about motions of a plant.
+pub(super) struct Question<'a> {
+    pub(super) plant: &'a Plant,
+    pub(super) domain: &'a Domain,
+    pub(super) cascade: &'a Cascade,
+    pub(super) regression: &'a Regression,
+    pub(super) unknowns: usize,
+}
+
+/// What is asked of a motion at all times.
+#[derive(Default)]
+pub(super) struct Restriction {
+    /// Signals that do not move.
+    pub(super) held: BTreeSet<Symbol>,
+    /// Inputs as functions of others.
+    pub(super) equal: BTreeMap<Symbol, Expr>,
+}
+
+/// What the rows with their derivatives show on a motion.
+pub(super) struct Shown {
+    /// Rows that show as much as all derivatives do.
+    pub(super) stack: Vec<Vec<Expr>>,
+    /// Directions that they do not show.
+    pub(super) hidden: Vec<Vec<Expr>>,
+}
+
+impl Question<'_> {
+    /// What the rows with their derivatives show on the motions that a restriction leaves.
+    pub(super) fn shown(&self, restriction: &Restriction) -> Result<Shown, Obstacle> {
+        let &Self { plant, domain, cascade, regression, unknowns } = self;
+        let arena = &plant.arena;
+        let domain = if restriction.equal.is_empty() {
+            domain.clone()
+        } else {
+            domain.restricted(arena, &restriction.equal).ok_or(Obstacle::NoPoint)?
+        };
+        let mut flow = Flow::along(plant, &domain, cascade, &restriction.held, &restriction.equal)?;
+        let there = |rows: &[Vec<Expr>]| -> Vec<Vec<Expr>> {
+            rows.iter().map(|row| arena.substitute_all(row, &restriction.equal)).collect()
+        };
+        let (phi_1, primitive_1) = (there(&regression.phi_1), there(&regression.primitive_1));
+        let mut latest = effective(arena, &flow, &phi_1, &primitive_1);
+        let mut stack = without_psi(plant, &latest);
+        let mut rank = rank_seen(arena, &domain, &stack, unknowns);
+        let mut hidden = None;
+        for _ in 1..unknowns {
+            if rank == unknowns {
+                break;
+            }
+            let before = stack.clone();
+            latest = flow.rates(arena, &latest)?;
+            stack.extend(without_psi(plant, &latest));
+            let next = rank_seen(arena, &domain, &stack, unknowns);
+            if next == rank {
+                if arena.postorder(&stack.concat()).len() > MOST_PARTS {
+                    return Err(Obstacle::TooLarge);
+                }
+                // No derivative adds to a rank that one derivative did not raise: by exact algebra, both times.
+                let vectors = null_vectors(arena, &domain, &stack, unknowns)?;
+                if vectors.len() == null_vectors(arena, &domain, &before, unknowns)?.len() {
+                    hidden = Some(vectors);
+                    break;
+                }
+            }
+            rank = next;
+            flow.advance(plant);
+        }
+        let hidden = match hidden {
+            Some(hidden) => hidden,
+            None if rank == unknowns => Vec::new(),
+            // As many derivatives as there are unknowns show all that any do.
+            None if arena.postorder(&stack.concat()).len() > MOST_PARTS => return Err(Obstacle::TooLarge),
+            None => null_vectors(arena, &domain, &stack, unknowns)?,
+        };
+        if hidden.is_empty() && rank < unknowns {
+            return Err(Obstacle::NoWitness);
+        }
+        Ok(Shown { stack, hidden })
+    }
+
+    /// What is shown where all inputs are constant, and an input or parameter has a value.
+    pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Shown, Obstacle> {
+        let held = self.plant.commanded().filter(|input| *input != symbol).collect();
+        self.shown(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
+    }
+}
+
+/// What is seen of the unknowns where these directions are not: combinations that do not change along them. Each direction
+/// has a component that is one, and zero in the others.
+pub(crate) fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+    let own = |index: usize| {
+        (0..symbols.len()).find(|&column| {
+            let entry = |(other, vector): (usize, &Vec<Expr>)| {
+                vector[column] == if other == index { arena.one() } else { arena.zero() }
+            };
+            hidden.iter().enumerate().all(entry)
+        })
+    };
+    let free: Vec<Option<usize>> = (0..hidden.len()).map(own).collect();
+    let combination = |column: usize| {
+        let moved = hidden.iter().zip(&free).filter_map(|(vector, free)| {
+            Some(arena.neg(arena.mul(vector[column], arena.of_symbol(symbols[(*free)?]))))
+        });
+        arena.sum(moved.chain([arena.of_symbol(symbols[column])]))
+    };
+    (0..symbols.len()).filter(|column| !free.contains(&Some(*column))).map(combination).collect()
+}

@@ -1,0 +1,134 @@
+//! What has to move, and where the regression is blind, in sentences.
+
+use crate::analysis::design::{Blind, Motion, Place};
+use crate::plant::Plant;
+use pebo_cas::Expr;
+use pebo_cas::domain::cells::Side;
+
+impl Motion {
+    /// Whether there are parts of the domain in which not all unknowns are seen.
+    pub fn is_divided(&self) -> bool {
+        self.blind.iter().any(|blind| matches!(blind.place, Place::Part(_)))
+    }
+
+    /// What has to move, in a line, and where the regression is blind, in a line each.
+    pub fn lines(&self, plant: &Plant) -> Vec<String> {
+        let first = match (self.by_itself, self.at_rest, self.everywhere) {
+            _ if self.is_divided() => self.of_parts(),
+            (Some(true), true, true) if self.blind.is_empty() => {
+                "the unknowns are identified without excitation by the inputs, even at rest"
+            }
+            (Some(true), true, true)
+                if self.blind.iter().all(|blind| matches!(blind.place, Place::UnshownAtRest(_))) =>
+            {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
+            }
+            (Some(true), true, true) => {
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
+            }
+            (Some(true), true, false) => {
+                "the unknowns are identified without excitation by the inputs on almost every motion, and almost wherever \
+                 the plant rests"
+            }
+            (Some(true), false, true) => "the unknowns are identified while the plant moves, also with constant inputs",
+            (Some(true), false, false) => {
+                "the unknowns are identified on almost every motion, also with constant inputs"
+            }
+            (Some(false), ..) => "the unknowns are identified under excitation: keep the inputs varying",
+            (None, ..) => {
+                "the unknowns are identified on almost every motion; it was not decided whether the inputs have to vary"
+            }
+        };
+        let blind = self.blind.iter().map(|blind| blind.line(plant));
+        let parameters = (!self.parameters && !plant.parameters.is_empty())
+            .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
+        std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
+    }
+
+    /// The first line where there are parts of the domain in which not all unknowns are seen.
+    fn of_parts(&self) -> &'static str {
+        match (self.by_itself, self.at_rest) {
+            (Some(true), true) => {
+                "the unknowns are identified on almost every motion that does not stay where one of these holds"
+            }
+            (Some(true), false) => {
+                "the unknowns are identified on almost every motion that neither rests nor stays where one of these holds"
+            }
+            (Some(false), _) => {
+                "the unknowns are identified under excitation that does not stay where one of these holds: keep the inputs \
+                 varying"
+            }
+            (None, _) => {
+                "the unknowns are identified on almost every motion that does not stay where one of these holds; it was not \
+                 decided whether the inputs have to vary"
+            }
+        }
+    }
+}
+
+impl Blind {
+    /// The motion.
+    pub fn place(&self, plant: &Plant) -> String {
+        self.worded(plant).replace('`', "")
+    }
+
+    /// The motion, with formulas as code.
+    fn worded(&self, plant: &Plant) -> String {
+        self.place.worded(plant)
+    }
+
+    fn line(&self, plant: &Plant) -> String {
+        let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        if self.place.is_undecided() {
+            return format!("while {}, it was not decided what is identified", self.worded(plant));
+        }
+        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
+        format!("while {}, {seen} is identified", self.worded(plant))
+    }
+}
+
+impl Place {
+    /// The motion, with formulas as code.
+    fn worded(&self, plant: &Plant) -> String {
+        let arena = &plant.arena;
+        match self {
+            Place::Rest => "the plant rests".to_owned(),
+            Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
+                "all inputs are constant".to_owned()
+            }
+            Place::Constant(inputs) => {
+                let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", arena.name(*input))).collect();
+                format!("{} is constant", names.join(", "))
+            }
+            Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+            Place::Steady(symbol, value) => {
+                let others = match (plant.u.contains(symbol), plant.commanded().count()) {
+                    (true, 0 | 1) | (false, 0) => "",
+                    (true, 2) => "the other input is constant and ",
+                    (true, _) => "the other inputs are constant and ",
+                    (false, 1) => "the input is constant and ",
+                    (false, _) => "the inputs are constant and ",
+                };
+                format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
+            }
+            Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
+            Place::UnshownAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
+            Place::Part(sides) => on_sides(plant, sides),
+            Place::Within(sides, place) => format!("{} and {}", on_sides(plant, sides), place.worded(plant)),
+        }
+    }
+
+    /// Whether what is seen there was not decided.
+    fn is_undecided(&self) -> bool {
+        match self {
+            Self::Unshown(_) | Self::UnshownAtRest(_) => true,
+            Self::Within(_, place) => place.is_undecided(),
+            _ => false,
+        }
+    }
+}
+
+fn on_sides(plant: &Plant, sides: &[(Expr, Side)]) -> String {
+    let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", plant.arena.print(*expr), side.sign());
+    sides.iter().map(side).collect::<Vec<_>>().join(" and ")
+}

@@ -1,0 +1,164 @@
+//! The author's identities: whether they can hold, and keep holding along the plant.
+//!
+//! In: the plant. Out: the verdict. All other claims are made on the manifold of the identities, so they say nothing if it
+//! has no point, and nothing of the plant if its trajectories leave it.
+
+use std::collections::BTreeSet;
+
+use crate::plant::{Formula, Output, Plant};
+use crate::source::{Code, Diagnostic};
+use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
+
+use super::design::{Verdict, Witness};
+
+/// Proves or refutes that the identities have a common point, and that the plant stays where they hold.
+pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Verdict {
+    let arena = &plant.arena;
+    let Some(first) = plant.identities.first() else { return Verdict::Proved };
+    let everywhere = domain.everywhere();
+    let signed = |identity: &&Formula| {
+        let opposite = arena.neg(identity.expr);
+        [identity.expr, opposite].iter().any(|side| everywhere.implies(arena, *side, Relation::Positive))
+    };
+    if let Some(identity) = plant.identities.iter().find(signed) {
+        found.push(
+            Diagnostic::error(Code::IdentityRefuted, identity.span, "this identity holds nowhere")
+                .label("this expression is never zero")
+                .help("correct the identity: it has to be an expression that is zero by physics"),
+        );
+        return Verdict::Refuted;
+    }
+    let all: Vec<_> = plant.identities.iter().map(|identity| identity.expr).collect();
+    if domain.points(arena, &all).next().is_none() {
+        let last = plant.identities.last().unwrap_or(first);
+        found.push(
+            Diagnostic::error(
+                Code::IdentityUndecided,
+                first.span.to(last.span),
+                "no values were found that satisfy the identities and the assumptions",
+            )
+            .note("claims about an empty set of values say nothing")
+            .help(
+                "check that they do not exclude one another, and that each identity can be solved for one of its names",
+            ),
+        );
+        return Verdict::Undecided;
+    }
+    let mut verdict = Verdict::Proved;
+    for identity in &plant.identities {
+        let (answer, refusal) = kept(plant, domain, identity);
+        found.extend(refusal);
+        if verdict != Verdict::Refuted && answer != Verdict::Proved {
+            verdict = answer;
+        }
+    }
+    verdict
+}
+
+/// The derivative of an identity along the plant; none where it takes the rate of a signal that has none.
+fn derivative(plant: &Plant, domain: &Domain, identity: &Formula) -> Option<Expr> {
+    let arena = &plant.arena;
+    let rates = plant.rates();
+    let unruled = |symbol: &Symbol| {
+        let constant = plant.parameters.iter().any(|parameter| parameter.symbol == *symbol);
+        // What the identity does not vary with on its manifold may have any rate.
+        !constant
+            && !rates.contains_key(symbol)
+            && !decide(arena, arena.derivative(identity.expr, *symbol), domain).is_zero()
+    };
+    let symbols: BTreeSet<Symbol> = arena.symbols_of(&[identity.expr]);
+    (!symbols.iter().any(unruled)).then(|| arena.directional(identity.expr, &rates))
+}
+
+/// Whether the identity keeps holding. Where it binds a signal without a rate, it says what that rate is.
+fn kept(plant: &Plant, domain: &Domain, identity: &Formula) -> (Verdict, Option<Diagnostic>) {
+    let arena = &plant.arena;
+    let Some(rate) = derivative(plant, domain, identity) else { return (Verdict::Proved, None) };
+    match decide(arena, rate, domain) {
+        Answer::Zero => (Verdict::Proved, None),
+        Answer::NonZero(point) => (Verdict::Refuted, Some(refused(plant, identity, rate, &Witness::of(rate, &point)))),
+        Answer::Open(obstacle) => {
+            let message =
+                "it could not be decided whether this identity is invariant along the trajectories of the plant";
+            let refusal = Diagnostic::error(Code::IdentityUndecided, identity.span, message)
+                .label(along(arena, rate))
+                .note(format!("obstacle: {obstacle}"))
+                .help(
+                    "write the identity so that it can be solved for one of its names, or give the parameters values",
+                );
+            (Verdict::Undecided, Some(refusal))
+        }
+    }
+}
+
+/// An identity that does not keep holding, in the words of what the author wrote: the value of an output is an identity too.
+fn refused(plant: &Plant, identity: &Formula, rate: Expr, witness: &Witness) -> Diagnostic {
+    let arena = &plant.arena;
+    let by_value = |output: &&Output| output.value.is_some_and(|value| value.span == identity.span);
+    let Some((output, given)) = plant.y.iter().find(by_value).and_then(|output| Some((output, output.rate?))) else {
+        return Diagnostic::error(
+            Code::IdentityRefuted,
+            identity.span,
+            "this identity is not invariant along the trajectories of the plant",
+        )
+        .label(along(arena, rate))
+        .note(witness.sentence(arena))
+        .note("the identities hold at this point, but this one does not stay true along the trajectory")
+        .help("correct the identity, or the rates under `f_x` and `f_y`");
+    };
+    let name = arena.name(output.symbol);
+    let twice = output.value.is_some_and(|value| value.expr == given.expr);
+    let (message, help) = if twice {
+        (
+            format!("`g_y` and `f_y` have the same formula for `{name}`, which cannot be both its value and its rate"),
+            format!(
+                "`g_y` takes the value of an output, `f_y` its time derivative: take `{name}` out of the wrong one"
+            ),
+        )
+    } else {
+        (
+            format!("the value of `{name}` under `g_y` does not have the rate that `f_y` gives"),
+            format!("correct one of the two, or take `{name}` out of `f_y`: its rate follows from its value"),
+        )
+    };
+    Diagnostic::error(Code::IdentityRefuted, identity.span, message)
+        .label(format!("the rate less the derivative of this value is `{}`", arena.print(rate)))
+        .also(given.span, "the rate")
+        .note(witness.sentence(arena))
+        .help(help)
+}
+
+fn along(arena: &Arena, rate: Expr) -> String {
+    format!("its derivative along the plant is `{}`", arena.print(rate))
+}
+
+#[cfg(all(test, feature = "yaml"))]
+mod tests {
+    use crate::analysis::{Derivation, Outcome};
+    use crate::model::Model;
+    use crate::plant::Plant;
+    use crate::source::{Code, Source};
+
+    /// What the help says of a plant that is refused for its one identity, after the message.
+    fn said(lines: &str) -> [String; 2] {
+        let text = format!("model: m\nx: [a]\ny: [p]\nf_x: {{a: -a}}\nphi: [a]\n{lines}\n");
+        let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+        let derivation = Derivation::derive(&plant);
+        assert_eq!(derivation.outcome, Outcome::Rejected, "{lines}");
+        let refused = derivation.diagnostics.iter().find(|found| found.code == Code::IdentityRefuted).expect(lines);
+        [refused.message.to_string(), refused.help.clone().unwrap_or_default().to_string()]
+    }
+
+    #[test]
+    fn a_value_with_another_rate_is_told_from_an_identity_that_does_not_last() {
+        let [message, help] = said("g_y: {p: 2*a}\nf_y: {p: 2*a}");
+        assert!(message.starts_with("`g_y` and `f_y` have the same formula for `p`"), "{message}");
+        assert!(help.contains("`f_y` its time derivative"), "{help}");
+        let [message, help] = said("g_y: {p: 2*a}\nf_y: {p: 2 - a}");
+        assert_eq!(message, "the value of `p` under `g_y` does not have the rate that `f_y` gives");
+        assert!(help.contains("take `p` out of `f_y`"), "{help}");
+        let [message, _] = said("identities: [p - 2*a]\nf_y: {p: a}");
+        assert!(message.starts_with("this identity is not invariant"), "{message}");
+    }
+}

@@ -1,0 +1,84 @@
+//! What a formula for a state is worth.
+//!
+//! In: the plant, and a formula in z and y. Out: whether it gives the state back at z = phi(x, y), for angles up to periods,
+//! and what it asks there that the domain does not show.
+
+use std::collections::BTreeMap;
+
+use crate::plant::Plant;
+use crate::source::Span;
+use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::{Arena, Domain, Expr, Function, Relation, Symbol};
+
+/// What a formula for a state asks at z = phi(x, y) that the domain does not show: the ask, and the ask there.
+///
+/// What stands under roots and logarithms and below fraction bars is read off the formula as it stands, since
+/// substituting would simplify its domain away.
+pub(super) fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relation), (Expr, Relation))> {
+    let arena = &plant.arena;
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    let asked = arena.asks(&[formula], Want::Value).into_iter();
+    let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
+    there.filter(|(_, ask)| !domain.grants(arena, *ask)).collect()
+}
+
+/// What must vanish, for an angle up to periods: `phi_left(phi(x, y), y) - x`.
+fn residual(plant: &Plant, state: Symbol, formula: Expr) -> Expr {
+    let arena = &plant.arena;
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    arena.sub(arena.substitute(formula, &transform), arena.of_symbol(state))
+}
+
+/// Decides whether a formula gives the state back; returns what was tested for zero as well.
+pub(super) fn check(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) -> (Expr, Answer) {
+    let arena = &plant.arena;
+    let difference = residual(plant, state, formula);
+    let plain = decide(arena, difference, domain);
+    let Some(period) = plant.period(state) else { return (difference, plain) };
+    if plain.is_zero() {
+        return (difference, plain);
+    }
+    let unlike = unlike_after(plant, domain, state, period);
+    if let Some(answer) = unlike {
+        return answer;
+    }
+    let turn = arena.div(arena.turn(), period);
+    turns(arena, domain, arena.mul(difference, turn))
+}
+
+/// A rate that is not the same a period further on: then the state is no angle of that period, and
+/// knowing it up to the period is not knowing it.
+pub(super) fn unlike_after(plant: &Plant, domain: &Domain, state: Symbol, period: Expr) -> Option<(Expr, Answer)> {
+    let arena = &plant.arena;
+    let turned = BTreeMap::from([(state, arena.add(arena.of_symbol(state), period))]);
+    plant.rates().into_values().find_map(|rate| {
+        let change = arena.sub(arena.substitute(rate, &turned), rate);
+        let answer = decide(arena, change, domain);
+        (!answer.is_zero()).then_some((change, answer))
+    })
+}
+
+/// Decides whether an angle is a whole number of turns: its sine is 0 and its cosine 1.
+fn turns(arena: &Arena, domain: &Domain, angle: Expr) -> (Expr, Answer) {
+    let sin = arena.call(Function::Sin, &[angle]);
+    let answer = decide(arena, sin, domain);
+    if !answer.is_zero() {
+        return (sin, answer);
+    }
+    let cos = arena.sub(arena.call(Function::Cos, &[angle]), arena.one());
+    (cos, decide(arena, cos, domain))
+}
+
+/// Whether an angle is provably a whole number of turns.
+pub(in crate::analysis) fn is_whole_turns(arena: &Arena, domain: &Domain, angle: Expr) -> bool {
+    turns(arena, domain, angle).1.is_zero()
+}
+
+/// Where the transform stands.
+pub(in crate::analysis) fn at_phi(plant: &Plant) -> Span {
+    match (plant.phi.first(), plant.phi.last()) {
+        (Some(first), Some(last)) => first.span.to(last.span),
+        _ => Span::point(0),
+    }
+}

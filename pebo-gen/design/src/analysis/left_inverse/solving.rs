@@ -1,0 +1,167 @@
+//! Formulas for the states, solved for from the transform.
+//!
+//! In: the plant. Out: for each state that something was found for, one formula in z and y: one that is right where there is
+//! one, and else the likeliest. Whether it is right is proved by who asks.
+
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+
+use crate::plant::{Plant, State};
+use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::forms::tidy::{dissolves, functions, operations, root_differences, shortest};
+use pebo_cas::solve::{Equation, solve};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr, Symbol};
+
+use super::checking::{check, unshown};
+use super::overdetermined::by_least_squares;
+
+type Solved = BTreeMap<Symbol, Vec<Expr>>;
+
+/// A formula for each state that one was found for.
+pub(super) fn formulas<'a>(plant: &'a Plant, domain: &Domain) -> Result<Vec<(&'a State, Expr)>, Obstacle> {
+    let solving = Solving::of(plant, domain)?;
+    let formula = |state: &'a State| Ok(solving.formula(state.symbol)?.map(|formula| (state, formula)));
+    plant.x.iter().filter_map(|state| formula(state).transpose()).collect()
+}
+
+/// The transform, solved in several ways.
+struct Solving<'a> {
+    plant: &'a Plant,
+    domain: &'a Domain,
+    /// What it gives alone, the likelier first.
+    alone: Solved,
+    /// What it gives where functions of y alone are kept as they are written: they compute better.
+    as_written: Solved,
+    /// What it gives by least squares, once that was asked for.
+    least_squares: OnceCell<BTreeMap<Symbol, Expr>>,
+    /// What it gives together with the values of outputs, once that was asked for.
+    together: OnceCell<Result<Solved, Obstacle>>,
+}
+
+impl<'a> Solving<'a> {
+    fn of(plant: &'a Plant, domain: &'a Domain) -> Result<Self, Obstacle> {
+        let arena = &plant.arena;
+        let states = states(plant);
+        // Where a class proposes a formula for every state, nothing is solved for.
+        let proposed = |state: &Symbol| plant.proposal.phi_left.iter().any(|(own, _)| own == state);
+        let alone = if states.iter().all(proposed) {
+            BTreeMap::new()
+        } else {
+            solve(arena, domain, &equations(plant, plant.transform()), &states)?
+        };
+        let hidden = plant.hidden();
+        let mut frozen = Frozen::new(arena, &hidden);
+        let kept = frozen.freeze(&plant.transform());
+        let mut as_written = if alone.is_empty() || frozen.is_empty() {
+            BTreeMap::new()
+        } else {
+            solve(arena, domain, &equations(plant, kept), &states).unwrap_or_default()
+        };
+        for formula in as_written.values_mut().flatten() {
+            *formula = frozen.thaw(*formula);
+        }
+        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), together: OnceCell::new() })
+    }
+
+    /// The best formula for a state that is right, and else the likeliest: one that is wrong may still show that the
+    /// transform is not one-to-one.
+    fn formula(&self, state: Symbol) -> Result<Option<Expr>, Obstacle> {
+        let arena = &self.plant.arena;
+        let right = |formula: &Expr| check(self.plant, self.domain, state, *formula).1.is_zero();
+        let candidates = self.candidates(state);
+        let found = match self.by_worth(candidates.clone()).into_iter().find(right) {
+            Some(found) => Some(found),
+            // What outputs measure comes with their noise: it serves where the transform alone is not solved.
+            None => self.with_values(state)?.into_iter().find(right),
+        };
+        let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
+        // What has a value wherever the plant has is looked for no further.
+        let all_shown = found.is_some_and(|formula| unshown(self.plant, self.domain, formula).is_empty());
+        let squares =
+            (!all_shown).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
+        let squares = squares.and_then(|squares| squares.get(&state)).copied().filter(right);
+        let forms =
+            found.into_iter().chain(written).chain(squares).map(|formula| shortest(arena, self.domain, formula));
+        let formula = match forms.min_by_key(|formula| self.demerit(*formula)) {
+            Some(formula) => Some(formula),
+            None => match candidates.first() {
+                Some(likeliest) => Some(*likeliest),
+                None => self.with_values(state)?.first().copied(),
+            },
+        };
+        Ok(formula.map(|formula| shortest(arena, self.domain, formula)))
+    }
+
+    /// What the class proposes, the shortest first, and what the transform alone gives.
+    fn candidates(&self, state: Symbol) -> Vec<Expr> {
+        let arena = &self.plant.arena;
+        let proposed = self.plant.proposal.phi_left.iter().filter(|(own, _)| *own == state);
+        let mut candidates: Vec<Expr> = proposed.map(|(_, formula)| shortest(arena, self.domain, *formula)).collect();
+        candidates.sort_by_cached_key(|formula| operations(arena, *formula));
+        candidates.extend(self.alone.get(&state).into_iter().flatten());
+        candidates
+    }
+
+    /// What the transform gives together with the values of outputs, the best first.
+    fn with_values(&self, state: Symbol) -> Result<Vec<Expr>, Obstacle> {
+        let solved = self.together.get_or_init(|| together(self.plant, self.domain)).as_ref().map_err(Clone::clone)?;
+        Ok(self.by_worth(solved.get(&state).cloned().unwrap_or_default()))
+    }
+
+    /// First what has a value wherever the plant has, then what takes no root from what is near it, then what is short.
+    fn by_worth(&self, mut candidates: Vec<Expr>) -> Vec<Expr> {
+        // What a formula asks is looked for only where it is compared.
+        if candidates.len() > 1 {
+            candidates.sort_by_cached_key(|formula| self.cost(*formula));
+        }
+        candidates
+    }
+
+    /// As [`Self::by_worth`], and before the roots the author's functions: `z/tanh(y)`, and nothing in exponentials.
+    fn demerit(&self, formula: Expr) -> (usize, usize, usize, usize) {
+        let arena = &self.plant.arena;
+        let own = functions(arena, &self.plant.transform());
+        let z = self.plant.z.iter().copied().collect();
+        let is_foreign = |call: &Expr| !own.contains(call) && arena.symbols_of(&[*call]).is_disjoint(&z);
+        let foreign = functions(arena, &[formula]).into_iter().filter(is_foreign).count()
+            + usize::from(dissolves(arena, &self.plant.transform(), formula));
+        let (unshown, cancelling, operations) = self.cost(formula);
+        (unshown, foreign, cancelling, operations)
+    }
+
+    /// What it asks that is not shown, the roots that cancel, and the operations.
+    fn cost(&self, formula: Expr) -> (usize, usize, usize) {
+        let arena = &self.plant.arena;
+        let unshown = unshown(self.plant, self.domain, formula).len();
+        (unshown, root_differences(arena, formula).len(), operations(arena, formula))
+    }
+}
+
+fn states(plant: &Plant) -> Vec<Symbol> {
+    plant.x.iter().map(|state| state.symbol).collect()
+}
+
+/// The transform, in these formulas, equal to z.
+fn equations(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
+    let values = plant.z.iter().map(|z| plant.arena.of_symbol(*z));
+    transform.into_iter().zip(values).map(|(formula, value)| Equation { formula, value }).collect()
+}
+
+/// Solves the transform together with the identities; of what comes out, what is a function of z and y.
+fn together(plant: &Plant, domain: &Domain) -> Result<Solved, Obstacle> {
+    if plant.identities.is_empty() {
+        return Ok(BTreeMap::new());
+    }
+    let arena = &plant.arena;
+    let zero = arena.zero();
+    let mut equations = equations(plant, plant.transform());
+    equations.extend(plant.identities.iter().map(|identity| Equation { formula: identity.expr, value: zero }));
+    let mut foreign = plant.hidden();
+    foreign.extend(&plant.u);
+    let mut solved = solve(arena, domain, &equations, &states(plant))?;
+    for candidates in solved.values_mut() {
+        candidates.retain(|formula| !arena.depends_on(*formula, &foreign));
+    }
+    Ok(solved)
+}

@@ -1,0 +1,44 @@
+//! A claim within what the command may take.
+//!
+//! What was derived when the budget ended may lack what had not been looked at yet: a condition, another class of
+//! cascade, an output that shows the unknowns. So a claim in whose time it ended is undecided, whatever it came to.
+
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic};
+
+use super::design::{Claim, Verdict};
+use super::left_inverse::checking::at_phi;
+
+/// The claim that is proved or refuted in time; undecided if the budget ended with it, and skipped if it had before.
+pub(super) fn limited<T>(
+    plant: &Plant,
+    phase: &str,
+    found: &mut Vec<Diagnostic>,
+    prove: impl FnOnce(&mut Vec<Diagnostic>) -> Claim<T>,
+) -> Claim<T> {
+    if is_said(found) {
+        return Claim::skipped();
+    }
+    let before = found.len();
+    let claim = prove(found);
+    if !plant.arena.budget().is_exhausted() {
+        return claim;
+    }
+    found.truncate(before);
+    unfinished(plant, phase, found)
+}
+
+/// Whether the budget ended since the last claim was proved or refuted in time.
+pub(super) fn ended(plant: &Plant, found: &[Diagnostic]) -> bool {
+    plant.arena.budget().is_exhausted() && !is_said(found)
+}
+
+/// The claim in whose time the budget ended.
+pub(super) fn unfinished<T>(plant: &Plant, phase: &str, found: &mut Vec<Diagnostic>) -> Claim<T> {
+    found.push(Diagnostic::limit_reached(phase, at_phi(plant)));
+    Claim { verdict: Verdict::Undecided, result: None }
+}
+
+fn is_said(found: &[Diagnostic]) -> bool {
+    found.iter().any(|diagnostic| diagnostic.code == Code::LimitReached)
+}

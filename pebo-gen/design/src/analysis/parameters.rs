@@ -1,0 +1,76 @@
+//! What the proofs assume of the parameters alone, for whoever gives them other values.
+//!
+//! In: a plant, and the conditions that its derivation lists. Out: comparisons with zero over parameters: a row for each
+//! parameter in their order, then what is assumed of several together and does not follow from these rows.
+
+use crate::plant::Plant;
+use pebo_cas::{Arena, Domain, Expr, Relation};
+
+use super::Derivation;
+
+/// How a value compares with zero where the proofs hold.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Sign {
+    /// In any way.
+    Any,
+    /// It is zero: the model gives the value 0.
+    Zero,
+    /// As the relation says.
+    Is(Relation),
+    /// The negative of the value compares as the relation says.
+    Opposite(Relation),
+}
+
+impl Derivation {
+    /// What must hold of the parameters' values for the proofs to be about them.
+    pub fn asked_of_parameters(&self, plant: &Plant) -> Vec<(Expr, Sign)> {
+        let arena = &plant.arena;
+        let constants: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let assumed = plant.assumptions.iter().map(|assumption| (assumption.expr, assumption.relation));
+        let mut facts: Vec<(Expr, Relation)> = assumed.chain(self.conditions.iter().copied()).collect();
+        facts.retain(|(expr, _)| {
+            let symbols = arena.symbols_of(&[*expr]);
+            !symbols.is_empty() && symbols.iter().all(|symbol| constants.contains(symbol))
+        });
+
+        let mut asked = Vec::new();
+        let mut domain = Domain::default();
+        for parameter in &plant.parameters {
+            let symbol = arena.of_symbol(parameter.symbol);
+            let of_value = parameter.value.as_ref().map(|value| match value.signum() {
+                1 => Sign::Is(Relation::Positive),
+                -1 => Sign::Opposite(Relation::Positive),
+                _ => Sign::Zero,
+            });
+            let sign = of_value.unwrap_or_else(|| strongest(arena, symbol, &facts));
+            match sign {
+                Sign::Is(relation) => domain.facts.assume(symbol, relation),
+                Sign::Opposite(relation) => domain.facts.assume(arena.neg(symbol), relation),
+                Sign::Any | Sign::Zero => {}
+            }
+            asked.push((symbol, sign));
+        }
+        for (expr, relation) in facts {
+            if !domain.implies(arena, expr, relation) {
+                domain.facts.assume(expr, relation);
+                asked.push((expr, Sign::Is(relation)));
+            }
+        }
+        asked
+    }
+}
+
+/// The strongest of the facts that compare the parameter itself with zero.
+fn strongest(arena: &Arena, symbol: Expr, facts: &[(Expr, Relation)]) -> Sign {
+    for relation in [Relation::Positive, Relation::NonNegative, Relation::NonZero] {
+        for (expr, stated) in facts {
+            if *stated == relation && *expr == symbol {
+                return Sign::Is(relation);
+            }
+            if *stated == relation && *expr == arena.neg(symbol) {
+                return Sign::Opposite(relation);
+            }
+        }
+    }
+    Sign::Any
+}

@@ -1,0 +1,118 @@
+//! Identities in the form in which the components of the transform are linear.
+//!
+//! In: the plant's identities; the value `g` of an output is one, `V - g = 0`. Out: of each the first form that is affine in
+//! the transform, with the identity as it is written first: `V = p/(1 + p)` is `V + (V - 1)*p = 0`. Each form is proved to
+//! vanish on the domain.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::separation;
+use crate::analysis::affine;
+use crate::analysis::design::LeftInverse;
+use crate::plant::Plant;
+use crate::plant::matrix::dot;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::solve::{Equation, cleared, solve};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr, Node, Symbol};
+
+/// What vanishes by an identity as affine functions of the transform; none where no form of it is one.
+pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec<affine::Row>, Obstacle> {
+    // Where it holds an identity says 0 = 0: what it says of z is read off it elsewhere.
+    let everywhere = domain.everywhere();
+    let written = affine::of(plant, &everywhere, identity);
+    if let Ok(Some(row)) = written {
+        return Ok(vec![row]);
+    }
+    let affine = |form| as_written(plant, &everywhere, form).or_else(|| affine::of(plant, &everywhere, form).ok()?);
+    if let Some(row) = forms(plant, domain, identity).into_iter().find_map(affine) {
+        return Ok(vec![row]);
+    }
+    let components: Vec<affine::Row> = components(plant, domain, identity).into_iter().filter_map(affine).collect();
+    if components.is_empty() { written.map(|_| components) } else { Ok(components) }
+}
+
+/// A form over the transform, what is free of x left as it is written.
+fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::Row> {
+    let hidden = plant.hidden();
+    let mut frozen = Frozen::new(&plant.arena, &hidden);
+    let form = frozen.freeze(&[form])[0];
+    let row = affine::of(plant, everywhere, form).ok()??;
+    Some(row.into_iter().map(|entry| frozen.thaw(entry)).collect())
+}
+
+/// The identities as equations between z, y and u: in a form that is affine in z, else in one whose parts can be told
+/// apart, else as they are written.
+pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
+    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
+    let of = |identity: Expr| {
+        let written = arena.substitute(identity, &inverse);
+        let separable = |form: &Expr| matches!(separation::separate(plant, domain, &[*form]), Ok(Some(_)));
+        if separable(&written) {
+            return vec![written];
+        }
+        match rows(plant, domain, identity) {
+            Ok(rows) if !rows.is_empty() => {
+                rows.iter().map(|row| arena.add(row[0], dot(arena, &row[1..], &z))).collect()
+            }
+            _ => {
+                let others = forms(plant, domain, identity).into_iter().map(|form| arena.substitute(form, &inverse));
+                vec![others.into_iter().find(separable).unwrap_or(written)]
+            }
+        }
+    };
+    let mut found: Vec<Expr> = Vec::new();
+    for equation in plant.identities.iter().flat_map(|identity| of(identity.expr)) {
+        // A bearing under `g_y` and the same written as an identity.
+        if !found.contains(&equation) && !found.contains(&arena.neg(equation)) {
+            found.push(equation);
+        }
+    }
+    found
+}
+
+/// Where an identity tells a state, the components of the transform that are functions of it, each less its value.
+fn components(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    let states: Vec<Symbol> = arena.symbols_of(&[identity]).intersection(&hidden).copied().collect();
+    let ([state], Some(value)) = (states.as_slice(), value(plant, identity)) else { return Vec::new() };
+    let equation = Equation { formula: identity, value: arena.zero() };
+    let known = solve(arena, domain, &[equation], &[*state]).unwrap_or_default().remove(state).unwrap_or_default();
+    let is_the_state = |known: &Expr| {
+        let error = arena.sub(arena.substitute(*known, &value), arena.of_symbol(*state));
+        !arena.depends_on(*known, &hidden) && decide(arena, error, &domain.everywhere()).is_zero()
+    };
+    let Some(known) = known.into_iter().find(is_the_state) else { return Vec::new() };
+    let at = BTreeMap::from([(*state, known)]);
+    let told = |phi: Expr| Some(arena.substitute(phi, &at)).filter(|value| !arena.depends_on(*value, &hidden));
+    let of_state = |phi: &Expr| arena.depends_on(*phi, &hidden);
+    plant.transform().into_iter().filter(of_state).filter_map(|phi| Some(arena.sub(phi, told(phi)?))).collect()
+}
+
+/// Other forms of an identity, each proved.
+fn forms(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let value = value(plant, identity);
+    let mut forms = cleared(arena, domain, identity, &plant.hidden());
+    forms.retain(|form| match &value {
+        Some(value) => decide(arena, arena.substitute(*form, value), &domain.everywhere()).is_zero(),
+        None => decide(arena, *form, domain).is_zero(),
+    });
+    forms
+}
+
+/// An output as what an identity says it is, where it stands in it as one term.
+fn value(plant: &Plant, identity: Expr) -> Option<BTreeMap<Symbol, Expr>> {
+    let arena = &plant.arena;
+    let Node::Sum(sum) = arena.node(identity) else { return None };
+    plant.y.iter().find_map(|output| {
+        let (_, slope) = sum.terms.iter().find(|(term, _)| arena.as_symbol(*term) == Some(output.symbol))?;
+        let value = arena.sub(arena.of_symbol(output.symbol), arena.scale(identity, &slope.recip()?));
+        let alone = !arena.depends_on(value, &BTreeSet::from([output.symbol]));
+        alone.then(|| BTreeMap::from([(output.symbol, value)]))
+    })
+}

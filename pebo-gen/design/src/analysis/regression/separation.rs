@@ -1,0 +1,306 @@
+//! Separating unknown constants from known signals: the over-parameterised regression.
+//!
+//! In: expressions in z. Out: with z = chi + theta, each as a sum of products of a known function of
+//! chi, y and u with a function of theta alone, where polynomials, exponentials, sines and cosines
+//! allow it; and theta recovered from those functions (Ortega et al. 2015, remark R4 and eq. 28).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::plant::Plant;
+use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::linear::combination::combine;
+use pebo_cas::poly::Monomial;
+use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Symbol};
+
+use crate::analysis::left_inverse::checking::is_whole_turns;
+use pebo_cas::forms::tidy::shortest;
+use pebo_cas::solve::{Equation, solve};
+
+/// Expressions as `known + factors * eta`.
+#[derive(Clone, Debug)]
+pub(in crate::analysis) struct Separated {
+    /// What is known of each expression.
+    pub known: Vec<Expr>,
+    /// The factors of each eta, a row for each expression.
+    pub factors: Vec<Vec<Expr>>,
+    /// The functions of theta.
+    pub eta: Vec<Expr>,
+}
+
+/// Separates expressions in z at z = chi + theta; none where a kernel mixes theta with signals.
+pub(in crate::analysis) fn separate(
+    plant: &Plant,
+    domain: &Domain,
+    in_z: &[Expr],
+) -> Result<Option<Separated>, Obstacle> {
+    let arena = &plant.arena;
+    let shifted: BTreeMap<Symbol, Expr> = plant
+        .z
+        .iter()
+        .zip(plant.chi.iter().zip(&plant.theta))
+        .map(|(z, (chi, theta))| (*z, arena.add(arena.of_symbol(*chi), arena.of_symbol(*theta))))
+        .collect();
+    let exprs = arena.substitute_all(in_z, &shifted);
+    let unknown: BTreeSet<Symbol> = plant.theta.iter().copied().collect();
+    if exprs.iter().any(|e| arena.depends_on(*e, &plant.hidden())) {
+        return Ok(None);
+    }
+    let Some(mut separated) = apart(plant, domain, &unknown, &exprs)? else { return Ok(None) };
+    // Functions of known signals stay as they are written, where no relation among them is needed: `tanh(5*u)` by
+    // exponentials overflows where it is 1.
+    let mut frozen = Frozen::new(arena, &unknown);
+    let signals = frozen.freeze(&exprs);
+    if !frozen.is_empty()
+        && let Ok(Some(kept)) = apart(plant, domain, &unknown, &signals)
+        && kept.eta == separated.eta
+    {
+        let thaw = |exprs: &[Expr]| -> Vec<Expr> { exprs.iter().map(|expr| frozen.thaw(*expr)).collect() };
+        separated.known = thaw(&kept.known);
+        separated.factors = kept.factors.iter().map(|row| thaw(row)).collect();
+    }
+    prove(plant, domain, &exprs, &separated)?;
+    Ok(Some(separated))
+}
+
+/// The parts of expressions at z = chi + theta; none where a kernel mixes theta with signals.
+fn apart(
+    plant: &Plant,
+    domain: &Domain,
+    unknown: &BTreeSet<Symbol>,
+    exprs: &[Expr],
+) -> Result<Option<Separated>, Obstacle> {
+    let arena = &plant.arena;
+    let field = Field::over(arena, &domain.facts, exprs)?;
+    let kernels: Vec<u32> = field.kernels_of(unknown).into_iter().collect();
+    let constants: BTreeSet<Symbol> =
+        plant.parameters.iter().map(|p| p.symbol).chain(unknown.iter().copied()).collect();
+    if kernels.iter().any(|k| !arena.symbols_of(&[field.kernel(*k)]).is_subset(&constants)) {
+        return Ok(None);
+    }
+    let mut columns: Vec<Powers> = Vec::new();
+    let mut rows: Vec<BTreeMap<Powers, Fraction>> = Vec::new();
+    for expr in exprs {
+        let fraction = field.fraction(*expr)?;
+        // A product of kernels of theta may stand below, as exp(theta) in cosh; a sum may not.
+        let denominator = fraction.denominator().collect(&kernels);
+        let [(below, known)] = denominator.as_slice() else { return Ok(None) };
+        let below = powers(below, -1);
+        let mut row = BTreeMap::new();
+        for (monomial, coefficient) in fraction.numerator().collect(&kernels) {
+            let column = product(&powers(&monomial, 1), &below);
+            let coefficient = field.quotient(&coefficient, known)?;
+            if !column.is_empty() && !columns.contains(&column) {
+                columns.push(column.clone());
+            }
+            row.insert(column, coefficient);
+        }
+        rows.push(row);
+    }
+    // theta itself first, then by degree.
+    columns.sort_by_key(|column| (column.iter().map(|(_, e)| e.abs()).sum::<i64>(), column.clone()));
+    let show = |row: &BTreeMap<Powers, Fraction>, column: &Powers| {
+        row.get(column).map_or_else(|| arena.zero(), |fraction| field.show(fraction))
+    };
+    Ok(Some(Separated {
+        known: rows.iter().map(|row| show(row, &Powers::new())).collect(),
+        factors: rows.iter().map(|row| columns.iter().map(|c| show(row, c)).collect()).collect(),
+        eta: columns
+            .iter()
+            .map(|c| arena.multiply(&Rational::ONE, c.iter().map(|&(k, e)| (field.kernel(k), Rational::from(e)))))
+            .collect(),
+    }))
+}
+
+/// Kernels with their exponents, ascending, no exponent zero.
+type Powers = Vec<(u32, i64)>;
+
+/// The powers of a monomial, to a common exponent.
+fn powers(monomial: &Monomial, exponent: i64) -> Powers {
+    monomial
+        .powers()
+        .iter()
+        .map(|&(kernel, times)| (kernel, exponent * i64::from(times)))
+        .filter(|p| p.1 != 0)
+        .collect()
+}
+
+fn product(a: &Powers, b: &Powers) -> Powers {
+    let mut total: BTreeMap<u32, i64> = BTreeMap::new();
+    for &(kernel, exponent) in a.iter().chain(b) {
+        *total.entry(kernel).or_default() += exponent;
+    }
+    total.into_iter().filter(|p| p.1 != 0).collect()
+}
+
+/// Proves that the separation is an identity.
+fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) -> Result<(), Obstacle> {
+    let arena = &plant.arena;
+    for (expr, (known, factors)) in exprs.iter().zip(separated.known.iter().zip(&separated.factors)) {
+        let products = factors.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e));
+        let rebuilt = arena.add(*known, arena.sum(products));
+        match decide(arena, arena.sub(*expr, rebuilt), domain) {
+            Answer::Zero => {}
+            Answer::Open(obstacle) => return Err(obstacle),
+            Answer::NonZero(_) => return Err(Obstacle::NoWitness),
+        }
+    }
+    Ok(())
+}
+
+/// Joins all functions of theta whose factors are constants of the plant into one, together with the
+/// constants of the known part: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
+pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separated) -> Separated {
+    let arena = &plant.arena;
+    // With several rows the constants would differ from row to row.
+    let [factors] = separated.factors.as_slice() else { return separated };
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let is_constant = |e: Expr| arena.symbols_of(&[e]).is_subset(&constants);
+    let (joined, kept): (Vec<usize>, Vec<usize>) = (0..factors.len()).partition(|i| is_constant(factors[*i]));
+    if joined.is_empty() {
+        return separated;
+    }
+    // What the known part is where every signal is zero, if it has a value there, is a constant of it.
+    let signals = arena.symbols_of(&separated.known).into_iter().filter(|s| !constants.contains(s));
+    let origin: BTreeMap<Symbol, Expr> = signals.map(|s| (s, arena.zero())).collect();
+    let constant = arena.substitute(separated.known[0], &origin);
+    let constant = match pebo_cas::domain::zero::point_of(arena, constant, domain) {
+        Some(_) => constant,
+        None => arena.zero(),
+    };
+    let mut sum: Vec<Expr> = joined.iter().map(|i| arena.mul(factors[*i], separated.eta[*i])).collect();
+    sum.push(constant);
+    let joint = shortest(arena, domain, arena.neg(arena.sum(sum)));
+    let mut eta: Vec<Expr> = kept.iter().map(|i| separated.eta[*i]).collect();
+    let mut row: Vec<Expr> = kept.iter().map(|i| factors[*i]).collect();
+    eta.push(joint);
+    row.push(arena.number(-1));
+    let known = shortest(arena, domain, arena.sub(separated.known[0], constant));
+    Separated { known: vec![known], factors: vec![row], eta }
+}
+
+/// Joins functions of theta whose factors are constant combinations of other factors: these cannot be told apart, but
+/// their sums can, as `theta1 + theta2^2` in a rate `a + b^2`.
+pub(in crate::analysis) fn join_dependent(
+    plant: &Plant,
+    domain: &Domain,
+    separated: &Separated,
+) -> Result<Separated, Obstacle> {
+    let arena = &plant.arena;
+    // A symbol for each row, so that one expression holds a column.
+    let marks: Vec<Symbol> = (0..separated.factors.len()).map(|row| arena.generated(&format!("row {row}"))).collect();
+    let column = |j: usize| {
+        arena.sum(marks.iter().zip(&separated.factors).map(|(mark, row)| arena.mul(arena.of_symbol(*mark), row[j])))
+    };
+    let columns: Vec<Expr> = (0..separated.eta.len()).map(column).collect();
+    let field = Field::over(arena, &domain.facts, &columns)?;
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let signals: BTreeSet<Symbol> = arena.symbols_of(&columns).difference(&constants).copied().collect();
+    let mut kept: Vec<(usize, Expr)> = Vec::new();
+    for (j, &eta) in separated.eta.iter().enumerate() {
+        let basis: Vec<Expr> = kept.iter().map(|(k, _)| columns[*k]).collect();
+        match combine(&field, columns[j], &basis, &signals)? {
+            Some(coefficients) => {
+                for ((_, sum), coefficient) in kept.iter_mut().zip(&coefficients) {
+                    *sum = arena.add(*sum, arena.mul(field.show(coefficient), eta));
+                }
+            }
+            None => kept.push((j, eta)),
+        }
+    }
+    let result = Separated {
+        known: separated.known.clone(),
+        factors: separated.factors.iter().map(|row| kept.iter().map(|(j, _)| row[*j]).collect()).collect(),
+        eta: kept.into_iter().map(|(_, sum)| sum).collect(),
+    };
+    let rows = separated.factors.iter().zip(&separated.known);
+    let exprs: Vec<Expr> = rows
+        .map(|(row, known)| {
+            arena.add(*known, arena.sum(row.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e))))
+        })
+        .collect();
+    prove(plant, domain, &exprs, &result)?;
+    Ok(result)
+}
+
+/// theta as functions of eta, each proved.
+#[derive(Clone, Debug)]
+pub(in crate::analysis) struct Recovered {
+    /// An entry for each theta, in the eta symbols.
+    pub theta: Vec<Expr>,
+    /// Positions of those that are determined only up to multiples of a step, as from sine and cosine of theta, which have
+    /// the step 2 pi; with the step.
+    pub turning: Vec<(usize, Expr)>,
+}
+
+/// theta from its functions, if they determine it at least up to whole turns.
+pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Recovered> {
+    let arena = &plant.arena;
+    let symbols = plant.eta(eta.len());
+    let equations: Vec<Equation> =
+        eta.iter().zip(&symbols).map(|(f, s)| Equation { formula: *f, value: arena.of_symbol(*s) }).collect();
+    let direct: BTreeMap<Symbol, Expr> = equations
+        .iter()
+        .filter_map(|e| Some((arena.as_symbol(e.formula)?, e.value)))
+        .filter(|(s, _)| plant.theta.contains(s))
+        .collect();
+    let rest: Vec<Symbol> = plant.theta.iter().copied().filter(|t| !direct.contains_key(t)).collect();
+    // The others are looked for with these in their place.
+    let equations: Vec<Equation> = equations
+        .iter()
+        .map(|e| Equation { formula: arena.substitute(e.formula, &direct), value: e.value })
+        .filter(|e| e.formula != e.value)
+        .collect();
+    let mut solved = if rest.is_empty() { BTreeMap::new() } else { solve(arena, domain, &equations, &rest).ok()? };
+    solved.extend(direct.into_iter().map(|(symbol, value)| (symbol, vec![value])));
+    for theta in &rest {
+        solved.entry(*theta).or_default().extend(as_ratio(arena, *theta, eta, &symbols));
+    }
+    let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
+    let unknown: BTreeSet<Symbol> = plant.theta.iter().copied().collect();
+    let mut recovered = Recovered { theta: Vec::new(), turning: Vec::new() };
+    for (index, theta) in plant.theta.iter().enumerate() {
+        let candidates = solved.get(theta)?.iter().filter(|f| !arena.depends_on(**f, &unknown));
+        let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
+        let exact = candidates.clone().find(|f| decide(arena, difference(**f), domain).is_zero());
+        if let Some(formula) = exact {
+            recovered.theta.push(*formula);
+            continue;
+        }
+        let (formula, step) = candidates.clone().find_map(|formula| {
+            let per_turn = per_turn(arena, *formula);
+            let turns = arena.div(difference(*formula), per_turn);
+            let step = arena.mul(arena.turn(), per_turn);
+            is_whole_turns(arena, domain, turns).then_some((*formula, step))
+        })?;
+        recovered.theta.push(formula);
+        recovered.turning.push((index, step));
+    }
+    Some(recovered)
+}
+
+/// theta from functions that are others times theta, as from `cos(theta)`, `sin(theta)`, `theta*cos(theta)` and
+/// `theta*sin(theta)`: the quotient with the least squares, which has a value where one of the others is not zero.
+fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> Option<Expr> {
+    let theta = arena.of_symbol(theta);
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for (factor, symbol) in eta.iter().zip(symbols) {
+        if let Some(place) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
+            let symbol = arena.of_symbol(*symbol);
+            above.push(arena.mul(symbol, arena.of_symbol(symbols[place])));
+            below.push(arena.mul(symbol, symbol));
+        }
+    }
+    (!below.is_empty()).then(|| arena.div(arena.sum(above), arena.sum(below)))
+}
+
+/// By how much a formula grows with the angle that it is a multiple of; one where it is none.
+fn per_turn(arena: &Arena, formula: Expr) -> Expr {
+    let Node::Product(product) = arena.node(formula) else { return arena.one() };
+    let is_angle = |base: &Expr| matches!(arena.node(*base), Node::Call(Function::Atan2, _));
+    match product.factors.iter().find(|(base, exponent)| is_angle(base) && exponent.is_one()) {
+        Some((angle, _)) => arena.div(formula, *angle),
+        None => arena.one(),
+    }
+}

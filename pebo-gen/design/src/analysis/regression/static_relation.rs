@@ -1,0 +1,221 @@
+//! Static regressions: from identities, or from what the components of the transform have to do with each other.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{cleared, relations, separation};
+use crate::analysis::affine;
+use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
+use crate::plant::matrix::dot;
+use crate::plant::{Formula, Plant};
+use crate::source::{Code, Diagnostic, Span};
+use pebo_cas::forms::tidy::{proved_shortest, shortest, shortest_equal};
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr, Symbol};
+
+use super::functions::steps;
+use super::refusal::undecided;
+
+/// A static regression `Phi_0 = Phi_1 eta` from the identities.
+pub(in crate::analysis) fn from_identities(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let span = plant.y.first().map_or(Span::point(0), |output| output.span);
+    if plant.identities.is_empty() {
+        if let Some(claim) = from_relations(plant, domain, cascade, left_inverse, found) {
+            return claim;
+        }
+        found.push(
+            Diagnostic::error(
+                Code::RegressionNonlinear,
+                span,
+                "the model gives no equation from which the unknowns could be estimated",
+            )
+            .label("no output has a rate under `f_y`, and there are no `identities`")
+            .help("give `f_y` for an output, or an expression in x and y that is zero under `identities`"),
+        );
+        return Claim { verdict: Verdict::Refuted, result: None };
+    }
+    if cascade.lambda.is_some() {
+        let of = |identity: &Formula| match cleared::rows(plant, domain, identity.expr) {
+            Ok(rows) => rows.into_iter().map(Ok).collect(),
+            Err(obstacle) => vec![Err(obstacle)],
+        };
+        let rows = plant.identities.iter().flat_map(of).collect();
+        return under_lambda(plant, domain, (rows, plant.identities[0].span), found);
+    }
+    let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
+    let identities = cleared::in_z(plant, domain, left_inverse);
+    standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+}
+
+/// A static regression from what the components of the transform have to do with each other; none if that
+/// is nothing, or nothing that theta can be recovered from.
+pub(super) fn from_relations(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let relations = relations::among(plant, domain).ok().filter(|relations| !relations.is_empty())?;
+    let mut own = Vec::new();
+    let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
+    let claim = match cascade.lambda {
+        Some(_) => {
+            let rows = relations.iter().filter_map(|relation| in_z(plant, *relation)).map(Ok).collect();
+            under_lambda(plant, domain, (rows, span), &mut own)
+        }
+        None => standing_still(plant, domain, left_inverse?, (&relations, span), &mut own),
+    };
+    // A claim that is undecided here is left to what the author can mend: the rates.
+    if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
+        return None;
+    }
+    found.extend(own);
+    Some(claim)
+}
+
+/// What vanishes as an affine function of z, the known part first; none where it is no such function.
+fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
+    let arena = &plant.arena;
+    let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
+    let slopes: Vec<Expr> = plant.z.iter().map(|z| arena.derivative(relation, *z)).collect();
+    let origin: BTreeMap<Symbol, Expr> = plant.z.iter().map(|z| (*z, arena.zero())).collect();
+    let affine = slopes.iter().all(|slope| !arena.depends_on(*slope, &z));
+    affine.then(|| [vec![arena.substitute(relation, &origin)], slopes].concat())
+}
+
+/// A static regression under a generalised cascade, `z = xi + Psi theta`, from what vanishes as an affine function of z.
+///
+/// Functions of theta are not sought here: with Psi between them, they would be functions of known signals too.
+fn under_lambda(
+    plant: &Plant,
+    domain: &Domain,
+    (rows, span): (Vec<Result<affine::Row, Obstacle>>, Span),
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    let xi: Vec<Expr> = plant.xi.iter().map(|s| arena.of_symbol(*s)).collect();
+    let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
+    let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
+    let mut told: Vec<&affine::Row> = Vec::new();
+    for row in rows.iter().filter_map(|row| row.as_ref().ok()) {
+        let opposite: affine::Row = row.iter().map(|entry| arena.neg(*entry)).collect();
+        if told.iter().any(|known| *known == row || **known == opposite) {
+            continue;
+        }
+        told.push(row);
+        // known + factors (xi + Psi theta) = 0
+        phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
+        let column = |column: usize| {
+            let psi: Vec<Expr> = plant.psi.iter().map(|row| arena.of_symbol(row[column])).collect();
+            proved_shortest(arena, domain, arena.neg(dot(arena, &row[1..], &psi)))
+        };
+        phi_1.push((0..theta.len()).map(column).collect());
+    }
+    if phi_0.is_empty() {
+        let obstacle = rows.into_iter().find_map(Result::err);
+        found.push(match obstacle {
+            Some(obstacle) => undecided(plant, plant.y.len(), span, &obstacle),
+            None => Diagnostic::error(
+                Code::RegressionUndecided,
+                span,
+                "for a generalised cascade, no regression was found in this identity",
+            )
+            .label("not an affine function of phi with coefficients in y and u")
+            .note(
+                "for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for",
+            )
+            .help("choose a phi in which it is affine, or one whose derivative is free of x"),
+        });
+        return Claim { verdict: Verdict::Undecided, result: None };
+    }
+    let eta_symbols = plant.eta(theta.len());
+    let result = Regression {
+        kind: RegressionKind::Static,
+        rows: Vec::new(),
+        phi_0,
+        phi_1,
+        primitive_0: Vec::new(),
+        primitive_1: Vec::new(),
+        theta: eta_symbols.iter().map(|s| arena.of_symbol(*s)).collect(),
+        eta: theta,
+        eta_symbols,
+        steps: Vec::new(),
+        alternative: None,
+    };
+    Claim { verdict: Verdict::Proved, result: Some(result) }
+}
+
+/// A static regression from expressions in z that vanish.
+fn standing_still(
+    plant: &Plant,
+    domain: &Domain,
+    left_inverse: &LeftInverse,
+    (in_z, span): (&[Expr], Span),
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Regression> {
+    let arena = &plant.arena;
+    match separation::separate(plant, domain, in_z) {
+        Ok(Some(separated)) => {
+            let separated = separation::absorb_constants(plant, domain, separated);
+            if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
+                let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
+                    Ok(steps) => steps,
+                    Err(verdict) => return Claim { verdict, result: None },
+                };
+                // identity = known + factors eta = 0, so known = -factors eta
+                let negated = |row: &Vec<Expr>| row.iter().map(|e| shortest(arena, domain, arena.neg(*e))).collect();
+                let result = Regression {
+                    kind: RegressionKind::Static,
+                    rows: Vec::new(),
+                    phi_1: separated.factors.iter().map(negated).collect(),
+                    phi_0: as_written(plant, domain, in_z, &separated.known),
+                    primitive_0: Vec::new(),
+                    primitive_1: Vec::new(),
+                    eta_symbols: plant.eta(separated.eta.len()),
+                    steps,
+                    alternative: None,
+                    eta: separated.eta,
+                    theta: recovered.theta,
+                };
+                return Claim { verdict: Verdict::Proved, result: Some(result) };
+            }
+            found.push(undecided(plant, 0, span, &Obstacle::NoWitness));
+            Claim { verdict: Verdict::Undecided, result: None }
+        }
+        Ok(None) => {
+            found.push(
+                Diagnostic::error(
+                    Code::RegressionUndecided,
+                    span,
+                    "no regression that is linear in functions of theta was found in this identity",
+                )
+                .help("write it as a polynomial in the components of phi, or give `f_y` for an output"),
+            );
+            Claim { verdict: Verdict::Undecided, result: None }
+        }
+        Err(obstacle) => {
+            found.push(undecided(plant, 0, span, &obstacle));
+            Claim { verdict: Verdict::Undecided, result: None }
+        }
+    }
+}
+
+/// What is known, as the relation itself at z = chi where that is shorter, but for the constants that the unknowns
+/// have absorbed.
+fn as_written(plant: &Plant, domain: &Domain, in_z: &[Expr], known: &[Expr]) -> Vec<Expr> {
+    let arena = &plant.arena;
+    let at_chi: BTreeMap<Symbol, Expr> =
+        plant.z.iter().copied().zip(plant.chi.iter().map(|s| arena.of_symbol(*s))).collect();
+    let of = |(relation, known): (&Expr, &Expr)| {
+        let relation = arena.substitute(*relation, &at_chi);
+        let constant = shortest(arena, domain, arena.sub(*known, relation));
+        shortest_equal(arena, domain, *known, &[arena.add(relation, constant)])
+    };
+    in_z.iter().zip(known).map(of).collect()
+}

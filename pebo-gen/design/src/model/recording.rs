@@ -1,0 +1,53 @@
+//! The section `recording`: what the columns of recorded data mean.
+
+use super::formula::Formula;
+use super::spanned::Entry;
+use crate::source::Span;
+
+/// Formulas over the columns of a recording and the parameters. A signal that has none is the column of its own name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    /// When a row was recorded, in seconds; excludes the next.
+    pub t: Option<Entry<Formula>>,
+    /// The period of rows that are equally far apart, in parameters.
+    pub step: Option<Entry<Formula>>,
+    /// Outputs, inputs, and states that were measured besides.
+    pub signals: Vec<Entry<Formula>>,
+}
+
+impl Recording {
+    /// The name of the instants.
+    pub const T: &str = "t";
+
+    /// The name of the period.
+    pub const STEP: &str = "step";
+
+    /// The section with these entries, in any order.
+    #[cfg(feature = "yaml")]
+    pub(super) fn of(entries: Vec<Entry<Formula>>) -> Self {
+        let mut recording = Self::default();
+        for entry in entries {
+            match entry.name.value.as_str() {
+                Self::T => recording.t = Some(entry),
+                Self::STEP => recording.step = Some(entry),
+                _ => recording.signals.push(entry),
+            }
+        }
+        recording
+    }
+
+    /// The formula of a signal.
+    pub fn of_signal(&self, name: &str) -> Option<&Entry<Formula>> {
+        self.signals.iter().find(|entry| entry.name.value == name)
+    }
+
+    /// All entries.
+    pub fn entries(&self) -> impl Iterator<Item = &Entry<Formula>> {
+        self.t.iter().chain(&self.step).chain(&self.signals)
+    }
+
+    /// Its first entry.
+    pub fn span(&self) -> Option<Span> {
+        self.entries().map(|entry| entry.name.span).min()
+    }
+}

@@ -1,0 +1,236 @@
+//! The attribute's own arguments.
+//!
+//! ```text
+//! #[pebo_model(reference = "..", assume(L > 0, 0 < d < 1), angles(q = 2.0 * PI / N_P), units(L = "H"))]
+//! ```
+
+use proc_macro2::{Spacing, TokenStream, TokenTree};
+use quote::ToTokens as _;
+use syn::parse::Parser as _;
+use syn::punctuated::Punctuated;
+use syn::{Expr, Lit, Meta, MetaList, MetaNameValue, Token};
+
+use super::refusal::unsupported;
+use super::spans::Places;
+use crate::model::formula::Relation;
+use crate::model::spanned::{Entry, Spanned};
+use crate::model::written::{CascadeClass, RelationForm};
+use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
+
+/// What an attribute may say.
+const KEYS: [&str; 7] = ["title", "reference", "class", "regression", "assume", "angles", "units"];
+
+const ANGLES: &str = "angles(q = 2.0 * PI)";
+const UNITS: &str = "units(L = \"H\", i = \"A\")";
+
+/// What an attribute says.
+#[derive(Default)]
+pub(super) struct Arguments {
+    pub(super) title: Option<Spanned<String>>,
+    pub(super) reference: Option<Spanned<String>>,
+    pub(super) class: Option<Spanned<CascadeClass>>,
+    pub(super) regression: Option<Spanned<RelationForm>>,
+    pub(super) assume: Vec<Chain>,
+    pub(super) angles: Vec<MetaNameValue>,
+    pub(super) units: Vec<Entry<Spanned<String>>>,
+}
+
+/// Sides with relations between them.
+pub(super) struct Chain {
+    pub(super) span: Span,
+    pub(super) first: Expr,
+    pub(super) rest: Vec<(Relation, Expr)>,
+}
+
+impl Arguments {
+    pub(super) fn read(tokens: TokenStream, places: &mut Places, diagnostics: &mut Diagnostics) -> Self {
+        let mut arguments = Self::default();
+        let metas = match Punctuated::<Meta, Token![,]>::parse_terminated.parse2(tokens) {
+            Ok(metas) => metas,
+            Err(error) => {
+                let place = places.at(error.span());
+                let message = format!("the attribute could not be read: {error}");
+                diagnostics.push(
+                    unsupported(place, message)
+                        .help("write for example #[pebo_model(reference = \"..\", assume(L > 0, 0 < d < 1))]"),
+                );
+                return arguments;
+            }
+        };
+        for meta in &metas {
+            if let Err(diagnostic) = arguments.meta(meta, places, diagnostics) {
+                diagnostics.push(diagnostic);
+            }
+        }
+        arguments
+    }
+
+    fn meta(&mut self, meta: &Meta, places: &mut Places, diagnostics: &mut Diagnostics) -> Result<(), Diagnostic> {
+        let name = Places::path(meta.path());
+        match (name.as_str(), meta) {
+            ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, places)?),
+            ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, places)?),
+            ("class", Meta::NameValue(pair)) => {
+                self.class = Some(choice(&text(pair, places)?, CascadeClass::from_name, CascadeClass::NAMES)?);
+            }
+            ("regression", Meta::NameValue(pair)) => {
+                self.regression = Some(choice(&text(pair, places)?, RelationForm::from_name, RelationForm::NAMES)?);
+            }
+            ("assume", Meta::List(list)) => {
+                for part in split(list.tokens.clone(), is_comma) {
+                    let chain = chain(part, places);
+                    self.assume.extend(diagnostics.keep(chain));
+                }
+            }
+            ("angles", Meta::List(list)) => {
+                self.angles.extend(pairs(list, "an angle needs a period", ANGLES, places)?);
+            }
+            ("units", Meta::List(list)) => {
+                for pair in pairs(list, "a quantity needs its unit", UNITS, places)? {
+                    let name = Spanned { value: Places::path(&pair.path), span: places.of(&pair.path) };
+                    self.units.push(Entry { name, value: text(&pair, places)? });
+                }
+            }
+            ("title" | "reference" | "class" | "regression", _) => {
+                return Err(unsupported(places.of(meta), format!("`{name}` takes a text"))
+                    .help(format!("write `{name} = \"..\"`")));
+            }
+            ("assume" | "angles" | "units", _) => {
+                let example = match name.as_str() {
+                    "assume" => "assume(L > 0)",
+                    "angles" => ANGLES,
+                    _ => UNITS,
+                };
+                return Err(unsupported(places.of(meta), format!("`{name}` takes a list in parentheses"))
+                    .help(format!("write for example `{example}`")));
+            }
+            _ => {
+                let diagnostic = Diagnostic::error(
+                    Code::UnknownKey,
+                    places.of(meta.path()),
+                    format!("the attribute has no argument `{name}`"),
+                );
+                return Err(match nearest(&name, KEYS) {
+                    Some(near) => diagnostic.suggest(Some(near)),
+                    None => diagnostic.help(format!("its arguments are {}", listed(KEYS))),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A list of names with what is said of each.
+fn pairs(list: &MetaList, wrong: &str, example: &str, places: &mut Places) -> Result<Vec<MetaNameValue>, Diagnostic> {
+    let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
+    let pairs = pairs
+        .map_err(|error| unsupported(places.at(error.span()), wrong).help(format!("write for example `{example}`")))?;
+    Ok(pairs.into_iter().collect())
+}
+
+fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Diagnostic> {
+    match &pair.value {
+        Expr::Lit(syn::ExprLit { lit: Lit::Str(text), .. }) => {
+            Ok(Spanned { value: text.value(), span: places.of(text) })
+        }
+        other => Err(unsupported(places.of(other), "this is not a text").help("write it in quotes")),
+    }
+}
+
+fn choice<T>(
+    name: &Spanned<String>,
+    from_name: impl Fn(&str) -> Option<T>,
+    names: &[&str],
+) -> Result<Spanned<T>, Diagnostic> {
+    let Some(value) = from_name(&name.value) else {
+        let message = format!("{} is none of the choices", quoted(&name.value));
+        return Err(Diagnostic::error(Code::WrongChoice, name.span, message)
+            .help(format!("write one of {}", listed(names.iter().copied()))));
+    };
+    Ok(Spanned { value, span: name.span })
+}
+
+/// `a < b < c`, which as Rust would not be one expression.
+fn chain(tokens: TokenStream, places: &mut Places) -> Result<Chain, Diagnostic> {
+    let whole = places.of(&tokens);
+    let mut relations = Vec::new();
+    let mut sides = vec![TokenStream::new()];
+    let mut tokens = tokens.into_iter().peekable();
+    while let Some(token) = tokens.next() {
+        let relation = match &token {
+            TokenTree::Punct(punct) => {
+                let equals = punct.spacing() == Spacing::Joint
+                    && matches!(tokens.peek(), Some(TokenTree::Punct(next)) if next.as_char() == '=');
+                match (punct.as_char(), equals) {
+                    ('<', true) => Some(Relation::LessOrEqual),
+                    ('>', true) => Some(Relation::GreaterOrEqual),
+                    ('!', true) => Some(Relation::NotEqual),
+                    ('<', false) => Some(Relation::Less),
+                    ('>', false) => Some(Relation::Greater),
+                    ('=', _) => {
+                        return Err(Diagnostic::error(
+                            Code::ComparisonExpected,
+                            places.of(&token),
+                            "an assumption is not an equation",
+                        )
+                        .help("put what is zero by physics into a function `identities`"));
+                    }
+                    _ => None,
+                }
+            }
+            _ => None,
+        };
+        match (relation, sides.last_mut()) {
+            (Some(relation), _) => {
+                if matches!(relation, Relation::LessOrEqual | Relation::GreaterOrEqual | Relation::NotEqual) {
+                    tokens.next();
+                }
+                relations.push(relation);
+                sides.push(TokenStream::new());
+            }
+            (None, Some(side)) => token.to_tokens(side),
+            (None, None) => {}
+        }
+    }
+    let mut sides = sides.into_iter().map(|side| operand(side, whole, places));
+    let Some(first) = sides.next().transpose()? else { return Err(no_comparison(whole, places)) };
+    let rest: Vec<Expr> = sides.collect::<Result<_, _>>()?;
+    if rest.is_empty() {
+        return Err(no_comparison(whole, places));
+    }
+    Ok(Chain { span: whole, first, rest: relations.into_iter().zip(rest).collect() })
+}
+
+fn no_comparison(whole: Span, places: &Places) -> Diagnostic {
+    Diagnostic::error(Code::ComparisonExpected, whole, "an assumption needs a comparison, and this has none")
+        .help(format!("write for example `{} > 0`", places.text(whole)))
+}
+
+fn operand(tokens: TokenStream, whole: Span, places: &mut Places) -> Result<Expr, Diagnostic> {
+    if tokens.is_empty() {
+        return Err(Diagnostic::error(Code::EmptyFormula, whole, "a side of this comparison is missing")
+            .help("write for example `0 < d < 1`"));
+    }
+    syn::parse2(tokens).map_err(|error| {
+        unsupported(places.at(error.span()), format!("this is not an expression: {error}"))
+            .help("write the sides of an assumption as in Rust")
+    })
+}
+
+fn is_comma(token: &TokenTree) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == ',')
+}
+
+/// The runs of tokens between separators; an empty one at the end is none.
+fn split(tokens: TokenStream, separates: impl Fn(&TokenTree) -> bool) -> Vec<TokenStream> {
+    let mut parts = vec![TokenStream::new()];
+    for token in tokens {
+        if separates(&token) {
+            parts.push(TokenStream::new());
+        } else if let Some(part) = parts.last_mut() {
+            token.to_tokens(part);
+        }
+    }
+    parts.retain(|part| !part.is_empty());
+    parts
+}

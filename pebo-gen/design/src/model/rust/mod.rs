@@ -1,0 +1,49 @@
+//! The reader of models in plain Rust.
+//!
+//! In: a module's tokens, and those of its attribute. Out: a [`Model`] as far as it could be read, its mistakes collected.
+//!
+//! ```text
+//! tokens -> items::Items -> evaluate::Reader -> Model
+//! ```
+//!
+//! Functions are run with names for numbers: `let`, helper functions, fields and indices disappear, and what each
+//! component of the result was computed by is its formula. Rust's own rules stay Rust's: whatever this reader accepts
+//! means what the compiled function computes, but for rounding.
+//!
+//! There is no text here: a [`Span`](crate::source::Span) is a range of [`Places`], each of which is a run of tokens.
+
+mod spans;
+
+mod arguments;
+mod block;
+mod evaluate;
+mod functions;
+mod imports;
+mod items;
+mod plant;
+mod refusal;
+mod value;
+
+use proc_macro2::TokenStream;
+
+use super::{Model, check};
+use crate::source::{Diagnostic, Diagnostics};
+pub use spans::Places;
+
+impl Model {
+    /// Reads a module of plain Rust; `arguments` are those of its attribute. What its spans mean is in `places`.
+    pub fn read_rust(
+        arguments: TokenStream,
+        module: &syn::ItemMod,
+        places: &mut Places,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let mut diagnostics = Diagnostics::new();
+        let model = plant::read(arguments, module, places, &mut diagnostics);
+        if let Some(model) = &model {
+            check(model, &mut diagnostics);
+        }
+        diagnostics.propagate()?;
+        // Without a model there is an error, which was propagated.
+        model.map(Self::ordered).ok_or_else(Vec::new)
+    }
+}

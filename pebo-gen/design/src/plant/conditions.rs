@@ -1,0 +1,54 @@
+//! Where a formula has a value at all, and where it is differentiable: what its author wrote under roots and
+//! logarithms and below fraction bars.
+//!
+//! In: formulas as written. Out: what the algebra's tables say that each operation asks of its operands. They are
+//! read off the text because construction simplifies (`x/x` is 1) and would forget.
+
+use crate::model::formula::{Formula, Operator, Term};
+use crate::source::Diagnostic;
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::{Arena, Expr, Relation};
+
+use super::{Assumption, Scope, lower};
+
+/// Adds what the formula asks of its parts.
+pub(super) fn collect(
+    arena: &Arena,
+    scope: &Scope,
+    formula: &Formula,
+    want: Want,
+    found: &mut Vec<Assumption>,
+) -> Result<(), Diagnostic> {
+    let mut ask = |part: &Formula, asks: Vec<(Expr, Relation)>| {
+        let open = asks.into_iter().filter(|ask| !arena.holds_of_number(*ask));
+        found.extend(open.map(|(expr, relation)| Assumption { expr, relation, span: part.span }));
+    };
+    match &formula.term {
+        Term::Binary(Operator::Divide, _, below) => {
+            ask(below, arena.asked_by_division(lower(arena, scope, below)?));
+        }
+        Term::Binary(Operator::Power, base, exponent) => {
+            let (value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);
+            let asked = match arena.as_number(exponent) {
+                Some(power) => arena.asked_by_power(value, &power, want),
+                None => Some(arena.asked_by_symbolic_power(value)),
+            };
+            ask(base, asked.into_iter().collect());
+        }
+        Term::Call(function, arguments) => {
+            let values = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
+            ask(&arguments[0], arena.asked_by_call(*function, &values, want));
+        }
+        _ => {}
+    }
+    // The parser bounds the depth, so recursion is safe here.
+    formula.parts().into_iter().try_for_each(|part| collect(arena, scope, part, want, found))
+}
+
+/// Whether the formula uses the name.
+pub(super) fn uses(formula: &Formula, name: &str) -> bool {
+    match &formula.term {
+        Term::Name(used) => used == name,
+        _ => formula.parts().into_iter().any(|part| uses(part, name)),
+    }
+}

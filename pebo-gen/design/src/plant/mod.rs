@@ -1,0 +1,32 @@
+//! What a model means.
+//!
+//! ```text
+//! Model -> names resolved, numbers exact, formulas in one arena -> Plant
+//! ```
+//!
+//! Holds after: every name in a formula is declared where it may stand, every formula has a value as far
+//! as its constants tell, and each equation keeps the span of its source. A model by class has become
+//! the same equations, with the spans of the class's fields.
+
+pub mod class;
+mod conditions;
+mod contradiction;
+mod formula;
+pub(crate) mod matrix;
+mod own;
+mod period;
+#[allow(clippy::module_inception)]
+mod plant;
+mod resolve;
+mod scope;
+pub mod settings;
+mod terms;
+mod values;
+
+pub use crate::model::{CascadeClass, RelationForm};
+pub use class::{Class, Proposal};
+pub use formula::lower;
+pub use matrix::Matrix;
+pub use plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin};
+pub use scope::Scope;
+pub use settings::Settings;

@@ -1,0 +1,296 @@
+//! What a model means: names resolved, numbers exact.
+//!
+//! One thing with `class`, `resolve` and the passes that `resolve` calls: a plant holds what its class expanded to, a class
+//! expands to a plant's equations, and each pass adds to the plant what it has found.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+use crate::model::{CascadeClass, RelationForm};
+use crate::source::Span;
+use pebo_cas::domain::manifold::Manifold;
+use pebo_cas::forms::tidy::functions;
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::{Arena, Domain, Expr, Rational, Relation, Symbol};
+
+use super::class::{Class, Proposal};
+use super::own::Own;
+
+/// A plant, resolved, with its candidate transform if there is one.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    /// The identifier of the model.
+    pub name: String,
+    /// What the plant is, in words.
+    pub title: Option<String>,
+    /// Where it is from.
+    pub reference: Option<String>,
+    /// Where all expressions of this plant live, and of the same plant with other transforms.
+    pub arena: Rc<Arena>,
+    /// The class that it was written by, with what the class knows of it.
+    pub class: Option<Class>,
+    /// What the class proposes; proved like anything else.
+    pub proposal: Proposal,
+    /// The cascade that the author asks for; without it either will do.
+    pub asked: Option<CascadeClass>,
+    /// How the author wants a relation between the components of the transform to become a regression, and where that is said.
+    pub relation_form: Option<(RelationForm, Span)>,
+    /// Constants of the plant.
+    pub parameters: Vec<Parameter>,
+    /// Unmeasured states with their rates.
+    pub x: Vec<State>,
+    /// Measured outputs with their rates.
+    pub y: Vec<Output>,
+    /// Inputs.
+    pub u: Vec<Symbol>,
+    /// The input that is the time in seconds, where the formulas use it without a declaration.
+    pub time: Option<Symbol>,
+    /// Signals that are neither measured nor estimated; no result may depend on them.
+    pub w: Vec<Symbol>,
+    /// The candidate transform z = phi(x, y), one formula a component; none where it is to be searched for.
+    pub phi: Vec<Formula>,
+    /// Where the transform is from.
+    pub origin: TransformOrigin,
+    /// The left inverse as the author gave it: states with formulas in z and y.
+    pub phi_left: Option<Vec<(Symbol, Formula)>>,
+    /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of the
+    /// two.
+    pub identities: Vec<Formula>,
+    /// States that are angles, with their period.
+    pub angles: Vec<(Symbol, Formula)>,
+    /// Units of parameters and signals, as far as the author gives them.
+    pub units: BTreeMap<Symbol, String>,
+    /// The domain that the author assumes.
+    pub assumptions: Vec<Assumption>,
+    /// The summands of the rates as they are written, each where it stands.
+    pub terms: BTreeMap<Symbol, Vec<Formula>>,
+    /// What the formulas ask of their parts to have values: denominators, radicands and the like.
+    pub conditions: Vec<Assumption>,
+    /// The coordinates z1.. of the transform.
+    pub z: Vec<Symbol>,
+    /// The states chi1.. of the dynamic extension.
+    pub chi: Vec<Symbol>,
+    /// The states xi1.. of the extension of a generalised cascade.
+    pub xi: Vec<Symbol>,
+    /// The entries Psi11.. of its fundamental matrix, by rows; `Psi1_1`.. where there are more than nine.
+    pub psi: Vec<Vec<Symbol>>,
+    /// The unknown constants theta1..
+    pub theta: Vec<Symbol>,
+    /// What stands before the number of an unknown of the regression, where these are functions of theta.
+    pub eta: String,
+}
+
+/// Where a transform is from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TransformOrigin {
+    /// The author gave it, or nobody has yet.
+    Given,
+    /// The class that the plant was written by gives it.
+    Class,
+    /// It was searched for.
+    Found,
+}
+
+impl TransformOrigin {
+    /// The origin in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Class => "class",
+            Self::Found => "found",
+        }
+    }
+}
+
+/// A constant of the plant.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its symbol.
+    pub symbol: Symbol,
+    /// Its value, unless it is given later.
+    pub value: Option<Rational>,
+    /// The value as it is written in the model.
+    pub text: Option<String>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// An unmeasured state.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its symbol.
+    pub symbol: Symbol,
+    /// Its time derivative `f_x`.
+    pub rate: Formula,
+}
+
+/// A measured output.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Its symbol.
+    pub symbol: Symbol,
+    /// Its time derivative: `f_y`, or that of its value along the plant; absent where nothing needs it, or where an
+    /// input moves its value.
+    pub rate: Option<Formula>,
+    /// Its value `g_y` in the other signals, where it is given by that.
+    pub value: Option<Formula>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+impl Output {
+    /// Whether its rate is that of its value, rather than one that its author gave.
+    pub fn moves_with_value(&self) -> bool {
+        self.rate.zip(self.value).is_some_and(|(rate, value)| rate.span == value.span)
+    }
+}
+
+/// An expression and where its author wrote it.
+#[derive(Clone, Copy, Debug)]
+pub struct Formula {
+    /// The expression.
+    pub expr: Expr,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// One inequality of the assumed domain: `expr > 0`, `>= 0` or `!= 0`.
+#[derive(Clone, Copy, Debug)]
+pub struct Assumption {
+    /// What is compared with zero.
+    pub expr: Expr,
+    /// How.
+    pub relation: Relation,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl Plant {
+    /// Whether the author asks for this form of a relation between the components of the transform.
+    pub fn asks_for(&self, form: RelationForm) -> bool {
+        self.relation_form.is_some_and(|asked| asked.0 == form)
+    }
+
+    /// The same plant with another transform, which was searched for: a component that fails is pointed at where the
+    /// rates of the states begin.
+    #[must_use]
+    pub fn with_transform(&self, transform: &[Expr]) -> Self {
+        let Own { z, chi, theta, xi, psi } = Own::of(&self.arena, transform.len());
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let mut conditions = self.conditions.clone();
+        for (expr, relation) in self.arena.asks(transform, Want::Slope) {
+            if conditions.iter().all(|known| (known.expr, known.relation) != (expr, relation)) {
+                conditions.push(Assumption { expr, relation, span });
+            }
+        }
+        let phi = transform.iter().map(|component| Formula { expr: *component, span }).collect();
+        let (origin, proposal) = (TransformOrigin::Found, Proposal::default());
+        Self { phi, origin, proposal, phi_left: None, conditions, z, chi, theta, xi, psi, ..self.clone() }
+    }
+
+    /// The same plant where these are positive.
+    #[must_use]
+    pub fn with_positive(&self, symbols: &[Symbol]) -> Self {
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let mut plant = self.clone();
+        let assumed =
+            |symbol: &Symbol| Assumption { expr: self.arena.of_symbol(*symbol), relation: Relation::Positive, span };
+        plant.assumptions.extend(symbols.iter().map(assumed));
+        plant
+    }
+
+    /// The components of the transform.
+    pub fn transform(&self) -> Vec<Expr> {
+        self.phi.iter().map(|f| f.expr).collect()
+    }
+
+    /// The inputs but for the time.
+    pub fn commanded(&self) -> impl Iterator<Item = Symbol> + '_ {
+        self.u.iter().copied().filter(|input| self.time != Some(*input))
+    }
+
+    /// What no result may depend on: unmeasured states and signals.
+    pub fn hidden(&self) -> BTreeSet<Symbol> {
+        self.x.iter().map(|s| s.symbol).chain(self.w.iter().copied()).collect()
+    }
+
+    /// Whether the symbol may have any value: of the dynamic extension, or an unknown constant.
+    pub fn is_of_extension(&self, symbol: Symbol) -> bool {
+        let extension = self.chi.iter().chain(&self.xi).chain(&self.theta).chain(self.psi.iter().flatten());
+        extension.into_iter().any(|own| *own == symbol)
+    }
+
+    /// The time derivatives of the states, of the outputs that have one, and of the time.
+    pub fn rates(&self) -> BTreeMap<Symbol, Expr> {
+        let states = self.x.iter().map(|s| (s.symbol, s.rate.expr));
+        let outputs = self.y.iter().filter_map(|o| Some((o.symbol, o.rate?.expr)));
+        states.chain(outputs).chain(self.time.map(|time| (time, self.arena.one()))).collect()
+    }
+
+    /// `d(phi)/dx f_x + d(phi)/dy f_y`, a component each.
+    pub fn derivative_of_transform(&self) -> Vec<Expr> {
+        let rates = self.rates();
+        self.phi.iter().map(|phi| self.arena.directional(phi.expr, &rates)).collect()
+    }
+
+    /// The period of a state, if it is an angle.
+    pub fn period(&self, state: Symbol) -> Option<Expr> {
+        self.angles.iter().find(|(s, _)| *s == state).map(|(_, period)| period.expr)
+    }
+
+    /// The symbols eta1.. of so many unknowns.
+    pub fn eta(&self, count: usize) -> Vec<Symbol> {
+        (1..=count).map(|i| self.arena.generated(&format!("{}{i}", self.eta))).collect()
+    }
+
+    /// Where the claims are made: the assumed values at which the formulas as written have values.
+    ///
+    /// Without the second part a point where the author's `sqrt(x)` does not exist could count against
+    /// a claim, since construction makes `x` of its square.
+    pub fn domain(&self) -> Domain {
+        let mut domain = self.assumed();
+        for condition in &self.conditions {
+            domain.facts.assume(condition.expr, condition.relation);
+        }
+        let formulas: Vec<Expr> = self.rates().into_values().chain(self.transform()).collect();
+        domain.written = Rc::new(functions(&self.arena, &formulas));
+        domain
+    }
+
+    /// What is assumed of values: the author's inequalities and identities, and the values of the parameters.
+    pub fn assumed(&self) -> Domain {
+        let mut domain = assumed(&self.arena, &self.assumptions, &self.parameters);
+        if !self.identities.is_empty() {
+            let outputs = self.y.iter().map(|output| output.symbol);
+            let constants = self.parameters.iter().map(|parameter| parameter.symbol);
+            let groups = vec![self.hidden(), outputs.collect(), self.u.iter().copied().collect(), constants.collect()];
+            let equations = self.identities.iter().map(|identity| identity.expr).collect();
+            domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, groups);
+        }
+        domain
+    }
+}
+
+/// The domain of these inequalities and values.
+pub(super) fn assumed(arena: &Arena, assumptions: &[Assumption], parameters: &[Parameter]) -> Domain {
+    let mut domain = Domain::default();
+    for assumption in assumptions {
+        domain.facts.assume(assumption.expr, assumption.relation);
+        if assumption.relation != Relation::NonZero {
+            for above in arena.above_extremes(assumption.expr) {
+                domain.facts.assume(above, assumption.relation);
+            }
+        }
+    }
+    for parameter in parameters {
+        let Some(value) = &parameter.value else { continue };
+        domain.fixed.insert(parameter.symbol, arena.number(value.clone()));
+        let symbol = arena.of_symbol(parameter.symbol);
+        match value.signum() {
+            1 => domain.facts.assume(symbol, Relation::Positive),
+            -1 => domain.facts.assume(arena.neg(symbol), Relation::Positive),
+            _ => {}
+        }
+    }
+    domain
+}

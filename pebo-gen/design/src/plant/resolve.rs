@@ -1,0 +1,293 @@
+//! A written model to a plant.
+//!
+//! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every name and formula in it that
+//! has no meaning.
+
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+use crate::model::{self, Comparison, Entry, Model, Spanned};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::{Arena, Budget, Expr, Rational, Relation as Compared, Symbol};
+
+use super::formula::{exact, lower};
+use super::own::{Own, letter_of_unknowns};
+use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin, assumed};
+use super::scope::Scope;
+use super::{class, terms, values};
+
+impl Plant {
+    /// Resolves the names and numbers of a model; what is asked of the plant then has the usual budget.
+    pub fn resolve(model: &Model) -> Result<Self, Vec<Diagnostic>> {
+        Self::resolve_within(model, Budget::default())
+    }
+
+    /// Resolves the names and numbers of a model; what is asked of the plant then draws from the budget, as the
+    /// expansion of a class does.
+    pub fn resolve_within(model: &Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
+        let mut problems = Diagnostics::new();
+        let arena = Rc::new(Arena::within(budget));
+        // In this order, so that results print parameters before states before inputs.
+        let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
+        let names = |list: &[Spanned<String>]| -> Vec<Symbol> {
+            list.iter().filter_map(|name| arena.as_symbol(arena.variable(&name.value))).collect()
+        };
+        let (y, x, u, w) = (names(&model.y), names(&model.x), names(&model.u), names(&model.w));
+        let own = Own::of(&arena, class::components(model));
+
+        let scope = names_of(&arena, model, &parameters, &mut problems);
+        let constants: BTreeSet<Symbol> = parameters.iter().map(|p| p.symbol).collect();
+        let with = |groups: &[&[Symbol]]| -> BTreeSet<Symbol> {
+            groups.iter().flat_map(|g| g.iter().copied()).chain(constants.iter().copied()).collect()
+        };
+        let within = |formula: &model::Formula, allowed: &BTreeSet<Symbol>, place: &str| {
+            let expr = lower(&arena, &scope, formula)?;
+            confined(&arena, expr, formula.span, allowed, place)
+        };
+
+        let assumptions: Vec<Assumption> =
+            problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
+        super::contradiction::find(&arena, &assumptions, &parameters, &mut problems);
+        let assumptions: Vec<Assumption> =
+            assumptions.into_iter().filter(|a| !arena.holds_of_number((a.expr, a.relation))).collect();
+        let domain = assumed(&arena, &assumptions, &parameters);
+        let on_states = with(&[&x, &y]);
+        let dynamics = match &model.class {
+            None => explicit(&arena, &scope, model, (&x, &y), &mut problems, |formula| {
+                within(formula, &on_states, "phi(x, y)")
+            }),
+            Some(class) => {
+                let place = class::Place { arena: &arena, scope: &scope, model, domain: &domain, z: &own.z };
+                let names = class::Names { x: &x, y: &y, u: &u, w: &w, constants: &constants };
+                place.expand(class, &names, &mut problems).unwrap_or_default()
+            }
+        };
+        let class::Expansion { x: states, y: mut outputs, phi, proposal, class, conditions } = dynamics;
+        let origin = if class.is_some() { TransformOrigin::Class } else { TransformOrigin::Given };
+        let mut identities =
+            problems.all(model.identities.iter().map(|f| within(f, &with(&[&x, &y, &u]), "an identity in x, y and u")));
+        values::confine(&arena, &outputs, &with(&[&x, &y, &u]), &mut problems);
+        identities.extend(values::identities(&arena, &outputs));
+        let time = model.time.and(u.last().copied());
+        values::move_along(&arena, &states, &mut outputs, time, &constants);
+        let angles = problems.all(model.angles.iter().map(|entry| {
+            let period = within(&entry.value, &with(&[]), "a period")?;
+            super::period::positive(&arena, &domain, period)?;
+            Ok((arena.symbol(&entry.name.value), period))
+        }));
+        let mut inverse_scope = scope.clone();
+        for symbol in &own.z {
+            inverse_scope.define(arena.name(*symbol), arena.of_symbol(*symbol));
+        }
+        let on_transform = with(&[&own.z, &y]);
+        let phi_left = problems.all(model.phi_left.iter().map(|entry| {
+            let expr = lower(&arena, &inverse_scope, &entry.value)?;
+            let formula = confined(&arena, expr, entry.value.span, &on_transform, "phi_left(z, y)")?;
+            Ok((arena.symbol(&entry.name.value), formula))
+        }));
+        let units =
+            model.units.iter().map(|entry| (arena.symbol(&entry.name.value), entry.value.value.clone())).collect();
+        let conditions = asked(&arena, &scope, model, conditions);
+        let terms = terms::of_rates(&arena, &scope, model);
+        rates_of_transform(&arena, &phi, &outputs, &mut problems);
+        if arena.budget().is_exhausted() {
+            // What was found besides may be no mistake, but something that there was no time to show.
+            let phase = if model.class.is_some() { "the expansion of the class" } else { "the reading of the model" };
+            return Err(vec![Diagnostic::limit_reached(phase, model.name.span)]);
+        }
+        problems.propagate()?;
+        Ok(Self {
+            name: model.name.value.clone(),
+            title: model.title.as_ref().map(|t| t.value.clone()),
+            reference: model.reference.as_ref().map(|r| r.value.clone()),
+            class,
+            asked: model.asked.as_ref().map(|asked| asked.value),
+            relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
+            proposal,
+            parameters,
+            x: states,
+            y: outputs,
+            time,
+            u,
+            w,
+            origin,
+            phi,
+            phi_left: (!phi_left.is_empty()).then_some(phi_left),
+            identities,
+            angles,
+            units,
+            terms,
+            conditions,
+            assumptions,
+            z: own.z,
+            chi: own.chi,
+            theta: own.theta,
+            xi: own.xi,
+            psi: own.psi,
+            eta: letter_of_unknowns(model),
+            arena,
+        })
+    }
+}
+
+/// The names of a model with what they stand for: a symbol, zero for a parameter that is given so, or what a definition
+/// says.
+fn names_of(arena: &Arena, model: &Model, parameters: &[Parameter], problems: &mut Diagnostics) -> Scope {
+    let mut scope = Scope::new();
+    for name in model.declared() {
+        scope.define(&name.value, arena.variable(&name.value));
+    }
+    // One that is given as zero is zero, wherever it stands.
+    for parameter in parameters.iter().filter(|p| p.value.as_ref().is_some_and(Rational::is_zero)) {
+        scope.define(arena.name(parameter.symbol), arena.zero());
+    }
+    // Each uses only those before it: no definition is a symbol.
+    for definition in &model.define {
+        let meaning = problems.keep(lower(arena, &scope, &definition.value));
+        // One that fails was reported, and there will be no plant; what uses it is looked at all the same.
+        let meaning = meaning.unwrap_or_else(|| arena.variable(&definition.name.value));
+        scope.define(&definition.name.value, meaning);
+    }
+    scope
+}
+
+/// What the formulas ask of their parts to have values, and the transform to have derivatives, beside what a class
+/// asks already: of its formulas some are differentiated.
+fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
+    let mut conditions = of_class;
+    let mut collect = |formula: &model::Formula, want: Want| {
+        // What fails here was reported where the formula itself was lowered.
+        let _ = super::conditions::collect(arena, scope, formula, want, &mut conditions);
+    };
+    let of_class: Vec<_> = model.class.iter().flat_map(model::Class::formulas).collect();
+    // The rate of an output that is given by its value is that of the value.
+    let values = model.g_y.iter().map(|entry| &entry.value);
+    let smooth: Vec<&model::Formula> = model.phi.iter().chain(values).chain(of_class).collect();
+    let plain = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value).chain(&model.identities);
+    plain.for_each(|formula| collect(formula, Want::Value));
+    for formula in &smooth {
+        collect(formula, Want::Slope);
+    }
+    // A definition that a differentiated formula uses, directly or through others, is differentiated too.
+    let mut users = smooth;
+    let mut differentiated = BTreeSet::new();
+    while let Some(user) = users.pop() {
+        for (index, definition) in model.define.iter().enumerate() {
+            if super::conditions::uses(user, &definition.name.value) && differentiated.insert(index) {
+                users.push(&definition.value);
+            }
+        }
+    }
+    for (index, definition) in model.define.iter().enumerate() {
+        collect(&definition.value, if differentiated.contains(&index) { Want::Slope } else { Want::Value });
+    }
+    conditions
+}
+
+/// The equations as the author wrote them.
+fn explicit(
+    arena: &Arena,
+    scope: &Scope,
+    model: &Model,
+    (x, y): (&[Symbol], &[Symbol]),
+    problems: &mut Diagnostics,
+    component: impl Fn(&model::Formula) -> Result<Formula, Diagnostic>,
+) -> class::Expansion {
+    let states = x
+        .iter()
+        .zip(&model.f_x)
+        .map(|(symbol, rate)| Ok(State { symbol: *symbol, rate: resolved(arena, scope, &rate.value)? }));
+    let states = problems.all(states);
+    let outputs = model.y.iter().zip(y).map(|(name, symbol)| {
+        let rate = model.f_y.iter().find(|entry| entry.name.value == name.value);
+        let rate = rate.map(|entry| resolved(arena, scope, &entry.value)).transpose()?;
+        let value = model.g_y.iter().find(|entry| entry.name.value == name.value);
+        let value = value.map(|entry| resolved(arena, scope, &entry.value)).transpose()?;
+        Ok(Output { symbol: *symbol, rate, value, span: name.span })
+    });
+    let outputs = problems.all(outputs);
+    let phi = problems.all(model.phi.iter().map(component));
+    class::Expansion { x: states, y: outputs, phi, ..class::Expansion::default() }
+}
+
+impl Diagnostics {
+    /// The good results; the others are kept as diagnostics.
+    pub(super) fn all<T>(&mut self, results: impl Iterator<Item = Result<T, Diagnostic>>) -> Vec<T> {
+        results.filter_map(|result| self.keep(result)).collect()
+    }
+}
+
+fn parameter(arena: &Arena, entry: &Entry<Option<Spanned<model::Decimal>>>) -> Result<Parameter, Diagnostic> {
+    let value = entry.value.as_ref().map(|v| exact(&v.value, v.span)).transpose()?;
+    let text = entry.value.as_ref().map(|v| v.value.text().to_owned());
+    arena.variable(&entry.name.value);
+    Ok(Parameter { symbol: arena.symbol(&entry.name.value), value, text, span: entry.name.span })
+}
+
+fn resolved(arena: &Arena, scope: &Scope, formula: &model::Formula) -> Result<Formula, Diagnostic> {
+    Ok(Formula { expr: lower(arena, scope, formula)?, span: formula.span })
+}
+
+/// The formula, if it depends on nothing but what its place allows.
+pub(super) fn confined(
+    arena: &Arena,
+    expr: Expr,
+    span: Span,
+    allowed: &BTreeSet<Symbol>,
+    place: &str,
+) -> Result<Formula, Diagnostic> {
+    match arena.symbols_of(&[expr]).iter().find(|s| !allowed.contains(s)) {
+        None => Ok(Formula { expr, span }),
+        Some(stray) => {
+            let names: Vec<String> = allowed.iter().map(|s| arena.name(*s)).collect();
+            Err(Diagnostic::error(
+                Code::MisplacedName,
+                span,
+                format!("{place} cannot depend on `{}`", arena.name(*stray)),
+            )
+            .help(format!("use only {}", names.join(", "))))
+        }
+    }
+}
+
+/// The inequalities of a chain as comparisons with zero.
+fn compared(arena: &Arena, scope: &Scope, comparison: &Comparison) -> Result<Vec<Assumption>, Diagnostic> {
+    use model::Relation::{Greater, GreaterOrEqual, Less, LessOrEqual, NotEqual};
+    comparison
+        .pairs()
+        .map(|(left, relation, right)| {
+            let (a, b) = (lower(arena, scope, left)?, lower(arena, scope, right)?);
+            let (difference, relation) = match relation {
+                Less => (arena.sub(b, a), Compared::Positive),
+                LessOrEqual => (arena.sub(b, a), Compared::NonNegative),
+                Greater => (arena.sub(a, b), Compared::Positive),
+                GreaterOrEqual => (arena.sub(a, b), Compared::NonNegative),
+                NotEqual => (arena.sub(a, b), Compared::NonZero),
+            };
+            Ok(Assumption { expr: difference, relation, span: comparison.span })
+        })
+        .collect()
+}
+
+/// Every output that the transform uses needs a rate.
+fn rates_of_transform(arena: &Arena, phi: &[Formula], outputs: &[Output], problems: &mut Diagnostics) {
+    for component in phi {
+        let used = arena.symbols_of(&[component.expr]);
+        for output in outputs.iter().filter(|o| o.rate.is_none() && used.contains(&o.symbol)) {
+            let name = arena.name(output.symbol);
+            let missing = Diagnostic::error(
+                Code::MissingRate,
+                component.span,
+                format!("phi uses {name}, whose rate is not given"),
+            )
+            .also(output.span, "declared here");
+            problems.push(match &output.value {
+                None => missing.help(format!("give the rate of {name} under `f_y`")),
+                Some(value) => missing
+                    .also(value.span, "an input moves this value, and its own rate is not known")
+                    .help(format!("leave {name} out of phi")),
+            });
+        }
+    }
+}

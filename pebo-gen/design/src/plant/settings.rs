@@ -1,0 +1,419 @@
+//! The section `observer`, resolved: a value for each unknown, of the estimator that is named and of nothing else.
+//!
+//! In: what was written, the sizes of the regression, and how a number is read: exactly for code, rounded for a run.
+
+use crate::model::{self, Bounds, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
+use crate::source::{Code, Diagnostic, Diagnostics, Span};
+
+/// Settings with which an observer can be built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings<N> {
+    /// What the regression goes through.
+    pub operator: Operator<N>,
+    /// Whether the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
+    /// those of the outputs whose rates are used, and behind them those of the coordinates.
+    pub output: bool,
+    /// Of the output form: the places of the outputs in y, where estimates are made of the outputs that the observer expects.
+    pub expected: Option<Vec<usize>>,
+    /// Whether samples are joined by straight lines; else each is held.
+    pub straight: bool,
+    /// What estimates the unknowns.
+    pub estimator: Estimator<N>,
+    /// What each unknown is not below.
+    pub lower: Option<Vec<N>>,
+    /// What each unknown is not above.
+    pub upper: Option<Vec<N>>,
+    /// Between what each recovered state is, from below and from above.
+    pub within: [Option<Vec<N>>; 2],
+    /// When the extension starts again from the estimate, if it does.
+    pub rebase: Option<Rebase<N>>,
+    /// The extension at the start.
+    pub chi_0: Vec<N>,
+    /// The normalised square of an innovation beyond which a sample is an outlier, if any is.
+    pub gate: Option<N>,
+    /// What samples may be beside numbers, if that is known.
+    pub limits: Option<Limits<N>>,
+}
+
+/// When the extension starts again from the estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rebase<N> {
+    /// After so many samples, a whole number.
+    Samples(N),
+    /// When a component of it exceeds this (`Drift::Above` of the runtime).
+    Above(N),
+    /// All the time, at this rate in 1/s (`Drift::Leak` of the runtime).
+    Leak(N),
+}
+
+impl<N> Rebase<N> {
+    /// The number that belongs to it.
+    pub fn number(&self) -> &N {
+        let (Self::Samples(number) | Self::Above(number) | Self::Leak(number)) = self;
+        number
+    }
+
+    /// The same with another number.
+    pub fn map<M>(&self, other: impl Fn(&N) -> M) -> Rebase<M> {
+        match self {
+            Self::Samples(number) => Rebase::Samples(other(number)),
+            Self::Above(number) => Rebase::Above(other(number)),
+            Self::Leak(number) => Rebase::Leak(other(number)),
+        }
+    }
+}
+
+impl<N> Settings<N> {
+    /// Whether an equation of the regression without an unknown serves: a gate looks at the samples of all equations, and
+    /// in the output form each has the output at the start as its unknown.
+    pub fn uses_all_rates(&self) -> bool {
+        self.output || self.gate.is_some()
+    }
+}
+
+/// What samples may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits<N> {
+    /// The least and the greatest sample of each output that has limits; empty where none has.
+    pub outputs: Vec<Option<[N; 2]>>,
+    /// The same of inputs.
+    pub inputs: Vec<Option<[N; 2]>>,
+    /// The longest time in seconds between two accepted samples.
+    pub gap: Option<N>,
+}
+
+impl<N> Limits<N> {
+    /// The limits of a model's section; none where it has none, and where a number cannot be read.
+    pub fn of(model: &Model, read: impl Fn(&Decimal) -> Option<N>) -> Option<Self> {
+        let written = &model.observer;
+        let limit = |signal: &Spanned<String>| {
+            let entry = written.limits.iter().find(|entry| entry.name.value == signal.value)?;
+            match entry.value.as_slice() {
+                [least, most] => Some([read(&least.value)?, read(&most.value)?]),
+                _ => None,
+            }
+        };
+        let each = |signals: &[Spanned<String>]| -> Vec<Option<[N; 2]>> {
+            let limits: Vec<_> = signals.iter().map(limit).collect();
+            if limits.iter().any(Option::is_some) { limits } else { Vec::new() }
+        };
+        let (outputs, inputs) = (each(&model.y), each(&model.u));
+        let gap = written.gap.as_ref().and_then(|gap| read(&gap.value));
+        (gap.is_some() || !outputs.is_empty() || !inputs.is_empty()).then_some(Self { outputs, inputs, gap })
+    }
+}
+
+/// Outliers in a row that a gate refuses.
+pub const PATIENCE: u32 = 20;
+
+/// What the regression goes through.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Operator<N> {
+    /// A filter of this bandwidth, in rad/s.
+    Filter(N),
+    /// The mean over so many samples, a whole number.
+    Window(N),
+    /// Each sample by itself, weighed by the standard deviation of its errors in each row.
+    Sampled(Vec<N>),
+}
+
+/// An estimator of the runtime library.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Estimator<N> {
+    /// The gradient of this gain.
+    Gradient(Vec<N>),
+    /// The same, divided by `1 + mu |Phi|^2`.
+    NormalisedGradient {
+        /// The diagonal of the gain.
+        gain: Vec<N>,
+        /// The normalisation.
+        mu: N,
+    },
+    /// Least squares.
+    LeastSquares(Covariance<N>),
+    /// A scalar estimator for each unknown.
+    Drem {
+        /// The gains of these.
+        gain: Vec<N>,
+        /// What makes the equations square.
+        extension: Extension<N>,
+    },
+}
+
+impl<N> Estimator<N> {
+    /// The number of unknowns that it has settings for.
+    pub fn unknowns(&self) -> usize {
+        match self {
+            Self::Gradient(gain) | Self::NormalisedGradient { gain, .. } | Self::Drem { gain, .. } => gain.len(),
+            Self::LeastSquares(covariance) => covariance.start.len(),
+        }
+    }
+}
+
+/// What least squares need.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Covariance<N> {
+    /// The diagonal of the covariance at the start.
+    pub start: Vec<N>,
+    /// The rate of forgetting in 1/s.
+    pub forgetting: N,
+    /// By how much the covariance grows in a second, where it does.
+    pub process_noise: Option<Vec<N>>,
+}
+
+/// The regressor extension of DREM.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Extension<N> {
+    /// Kreisselmeier's.
+    Kreisselmeier {
+        /// The diagonal of its gain.
+        gain: Vec<N>,
+        /// The rate of forgetting in 1/s.
+        forgetting: N,
+        /// Whether the estimate is exact after a finite time.
+        finite_time: Option<FiniteTime<N>>,
+    },
+    /// The response of a gradient.
+    Gradient(Vec<N>),
+    /// The response of least squares.
+    LeastSquares(Covariance<N>),
+}
+
+/// Exactness after a finite time: once, or again and again where there is a period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiniteTime<N> {
+    /// The clip, between 0 and 1.
+    pub clip: N,
+    /// Seconds after which it counts from a new instant.
+    pub period: Option<N>,
+}
+
+impl<N: Clone + PartialOrd> Settings<N> {
+    /// The settings that a section gives an observer of so many unknowns, coordinates and recovered states. There are none where the
+    /// section lacks something, and where a number cannot be read; lists of wrong lengths and bounds that exclude each
+    /// other are reported.
+    pub fn resolve(
+        written: &Observer,
+        (unknowns, coordinates, states): (usize, usize, usize),
+        read: impl Fn(&Decimal) -> Option<N>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let mut section = Section { written, unknowns, read, problems };
+        let estimator = section.estimator();
+        let bounds = section.bounds(&written.bounds, unknowns, "unknown");
+        let within = section.bounds(&written.within, states, "recovered state");
+        let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
+        let operator = match (&written.window, &written.filter) {
+            (Some(window), _) => Operator::Window(section.number(window)?),
+            (None, filter) => Operator::Filter(section.number(filter.as_ref()?)?),
+        };
+        let ([lower, upper], within, zero) = (bounds?, within?, section.zero()?);
+        let rebase = section.rebase().ok()?;
+        Some(Self {
+            operator,
+            output: false,
+            expected: None,
+            straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
+            estimator: estimator?,
+            lower,
+            upper,
+            within,
+            rebase,
+            chi_0: chi_0.ok()?.unwrap_or_else(|| vec![zero; coordinates]),
+            gate: None,
+            limits: None,
+        })
+    }
+}
+
+/// What a section says besides the kind of its estimator.
+#[derive(Clone, Debug)]
+pub struct Frame<N> {
+    /// The diagonal of the covariance of the coordinates at the start, if it is written.
+    pub covariance: Option<Vec<N>>,
+    /// By how much it grows in a second, if that is written.
+    pub process_noise: Option<Vec<N>>,
+    /// Between what each recovered state is, from below and from above.
+    pub within: [Option<Vec<N>>; 2],
+    /// When the extension starts again, if that is written.
+    pub rebase: Option<Rebase<N>>,
+    /// The limit of the gate.
+    pub gate: Option<N>,
+    /// Whether samples are joined by straight lines.
+    pub straight: bool,
+    /// The extension at the start, if it is written.
+    pub chi_0: Option<Vec<N>>,
+}
+
+impl<N: Clone + PartialOrd> Frame<N> {
+    /// The same of so many coordinates and recovered states, with what is wrong reported as by [`Settings::resolve`].
+    pub fn resolve(
+        written: &Observer,
+        (coordinates, states): (usize, usize),
+        read: impl Fn(&Decimal) -> Option<N>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let mut section = Section { written, unknowns: coordinates, read, problems };
+        let covariance = section.list(&written.covariance, coordinates, "a covariance for each component of phi");
+        let noise = section.list(&written.process_noise, coordinates, "process noise for each component of phi");
+        let within = section.bounds(&written.within, states, "recovered state");
+        let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
+        let rebase = section.rebase().ok()?;
+        Some(Self {
+            covariance: covariance.ok()?,
+            process_noise: noise.ok()?,
+            within: within?,
+            rebase,
+            gate: match &written.gate {
+                Some(limit) => Some(section.number(limit)?),
+                None => None,
+            },
+            straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
+            chi_0: chi_0.ok()?,
+        })
+    }
+}
+
+/// The setting `rebase` of a model that admits none.
+pub fn cannot_rebase(name: &str, rebase: Span) -> Diagnostic {
+    Diagnostic::error(Code::SettingConflict, rebase, format!("`{name}` cannot be re-based"))
+        .note("it takes a regression that is affine in z, with theta itself as its unknown")
+        .help("remove `rebase`: such an observer is restarted instead")
+}
+
+/// A list that has no value for each unknown, or a number that cannot be read.
+struct Unusable;
+
+struct Section<'a, F> {
+    written: &'a Observer,
+    unknowns: usize,
+    read: F,
+    problems: &'a mut Diagnostics,
+}
+
+impl<F> Section<'_, F> {
+    fn number<N>(&self, number: &Spanned<Decimal>) -> Option<N>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        (self.read)(&number.value)
+    }
+
+    fn zero<N>(&self) -> Option<N>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        (self.read)(&Decimal::zero())
+    }
+
+    fn estimator<N: Clone>(&mut self) -> Option<Estimator<N>>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        let (written, unknowns) = (self.written, self.unknowns);
+        // All four, so that each mistake is reported.
+        let gain = self.list(&written.gain, unknowns, "a gain for each unknown");
+        let regressor_gain = self.list(&written.regressor_gain, unknowns, "a gain for each unknown");
+        let start = self.list(&written.covariance, unknowns, "a covariance for each unknown");
+        let process_noise = self.list(&written.process_noise, unknowns, "process noise for each unknown");
+        let (gain, regressor_gain, start) = (gain.ok()?, regressor_gain.ok()?, start.ok()?);
+        let process_noise = process_noise.ok()?;
+        let one = |number: &Option<Spanned<Decimal>>| number.as_ref().and_then(|number| self.number(number));
+        let forgetting = one(&written.forgetting).or_else(|| self.zero())?;
+        let name = written.estimator();
+        let extension = match name {
+            Name::Gradient => return Some(Estimator::Gradient(gain?)),
+            Name::NormalisedGradient => {
+                return Some(Estimator::NormalisedGradient { gain: gain?, mu: one(&written.normalisation)? });
+            }
+            Name::LeastSquares => {
+                return Some(Estimator::LeastSquares(Covariance { start: start?, forgetting, process_noise }));
+            }
+            Name::Drem => Extension::Kreisselmeier { gain: regressor_gain?, forgetting, finite_time: None },
+            Name::FiniteTimeDrem => Extension::Kreisselmeier {
+                gain: regressor_gain?,
+                forgetting,
+                finite_time: Some(FiniteTime { clip: one(&written.clip)?, period: one(&written.period) }),
+            },
+            Name::GradientDrem => Extension::Gradient(regressor_gain?),
+            Name::LeastSquaresDrem => Extension::LeastSquares(Covariance { start: start?, forgetting, process_noise }),
+        };
+        Some(Estimator::Drem { gain: gain?, extension })
+    }
+
+    /// When the extension starts again, if it does.
+    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, Unusable>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        let model::Rebase { samples, above, leak, .. } = &self.written.rebase;
+        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(Unusable);
+        Ok(match (samples, above, leak) {
+            (Some(samples), ..) => Some(Rebase::Samples(number(samples)?)),
+            (None, Some(bound), _) => Some(Rebase::Above(number(bound)?)),
+            (None, None, Some(rate)) => Some(Rebase::Leak(number(rate)?)),
+            (None, None, None) => None,
+        })
+    }
+
+    /// Bounds of so many quantities of a kind.
+    fn bounds<N: Clone + PartialOrd>(
+        &mut self,
+        written: &Bounds,
+        count: usize,
+        kind: &str,
+    ) -> Option<[Option<Vec<N>>; 2]>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        let what = format!("a bound for each {kind}");
+        let lower = self.list(&written.lower, count, &what);
+        let upper = self.list(&written.upper, count, &what);
+        let (lower, upper) = (lower.ok()?, upper.ok()?);
+        let pairs = lower.iter().flatten().zip(upper.iter().flatten());
+        if let Some((crossed, _)) = pairs.enumerate().find(|(_, (lower, upper))| lower > upper) {
+            let (below, above) = (&written.lower, &written.upper);
+            let message = format!("no value lies within the bounds of {kind} {}", crossed + 1);
+            let (below, above) = (below.get(crossed).or(below.first())?, above.get(crossed).or(above.first())?);
+            self.problems.push(
+                Diagnostic::error(Code::NumberOutOfRange, below.span, message)
+                    .also(above.span, "this upper bound is below the lower one")
+                    .help("exchange them, or leave one of them out"),
+            );
+            return None;
+        }
+        Some([lower, upper])
+    }
+
+    /// As many values as needed, all given or one for all; none where the list is empty.
+    fn list<N: Clone>(
+        &mut self,
+        written: &[Spanned<Decimal>],
+        count: usize,
+        what: &str,
+    ) -> Result<Option<Vec<N>>, Unusable>
+    where
+        F: Fn(&Decimal) -> Option<N>,
+    {
+        match written {
+            [] => Ok(None),
+            [one] => Ok(Some(vec![self.number(one).ok_or(Unusable)?; count])),
+            all if all.len() == count => {
+                all.iter().map(|value| self.number(value).ok_or(Unusable)).collect::<Result<Vec<N>, _>>().map(Some)
+            }
+            all => {
+                let message = format!("{} values are given, where the observer takes {count}: {what}", all.len());
+                self.problems.push(
+                    Diagnostic::error(Code::WrongShape, all[0].span.to(all[all.len() - 1].span), message).help(
+                        if count == 1 {
+                            "write one value".to_owned()
+                        } else {
+                            format!("write {count} values, or one for all")
+                        },
+                    ),
+                );
+                Err(Unusable)
+            }
+        }
+    }
+}

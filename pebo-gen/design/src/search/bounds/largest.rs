@@ -1,0 +1,42 @@
+//! The largest rank that transforms of a class can have: by completion, where that says nothing by series.
+
+use pebo_cas::Expr;
+
+use super::driven::driven;
+use super::{Bound, BoundClass, LARGEST_ORDER, bound};
+use crate::search::completion::decision::decided;
+use crate::search::problem::Question;
+
+/// The bound of the transforms affine in x with a plain cascade, by completion, or where that says nothing by series; for
+/// values of the parameters that are found after so many others.
+pub(in crate::search) fn affine(question: &Question<'_>, others: usize) -> Option<Bound> {
+    decided(question, BoundClass::Affine, others)
+        .or_else(|| bound(question, BoundClass::Affine, (LARGEST_ORDER, others)))
+}
+
+/// The bound of the smooth transforms with a plain cascade by completion, where that of the affine ones is known; for values
+/// of the parameters that are found after so many others.
+pub(in crate::search) fn smooth(question: &Question<'_>, affine: Option<&Bound>, others: usize) -> Option<Bound> {
+    if !is_driven(question) {
+        return None;
+    }
+    match affine {
+        // There are no others.
+        Some(affine) if affine.proved && driven(question).iter().all(|driven| *driven) => {
+            Some(Bound { class: BoundClass::Smooth, ..affine.clone() })
+        }
+        _ => decided(question, BoundClass::Smooth, others),
+    }
+}
+
+/// The same by series to an order.
+pub(in crate::search) fn smooth_to(question: &Question<'_>, order: usize, others: usize) -> Option<Bound> {
+    if is_driven(question) { bound(question, BoundClass::Smooth, (order, others)) } else { None }
+}
+
+/// Whether a plant has inputs: others have local transforms, every one.
+fn is_driven(question: &Question<'_>) -> bool {
+    let rates: Vec<Expr> = question.rates.values().copied().collect();
+    let symbols = question.arena.symbols_of(&rates);
+    question.plant.u.iter().any(|input| symbols.contains(input))
+}

@@ -1,0 +1,82 @@
+//! A transform that was found, with what is proved of it.
+
+use crate::analysis::{Class, Derivation, Excitation, Outcome};
+use crate::plant::Plant;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::{Arena, Expr};
+
+use super::problem::Question;
+
+/// A transform with the verdicts on its claims.
+#[derive(Debug)]
+pub struct Candidate {
+    /// The plant with this transform.
+    pub plant: Plant,
+    /// What is proved of it.
+    pub derivation: Derivation,
+}
+
+impl Candidate {
+    /// Proves what can be proved of a transform.
+    pub(super) fn of(question: &Question<'_>, phi: &[Expr]) -> Self {
+        let plant = question.plant.with_transform(phi);
+        let derivation = Derivation::derive(&plant);
+        Self { plant, derivation }
+    }
+
+    /// Whether every claim is proved and every state is recovered.
+    pub fn is_full(&self) -> bool {
+        self.derivation.outcome == Outcome::Accepted && self.recovered() == self.plant.x.len()
+    }
+
+    /// Whether the rates of the outputs are a linear regression for theta itself.
+    pub fn is_linear(&self) -> bool {
+        self.derivation.regression.result.as_ref().is_some_and(|regression| regression.is_linear(&self.plant))
+    }
+
+    /// How many states are recovered.
+    pub fn recovered(&self) -> usize {
+        self.derivation.left_inverse.result.as_ref().map_or(0, |inverse| inverse.x.len())
+    }
+
+    /// What comes first among candidates: what is accepted, recovers all states, filters what outputs tell, has outputs affine
+    /// in z, a plain cascade, few components, unknowns that are seen at once, and is short.
+    pub(super) fn merit(&self) -> impl Ord + use<> {
+        let accepted = match self.derivation.outcome {
+            Outcome::Accepted => 0,
+            Outcome::Undecided => 1,
+            _ => 2,
+        };
+        let kind = self.derivation.identifiability.result.as_ref().map(|result| result.kind);
+        (
+            accepted,
+            self.plant.x.len() - self.recovered().min(self.plant.x.len()),
+            self.copies_an_output(),
+            !self.is_linear(),
+            self.derivation.class != Class::Pebo,
+            self.plant.phi.len(),
+            kind != Some(Excitation::Instant),
+            size(&self.plant.arena, &self.plant.transform()),
+        )
+    }
+
+    /// Whether a state is recovered with all the noise of an output that tells it: by a component that is zero by the
+    /// identities, as a state less the output that measures it, or by that output alone.
+    pub(super) fn copies_an_output(&self) -> bool {
+        let arena = &self.plant.arena;
+        if self.plant.identities.is_empty() {
+            return false;
+        }
+        let domain = self.plant.domain();
+        let vanishes = |component: &Expr| decide(arena, *component, &domain).is_zero();
+        let z = self.plant.z.iter().copied().collect();
+        let inverse = self.derivation.left_inverse.result.as_ref();
+        inverse.is_some_and(|inverse| inverse.x.iter().any(|(_, formula)| !arena.depends_on(*formula, &z)))
+            || self.plant.transform().iter().any(vanishes)
+    }
+}
+
+/// How long a transform is to read.
+pub(super) fn size(arena: &Arena, phi: &[Expr]) -> usize {
+    phi.iter().map(|component| arena.print(*component).len()).sum()
+}

@@ -1,0 +1,181 @@
+//! Functions of x whose rates are affine in themselves: an immersion into a plant that is linear in z.
+//!
+//! In: formulas, those of the outputs' rates or the states. Out: the functions of x that they consist of, with those that the
+//! rates of these consist of, and so on until nothing is added; none if that does not end soon. Coefficients are functions
+//! of y and u, so that the cascade is a generalised one, and what the functions were taken from is affine in them.
+//!
+//! A function is what multiplies one function of y and u in a formula: `2*v*p + 2*s - p^2` consists of p and `2*s - p^2`,
+//! as no other part of it is seen. Functions that are combinations of others with constant coefficients are left out, so
+//! that of a closure that begins with the outputs nothing stays hidden because of its size.
+
+pub(super) mod by_parts;
+pub(super) mod constants;
+pub(crate) mod darboux;
+pub(crate) mod observable;
+mod products;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use pebo_cas::linear::Echelon;
+use pebo_cas::linear::combination::equations;
+use pebo_cas::poly::{Monomial, Poly};
+use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::{Expr, Symbol};
+
+use super::problem::Question;
+use super::sample::is_affine_in;
+use products::apart;
+
+/// More functions than this make no observer that anybody would run.
+const MOST: usize = 12;
+
+/// Nor do functions of more parts: rates of rates that do not close grow with every step.
+const MOST_PARTS: usize = 3_000;
+
+/// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave what it can say.
+pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let mut found: Vec<Expr> = Vec::new();
+    let mut open: Vec<Expr> = start.to_vec();
+    while let Some(formula) = open.pop() {
+        let Some(functions) = functions_of(question, formula)? else { return Ok(None) };
+        for function in functions {
+            if !is_new(question, &found, function)? {
+                continue;
+            }
+            if found.len() == MOST
+                || is_long(question, function)
+                || question.bends_in_states(function)
+                || question.arena.depends_on(function, &question.plant.w.iter().copied().collect())
+            {
+                return Ok(None);
+            }
+            found.push(function);
+            open.push(question.rate(function));
+        }
+    }
+    let mut found = plainest(question, &found)?;
+    found.sort_by_key(|e| (question.arena.print(*e).len(), *e));
+    Ok(Some(found))
+}
+
+/// The outputs' rates that hold states and no input, and their rates, and so on until those are affine in what is there; none
+/// if they hold an input before, or it is more than that.
+pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = question.arena;
+    let others: BTreeSet<Symbol> = question.plant.u.iter().chain(&question.plant.w).copied().collect();
+    let is_of_states = |row: &Expr| {
+        arena.depends_on(*row, &question.states())
+            && !arena.depends_on(*row, &others)
+            && !question.bends_in_states(*row)
+    };
+    let mut found: Vec<Expr> = question.output_rates().into_iter().filter(is_of_states).collect();
+    let mut next = 0;
+    while next < found.len() {
+        let rate = question.rate(found[next]);
+        next += 1;
+        if is_long(question, rate) {
+            return Ok(None);
+        }
+        if is_affine_in(question, &[rate], &found)? {
+            continue;
+        }
+        if found.len() == MOST || !is_of_states(&rate) {
+            return Ok(None);
+        }
+        found.push(rate);
+    }
+    Ok((!found.is_empty()).then_some(found))
+}
+
+fn is_long(question: &Question<'_>, function: Expr) -> bool {
+    question.arena.postorder(&[function]).len() > MOST_PARTS
+}
+
+/// The functions of x of which a formula is a combination with coefficients that are free of x, independent of each other;
+/// none where they are not seen, as x stands together with what is known in a factor of the denominator.
+fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = question.arena;
+    let field = Field::over(arena, &question.domain.facts, &[formula])?;
+    let fraction = field.fraction(formula)?;
+    let hidden = field.kernels_of(&question.hidden);
+    let known: BTreeSet<Symbol> = question.signals.difference(&question.hidden).copied().collect();
+    let known = field.kernels_of(&known);
+    let parts = apart(&field, fraction.denominator(), [&hidden, &known])?;
+    let Some([divisor, _]) = parts else { return Ok(None) };
+    // Kernels of x and y together may be coefficients times one another: only those of x alone are told apart.
+    let numerator = fraction.numerator();
+    if numerator.variables().iter().any(|kernel| hidden.contains(kernel) && known.contains(kernel)) {
+        return Ok(None);
+    }
+    let known: Vec<u32> = known.into_iter().collect();
+    let parts = numerator.collect(&known).into_iter().map(|(_, part)| part);
+    let mut found = combinations(&field, parts, (&hidden, &divisor))?;
+    found.retain(|function| arena.depends_on(*function, &question.hidden));
+    Ok(Some(found))
+}
+
+/// What polynomials in hidden kernels, divided by another, span with constant coefficients: where that is all of their
+/// monomials, these. A sum is divided term by term where it can be: `exp(p) + exp(-p)` rather than one fraction.
+fn combinations(
+    field: &Field<'_>,
+    parts: impl Iterator<Item = Poly>,
+    (hidden, divisor): (&BTreeSet<u32>, &Poly),
+) -> Result<Vec<Expr>, Obstacle> {
+    let arena = field.arena();
+    let hidden: Vec<u32> = hidden.iter().copied().collect();
+    // A constant is no part of a function, unless it is divided by what is hidden.
+    let is_kept = |(monomial, _): &(Monomial, Poly)| !(divisor.is_one() && monomial.is_one());
+    let parts: Vec<BTreeMap<Monomial, Poly>> =
+        parts.map(|part| part.collect(&hidden).into_iter().filter(is_kept).collect()).collect();
+    // Low ones first: they are pivots, and the others are reduced by them.
+    let monomials: BTreeSet<&Monomial> = parts.iter().flat_map(BTreeMap::keys).collect();
+    let mut monomials: Vec<&Monomial> = monomials.into_iter().collect();
+    monomials.sort_by_key(|monomial| monomial.degree());
+    let entry = |part: &BTreeMap<Monomial, Poly>, monomial: &Monomial| {
+        part.get(monomial).map_or(Ok(Fraction::zero()), |coefficient| field.of_polynomial(coefficient))
+    };
+    let row = |part| monomials.iter().map(|monomial| entry(part, monomial)).collect::<Result<Vec<_>, _>>();
+    let rows = parts.iter().map(row).collect::<Result<Vec<_>, Obstacle>>()?;
+    let (echelon, _) = Echelon::of(field, rows, monomials.len())?;
+    let apart = divisor.term_count() == 1;
+    let of_row = |(_, row): (usize, &[Fraction])| -> Result<Expr, Obstacle> {
+        let mut terms = Vec::new();
+        for (coefficient, monomial) in row.iter().zip(&monomials).filter(|(coefficient, _)| !coefficient.is_zero()) {
+            let power = Poly::from_terms([((*monomial).clone(), 1.into())])?;
+            terms.push(field.mul(coefficient, &field.quotient(&power, divisor)?)?);
+        }
+        if apart {
+            return Ok(arena.sum(terms.iter().map(|term| field.show(term)).collect::<Vec<Expr>>()));
+        }
+        let whole = terms.iter().try_fold(Fraction::zero(), |sum, term| field.add(&sum, term))?;
+        Ok(field.show(&whole))
+    };
+    echelon.rows().map(of_row).collect()
+}
+
+/// Whether a function is no combination of 1 and those that were found with constant coefficients.
+fn is_new(question: &Question<'_>, found: &[Expr], function: Expr) -> Result<bool, Obstacle> {
+    let arena = question.arena;
+    let all = [&[arena.one()], found, &[function]].concat();
+    let field = Field::over(arena, &question.domain.facts, &all)?;
+    let matrix = equations(&field, &[all], &question.signals)?;
+    let (echelon, _) = Echelon::of(&field, matrix, found.len() + 2)?;
+    Ok(echelon.rank() == found.len() + 2)
+}
+
+/// Functions with the same span, each as plain as it can be.
+fn plainest(question: &Question<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let arena = question.arena;
+    let field = Field::over(arena, &question.domain.facts, found)?;
+    let fractions = found.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
+    let mut common = Poly::one();
+    for fraction in &fractions {
+        common = common.lcm(fraction.denominator(), field.limit())?;
+    }
+    let parts = fractions.iter().map(|fraction| field.over_denominator(fraction, &common));
+    let parts = parts.collect::<Result<Vec<Poly>, _>>()?.into_iter();
+    let hidden = field.kernels_of(&question.hidden);
+    // A constant factor is not part of a function.
+    let Some([divisor, _]) = apart(&field, &common, [&hidden, &BTreeSet::new()])? else { return Ok(found.to_vec()) };
+    combinations(&field, parts, (&hidden, &divisor))
+}

@@ -1,0 +1,277 @@
+//! Linear partial differential equations for functions of y, completed until they contradict nothing that follows from them.
+//!
+//! ```text
+//! rows over [dw | w] -> what holds of w alone is solved -> mixed derivatives agree -> and so on -> dw = G w, flat
+//! ```
+//!
+//! In: equations of first order for unknown functions w of y, linear and homogeneous, over a field of functions of y. Three
+//! steps add what follows from them. An equation without derivatives is solved, and fewer functions are left. A derivative
+//! that no equation gives becomes an unknown function of its own. Second derivatives do not depend on the order: that gives
+//! further equations. Holds after: the functions with which a completion started are `lift w` of those that are left, so
+//! that the rank of `lift` bounds that of all solutions. Where each derivative is given and second derivatives agree, a
+//! solution is given by its values at a point, any values (Frobenius): there are as many as functions are left.
+
+pub(crate) mod connection;
+pub(crate) mod decision;
+mod flat;
+pub(super) mod integration;
+mod posed;
+
+use pebo_cas::Symbol;
+use pebo_cas::linear::Echelon;
+use pebo_cas::poly::Poly;
+use pebo_cas::tower::{Field, Fraction, Obstacle};
+
+/// Rounds after which a completion is given up.
+const MOST_ROUNDS: usize = 24;
+
+/// More functions than this are not completed.
+const MOST_FUNCTIONS: usize = 24;
+
+pub(super) type Row = Vec<Fraction>;
+
+/// Differentiation of the elements of a field by some symbols.
+#[derive(Debug)]
+pub(super) struct Derivations<'a> {
+    pub(super) field: &'a Field<'a>,
+    /// For each symbol, the kernels that depend on it with their derivatives.
+    slopes: Vec<Vec<(u32, Fraction)>>,
+}
+
+impl<'a> Derivations<'a> {
+    /// The kernels' derivatives have to be in the field.
+    pub(super) fn of(field: &'a Field<'a>, symbols: &[Symbol]) -> Result<Self, Obstacle> {
+        let slopes = symbols.iter().map(|symbol| {
+            let kernels = field.kernels_of(&[*symbol].into()).into_iter();
+            let slope = |kernel: u32| field.fraction(field.arena().derivative(field.kernel(kernel), *symbol));
+            kernels.map(|kernel| Ok((kernel, slope(kernel)?))).collect::<Result<Vec<_>, Obstacle>>()
+        });
+        Ok(Self { field, slopes: slopes.collect::<Result<_, _>>()? })
+    }
+
+    fn count(&self) -> usize {
+        self.slopes.len()
+    }
+
+    /// The derivative by the symbol at this place.
+    fn derivative(&self, of: &Fraction, by: usize) -> Result<Fraction, Obstacle> {
+        let field = self.field;
+        let along = |poly: &Poly| {
+            self.slopes[by].iter().try_fold(Fraction::zero(), |sum, (kernel, slope)| {
+                let partial = field.of_polynomial(&poly.derivative(*kernel))?;
+                field.add(&sum, &field.mul(&partial, slope)?)
+            })
+        };
+        let above = along(of.numerator())?;
+        if of.denominator().is_constant() {
+            return field.div(&above, &field.of_polynomial(of.denominator())?);
+        }
+        // (n / d)' = (n' - (n / d) d') / d
+        let below = field.mul(of, &along(of.denominator())?)?;
+        field.div(&field.sub(&above, &below)?, &field.of_polynomial(of.denominator())?)
+    }
+}
+
+/// Equations for functions w of y.
+#[derive(Debug)]
+pub(super) struct System<'a> {
+    by: &'a Derivations<'a>,
+    /// How many functions there are.
+    functions: usize,
+    /// So many of the first are to be given in terms of the others.
+    given: usize,
+    /// A row has a column for each derivative, those of one function together, and then one for each function.
+    rows: Vec<Row>,
+    /// What was asked for, in terms of the functions.
+    lift: Vec<Row>,
+}
+
+/// What a completion came to.
+#[derive(Debug)]
+pub(super) struct Completed {
+    /// What was asked for, in terms of the functions that are left.
+    pub(super) lift: Vec<Row>,
+    /// How many functions are left.
+    pub(super) functions: usize,
+    /// Where each derivative of these is given: for each function and symbol, its coefficients in terms of the functions.
+    pub(super) slopes: Vec<Vec<Row>>,
+    pub(super) solutions: Solutions,
+}
+
+/// How many independent solutions there are around a point.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Solutions {
+    /// As many as functions are left: each choice of their values at a point gives one.
+    AsFunctions,
+    /// Functions of y may be chosen.
+    Infinite,
+    /// The completion was not carried to its end.
+    Unknown,
+}
+
+impl<'a> System<'a> {
+    /// The equations; what is asked for are the first of the functions.
+    pub(super) fn new(by: &'a Derivations<'a>, (asked, functions): (usize, usize), rows: Vec<Row>) -> Self {
+        Self { by, functions, given: 0, rows, lift: (0..asked).map(|index| unit(functions, index)).collect() }
+    }
+
+    /// The same, with so many of the first functions to be given in terms of the others where that can be.
+    pub(super) fn giving(self, given: usize) -> Self {
+        Self { given, ..self }
+    }
+
+    /// The same equations for solutions of which all that is asked for vanishes.
+    pub(super) fn vanishing(&self) -> Self {
+        let padding = vec![Fraction::zero(); self.functions * self.by.count()];
+        let vanishes = self.lift.iter().map(|row| [padding.as_slice(), row].concat());
+        let rows = self.rows.iter().cloned().chain(vanishes).collect();
+        Self { rows, lift: Vec::new(), ..*self }
+    }
+
+    /// Adds all that follows.
+    pub(super) fn completed(mut self) -> Result<Completed, Obstacle> {
+        for _ in 0..MOST_ROUNDS {
+            let width = self.functions * self.by.count();
+            let (slopes, rest) = Echelon::of(self.by.field, std::mem::take(&mut self.rows), width)?;
+            let rest = rest.into_iter().map(|row| row[width..].to_vec()).collect();
+            let values = Echelon::in_order(self.by.field, rest, (self.given, self.functions))?;
+            if values.rank() > 0 {
+                self.solve(&slopes, &values)?;
+                continue;
+            }
+            let is_given = slopes.rank() == width;
+            let equations = self.mixed(&slopes)?;
+            if is_given && equations.is_empty() {
+                let count = self.by.count();
+                let of = |column: usize| self.rows[column][width..].iter().map(Fraction::opposite).collect();
+                let slopes = (0..self.functions).map(|f| (0..count).map(|by| of(f * count + by)).collect()).collect();
+                return Ok(Completed { slopes, ..self.ended(Solutions::AsFunctions) });
+            }
+            // There is nothing with which derivatives by one symbol could disagree.
+            if self.by.count() == 1 {
+                return Ok(self.ended(Solutions::Infinite));
+            }
+            if self.functions > MOST_FUNCTIONS {
+                break;
+            }
+            self.rows.extend(equations);
+        }
+        Ok(self.ended(Solutions::Unknown))
+    }
+
+    fn ended(self, solutions: Solutions) -> Completed {
+        Completed { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
+    }
+
+    /// Replaces functions by those in terms of which they are given.
+    fn solve(&mut self, slopes: &Echelon, values: &Echelon) -> Result<(), Obstacle> {
+        let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
+        // The functions are the columns of `basis` times those that are left.
+        let basis = values.null_space();
+        let mut changes = Vec::new();
+        for vector in &basis {
+            let by = |direction| vector.iter().map(|e| self.by.derivative(e, direction)).collect::<Result<Row, _>>();
+            changes.push((0..directions).map(by).collect::<Result<Vec<Row>, Obstacle>>()?);
+        }
+        let mut rows = Vec::new();
+        for (_, row) in slopes.rows() {
+            let (derivatives, values) = row.split_at(before * directions);
+            let along = |direction: usize| derivatives.iter().skip(direction).step_by(directions);
+            let mut next = Vec::new();
+            for vector in &basis {
+                for direction in 0..directions {
+                    next.push(dot(field, along(direction), vector)?);
+                }
+            }
+            for (vector, change) in basis.iter().zip(&changes) {
+                let mut sum = dot(field, values.iter(), vector)?;
+                for (direction, change) in change.iter().enumerate() {
+                    sum = field.add(&sum, &dot(field, along(direction), change)?)?;
+                }
+                next.push(sum);
+            }
+            rows.push(next);
+        }
+        for row in &mut self.lift {
+            *row = basis.iter().map(|vector| dot(field, row.iter(), vector)).collect::<Result<_, _>>()?;
+        }
+        let is_given = |column: &usize| values.rows().any(|(pivot, _)| pivot == *column);
+        self.given = (0..self.given).filter(|column| !is_given(column)).count();
+        (self.rows, self.functions) = (rows, basis.len());
+        Ok(())
+    }
+
+    /// Makes unknown functions of the derivatives that are not given, keeps the others as rows, and gives the equations that
+    /// say that second derivatives agree.
+    fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<Row>, Obstacle> {
+        let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
+        let width = before * directions;
+        let is_pivot = |column: &usize| slopes.rows().any(|(pivot, _)| pivot == *column);
+        let free: Vec<usize> = (0..width).filter(|column| !is_pivot(column)).collect();
+        let after = before + free.len();
+        // Every first derivative of the functions before, in all functions.
+        let mut given = vec![Vec::new(); width];
+        for (index, column) in free.iter().enumerate() {
+            given[*column] = unit(after, before + index);
+        }
+        for (pivot, row) in slopes.rows() {
+            let derivatives = free.iter().map(|column| row[*column].opposite());
+            given[pivot] = row[width..].iter().map(Fraction::opposite).chain(derivatives).collect();
+        }
+        let mut equations = Vec::new();
+        for function in 0..before {
+            for (first, second) in (0..directions).flat_map(|k| (0..k).map(move |j| (j, k))) {
+                let mut row = vec![Fraction::zero(); after * (directions + 1)];
+                for (one, other, negative) in [(first, second, false), (second, first, true)] {
+                    for (index, factor) in given[function * directions + one].iter().enumerate() {
+                        let mut add = |column: usize, term: Fraction| -> Result<(), Obstacle> {
+                            let sum =
+                                if negative { field.sub(&row[column], &term) } else { field.add(&row[column], &term) };
+                            row[column] = sum?;
+                            Ok(())
+                        };
+                        add(after * directions + index, self.by.derivative(factor, other)?)?;
+                        if index >= before {
+                            add(index * directions + other, factor.clone())?;
+                        } else if !factor.is_zero() {
+                            for (column, inner) in given[index * directions + other].iter().enumerate() {
+                                add(after * directions + column, field.mul(factor, inner)?)?;
+                            }
+                        }
+                    }
+                }
+                if row.iter().any(|entry| !entry.is_zero()) {
+                    equations.push(row);
+                }
+            }
+        }
+        self.rows = (0..width)
+            .map(|column| {
+                let mut derivatives = unit(after * directions, column);
+                derivatives.extend(given[column].iter().map(Fraction::opposite));
+                derivatives
+            })
+            .collect();
+        for row in &mut self.lift {
+            row.resize(after, Fraction::zero());
+        }
+        self.functions = after;
+        Ok(equations)
+    }
+}
+
+fn unit(length: usize, index: usize) -> Row {
+    let mut row = vec![Fraction::zero(); length];
+    row[index] = Fraction::one();
+    row
+}
+
+fn dot<'b>(
+    field: &Field<'_>,
+    left: impl Iterator<Item = &'b Fraction>,
+    right: &[Fraction],
+) -> Result<Fraction, Obstacle> {
+    left.zip(right)
+        .filter(|(a, b)| !a.is_zero() && !b.is_zero())
+        .try_fold(Fraction::zero(), |sum, (a, b)| field.add(&sum, &field.mul(a, b)?))
+}

@@ -1,0 +1,96 @@
+//! What a search came to, as values.
+
+use pebo_cas::Symbol;
+use pebo_cas::tower::Obstacle;
+
+use super::bounds::Bound;
+use super::candidate::Candidate;
+
+/// What a search came to.
+#[derive(Debug)]
+pub struct Search {
+    /// What it came to, in a word.
+    pub verdict: Found,
+    /// The transforms that were proved or refuted, in order of merit.
+    pub candidates: Vec<Candidate>,
+    /// A transform that would be accepted if these states were positive, where none is accepted as it is.
+    pub assumed: Option<(Candidate, Vec<Symbol>)>,
+    /// How large the rank of dphi/dx can be, of transforms with a plain cascade: where the search looked at that. Of smooth
+    /// ones; where that says nothing, as of every plant without inputs, of those affine in x.
+    pub bound: Option<Bound>,
+    /// The same of those affine in x, where it is small.
+    pub affine: Option<Bound>,
+    /// The same of transforms affine in x with a generalised cascade, where the first is small.
+    pub generalised: Option<Bound>,
+    /// What was tried, in order.
+    pub tried: Vec<Tried>,
+}
+
+/// Whether a transform was found.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Found {
+    /// There is one whose claims are all proved, and which recovers all states.
+    Found,
+    /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if a
+    /// generalised one would do, none that is affine in x. Other generalised ones were looked for and not found; where
+    /// rates are no polynomials in the states, or a state is an unknown constant, which suggests other functions, the
+    /// search is undecided instead.
+    None,
+    /// Neither.
+    Undecided,
+}
+
+/// A form of transforms that was tried.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Tried {
+    /// The form.
+    pub form: Form,
+    /// The functions among which a null space was looked for, where there was one.
+    pub columns: usize,
+    /// How many solutions there are, as far as they were worked out.
+    pub solutions: usize,
+    /// The rank of their gradients by x.
+    pub rank: usize,
+    /// Why it was given up, if it was.
+    pub obstacle: Option<Obstacle>,
+}
+
+/// A form of transforms.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Form {
+    /// Constant combinations of the states, and functions of y to this degree.
+    Affine(usize),
+    /// Constant combinations of the states, and polynomials in y to this degree.
+    Shifted(usize),
+    /// `T(y) x + s(y)`, where the equations for T and the gradient of s are solved by integrals.
+    Integrals,
+    /// Products of functions of x to the first degree with functions of y to the second.
+    Nonlinear(usize, usize),
+    /// The states themselves, with rates affine in them.
+    States,
+    /// `T(y) x + s(y)` with rates affine in x, T to this degree.
+    Frame(usize),
+    /// Functions of x whose rates are affine in themselves.
+    Closure(Start),
+}
+
+/// What a closure begins with.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Start {
+    /// The outputs' rates.
+    Outputs,
+    /// The outputs' rates as they are written, each one function.
+    Rows,
+    /// The outputs' rates and the states.
+    Both,
+    /// The states.
+    States,
+    /// The identities and the states; the value of an output is an identity.
+    Identities,
+    /// The states divided by a polynomial that divides its own rate.
+    Quotients,
+    /// The outputs' rates, where unknown constants are taken for known.
+    Constants,
+    /// The outputs' rates, where what unknown constants multiply is integrated by parts.
+    Parts,
+}

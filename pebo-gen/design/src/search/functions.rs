@@ -1,0 +1,203 @@
+//! The functions that a transform may be made of: those that the plant's own formulas hold, and their neighbours.
+
+use std::collections::BTreeSet;
+
+use pebo_cas::graph::conditions::Want;
+use pebo_cas::number::rational::half;
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Expr, Function, Node, Rational, Relation, Symbol};
+
+use super::integral::logarithm::logarithm;
+use super::problem::Question;
+use super::sample::independent;
+
+/// More products than this are not made of one pool.
+const MOST_PRODUCTS: usize = 80;
+
+/// Nor more power products than this of the outputs alone: the null space of as many columns is found in no time.
+const MOST_MONOMIALS: usize = 290;
+
+/// Functions of outputs and constants alone: the outputs, what the rates hold of them, and derivatives of it.
+pub(super) fn of_outputs(question: &Question<'_>) -> Vec<Expr> {
+    let outputs: BTreeSet<Symbol> = question.y.iter().copied().collect();
+    let mut found: Vec<Expr> = question.y.iter().map(|symbol| question.arena.of_symbol(*symbol)).collect();
+    let is_of_outputs = |e: Expr| {
+        let symbols = question.arena.symbols_of(&[e]);
+        !symbols.is_disjoint(&outputs) && symbols.iter().all(|s| outputs.contains(s) || !question.signals.contains(s))
+    };
+    let rates: Vec<Expr> = question.rates.values().copied().collect();
+    add_atoms(question, &rates, &is_of_outputs, &mut found);
+    let slopes: Vec<Expr> =
+        found.iter().flat_map(|e| question.y.iter().map(|y| question.arena.derivative(*e, *y))).collect();
+    add_atoms(question, &slopes, &is_of_outputs, &mut found);
+    found.retain(|e| question.exists(*e));
+    found
+}
+
+/// Functions of states, and perhaps outputs: the states, and what the rates hold of them.
+pub(super) fn of_states(question: &Question<'_>) -> Vec<Expr> {
+    let arena = question.arena;
+    let states = question.states();
+    let known: BTreeSet<Symbol> = question.y.iter().copied().collect();
+    let mut found: Vec<Expr> = question.x.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
+    let is_of_states = |e: Expr| {
+        let symbols = arena.symbols_of(&[e]);
+        let admitted = |s: &Symbol| states.contains(s) || known.contains(s) || !question.signals.contains(s);
+        !symbols.is_disjoint(&states) && symbols.iter().all(admitted)
+    };
+    let rates: Vec<Expr> = question.rates.values().copied().collect();
+    add_atoms(question, &rates, &is_of_states, &mut found);
+    found.retain(|e| question.exists(*e) && !question.bends_in_states(*e));
+    found
+}
+
+/// Square roots of what the functions divide by, and their reciprocals, where it is positive.
+pub(super) fn roots(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
+    let arena = question.arena;
+    let bases = of.iter().filter_map(|e| match arena.node(*e) {
+        Node::Product(product) => match product.factors.as_slice() {
+            [(base, exponent)] if exponent.is_integer() && exponent.is_negative() => Some(*base),
+            _ => None,
+        },
+        _ => None,
+    });
+    let positive = bases.filter(|base| question.domain.implies(arena, *base, Relation::Positive));
+    positive.flat_map(|base| [half(), -&half()].map(|exponent| arena.power(base, &exponent))).collect()
+}
+
+/// Sine and cosine of the outputs that stand in no rate: equations that do not change along one have solutions that turn
+/// with it.
+pub(super) fn waves(question: &Question<'_>) -> Vec<Expr> {
+    let arena = question.arena;
+    let rates: Vec<Expr> = question.rates.values().copied().collect();
+    let known = arena.symbols_of(&rates);
+    let cyclic = question.y.iter().filter(|symbol| !known.contains(symbol));
+    cyclic.flat_map(|y| [Function::Sin, Function::Cos].map(|f| arena.call(f, &[arena.of_symbol(*y)]))).collect()
+}
+
+/// Logarithms of signals, of sums, and of factors: of states where their sign is known.
+pub(super) fn logarithms(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
+    let arena = question.arena;
+    let bases = of.iter().flat_map(|e| match arena.node(*e) {
+        Node::Symbol(_) | Node::Sum(_) => vec![*e],
+        Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
+        _ => Vec::new(),
+    });
+    let mut found = Vec::new();
+    for base in bases {
+        let moves = arena.depends_on(base, &question.signals);
+        let logarithm = logarithm(arena, &question.domain, base);
+        let signed = arena.asks(&[logarithm], Want::Slope).iter().all(|(_, relation)| *relation != Relation::NonZero);
+        if moves && !found.contains(&logarithm) && (signed || !arena.depends_on(base, &question.hidden)) {
+            found.push(logarithm);
+        }
+    }
+    found
+}
+
+/// Adds the calls, roots and reciprocals in formulas, with the functions that their derivatives lead to.
+fn add_atoms(question: &Question<'_>, formulas: &[Expr], admits: &impl Fn(Expr) -> bool, found: &mut Vec<Expr>) {
+    let arena = question.arena;
+    let mut add = |e: Expr| {
+        if !found.contains(&e) && arena.as_number(e).is_none() && admits(e) {
+            found.push(e);
+        }
+    };
+    for part in arena.postorder(formulas) {
+        match arena.node(part) {
+            Node::Call(function, arguments) => {
+                add(part);
+                let partner = match function {
+                    Function::Sin => Some(Function::Cos),
+                    Function::Cos => Some(Function::Sin),
+                    Function::Sinh => Some(Function::Cosh),
+                    Function::Cosh => Some(Function::Sinh),
+                    _ => None,
+                };
+                if let Some(partner) = partner {
+                    add(arena.call(partner, &arguments));
+                }
+                if function == Function::Exp {
+                    add(arena.call(Function::Exp, &[arena.neg(arguments[0])]));
+                }
+            }
+            Node::Product(product) => {
+                for (base, exponent) in &product.factors {
+                    if !exponent.is_integer() {
+                        add(arena.power(*base, exponent));
+                        add(arena.power(*base, &-exponent));
+                    } else if exponent.is_negative() {
+                        add(arena.power(*base, &Rational::from(-1)));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are too
+/// many, or where a rate is no polynomial in the outputs as it is written: `(q - q0)^4` loses digits as a sum.
+pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize) -> Option<Vec<(Expr, usize)>> {
+    let arena = question.arena;
+    let moving: BTreeSet<Symbol> = question.y.iter().copied().collect();
+    let rates: Vec<Expr> = question.rates.values().copied().collect();
+    let is_whole = |part: Expr| match arena.node(part) {
+        Node::Call(..) => !arena.depends_on(part, &moving),
+        Node::Product(product) => product.factors.iter().all(|(base, exponent)| {
+            let is_plain = exponent.is_one() || arena.as_symbol(*base).is_some();
+            is_plain && exponent.is_integer() && !exponent.is_negative() || !arena.depends_on(*base, &moving)
+        }),
+        _ => true,
+    };
+    if !arena.postorder(&rates).into_iter().all(is_whole) {
+        return None;
+    }
+    let mut found = vec![(arena.one(), 0)];
+    let mut last: Vec<(Expr, usize)> = vec![(arena.one(), 0)];
+    for weight in 1..=degree {
+        let next = last.iter().flat_map(|(product, first)| {
+            let with = |(index, factor): (usize, &Expr)| (arena.mul(*product, *factor), index);
+            outputs.iter().enumerate().skip(*first).map(with).collect::<Vec<_>>()
+        });
+        last = next.collect();
+        found.extend(last.iter().map(|(product, _)| (*product, weight)));
+        if found.len() > MOST_MONOMIALS {
+            return None;
+        }
+    }
+    Some(found)
+}
+
+/// The products of at most so many of the functions, each with that number as its weight, beginning with 1; without those
+/// that are combinations of others.
+pub(super) fn products(
+    question: &Question<'_>,
+    functions: &[Expr],
+    degree: usize,
+) -> Result<Vec<(Expr, usize)>, Obstacle> {
+    let arena = question.arena;
+    let mut found = vec![(arena.one(), 0)];
+    let mut last: Vec<(Expr, usize)> = vec![(arena.one(), 0)];
+    for weight in 1..=degree {
+        let mut next = Vec::new();
+        for (product, first) in &last {
+            for (index, function) in functions.iter().enumerate().skip(*first) {
+                next.push((arena.mul(*product, *function), index));
+            }
+        }
+        if found.len() + next.len() > MOST_PRODUCTS {
+            break;
+        }
+        for (product, _) in &next {
+            if found.iter().all(|(known, _)| known != product) {
+                found.push((*product, weight));
+            }
+        }
+        last = next;
+    }
+    let kept: BTreeSet<Expr> =
+        independent(question, &found.iter().map(|(e, _)| *e).collect::<Vec<_>>())?.into_iter().collect();
+    found.retain(|(e, _)| kept.contains(e));
+    Ok(found)
+}

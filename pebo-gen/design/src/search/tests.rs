@@ -1,0 +1,205 @@
+//! What is decided of plants that are made from their transforms: none of them may be excluded.
+
+use proptest::prelude::*;
+
+use super::bounds::{Bound, BoundClass, largest};
+use super::closure::closure;
+use super::closure::darboux::invariant;
+use super::closure::observable::observable;
+use super::completion::decision::decided;
+use super::problem::Question;
+use crate::model::Model;
+use crate::plant::Plant;
+use crate::source::Source;
+
+fn plant(lines: &str) -> Plant {
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
+    let model = Model::parse(&source).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message));
+    Plant::resolve(&model).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message))
+}
+
+/// What is decided of one class, for two values of the parameters.
+fn both(lines: &str, class: BoundClass) -> Vec<Bound> {
+    let plant = plant(lines);
+    let question = Question::of(&plant);
+    (0..2).filter_map(|others| decided(&question, class, others)).collect()
+}
+
+/// A function of these, with small coefficients.
+fn function(symbols: &'static [&'static str]) -> impl Strategy<Value = String> {
+    let leaf = prop_oneof![
+        prop::sample::select(symbols).prop_map(str::to_owned),
+        prop::sample::select(symbols).prop_map(|s| format!("sin({s})")),
+        prop::sample::select(symbols).prop_map(|s| format!("cos({s})")),
+        prop::sample::select(symbols).prop_map(|s| format!("{s}^2")),
+        prop::sample::select(symbols).prop_map(|s| format!("exp({s})")),
+        prop::sample::select(symbols).prop_map(|s| format!("1/(1 + {s}^2)")),
+    ];
+    let term = (-3..=3_i32, prop::collection::vec(leaf, 1..=2))
+        .prop_map(|(factor, factors)| format!("({factor})*{}", factors.join("*")));
+    prop::collection::vec(term, 1..=2).prop_map(|terms| terms.join(" + "))
+}
+
+/// The derivative of a formula, as a formula.
+fn slope(formula: &str, by: &str) -> String {
+    let names = "x: [a, b]\ny: [p, q]\nu: [u, v]\nf_x: {a: 0, b: 0}";
+    let plant = plant(&format!("{names}\nf_y: {{p: {formula}, q: 0}}"));
+    let arena = &plant.arena;
+    let rate = plant.y[0].rate.expect("a rate").expr;
+    let by = plant.x.iter().map(|x| x.symbol).chain(plant.y.iter().map(|y| y.symbol)).find(|s| arena.name(*s) == by);
+    arena.print(arena.derivative(rate, by.expect("a signal")))
+}
+
+/// The plant in which `(m a + s, n b + t + k a)` have rates free of x.
+fn made(m: &str, k: &str, shifts: [&str; 2], rates: [&str; 2], outputs: [&str; 2]) -> String {
+    let along = |formula: &str| {
+        format!("(({})*({}) + ({})*({}))", slope(formula, "p"), outputs[0], slope(formula, "q"), outputs[1])
+    };
+    // z1 = e^m a + s, z2 = b + t + k a
+    let first = format!("exp(-({m}))*({} - {}) - a*{}", rates[0], along(shifts[0]), along(m));
+    let second = format!("{} - {} - a*{} - ({k})*({first})", rates[1], along(shifts[1]), along(k));
+    let [p, q] = outputs;
+    format!("x: [a, b]\ny: [p, q]\nu: [u, v]\nf_x: {{a: {first}, b: {second}}}\nf_y: {{p: {p}, q: {q}}}")
+}
+
+const Y: &[&str] = &["p", "q"];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// A transform affine in x is neither excluded among the affine ones nor among the smooth ones.
+    #[test]
+    fn what_has_a_transform_affine_in_x_is_not_excluded(
+        m in function(Y), k in function(Y), s in function(Y), t in function(Y), h in function(&["p", "q", "u", "v"]),
+        c in function(&["p", "u"]), d in function(&["q", "v"]),
+    ) {
+        let lines = made(&m, &k, [&s, &t], [&h, "v"], [&format!("a + ({c})*b"), &format!("b*({d}) + u")]);
+        for class in [BoundClass::Affine, BoundClass::Smooth] {
+            for bound in both(&lines, class) {
+                prop_assert_eq!(bound.rank, 2, "{}", lines);
+                prop_assert!(bound.transforms().is_none_or(|count| count >= 2), "{}", lines);
+            }
+        }
+        let plant = plant(&lines);
+        let question = Question::of(&plant);
+        let smooth = largest::smooth(&question, largest::affine(&question, 0).as_ref(), 0);
+        prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
+    }
+
+    /// A transform that is not affine in x is not excluded among the smooth ones.
+    #[test]
+    fn what_has_a_smooth_transform_is_not_excluded(
+        g in function(&["b", "q"]), t in function(Y), h in function(&["p", "q", "u"]), c in function(&["b", "p"]),
+    ) {
+        // z1 = a + g(b, q), z2 = b + t(p, q)
+        let (p, q) = (format!("a + {c}"), "b*u".to_owned());
+        let along = |by: &str, of: &str| format!("({})*({of})", slope(&t, by));
+        let second = format!("v - {} - {}", along("p", &p), along("q", &q));
+        let first = format!("{h} - ({})*({second}) - ({})*({q})", slope(&g, "b"), slope(&g, "q"));
+        let lines =
+            format!("x: [a, b]\ny: [p, q]\nu: [u, v]\nf_x: {{a: {first}, b: {second}}}\nf_y: {{p: {p}, q: {q}}}");
+        for bound in both(&lines, BoundClass::Smooth) {
+            prop_assert_eq!(bound.rank, 2, "{}", lines);
+        }
+        let plant = plant(&lines);
+        let question = Question::of(&plant);
+        let smooth = largest::smooth(&question, largest::affine(&question, 0).as_ref(), 0)
+            .or_else(|| largest::smooth_to(&question, 2, 0));
+        prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
+    }
+}
+
+/// Surfaces of which the Killing fields are known: of constant curvature three, of revolution one.
+#[test]
+fn the_number_of_killing_fields_is_that_of_the_surface() {
+    let surfaces = [
+        // A plane in polar coordinates, a sphere, a cone, a torus, and a surface without symmetry.
+        ("1", "r^2", 2, 3),
+        ("1", "sin(r)^2", 2, 3),
+        ("2", "r^2", 2, 3),
+        ("1", "(2 + cos(r))^2", 1, 1),
+        ("1 + t^2", "1 + r^2*t", 0, 0),
+    ];
+    for (first, second, rank, count) in surfaces {
+        let lines = format!(
+            "x: [a, b]\ny: [r, t]\nu: [u, v]\nassume: [r > 0, t > 0]\nmechanical: {{M: [[{first}, 0], [0, {second}]], \
+             V: 0, G: [[1, 0], [0, 1]]}}"
+        );
+        let bounds = both(&lines, BoundClass::Affine);
+        assert_eq!(bounds.len(), 2, "{lines}");
+        for bound in bounds {
+            assert_eq!((bound.rank, bound.transforms()), (rank, Some(count)), "{lines}");
+            assert_eq!(bound.relations.len(), 2 - rank, "{lines}");
+        }
+    }
+}
+
+/// Ball and beam in its momenta: the beam's is the one that there is, among all smooth functions.
+#[test]
+fn ball_and_beam_has_one_killing_field() {
+    let lines = "parameters: [m, J, g]\nx: [p1, p2]\ny: [r, th]\nu: [tau]\nassume: [m > 0, J > 0, g > 0]\n\
+                 f_x: {p1: m*r*p2^2/(J + m*r^2)^2 - m*g*sin(th), p2: tau - m*g*r*cos(th)}\n\
+                 f_y: {r: p1/m, th: p2/(J + m*r^2)}";
+    for class in [BoundClass::Affine, BoundClass::Smooth] {
+        let bounds = both(lines, class);
+        assert!(bounds.len() == 2 && bounds.iter().all(|bound| bound.excludes() && bound.transforms() == Some(1)));
+    }
+}
+
+/// Formulas of a plant, in the order in which they are found.
+fn printed(plant: &Plant, formulas: &[pebo_cas::Expr]) -> Vec<String> {
+    formulas.iter().map(|formula| plant.arena.print(*formula)).collect()
+}
+
+#[test]
+fn polynomials_that_divide_their_own_rates_are_found() {
+    for (lines, expected) in [
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: p^2 - v*p}\nf_y: {q: p}", &["p"][..]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*(p^2 - 3*p + 2)}\nf_y: {q: p}", &["p - 1", "p - 2"]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: (p + q)*v - p}\nf_y: {q: p}", &["q + p"]),
+        ("parameters: [a]\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v*(p - a)}\nf_y: {q: p}", &["a - p"]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*(p^2 + q)/(2*p) - 1/2}\nf_y: {q: p}", &["q + p^2"]),
+        // Kept for one value of v only.
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: p^2 - v}\nf_y: {q: p}", &[]),
+        ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*sin(p)}\nf_y: {q: p}", &[]),
+    ] {
+        let plant = plant(lines);
+        let found = invariant(&Question::of(&plant)).expect("no obstacle");
+        assert_eq!(printed(&plant, &found), expected, "{lines}");
+    }
+}
+
+#[test]
+fn closures_take_what_formulas_show_and_leave_it_as_it_is() {
+    for (lines, expected) in [
+        ("f_x: {p: v - q*p, s: v*p - 2*q*s}\nf_y: {q: 2*v*p + 2*s - p^2}", Some(&["p", "s - p^2/2"][..])),
+        ("f_x: {p: v - q*p, s: v}\nf_y: {q: p + v*s}", Some(&["p", "s"])),
+        // Term by term, as a fraction of exp(p) would overflow.
+        (
+            "f_x: {p: v*(exp(p) + exp(-p))/(exp(p) - exp(-p)), s: 0}\nf_y: {q: v*(exp(p) + exp(-p))}",
+            Some(&["exp(p) + 1/exp(p)"]),
+        ),
+        ("f_x: {p: v*p*(1 + p), s: 0}\nf_y: {q: 1/(1 + p)}", Some(&["1/(p + 1)"])),
+        // x and y together below the bar.
+        ("f_x: {p: v, s: 0}\nf_y: {q: 1/(q + p)}", None),
+    ] {
+        let plant = plant(&format!("x: [p, s]\ny: [q]\nu: [v]\n{lines}"));
+        let question = Question::of(&plant);
+        let found = closure(&question, &question.output_rates()).expect("no obstacle");
+        let expected = expected.map(|formulas| formulas.iter().map(|f| (*f).to_owned()).collect::<Vec<_>>());
+        assert_eq!(found.map(|found| printed(&plant, &found)), expected, "{lines}");
+    }
+}
+
+#[test]
+fn what_no_output_sees_is_left_out() {
+    let plant = plant(
+        "x: [S, b, g]\ny: [I]\nf_x: {S: -b*S*I, b: 0, g: 0}\nf_y: {I: b*S*I - g*I}\nphi: [b*S + b*I, b, g, b*g, S]",
+    );
+    let question = Question::of(&plant);
+    let all = plant.transform();
+    let seen = observable(&question, &all[..4]).expect("no obstacle");
+    assert_eq!(printed(&plant, &seen), ["S*b - g + I*b", "b", "b*g"]);
+    // The rate of S is not affine in these.
+    assert_eq!(observable(&question, &all[1..]).expect("no obstacle"), all[1..]);
+}

@@ -1,0 +1,293 @@
+//! What a search came to, in words.
+
+use std::collections::BTreeSet;
+
+use crate::analysis::{Class, Derivation, Origin, Outcome};
+use crate::plant::{self, Plant};
+use crate::source::{Code, Diagnostic, Span, counted, listed};
+use pebo_cas::{Arena, Expr, Symbol};
+
+use super::bounds::{Bound, BoundClass, Evidence};
+use super::candidate::Candidate;
+use super::found::{Form, Found, Search, Start, Tried};
+use super::frame::{Block, blocks};
+
+impl Found {
+    /// The verdict in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::None => "none",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+impl Form {
+    /// The form in words.
+    fn words(self) -> String {
+        match self {
+            Self::Affine(0) => "combinations of the states with constant coefficients".to_owned(),
+            Self::Affine(degree) => format!("T(y) x + s(y) with functions of y to degree {degree}"),
+            Self::Shifted(degree) => {
+                format!("combinations of the states with constant coefficients and polynomials in y to degree {degree}")
+            }
+            Self::Integrals => "T(y) x + s(y) by integrals of the equations for T and s".to_owned(),
+            Self::Nonlinear(x, y) => format!("functions of x to degree {x} times functions of y to degree {y}"),
+            Self::States => "the states themselves, with rates affine in x".to_owned(),
+            Self::Frame(degree) => {
+                format!("T(y) x + s(y) with rates affine in x and functions of y to degree {degree}")
+            }
+            Self::Closure(start) => {
+                format!("functions of x whose rates are affine in themselves, beginning with {}", start.words())
+            }
+        }
+    }
+}
+
+impl Start {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Outputs => "the functions in the outputs' rates",
+            Self::Rows => "the outputs' rates",
+            Self::Both => "the functions in the outputs' rates and the states",
+            Self::Identities => "the functions in the identities and the states",
+            Self::States => "the states",
+            Self::Quotients => "the states divided by a polynomial that divides its own rate",
+            Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
+            Self::Parts => "the outputs' rates, by parts where unknown constants multiply them",
+        }
+    }
+}
+
+impl BoundClass {
+    /// The class in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Smooth => "smooth",
+            Self::Affine => "affine",
+            Self::AffineRate => "affine with an affine rate",
+        }
+    }
+
+    /// The class in words.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Smooth => "smooth phi with a plain cascade",
+            Self::Affine => "phi affine in x with a plain cascade",
+            Self::AffineRate => "phi affine in x with a plain or generalised cascade",
+        }
+    }
+}
+
+impl Bound {
+    /// What is said of the rank, in a line.
+    pub fn sentence(&self, arena: &Arena) -> String {
+        let values: Vec<String> =
+            self.point.iter().map(|(s, e)| format!("{} = {}", arena.name(*s), arena.print(*e))).collect();
+        let place = if values.is_empty() { String::new() } else { format!(" around {}", values.join(", ")) };
+        let (rank, states, class) = (self.rank, self.states, self.class.words());
+        if rank == states {
+            return format!("of a {class} the rank of dphi/dx may be {rank} of {states}{place}");
+        }
+        let shown = if self.proved { "proved" } else { "likely, by arithmetic modulo a prime" };
+        let number = match self.transforms() {
+            Some(1) => ", and but for functions of y there is just one".to_owned(),
+            Some(count) if count > 1 => format!(", and but for functions of y there are just {count}"),
+            _ => String::new(),
+        };
+        format!("no {class} has a rank of dphi/dx above {rank} of {states}{place}{number}: {shown}")
+    }
+
+    /// The relations that every gradient satisfies at the point, with the equations that show each.
+    pub fn certificate(&self, arena: &Arena) -> Vec<String> {
+        let term = |(index, c): (usize, &Expr)| {
+            let slope = format!("dphi/d{}", arena.name(self.x[index]));
+            if *c == arena.one() { slope } else { format!("({})*{slope}", arena.print(*c)) }
+        };
+        let by = match self.evidence {
+            Evidence::Series { equations, order } => {
+                format!("there, a combination of at most {equations} equations to order {order}")
+            }
+            Evidence::Completion { .. } if self.class == BoundClass::Smooth => {
+                "for all x and y, by completing the equations for the gradient of phi".to_owned()
+            }
+            Evidence::Completion { .. } => {
+                "for every y, by completing the equations for T(y) and s(y) of phi = T(y) x + s(y)".to_owned()
+            }
+        };
+        let relation = |relation: &Vec<Expr>| {
+            let terms = relation.iter().enumerate().filter(|(_, c)| !arena.is_zero(**c)).map(term);
+            format!("{} = 0 {by}", terms.collect::<Vec<_>>().join(" + "))
+        };
+        self.relations.iter().map(relation).collect()
+    }
+}
+
+impl Tried {
+    /// The attempt in a line.
+    pub fn sentence(&self) -> String {
+        let form = self.form.words();
+        let found = match (&self.obstacle, self.columns, self.solutions) {
+            (Some(obstacle), ..) => return format!("{form}: given up, {obstacle}"),
+            (None, 0, 0) => "none".to_owned(),
+            (None, 0, count) => format!("{}, of which {} independent", counted(count, "function"), self.rank),
+            (None, columns, count) => {
+                format!("{} among {}, rank {}", counted(count, "solution"), counted(columns, "function"), self.rank)
+            }
+        };
+        format!("{form}: {found}")
+    }
+}
+
+impl Candidate {
+    /// The components, as formulas of a model file.
+    pub fn formulas(&self) -> Vec<String> {
+        self.plant.transform().iter().map(|e| self.plant.arena.print(*e)).collect()
+    }
+
+    /// The keys of a model file with the transform; none where a class has no words for it.
+    fn keys(&self) -> Option<String> {
+        let Some(class) = &self.plant.class else { return Some(format!("`phi: [{}]`", self.formulas().join(", "))) };
+        let row = |row: &Vec<String>| format!("[{}]", row.join(", "));
+        let block = |(key, rows): Block| format!("`{key}: [{}]`", rows.iter().map(row).collect::<Vec<_>>().join(", "));
+        Some(blocks(&self.plant, class.name())?.into_iter().map(block).collect::<Vec<_>>().join(" and "))
+    }
+
+    /// The cascade and the verdict on it, in a line.
+    pub fn sentence(&self) -> String {
+        let class = match self.derivation.class {
+            Class::Pebo => "plain cascade",
+            Class::Gpebo => "generalised cascade",
+        };
+        let formulas = self.formulas();
+        let phi = formulas.join(", ");
+        match self.derivation.outcome {
+            Outcome::Accepted => format!("phi = [{phi}], {class}, is accepted"),
+            outcome => {
+                let why = self.derivation.diagnostics.first().map_or("", |d| &d.message);
+                format!("phi = [{phi}], {class}, is {}: {why}", outcome.word())
+            }
+        }
+    }
+}
+
+impl Search {
+    /// What is said of ranks, each once.
+    pub fn bounds(&self) -> impl Iterator<Item = &Bound> {
+        let affine = self.affine.iter().filter(|affine| {
+            self.bound.as_ref().is_none_or(|bound| (bound.rank, bound.class) != (affine.rank, affine.class))
+        });
+        self.bound.iter().chain(affine).chain(&self.generalised)
+    }
+
+    /// Of a mechanical plant, that M has too few Killing fields for a frame of them.
+    fn killing_fields(&self, plant: &Plant) -> Option<String> {
+        let Some(plant::Class::Mechanical(_)) = &plant.class else { return None };
+        let affine = self.affine.as_ref().filter(|affine| affine.excludes())?;
+        let fields = match (affine.transforms(), affine.rank) {
+            (Some(0), _) | (None, 0) => "M has no Killing field".to_owned(),
+            (Some(count), _) => format!("M has just {}", counted(count, "Killing field")),
+            (None, rank) => format!("the Killing fields of M span at most {}", counted(rank, "direction")),
+        };
+        let needed = plant.x.len();
+        Some(format!("{fields}, and T needs {needed}: measure more than the positions, such as a velocity"))
+    }
+
+    /// The candidates in order of merit; of those with the same components in another order, the first.
+    fn nearest(&self) -> impl Iterator<Item = &Candidate> {
+        let mut told = BTreeSet::new();
+        self.candidates.iter().filter(move |candidate| {
+            let mut components = candidate.formulas();
+            components.sort_unstable();
+            told.insert((candidate.derivation.class.name(), components))
+        })
+    }
+
+    /// What a search that found none leaves open, where it does.
+    pub fn open(&self) -> Option<&'static str> {
+        let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
+        (self.verdict == Found::None && excluded).then_some(
+            "a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
+        )
+    }
+
+    /// That no transform was found, for the author of a model without one; `span` is where it declares its states.
+    pub fn refusal(&self, plant: &Plant, span: Span) -> Diagnostic {
+        if plant.arena.budget().is_exhausted() {
+            return Diagnostic::limit_reached("the search for phi", span);
+        }
+        let states: Vec<String> = plant.x.iter().map(|state| plant.arena.name(state.symbol)).collect();
+        let states = listed(states.iter().map(String::as_str));
+        let message = format!("no transform from which {states} can be recovered was found");
+        let mut diagnostic = Diagnostic::error(Code::TransformNotFound, span, message);
+        for candidate in self.nearest().take(2) {
+            diagnostic = diagnostic.note(candidate.sentence());
+        }
+        if let Some((candidate, signs)) = &self.assumed {
+            diagnostic = diagnostic.note(assumed(candidate, signs));
+        }
+        // What is said of all smooth ones is said of those affine in x too.
+        let smooth = self.bounds().find(|bound| bound.excludes() && bound.class == BoundClass::Smooth);
+        let implied =
+            |bound: &Bound| bound.class == BoundClass::Affine && smooth.is_some_and(|smooth| smooth.rank <= bound.rank);
+        for bound in self.bounds().filter(|bound| bound.excludes() && !implied(bound)) {
+            diagnostic = diagnostic.note(bound.sentence(&plant.arena));
+        }
+        diagnostic = diagnostic.note("`pebo-gen solve` shows what was tried");
+        diagnostic.help("measure another signal, assume the signs of what is positive, or write a phi of your own")
+    }
+
+    /// The refusal of a given transform, with what the search found in its place.
+    pub fn advise(&self, plant: &Plant, refusal: Diagnostic) -> Diagnostic {
+        if let Some(best) = self.candidates.first().filter(|_| self.verdict == Found::Found) {
+            let class = best.derivation.class.name();
+            if let Some(keys) = best.keys() {
+                return refusal.help(format!("use {keys}, which is accepted ({class})"));
+            }
+            let refusal = self.killing_fields(plant).into_iter().fold(refusal, Diagnostic::note);
+            return refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi");
+        }
+        let refusal = match &self.assumed {
+            Some((candidate, signs)) => refusal.note(assumed(candidate, signs)),
+            None => refusal,
+        };
+        match self.bounds().find(|bound| bound.excludes()) {
+            Some(bound) => {
+                let noted = refusal.note(bound.sentence(&plant.arena));
+                // To choose a phi is no advice where there is none.
+                let help = match (self.killing_fields(plant), plant.asked) {
+                    (Some(help), _) => help,
+                    (None, _) if bound.class != BoundClass::Smooth => return noted,
+                    (None, Some(Class::Pebo)) => "leave out `class: pebo`, or measure another signal".to_owned(),
+                    (None, _) => "measure another signal".to_owned(),
+                };
+                noted.help(help)
+            }
+            None => refusal.note("a search found no phi that is accepted: `pebo-gen solve` shows what was tried"),
+        }
+    }
+}
+
+/// That a transform is accepted where states have signs.
+pub fn assumed(candidate: &Candidate, signs: &[Symbol]) -> String {
+    let arena = &candidate.plant.arena;
+    let signs: Vec<String> = signs.iter().map(|state| format!("{} > 0", arena.name(*state))).collect();
+    format!("with `assume: [{}]`, phi = [{}] is accepted", signs.join(", "), candidate.formulas().join(", "))
+}
+
+/// Whether another transform settles a refusal.
+pub fn settles(code: Code, derivation: &Derivation) -> bool {
+    match code {
+        Code::CascadeRefuted
+        | Code::LeftInverseUnderivable
+        | Code::RegressionNonlinear
+        | Code::RegressionUndecided
+        | Code::NeverIdentifiable => true,
+        // The left inverse may be the author's own, and wrong.
+        Code::LeftInverseRefuted => {
+            derivation.left_inverse.result.as_ref().is_none_or(|inverse| inverse.origin != Origin::Given)
+        }
+        _ => false,
+    }
+}

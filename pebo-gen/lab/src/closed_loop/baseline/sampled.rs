@@ -1,0 +1,219 @@
+//! Baselines that are given by their name: observers of all states, fed sample by sample.
+//!
+//! In: the plant's model and the settings of the baseline. Out: a [`Sampled`] description, and of it a [`Follower`] that takes
+//! what the model's own observer takes, and writes an estimate of each unmeasured state.
+
+use std::fmt;
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+
+use crate::closed_loop::layout::program;
+use crate::closed_loop::scope::{Names, Sight, View};
+use crate::closed_loop::sensor;
+use crate::observe::sizes::{LARGEST, pad};
+use pebo_cas::Expr;
+use pebo_design::model::{Baseline, Decimal, Entry, Kalman, Luenberger, Spanned};
+use pebo_design::plant::lower;
+use pebo_design::program::{Interpreter, Program};
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::gain::{self, Gain, Sample};
+use super::linearised::{Linearised, Padded};
+
+/// An observer by name, ready to be built.
+#[derive(Debug)]
+pub(crate) struct Sampled {
+    plant: Linearised,
+    /// From the outputs to the estimates of x at the start.
+    start: Program,
+    rule: Rule,
+}
+
+#[derive(Debug)]
+enum Rule {
+    /// Standard deviations of states at the start where they are written, of disturbances, and of sensors.
+    Kalman { start: Vec<Option<f64>>, disturbance: Vec<f64>, sensors: Vec<f64> },
+    /// Poles of continuous time.
+    Luenberger(Vec<f64>),
+}
+
+impl Sampled {
+    /// Resolves a baseline that has no equations; what is wrong with it is reported.
+    pub(super) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
+        let place = (entry.name.value.as_str(), entry.name.span);
+        let plant = Linearised::resolve(names, place, problems)?;
+        let (rule, initial) = match &entry.value {
+            Baseline::Equations(_) => return None,
+            Baseline::Kalman(written) => (kalman(names, written, &plant, place, problems)?, &written.initial),
+            Baseline::Luenberger(written) => (luenberger(written, &plant, place, problems)?, &written.initial),
+        };
+        let arena = &names.plant.arena;
+        let scope = names.scope(&View { sight: Sight::Outputs, ..View::default() });
+        let mut start = Vec::new();
+        for state in &names.plant.x {
+            let written = initial.iter().find(|entry| arena.symbol(&entry.name.value) == state.symbol);
+            start.push(match written {
+                Some(entry) => problems.keep(lower(arena, &scope, &entry.value))?,
+                None => arena.zero(),
+            });
+        }
+        // What the outputs show is what is passed.
+        let shown = names.plant.y.iter().map(|output| (names.measured(output.symbol), arena.of_symbol(output.symbol)));
+        let shown = shown.collect();
+        let start: Vec<Expr> = start.into_iter().map(|formula| arena.replace(formula, &shown)).collect();
+        let outputs: Vec<_> = names.plant.y.iter().map(|output| output.symbol).collect();
+        let start = problems.keep(program(arena, &outputs, &start, entry.name.span))?;
+        Some(Self { plant, start, rule })
+    }
+
+    /// The observer at its first sample, where the states are truly `x`.
+    pub(crate) fn follower(&self, x: &[f64], y: &[f64], dt: f64) -> Box<dyn Follower> {
+        match self.plant.states.len().max(self.plant.outputs) {
+            0..=4 => Box::new(Following::<4>::new(self, x, y, dt)),
+            5..=8 => Box::new(Following::<8>::new(self, x, y, dt)),
+            _ => Box::new(Following::<LARGEST>::new(self, x, y, dt)),
+        }
+    }
+}
+
+/// The number that an entry has for a name.
+fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
+    entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
+}
+
+fn kalman(
+    names: &Names,
+    written: &Kalman,
+    plant: &Linearised,
+    (name, span): (&str, Span),
+    problems: &mut Diagnostics,
+) -> Option<Rule> {
+    if !written.extended && !plant.is_affine {
+        let message = format!("`{name}` needs a plant that is affine in its states and outputs");
+        problems.push(
+            Diagnostic::error(Code::SettingConflict, span, message)
+                .help("write `ekf` in its place: the extended filter linearises the plant at its estimate"),
+        );
+        return None;
+    }
+    let arena = &names.plant.arena;
+    let mut sensors = Vec::new();
+    for output in names.plant.y.iter().map(|output| arena.name(output.symbol)) {
+        let of_noise = || Some(sensor::deviation(names.simulation, &output)).filter(|deviation| *deviation > 0.0);
+        let of_observer = || number(&names.model.observer.sensors, &output);
+        let deviation = number(&written.sensors, &output).or_else(of_noise).or_else(of_observer);
+        if deviation.is_none() {
+            let message = format!("`{name}` needs the standard deviation of `{output}`");
+            problems.push(Diagnostic::error(Code::SimulationIncomplete, span, message).help(format!(
+                "add `sensors: {{{output}: 0.1}}` to it or to `observer`, or `noise: {{{output}: 0.1}}` to the simulation"
+            )));
+        }
+        sensors.push(deviation?);
+    }
+    let of_states = |entries: &[Entry<Spanned<Decimal>>]| -> Vec<Option<f64>> {
+        plant.states.iter().map(|state| number(entries, &arena.name(*state))).collect()
+    };
+    let disturbance = of_states(&written.disturbance).into_iter().map(Option::unwrap_or_default).collect();
+    Some(Rule::Kalman { start: of_states(&written.start), disturbance, sensors })
+}
+
+fn luenberger(
+    written: &Luenberger,
+    plant: &Linearised,
+    (name, span): (&str, Span),
+    problems: &mut Diagnostics,
+) -> Option<Rule> {
+    let (wanted, found) = (plant.states.len(), written.poles.len());
+    if wanted == found {
+        return Some(Rule::Luenberger(written.poles.iter().map(|pole| pole.value.to_f64()).collect()));
+    }
+    let message = format!("`{name}` has {found} poles, and {wanted} states");
+    problems.push(
+        Diagnostic::error(Code::WrongShape, span, message)
+            .help("write a pole for each state of x, and for each output that has a rate"),
+    );
+    None
+}
+
+/// An observer of some size at work.
+pub(crate) trait Follower: fmt::Debug {
+    /// Takes the inputs during a step, and the outputs at its end if their sample arrived.
+    fn sample(&mut self, y: Option<&[f64]>, u: &[f64]);
+
+    /// Writes the estimates of x; NaN where it has none.
+    fn write(&self, hat: &mut [f64]);
+}
+
+#[derive(Debug)]
+struct Following<const N: usize> {
+    plant: Padded<N>,
+    gain: Gain<N>,
+    state: SVector<f64, N>,
+    dt: f64,
+}
+
+impl<const N: usize> Following<N> {
+    fn new(sampled: &Sampled, x: &[f64], y: &[f64], dt: f64) -> Self {
+        let mut start = vec![0.0; x.len()];
+        Interpreter::new(&sampled.start).run(y, &mut start);
+        let mut state = pad::<N>(&start);
+        for (output, place) in sampled.plant.places.iter().enumerate() {
+            if let Some(place) = place {
+                state[*place] = y[output];
+            }
+        }
+        let gain = match &sampled.rule {
+            Rule::Luenberger(poles) => Gain::Luenberger(gain::Luenberger {
+                poles: poles.iter().map(|pole| (pole * dt).exp()).collect(),
+                outputs: y.len(),
+                known: None,
+            }),
+            Rule::Kalman { start: written, disturbance, sensors } => {
+                let mut deviations = SVector::<f64, N>::zeros();
+                for (place, truth) in x.iter().enumerate() {
+                    deviations[place] = written[place].unwrap_or(truth - start[place]);
+                }
+                for (output, place) in sampled.plant.places.iter().enumerate() {
+                    if let Some(place) = place {
+                        deviations[*place] = sensors[output];
+                    }
+                }
+                Gain::Kalman(gain::Kalman {
+                    covariance: SMatrix::from_diagonal(&deviations.map(|deviation| deviation * deviation)),
+                    intensity: pad::<N>(disturbance).map(|deviation| deviation * deviation),
+                    sensors: sensors.iter().map(|deviation| deviation * deviation).collect(),
+                })
+            }
+        };
+        Self { plant: Padded::new(&sampled.plant), gain, state, dt }
+    }
+}
+
+impl<const N: usize> Follower for Following<N> {
+    fn sample(&mut self, y: Option<&[f64]>, u: &[f64]) {
+        let Ok(step) = self.plant.advance(&self.state, u, self.dt) else {
+            self.state.fill(f64::NAN);
+            return;
+        };
+        self.gain.predict(&step, self.dt);
+        self.state = step.state;
+        let Some(y) = y else { return };
+        let (predicted, slopes) = self.plant.measure(&step.state, u);
+        let mut sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
+        for output in (0..y.len()).filter(|output| y[*output].is_nan()) {
+            sample.innovation[output] = 0.0;
+            // Of an output that is not there a covariance learns nothing; poles are those of all outputs.
+            if matches!(self.gain, Gain::Kalman(_)) {
+                sample.slopes.row_mut(output).fill(0.0);
+            }
+        }
+        match self.gain.correct(&step, &sample) {
+            Some(correction) => self.state += correction,
+            None => self.state.fill(f64::NAN),
+        }
+    }
+
+    fn write(&self, hat: &mut [f64]) {
+        hat.copy_from_slice(&self.state.as_slice()[..hat.len()]);
+    }
+}

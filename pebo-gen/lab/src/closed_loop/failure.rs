@@ -1,0 +1,126 @@
+//! Why a run could not go on: a fact, and its wording.
+
+use std::fmt;
+
+use pebo_runtime::Fault;
+
+use crate::summary::short;
+
+/// The reason for which a run stopped before its end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// A value is infinite or NaN.
+    NotFinite {
+        /// Its name.
+        name: String,
+        /// When, in seconds.
+        at: f64,
+    },
+    /// A state of the plant or of a baseline runs away.
+    Diverged {
+        /// Its name.
+        name: String,
+        /// The last magnitude of it.
+        value: f64,
+        /// When, in seconds.
+        at: f64,
+    },
+    /// The integrator came to a stand: its steps became too short or too many.
+    Stuck {
+        /// When, in seconds.
+        at: f64,
+        /// The steps that it has taken from one sample to the next.
+        steps: u64,
+    },
+    /// The integrator gets on, but the run would take it too long.
+    Slow {
+        /// When that was known, in seconds.
+        at: f64,
+        /// The steps that it has taken until then.
+        steps: u64,
+        /// The state that moves fastest there.
+        fastest: String,
+        /// Its time constant there, in seconds.
+        constant: f64,
+    },
+    /// The observer refused a sample.
+    Refused {
+        /// When, in seconds.
+        at: f64,
+        /// Why.
+        fault: Fault,
+    },
+    /// The caller ended the run.
+    Stopped {
+        /// When, in seconds of the run.
+        at: f64,
+    },
+}
+
+impl Failure {
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } => {
+                "a formula left its domain: check the start, the control law and the signs, or run it with \
+                 `feedback: truth`"
+            }
+            Self::Diverged { .. } => {
+                "the loop is unstable: check the signs of the rates and the control law; if the run with \
+                 `--feedback truth` is stable, it is the observer in the loop that makes it so"
+            }
+            Self::Stuck { .. } => {
+                "a formula of the plant or of a baseline left its domain or jumps other than by `sign`, or something in it \
+                 is much faster than the rest: leave that out, or let it be slower"
+            }
+            Self::Slow { .. } => {
+                "leave what is so fast out of the model, in its steady state (set its rate to 0, and put what follows for it \
+                 into the other formulas), or simulate a shorter time"
+            }
+            Self::Refused { fault: Fault::Estimate, .. } => {
+                "the estimate left the domain of `phi_left`: bound the states, as `within: {lower: 0}` under `observer`, or \
+                 let it start nearer, by `extension`"
+            }
+            Self::Refused { fault: Fault::Output { .. } | Fault::Input { .. }, .. } => {
+                "a sample is no finite number: check `noise`, `bias` and the control law"
+            }
+            Self::Refused { fault: Fault::Singular, .. } => {
+                "something in the model settles far within a step, and the observer follows it from sample to sample: leave such \
+                 a state out of the model, in its steady state (set its rate to 0, and put what follows for it into the other \
+                 formulas), or take a shorter step"
+            }
+            Self::Refused { .. } => {
+                "the observer's equations have no finite value at this sample: check the domain of its formulas at the \
+                 start and on the way, the step, and the gains if there are any"
+            }
+            Self::Stopped { .. } => {
+                "allow more time, as `--limit 60`, choose a longer step, or simulate a shorter time"
+            }
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { name, at } => write!(f, "`{name}` is not a finite number at t = {at} s"),
+            Self::Diverged { name, value, at } => {
+                write!(f, "`{name}` grows without end: its magnitude is {} at t = {} s", short(*value), short(*at))
+            }
+            Self::Stuck { at, steps } => {
+                write!(f, "the integration made no progress at t = {at} s in {steps} steps")
+            }
+            Self::Slow { at, steps, fastest, constant } => write!(
+                f,
+                "the run would take minutes: {steps} steps of the integration led to t = {} s, as `{fastest}` moves with a time \
+                 constant of {} s there",
+                short(*at),
+                short(*constant)
+            ),
+            Self::Refused { at, fault } => write!(f, "the observer refused the sample at t = {at} s: {fault}"),
+            Self::Stopped { at } => write!(f, "the run reached its limit at t = {at} s"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}

@@ -1,0 +1,136 @@
+//! One table for all values of an instant.
+//!
+//! Every formula of a run reads its symbols from this table, so that what one formula computes is
+//! where the next one looks for it.
+
+use std::ops::Range;
+
+use pebo_cas::{Arena, Expr, Symbol};
+use pebo_design::model::{Baseline, Entry, Simulation};
+use pebo_design::plant::Plant;
+use pebo_design::program::{Program, lower};
+use pebo_design::source::{Code, Diagnostic, Span};
+
+/// The position of time.
+pub(crate) const TIME: usize = 0;
+
+/// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
+/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show; signs in the rates.
+#[derive(Debug)]
+pub(crate) struct Layout {
+    /// The symbols in the order of the table; behind those of the ranges, signs in the rates.
+    pub(crate) symbols: Vec<Symbol>,
+    /// x, y and the baselines' states together.
+    pub(crate) state: Range<usize>,
+    pub(crate) x: Range<usize>,
+    /// The outputs as they are.
+    pub(crate) y: Range<usize>,
+    pub(crate) u: Range<usize>,
+    /// The time as observers are told it, which then is the last of the inputs.
+    pub(crate) told: Option<usize>,
+    /// The observer's estimates.
+    pub(crate) hat: Range<usize>,
+    /// The baselines' estimates, one baseline after the other.
+    pub(crate) rivals: Range<usize>,
+    /// Signals, then the courses of what is true of the plant.
+    pub(crate) signals: Range<usize>,
+    /// The last sample of each output that arrived; empty where sensors are perfect.
+    pub(crate) shown: Range<usize>,
+}
+
+impl Layout {
+    /// The table for this plant and simulation, with these states recovered by the observer.
+    pub(crate) fn new(plant: &Plant, simulation: &Simulation, recovered: &[Symbol]) -> Self {
+        let arena = &plant.arena;
+        let mut symbols = vec![time(arena)];
+        let mut add = |group: Vec<Symbol>| {
+            let start = symbols.len();
+            symbols.extend(group);
+            start..symbols.len()
+        };
+        let baselines = || simulation.baselines.iter();
+        let x = add(plant.x.iter().map(|state| state.symbol).collect());
+        let y = add(plant.y.iter().map(|output| output.symbol).collect());
+        let own = add(baselines()
+            .filter_map(|b| Some((&b.name.value, b.value.equations()?)))
+            .flat_map(|(name, b)| b.state.iter().map(|entry| rival_state(arena, name, &entry.name.value)))
+            .collect());
+        let u = add(plant.u.clone());
+        let hat = add(recovered.iter().map(|state| estimate(arena, &arena.name(*state))).collect());
+        let rivals = add(baselines().flat_map(|b| rival_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
+        let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
+        let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
+        let signals = add(signals.chain(courses).collect());
+        let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
+        let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
+        let told = plant.time.map(|_| u.end - 1);
+        Self { symbols, state: x.start..own.end, x, y, u, told, hat, rivals, signals, shown }
+    }
+
+    /// The inputs but for the time.
+    pub(crate) fn commanded(&self) -> Range<usize> {
+        self.u.start..self.told.unwrap_or(self.u.end)
+    }
+
+    /// A program from the table to the values of these expressions; `span` is where they are from.
+    pub(crate) fn program(&self, arena: &Arena, outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
+        program(arena, &self.symbols, outputs, span)
+    }
+
+    /// The names of the values at these positions.
+    pub(crate) fn names(&self, arena: &Arena, range: &Range<usize>) -> Vec<String> {
+        self.symbols[range.clone()].iter().map(|symbol| arena.name(*symbol)).collect()
+    }
+}
+
+/// A program; a symbol without a value is a diagnostic at `span`.
+pub(crate) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
+    lower(arena, inputs, outputs).map_err(|undeclared| {
+        let message = format!("`{}` has no value in the simulation", arena.name(undeclared.0));
+        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its values over time under `signals`")
+    })
+}
+
+/// Time as it is; what observers are told of it is an input. No declared name is `t` where there is a simulation.
+pub(crate) fn time(arena: &Arena) -> Symbol {
+    arena.generated("t")
+}
+
+/// The true value of a parameter or of a constant state, where it has a course.
+pub(crate) fn course(arena: &Arena, name: &str) -> Symbol {
+    arena.generated(&format!("plant({name})"))
+}
+
+/// The last sample of an output that arrived.
+pub(crate) fn shown(arena: &Arena, output: &str) -> Symbol {
+    arena.generated(&format!("shown({output})"))
+}
+
+/// The observer's estimate of a state.
+pub(crate) fn estimate(arena: &Arena, state: &str) -> Symbol {
+    arena.generated(&format!("hat({state})"))
+}
+
+/// A state of a baseline.
+pub(crate) fn rival_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
+    arena.generated(&format!("{baseline}.{state}"))
+}
+
+/// The states that a baseline estimates, with its estimates.
+pub(crate) fn rival_estimates(plant: &Plant, baseline: &Entry<Baseline>) -> Vec<(String, Symbol)> {
+    let arena = &plant.arena;
+    let states: Vec<String> = match baseline.value.equations() {
+        Some(equations) => equations.estimate.iter().map(|entry| entry.name.value.clone()).collect(),
+        None => plant.x.iter().map(|state| arena.name(state.symbol)).collect(),
+    };
+    let estimate = |state: String| {
+        let symbol = rival_estimate(arena, &baseline.name.value, &state);
+        (state, symbol)
+    };
+    states.into_iter().map(estimate).collect()
+}
+
+/// A baseline's estimate of a state.
+pub(crate) fn rival_estimate(arena: &Arena, baseline: &str, state: &str) -> Symbol {
+    arena.generated(&format!("{baseline}.hat({state})"))
+}

@@ -1,0 +1,365 @@
+//! The loop, sample by sample.
+//!
+//! ```text
+//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, told of u_0 -> u_1 -> ..
+//! ```
+//!
+//! Between y and the observers are the sensors, whose samples may be late, wrong, or not there. With jitter the instants
+//! move, at which the loop samples and sets its inputs; observers are told the period that is meant.
+
+use std::ops::ControlFlow;
+
+use pebo_design::program::{Interpreter, Program};
+
+use super::baseline::Follower;
+use super::failure::Failure;
+use super::growth::Growth;
+use super::layout::TIME;
+use super::ode::Flow;
+use super::ode::equation::Stuck;
+use super::scenario::{Judged, Scenario};
+use super::sensor::{Sensing, instant};
+use super::signal::Course;
+use super::trace::Trace;
+use crate::figure::curve::Curve;
+use crate::observe::certainty::Following;
+use crate::observe::excitation::Watch;
+use crate::observe::interpreted::observer;
+use crate::observe::stepping::Stepping;
+use crate::score::Scoring;
+use crate::score::expected::Expected;
+use crate::summary::{Rated, Summary};
+use crate::timing::real;
+
+/// How often progress is reported.
+const REPORTS: u64 = 500;
+
+impl Scenario {
+    /// Runs the loop from its start to its end.
+    pub fn run(&self) -> Result<Trace, Failure> {
+        self.run_while(&mut |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, but for a caller who is told now and then which part is done, 0 to 1, and may end it there with
+    /// [`Failure::Stopped`].
+    pub fn run_while(&self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Trace, Failure> {
+        let mut record = Record::new(self);
+        let summary = self.follow(&mut |sample, table| record.take(sample, table), progress)?;
+        Ok(record.finish(summary))
+    }
+
+    /// Runs the loop, shows its table at each sample, and gives what it came to.
+    pub(crate) fn follow(
+        &self,
+        show: &mut dyn FnMut(u64, Shown<'_>),
+        progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Summary, Failure> {
+        let mut machine = Machine::start(self)?;
+        let mut errors = Formulas::new(&self.errors);
+        let mut scores: Vec<Scoring> = self.judged.iter().map(|judged| Scoring::new(judged.period)).collect();
+        let (mut watch, mut expected) = (Watch::default(), Expected::default());
+        let mut certain = Following::new(&self.design.wanted);
+        let mut outside = vec![false; self.judged.len()];
+        let samples = self.timing.samples;
+        let stride = (samples / REPORTS).max(1);
+        for sample in 0..=samples {
+            if sample > 0 {
+                machine.advance(sample)?;
+            }
+            machine.control()?;
+            let table = &machine.table;
+            let errors = errors.of(table);
+            for ((score, judged), error) in scores.iter_mut().zip(&self.judged).zip(errors) {
+                score.add(table[TIME], *error, table[judged.truth]);
+            }
+            for (place, (outside, judged)) in outside.iter_mut().zip(&self.judged).enumerate() {
+                *outside |= judged.estimate.baseline.is_none() && self.design.is_outside(place, table[judged.truth]);
+            }
+            show(sample, Shown { table, errors });
+            if sample % stride == 0 || sample == samples {
+                watch.look(table[TIME], &machine.stepping.observer.said());
+                let predicted = machine.stepping.standard_errors();
+                certain.look(table[TIME], predicted.as_deref());
+                expected.add(table[TIME], predicted);
+            }
+            if sample % stride == 0 && progress(real(sample) / real(samples)).is_break() {
+                return Err(Failure::Stopped { at: machine.table[TIME] });
+            }
+        }
+        let rated = |(place, (judged, score)): (usize, (&Judged, &Scoring))| {
+            let score = score.finish();
+            let own = judged.estimate.baseline.is_none();
+            let expected = own.then(|| expected.since(score.since, place)).flatten();
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: outside[place] }
+        };
+        Ok(Summary {
+            end: machine.table[TIME],
+            samples,
+            estimates: self.judged.iter().zip(&scores).enumerate().map(rated).collect(),
+            excitation: watch.excitation(&self.design.unknown_names),
+            faults: machine.stepping.faults().clone(),
+            dropped: machine.stepping.dropped(),
+            parted: machine.stepping.parted(),
+            restarts: machine.stepping.restarts(),
+            surprise: machine.stepping.surprise(),
+            certainty: certain.certainty(),
+            known: self.design.settings.known.clone(),
+        })
+    }
+}
+
+/// What there is to see at a sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown<'a> {
+    /// All values.
+    pub(crate) table: &'a [f64],
+    /// The errors of the estimates.
+    pub(crate) errors: &'a [f64],
+}
+
+/// A program with room for its values.
+#[derive(Debug)]
+struct Formulas {
+    interpreter: Interpreter,
+    values: Vec<f64>,
+}
+
+impl Formulas {
+    fn new(program: &Program) -> Self {
+        Self { interpreter: Interpreter::new(program), values: vec![0.0; program.outputs.len()] }
+    }
+
+    fn of(&mut self, table: &[f64]) -> &[f64] {
+        self.interpreter.run(table, &mut self.values);
+        &self.values
+    }
+}
+
+/// The loop at one sample.
+#[derive(Debug)]
+pub(crate) struct Machine<'a> {
+    scenario: &'a Scenario,
+    /// All values, see [`Layout`](super::layout::Layout).
+    pub(crate) table: Vec<f64>,
+    pub(crate) stepping: Stepping,
+    flow: Flow,
+    growth: Growth,
+    sensing: Sensing<'a>,
+    signals: Vec<Course>,
+    given: Formulas,
+    measured: Formulas,
+    rivals: Formulas,
+    followers: Vec<Box<dyn Follower>>,
+    control: Formulas,
+}
+
+impl<'a> Machine<'a> {
+    /// The loop at its first sample, before the first control.
+    pub(crate) fn start(scenario: &'a Scenario) -> Result<Self, Failure> {
+        let layout = &scenario.layout;
+        let refused = |fault| Failure::Refused { at: 0.0, fault };
+        let positions = layout.signals.clone().zip(&scenario.signals);
+        let mut machine = Self {
+            scenario,
+            table: vec![0.0; layout.symbols.len()],
+            stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
+            sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
+            flow: Flow::new(
+                (&scenario.rates, Some(&scenario.slopes)),
+                scenario.switches.as_ref(),
+                layout.state.clone(),
+                &positions.collect::<Vec<_>>(),
+                scenario.timing.slack(),
+            )
+            .until(scenario.timing.at(scenario.timing.samples)),
+            growth: Growth::new(&[]),
+            signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
+            given: Formulas::new(&scenario.given.1),
+            measured: Formulas::new(&scenario.measured),
+            rivals: Formulas::new(&scenario.rivals),
+            followers: Vec::new(),
+            control: Formulas::new(&scenario.control),
+        };
+        machine.read_signals();
+        let mut start = Formulas::new(&scenario.start);
+        // Baselines start from what the sensors show of the plant's start.
+        for _ in 0..2 {
+            let state = start.of(&machine.table);
+            machine.table[layout.state.clone()].copy_from_slice(state);
+            machine.sensing = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
+            machine.measure(0);
+        }
+        machine.admit(layout.state.clone())?;
+        machine.growth = Growth::new(&machine.table[layout.state.clone()]);
+        let (x, y) = (&machine.table[layout.x.clone()], &machine.measured.values);
+        let followers = scenario.followers.iter();
+        machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
+        machine.estimate(0, true)?;
+        Ok(machine)
+    }
+
+    /// Goes on to this sample, with the inputs held.
+    pub(crate) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
+        let Scenario { timing, jitter, seed, .. } = self.scenario;
+        let (from, to) = (self.table[TIME], instant(timing, *jitter, *seed, sample));
+        if let Err(stuck) = self.flow.advance(&mut self.table, from, to) {
+            return Err(self.stuck(stuck));
+        }
+        self.table[TIME] = to;
+        self.read_signals();
+        let given = self.given.of(&self.table);
+        for (position, value) in self.scenario.given.0.iter().zip(given) {
+            self.table[*position] = *value;
+        }
+        let arrives = self.measure(sample);
+        if let Some(told) = self.scenario.layout.told {
+            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is told.
+            self.table[told] = timing.at(sample) - timing.step / 2.0;
+        }
+        let state = self.scenario.layout.state.clone();
+        self.admit(state.clone())
+            .map_err(|failure| self.diverged(&self.table[state.clone()], to).unwrap_or(failure))?;
+        self.growth.add(&self.table[state]);
+        if !self.followers.is_empty() {
+            let mut y = self.measured.values.clone();
+            self.scenario.sensors.leave_out(sample, &mut y);
+            let y = Some(y.as_slice()).filter(|_| arrives);
+            let u = &self.table[self.scenario.layout.u.clone()];
+            self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
+        }
+        self.estimate(sample, arrives)
+    }
+
+    /// Why the integration came to a stand.
+    fn stuck(&self, Stuck { steps, at, state, fast }: Stuck) -> Failure {
+        let slow = fast.map(|(place, rate)| Failure::Slow {
+            at,
+            steps,
+            fastest: self.scenario.names[self.scenario.layout.state.start + place].clone(),
+            constant: 1.0 / rate,
+        });
+        self.diverged(&state, at).or(slow).unwrap_or(Failure::Stuck { at, steps })
+    }
+
+    /// The state that runs away, if one does.
+    fn diverged(&self, state: &[f64], at: f64) -> Option<Failure> {
+        let (place, value) = self.growth.away(state)?;
+        let name = self.scenario.names[self.scenario.layout.state.start + place].clone();
+        Some(Failure::Diverged { name, value, at })
+    }
+
+    /// Sets the inputs for the interval to come.
+    pub(crate) fn control(&mut self) -> Result<(), Failure> {
+        let inputs = self.control.of(&self.table);
+        let place = self.scenario.layout.u.clone();
+        self.table[place.clone()].copy_from_slice(inputs);
+        self.admit(place)
+    }
+
+    fn read_signals(&mut self) {
+        let t = self.table[TIME];
+        for (position, signal) in self.scenario.layout.signals.clone().zip(&mut self.signals) {
+            signal.select(t + self.scenario.timing.slack());
+            self.table[position] = signal.value(t);
+        }
+    }
+
+    /// Lets the sensors take this sample, which `measured` then has; whether it arrives.
+    fn measure(&mut self, sample: u64) -> bool {
+        let layout = &self.scenario.layout;
+        let (before, after) = self.table.split_at_mut(layout.shown.start);
+        let (outputs, shown) = (&before[layout.y.clone()], &mut after[..layout.shown.len()]);
+        let arrives = self.sensing.sample(sample, before[TIME], outputs, shown);
+        self.measured.of(&self.table);
+        arrives
+    }
+
+    /// Lets all observers have the sample of now, if it arrives, and the inputs of the interval before.
+    fn estimate(&mut self, sample: u64, arrives: bool) -> Result<(), Failure> {
+        let layout = &self.scenario.layout;
+        for ((place, _), follower) in self.scenario.followers.iter().zip(&self.followers) {
+            follower.write(&mut self.table[place.clone()]);
+            self.admit(place.clone())?;
+        }
+        let estimates = self.rivals.of(&self.table);
+        self.table[layout.rivals.clone()].copy_from_slice(estimates);
+        // The observer's first call gives its inputs and its step no effect.
+        let y = &mut self.measured.values;
+        if self.stepping.observer.has_parts() {
+            self.scenario.sensors.leave_out(sample, y);
+        }
+        let (before, after) = self.table.split_at_mut(layout.hat.start);
+        let hat = &mut after[..layout.hat.len()];
+        let (u, step) = (&before[layout.u.clone()], self.scenario.timing.step);
+        if !arrives {
+            self.stepping.miss(u, step);
+            return Ok(());
+        }
+        match self.stepping.arrive(y, u, step, hat) {
+            Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the values at these positions are finite.
+    fn admit(&self, range: std::ops::Range<usize>) -> Result<(), Failure> {
+        match range.into_iter().find(|position| !self.table[*position].is_finite()) {
+            None => Ok(()),
+            Some(position) => {
+                Err(Failure::NotFinite { name: self.scenario.names[position].clone(), at: self.table[TIME] })
+            }
+        }
+    }
+}
+
+/// What is kept of a run.
+#[derive(Debug)]
+struct Record<'a> {
+    scenario: &'a Scenario,
+    rows: Vec<f64>,
+    next_row: u64,
+    measured: Formulas,
+    values: Formulas,
+    curves: Vec<Curve>,
+}
+
+impl<'a> Record<'a> {
+    fn new(scenario: &'a Scenario) -> Self {
+        Self {
+            scenario,
+            rows: Vec::new(),
+            next_row: 0,
+            measured: Formulas::new(&scenario.measured),
+            values: Formulas::new(&scenario.curves),
+            curves: vec![Curve::default(); scenario.curves.outputs.len()],
+        }
+    }
+
+    fn take(&mut self, sample: u64, Shown { table, errors }: Shown<'_>) {
+        let timing = &self.scenario.timing;
+        for (curve, value) in self.curves.iter_mut().zip(self.values.of(table)) {
+            curve.add(sample, timing.samples, (table[TIME], *value));
+        }
+        if sample != timing.sample_of_row(self.next_row) {
+            return;
+        }
+        self.next_row += 1;
+        let layout = &self.scenario.layout;
+        self.rows.push(table[TIME]);
+        self.rows.extend(&table[layout.x.clone()]);
+        self.rows.extend(self.measured.of(table));
+        self.rows.extend(&table[layout.commanded()]);
+        // The errors of the observer's estimates are the first.
+        for (hat, error) in table[layout.hat.clone()].iter().zip(errors) {
+            self.rows.extend([*hat, *error]);
+        }
+        self.rows.extend(&table[layout.rivals.clone()]);
+    }
+
+    fn finish(self, summary: Summary) -> Trace {
+        let mut curves = self.curves.into_iter().map(Curve::finish);
+        let panels = self.scenario.panels.iter();
+        let curves = panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect();
+        Trace::new((self.scenario.columns.clone(), self.rows), curves, summary)
+    }
+}

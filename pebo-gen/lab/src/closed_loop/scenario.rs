@@ -1,0 +1,473 @@
+//! A model's sections `observer` and `simulation`, resolved: everything that a run needs, as programs.
+//!
+//! In: an accepted derivation with what was written, and settings of the call. Out: the scenario, or
+//! every mistake in the sections. After this, a run can fail only by what its numbers do.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::settings::start as start_of_extension;
+use pebo_cas::{Arena, Expr, Symbol};
+use pebo_design::analysis::Derivation;
+use pebo_design::model::{Model, Simulation};
+use pebo_design::plant::Plant;
+use pebo_design::program::{Interpreter, Program};
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+use pebo_runtime::Fault;
+
+use super::baseline::{Rival, Sampled};
+use super::changed::{changed, told};
+use super::failure::Failure;
+use super::layout::{Layout, estimate, program, rival_estimate};
+use super::ode::switching::{Switched, Switches};
+use super::overrides::Overrides;
+use super::panel::{Panel, Panels};
+use super::scope::{Estimates, Names, Sight, View};
+use super::sensor::Sensors;
+use super::signal::Signal;
+use super::trace::Trace;
+use super::truth::Truth;
+use super::{control, ode};
+use crate::observe::design::Design;
+use crate::summary::advice::{Origin, advise};
+use crate::summary::{Estimate, Summary};
+use crate::timing::Timing;
+
+/// Numbers that a table may hold; as text this is some hundred megabytes.
+const MOST_VALUES: f64 = 2e7;
+
+/// A closed loop, ready to be run.
+#[derive(Debug)]
+pub struct Scenario {
+    pub(crate) title: String,
+    /// The estimator with its settings, as a file would have them.
+    pub(crate) estimator: String,
+    /// The baseline or `truth`, where the control law does not see the observer's estimates.
+    pub(crate) feedback: Option<String>,
+    pub(crate) timing: Timing,
+    pub(crate) layout: Layout,
+    pub(crate) design: Design,
+    pub(crate) signals: Vec<Signal>,
+    /// The state at the start.
+    pub(crate) start: Program,
+    /// The values of states and outputs that are not integrated, with their positions in the table.
+    pub(crate) given: (Vec<usize>, Program),
+    /// What the sensors showed last.
+    pub(crate) measured: Program,
+    pub(crate) sensors: Sensors,
+    /// How far instants are from their places at most, in steps.
+    pub(crate) jitter: f64,
+    /// Of chance.
+    pub(crate) seed: u64,
+    /// In what the plant and its sensors differ from what the model says: keys of the section.
+    pub(crate) departures: Vec<&'static str>,
+    /// The first state that is given a course, if no parameter is.
+    moved: Option<String>,
+    /// The rates of the state.
+    pub(crate) rates: Program,
+    /// Their derivatives by the state, by rows, with signs held.
+    pub(crate) slopes: Program,
+    /// The signs in them, if there are any.
+    pub(crate) switches: Option<Switched>,
+    /// The baselines' estimates.
+    pub(crate) rivals: Program,
+    /// Baselines that are fed samples, with where they write their estimates.
+    pub(crate) followers: Vec<(Range<usize>, Sampled)>,
+    /// The inputs.
+    pub(crate) control: Program,
+    /// The estimates, those of the observer first.
+    pub(crate) judged: Vec<Judged>,
+    /// Their errors.
+    pub(crate) errors: Program,
+    pub(crate) panels: Vec<Panel>,
+    /// The values of the panels' curves.
+    pub(crate) curves: Program,
+    /// The names of the trace's columns.
+    pub(crate) columns: Vec<String>,
+    /// The names of the table's values.
+    pub(crate) names: Vec<String>,
+    /// What to do where the left inverse has no value at the start of the extension.
+    restart: String,
+    span: Span,
+}
+
+/// An estimate that is compared with the state that it is of.
+#[derive(Debug)]
+pub(crate) struct Judged {
+    pub(crate) estimate: Estimate,
+    /// Where the state stands in the table.
+    pub(crate) truth: usize,
+    /// Of an angle.
+    pub(crate) period: Option<f64>,
+    /// Of a state that the outputs show only up to multiples of it.
+    pub(crate) step: Option<f64>,
+}
+
+impl Scenario {
+    /// Resolves the sections of a model.
+    ///
+    /// The errors are those of the derivation where it is not accepted.
+    pub fn resolve(
+        model: &Model,
+        plant: &Plant,
+        derivation: &Derivation,
+        overrides: &Overrides,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
+        let mut problems = Diagnostics::new();
+        let model = &*changed(model, overrides);
+        let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
+        let names = Names { model, simulation, plant };
+        let scenario = Resolution { names, problems: &mut problems }.scenario(derivation, overrides);
+        problems.propagate()?;
+        // Without a scenario there is an error, which was propagated.
+        scenario.ok_or_else(Vec::new)
+    }
+
+    /// The number of samples of a run.
+    pub fn samples(&self) -> u64 {
+        self.timing.samples
+    }
+
+    /// The estimator with its settings, as a file would have them: `gradient, gain: [1e7, 1e7]`.
+    pub fn estimator(&self) -> &str {
+        &self.estimator
+    }
+
+    /// What there is to say of a run that did not converge: why, and what mends it.
+    pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
+        advise(
+            summary,
+            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moved.as_deref())),
+            self.span,
+        )
+    }
+
+    /// A failure of a run as a diagnostic at the section that was run.
+    pub fn explain(&self, failure: &Failure) -> Diagnostic {
+        let code = match failure {
+            Failure::Stopped { .. } => Code::LimitReached,
+            _ => Code::SimulationFailed,
+        };
+        let help = match failure {
+            Failure::Refused { at, fault: Fault::Estimate } if *at <= 0.0 => self.restart.clone(),
+            Failure::NotFinite { name, .. } if self.inputs().any(|input| input == name) => {
+                format!(
+                    "the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients"
+                )
+            }
+            _ => failure.help().to_owned(),
+        };
+        Diagnostic::error(code, self.span, failure.to_string()).help(help)
+    }
+
+    /// The names of the inputs.
+    fn inputs(&self) -> impl Iterator<Item = &String> {
+        self.names[self.layout.u.clone()].iter()
+    }
+}
+
+/// What to do where the left inverse has no value at the start of the extension: the start that is chosen where nobody says
+/// one, if there is any.
+fn restart(names: &Names, derivation: &Derivation) -> String {
+    let plant = names.plant;
+    let phi: Vec<String> = plant.phi.iter().map(|phi| plant.arena.print(phi.expr)).collect();
+    let whose = format!("phi = [{}] of a state that the plant can have", phi.join(", "));
+    match start_of_extension(names.model, plant, derivation) {
+        Some(z) => {
+            let z: Vec<String> = z.iter().map(|value| value.to_f64().to_string()).collect();
+            format!("choose another start for the extension, as `observer: {{extension: [{}]}}`: {whose}", z.join(", "))
+        }
+        None => format!("say where the extension starts, as `observer: {{extension: [..]}}` with {whose}"),
+    }
+}
+
+fn missing(model: &Model) -> Diagnostic {
+    let message = format!("the model `{}` does not say what to simulate", model.name.value);
+    Diagnostic::error(Code::SimulationMissing, model.name.span, message)
+        .help("add a section `simulation` with duration, step, initial and control; models/cuk.yaml is an example")
+}
+
+struct Resolution<'a> {
+    names: Names<'a>,
+    problems: &'a mut Diagnostics,
+}
+
+impl Resolution<'_> {
+    fn scenario(self, derivation: &Derivation, overrides: &Overrides) -> Option<Scenario> {
+        let Self { names, problems } = self;
+        let Names { simulation, plant, .. } = names;
+        let (arena, span) = (&plant.arena, names.section());
+        names.check(problems);
+        if plant.parameters.iter().any(|parameter| parameter.value.is_none()) {
+            // That was reported; every formula with the parameter would be reported again.
+            return None;
+        }
+        let numbers = names.numbers();
+        let timing = Timing::resolve(simulation, overrides, span, problems);
+        let design = Design::resolve(&names.asked(), derivation, &numbers, overrides.step, problems);
+
+        let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
+        let courses = simulation.signals.iter().chain(&simulation.plant);
+        let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
+        let mut rivals: Vec<Rival> =
+            simulation.baselines.iter().filter_map(|entry| Rival::resolve(&names, entry, problems)).collect();
+        let truth = Truth::resolve(&names, problems);
+        let start = start(&names, &truth, &rivals, problems);
+        let rates = rates(&names, &truth, &rivals, problems);
+        let (timing, mut design, mut rates) = (timing?, design?, rates?);
+
+        let hats: Estimates = design
+            .recovered
+            .iter()
+            .map(|s| arena.name(*s))
+            .map(|s| (s.clone(), arena.of_symbol(estimate(arena, &s))))
+            .collect();
+        let feedback = control::feedback(&names, overrides, problems)?;
+        let control = control::law(&names, &feedback, &hats, problems);
+        let errors = errors(plant, &Periods::of(plant, derivation, &numbers), &hats);
+        let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
+
+        let layout = Layout::new(plant, simulation, &design.recovered);
+        let (layout, switches) = Switches::of(arena, layout, &mut rates);
+        let state = &layout.symbols[layout.state.clone()];
+        let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
+        if layout.state.len() > ode::LARGEST {
+            let message = format!("plant and baselines have {} states", layout.state.len());
+            problems.push(
+                Diagnostic::error(Code::SimulationUnsupported, span, message)
+                    .help(format!("the simulator has room for {}", ode::LARGEST)),
+            );
+        }
+        if let Some(share) = overrides.initial_error {
+            begin(&names, (&layout, &signals), &start, share, &mut design.settings.chi_0);
+        }
+        let columns = columns(plant, &design.recovered, &rivals);
+        problems.keep(admit_table(&timing, columns.len()));
+        let followers = followers(plant, &layout, &mut rivals);
+        let estimates: Vec<Expr> = rivals.iter().flat_map(|rival| rival.estimates.iter().map(|e| e.1)).collect();
+        let outputs = plant.y.iter().map(|output| output.symbol);
+        let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs.clone()).collect();
+        let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
+        let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
+        let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
+        let (judged, errors) =
+            judged((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &rivals);
+        let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
+        Some(Scenario {
+            title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
+            estimator: told(&names.model.observer),
+            feedback: (feedback != Simulation::OBSERVER).then_some(feedback),
+            start: compile(&start)?,
+            given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
+            measured: compile(&measured)?,
+            sensors,
+            jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
+            departures: simulation.departures(),
+            moved: moved(&names),
+            seed: overrides.seed.unwrap_or(Overrides::SEED),
+            rates: compile(&rates)?,
+            slopes: compile(&slopes(arena, &rates, state))?,
+            switches: switches?,
+            rivals: compile(&estimates)?,
+            followers,
+            control: compile(&control)?,
+            judged,
+            errors: compile(&errors)?,
+            curves: compile(&panels.values)?,
+            panels: panels.panels,
+            names: layout.names(arena, &(0..layout.symbols.len())),
+            timing,
+            design,
+            signals,
+            columns,
+            layout,
+            restart: restart(&names, derivation),
+            span,
+        })
+    }
+}
+
+/// The first state that `plant` gives a course, if it names no parameter.
+fn moved(names: &Names) -> Option<String> {
+    let of_plant = || names.simulation.plant.iter().map(|entry| &entry.name.value);
+    let is_state = |name: &&String| names.model.x.iter().any(|state| state.value == **name);
+    of_plant().all(|name| is_state(&name)).then(|| of_plant().next().cloned())?
+}
+
+/// x, y and the baselines' states at the start, where the inputs are still 0.
+fn start(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Vec<Expr> {
+    let (plant, arena) = (names.plant, &names.plant.arena);
+    let states = plant.x.iter().map(|state| state.symbol);
+    let states: Vec<Symbol> = states.chain(plant.y.iter().map(|output| output.symbol)).collect();
+    let moving: Vec<Symbol> = states.iter().copied().filter(|symbol| !truth.gives(*symbol)).collect();
+    let scope = names.scope(&View::default());
+    let found = names.entries(&scope, &moving, ("initial", &names.simulation.initial), problems);
+    let mut values: BTreeMap<Symbol, Expr> = moving.into_iter().zip(found).collect();
+    for (place, value) in truth.given(&states) {
+        values.insert(states[place], arena.substitute(value, &values));
+    }
+    let all: Vec<Expr> = states.into_iter().map(|symbol| arena.of_symbol(symbol)).collect();
+    let others = rivals.iter().flat_map(|rival| rival.start.iter().copied());
+    arena.substitute_all(&all.into_iter().chain(others).collect::<Vec<_>>(), &values)
+}
+
+/// The extension at the start, as wrong as the call asks for.
+fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr], share: f64, chi_0: &mut [f64]) {
+    let (plant, arena) = (names.plant, &names.plant.arena);
+    let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
+    let at: BTreeMap<Symbol, Expr> = states.zip(start.iter().copied()).chain(names.numbers()).collect();
+    // The inputs are still 0, as where states are given by them.
+    let mut table = vec![0.0; layout.symbols.len()];
+    for (position, signal) in layout.signals.clone().zip(signals) {
+        table[position] = signal.course().value(0.0);
+    }
+    for (formula, chi) in plant.phi.iter().zip(chi_0) {
+        let mut value = [f64::NAN];
+        if let Ok(program) = layout.program(arena, &[arena.substitute(formula.expr, &at)], Span::NOWHERE) {
+            Interpreter::new(&program).run(&table, &mut value);
+        }
+        // Where phi has no value at the start, the extension begins where it did.
+        if value[0].is_finite() {
+            *chi = value[0] + share * (*chi - value[0]);
+        }
+    }
+}
+
+/// The rates of x, y and the baselines' states; of what is not integrated, 0.
+fn rates(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Option<Vec<Expr>> {
+    let (plant, arena) = (names.plant, &names.plant.arena);
+    let rate = |symbol: Symbol, rate: Expr| if truth.gives(symbol) { arena.zero() } else { rate };
+    let mut found: Vec<Expr> = plant.x.iter().map(|state| rate(state.symbol, state.rate.expr)).collect();
+    for output in &plant.y {
+        match output.rate {
+            Some(given) => found.push(rate(output.symbol, given.expr)),
+            None if truth.gives(output.symbol) => found.push(arena.zero()),
+            None => {
+                let name = arena.name(output.symbol);
+                problems.push(
+                    Diagnostic::error(Code::SimulationIncomplete, output.span, format!("`{name}` has no rate"))
+                        .also(names.section(), "the simulation needs it")
+                        .help(format!("give the rate of `{name}` under `f_y`, or its value under `g_y`")),
+                );
+            }
+        }
+    }
+    let mut found = truth.of_plant(names, &found);
+    let others: Vec<Expr> = rivals.iter().flat_map(|rival| rival.rates.iter().copied()).collect();
+    found.extend(truth.between_samples(names, &others));
+    (!problems.has_errors()).then_some(found)
+}
+
+/// The derivatives of rates by the state, by rows.
+fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
+    rates.iter().flat_map(|rate| state.iter().map(|symbol| arena.derivative(*rate, *symbol))).collect()
+}
+
+/// The baselines that are fed samples, with where they write.
+fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range<usize>, Sampled)> {
+    let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
+    let follower = |rival: &mut Rival| {
+        let sampled = rival.sampled.take()?;
+        let symbol = rival_estimate(&plant.arena, &rival.name, &first);
+        let start = layout.symbols.iter().position(|known| *known == symbol)?;
+        Some((start..start + plant.x.len(), sampled))
+    };
+    rivals.iter_mut().filter_map(follower).collect()
+}
+
+/// Up to what states are known.
+#[derive(Debug)]
+pub(crate) struct Periods {
+    /// Of angles: what differs by it is the same.
+    of_angles: BTreeMap<Symbol, Expr>,
+    /// Of states that are no angles, which the outputs do not tell from one another.
+    steps: BTreeMap<Symbol, Expr>,
+}
+
+impl Periods {
+    pub(crate) fn of(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>) -> Self {
+        let each = |pairs: &[(Symbol, Expr)]| {
+            pairs.iter().map(|(state, period)| (*state, plant.arena.substitute(*period, numbers))).collect()
+        };
+        Self {
+            of_angles: each(derivation.left_inverse.result.as_ref().map_or(&[], |inverse| &inverse.modulo)),
+            steps: each(derivation.regression.result.as_ref().map_or(&[], |regression| &regression.steps)),
+        }
+    }
+}
+
+/// Estimate less truth; for an angle, the difference that is least in magnitude.
+fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
+    use pebo_cas::Function::{Atan2, Cos, Sin};
+    let arena = &plant.arena;
+    let error = |(state, hat): &(String, Expr)| {
+        let symbol = arena.symbol(state);
+        let difference = arena.sub(*hat, arena.of_symbol(symbol));
+        let Some(&period) = periods.of_angles.get(&symbol) else { return difference };
+        let turn = arena.div(arena.turn(), period);
+        let angle = arena.mul(turn, difference);
+        arena.div(arena.call(Atan2, &[arena.call(Sin, &[angle]), arena.call(Cos, &[angle])]), turn)
+    };
+    hats.iter().map(error).collect()
+}
+
+/// Every estimate with its error: those of the observer, then those of each baseline.
+pub(crate) fn judged(
+    (plant, table): (&Plant, &[Symbol]),
+    periods: &Periods,
+    hats: &Estimates,
+    rivals: &[Rival],
+) -> (Vec<Judged>, Vec<Expr>) {
+    let arena = &plant.arena;
+    let of_rivals = rivals.iter().flat_map(|rival| {
+        let estimates = rival
+            .estimates
+            .iter()
+            .map(|(state, _)| (state.clone(), arena.of_symbol(rival_estimate(arena, &rival.name, state))));
+        estimates.map(|estimate| (Some(rival.name.clone()), estimate))
+    });
+    let own = hats.iter().cloned().map(|estimate| (None, estimate));
+    let (baselines, estimates): (Vec<_>, Estimates) = own.chain(of_rivals).unzip();
+    let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
+        let symbol = arena.symbol(state);
+        let number = |periods: &BTreeMap<Symbol, Expr>| {
+            let program = program(arena, &[], &[*periods.get(&symbol)?], Span::NOWHERE).ok()?;
+            Interpreter::new(&program).evaluate(|_| f64::NAN).next()
+        };
+        Some(Judged {
+            estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
+            truth: table.iter().position(|known| *known == symbol)?,
+            period: number(&periods.of_angles),
+            step: number(&periods.steps),
+        })
+    };
+    let judged = baselines.into_iter().zip(&estimates).filter_map(judge).collect();
+    (judged, errors(plant, periods, &estimates))
+}
+
+fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String> {
+    let arena = &plant.arena;
+    let states = plant.x.iter().map(|state| state.symbol);
+    let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());
+    let mut columns = vec!["t".to_owned()];
+    columns.extend(signals.map(|symbol| arena.name(symbol)));
+    for state in recovered.iter().map(|state| arena.name(*state)) {
+        columns.extend([format!("{state}_hat"), format!("{state}{}", Trace::ERROR)]);
+    }
+    for rival in rivals {
+        columns.extend(rival.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", rival.name)));
+    }
+    columns
+}
+
+/// Only a call asks for a table that is too large: a file does not say how often rows are written.
+fn admit_table(timing: &Timing, columns: usize) -> Result<(), Diagnostic> {
+    let columns = u64::try_from(columns).unwrap_or(u64::MAX);
+    let values = crate::timing::real(timing.rows()) * crate::timing::real(columns);
+    if values <= MOST_VALUES {
+        return Ok(());
+    }
+    let message = format!("the table would have {} rows of {columns} values", timing.rows());
+    Err(Diagnostic::error(Code::SimulationTooLong, Span::NOWHERE, message).help("choose a larger `--every`"))
+}

@@ -1,0 +1,170 @@
+//! Sensors: from the outputs as they are to the samples that observers get.
+//!
+//! In: the outputs at the instants of the loop. Out: of each instant a sample of every output, or that it never arrived.
+//!
+//! ```text
+//! y(t - delay) + bias + deviation * (normal number)  ->  nearest multiple of the step  ->  arrives, or is dropped
+//! ```
+//!
+//! A delay that ends between two instants is interpolated straight between the outputs at these: an observer knows no more
+//! of an output than that, and the line leaves neither end behind as a polynomial of higher degree would where an input
+//! jumps. Its error is at most an eighth of the step squared times the output's second derivative. Before its start the
+//! plant rested.
+
+use std::collections::VecDeque;
+
+use pebo_design::model::{Decimal, Entry, Simulation, Spanned};
+use pebo_design::plant::Plant;
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::noise::{DROPPED, JITTER, even, normal};
+use crate::timing::{Timing, whole};
+
+/// Steps that a delay may have: all samples in between are kept.
+const LONGEST: f64 = 1e6;
+
+/// What the sensors of a plant do; nothing where they are perfect.
+#[derive(Debug, Default)]
+pub(crate) struct Sensors {
+    each: Vec<Sensor>,
+    /// The probability that a sample is dropped.
+    dropped: f64,
+}
+
+/// What a sensor does to its output.
+#[derive(Clone, Copy, Debug)]
+struct Sensor {
+    delay: f64,
+    bias: f64,
+    deviation: f64,
+    /// Of which a sample is a multiple; 0 for none.
+    step: f64,
+    /// Instants to one whose sample arrives.
+    every: u64,
+}
+
+impl Sensors {
+    /// The sensors of a simulation; `timing` has been resolved.
+    pub(crate) fn resolve(
+        plant: &Plant,
+        simulation: &Simulation,
+        (timing, span): (&Timing, Span),
+        problems: &mut Diagnostics,
+    ) -> Self {
+        if !simulation.is_imperfect() {
+            return Self::default();
+        }
+        if let Some(delay) = simulation.delay.written().find(|delay| delay.value.to_f64() > LONGEST * timing.step) {
+            let place = if delay.span == Span::NOWHERE { span } else { delay.span };
+            let message = format!("a delay of {} s is too long to be simulated", delay.value.text());
+            problems.push(Diagnostic::error(Code::SimulationUnsupported, place, message).help(format!(
+                "the simulator has room for {LONGEST:.0e} samples on their way: shorten the delay, or choose a longer step"
+            )));
+            return Self::default();
+        }
+        let sensor = |output: String| {
+            let of = |entries| number(entries, &output);
+            Sensor {
+                delay: simulation.delay.of(&output).map_or(0.0, |delay| delay.value.to_f64()),
+                bias: of(&simulation.bias),
+                deviation: of(&simulation.noise),
+                step: of(&simulation.quantisation),
+                every: whole(of(&simulation.every)).max(1),
+            }
+        };
+        let outputs = plant.y.iter().map(|output| plant.arena.name(output.symbol));
+        let dropped = simulation.dropped.as_ref().map_or(0.0, |share| share.value.to_f64());
+        Self { each: outputs.map(sensor).collect(), dropped }
+    }
+
+    /// The sensors before their first sample, with chance by this seed. Instants closer than `slack` are one.
+    pub(crate) fn begin(&self, seed: u64, slack: f64) -> Sensing<'_> {
+        Sensing { sensors: self, seed, slack, past: vec![VecDeque::new(); self.each.len()] }
+    }
+}
+
+/// The number that an entry has for an output; 0 if there is none.
+fn number(entries: &[Entry<Spanned<Decimal>>], output: &str) -> f64 {
+    entries.iter().find(|entry| entry.name.value == output).map_or(0.0, |entry| entry.value.value.to_f64())
+}
+
+/// The standard deviation of an output's samples, of noise and of rounding to the nearest multiple of a step, whose error
+/// is evenly spread.
+pub(crate) fn deviation(simulation: &Simulation, output: &str) -> f64 {
+    number(&simulation.noise, output).hypot(number(&simulation.quantisation, output) / 12.0_f64.sqrt())
+}
+
+/// Sensors at work.
+#[derive(Debug)]
+pub(crate) struct Sensing<'a> {
+    sensors: &'a Sensors,
+    seed: u64,
+    slack: f64,
+    /// Instants and values of each delayed output, from the last one that is old enough on.
+    past: Vec<VecDeque<(f64, f64)>>,
+}
+
+impl Sensing<'_> {
+    /// Takes the outputs at the instant `t` of a sample. Writes what the sensors show if it arrives, and says whether it
+    /// does; perfect ones show nothing.
+    pub(crate) fn sample(&mut self, sample: u64, t: f64, outputs: &[f64], shown: &mut [f64]) -> bool {
+        let Self { sensors, seed, slack, past } = self;
+        // The first sample starts the clock.
+        let arrives = sample == 0 || sensors.dropped == 0.0 || even(*seed, DROPPED, sample) > sensors.dropped;
+        let values = sensors.each.iter().zip(past).zip(outputs).zip(shown).zip(0_u64..);
+        for ((((sensor, past), value), shown), output) in values {
+            let value = if sensor.delay > 0.0 { delayed(past, (t, *value), t - sensor.delay, *slack) } else { *value };
+            if arrives && sample.is_multiple_of(sensor.every) {
+                *shown = sensor.show(value, || normal(*seed, output, sample));
+            }
+        }
+        arrives
+    }
+}
+
+impl Sensors {
+    /// What of an instant's sample is there: an output whose sensor has another period is NaN.
+    pub(crate) fn leave_out(&self, sample: u64, outputs: &mut [f64]) {
+        for (sensor, output) in self.each.iter().zip(outputs) {
+            if !sample.is_multiple_of(sensor.every) {
+                *output = f64::NAN;
+            }
+        }
+    }
+}
+
+impl Sensor {
+    /// What is shown of a value, with a number that is drawn if it is needed.
+    fn show(&self, value: f64, number: impl FnOnce() -> f64) -> f64 {
+        let noise = if self.deviation > 0.0 { self.deviation * number() } else { 0.0 };
+        let value = value + self.bias + noise;
+        let count = (value / self.step).round();
+        // A zero is a positive one. Of a step too small to be counted there is nothing to be seen.
+        if self.step > 0.0 && count.is_finite() { self.step * count + 0.0 } else { value }
+    }
+}
+
+/// Keeps the newest value, and gives the one at `wanted`, which never goes back.
+fn delayed(past: &mut VecDeque<(f64, f64)>, newest: (f64, f64), wanted: f64, slack: f64) -> f64 {
+    past.push_back(newest);
+    while past.get(1).is_some_and(|second| second.0 <= wanted + slack) {
+        past.pop_front();
+    }
+    let first = past[0];
+    match past.get(1) {
+        Some(second) if wanted > first.0 + slack => {
+            first.1 + (second.1 - first.1) * ((wanted - first.0) / (second.0 - first.0))
+        }
+        _ => first.1,
+    }
+}
+
+/// The instant of a sample: that of its number, but for jitter. The first and the last are where a run begins and ends.
+pub(crate) fn instant(timing: &Timing, jitter: f64, seed: u64, sample: u64) -> f64 {
+    let place = timing.at(sample);
+    if jitter > 0.0 && sample > 0 && sample < timing.samples {
+        place + timing.step * jitter * (2.0 * even(seed, JITTER, sample) - 1.0)
+    } else {
+        place
+    }
+}

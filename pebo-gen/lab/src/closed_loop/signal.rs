@@ -1,0 +1,73 @@
+//! Signals in time: formulas that hold one after the other.
+
+use pebo_cas::Arena;
+use pebo_design::model::{Entry, Piece};
+use pebo_design::plant::{Scope, lower};
+use pebo_design::program::{Interpreter, Program};
+use pebo_design::source::{Code, Diagnostic, Diagnostics};
+
+use super::layout::{program, time};
+
+/// A signal.
+#[derive(Debug)]
+pub(crate) struct Signal {
+    /// Beginnings, ascending from 0 or before, with programs from time to the value.
+    pieces: Vec<(f64, Program)>,
+}
+
+impl Signal {
+    /// Resolves a signal in a scope of time and parameters.
+    pub(crate) fn resolve(arena: &Arena, scope: &Scope, entry: &Entry<Vec<Piece>>, problems: &mut Diagnostics) -> Self {
+        if let Some(first) = entry.value.first().filter(|first| first.from.value.to_f64() > 0.0) {
+            let message = format!("`{}` has no value before {} s", entry.name.value, first.from.value.text());
+            problems.push(
+                Diagnostic::error(Code::SimulationIncomplete, first.from.span, message)
+                    .help("let its first piece start at 0"),
+            );
+        }
+        let pieces = entry.value.iter().filter_map(|piece| {
+            let lowered = lower(arena, scope, &piece.formula)
+                .and_then(|expr| program(arena, &[time(arena)], &[expr], piece.formula.span));
+            Some((piece.from.value.to_f64(), problems.keep(lowered)?))
+        });
+        Self { pieces: pieces.collect() }
+    }
+
+    /// When the signal passes from one formula to the next.
+    pub(crate) fn jumps(&self) -> impl Iterator<Item = f64> {
+        self.pieces.iter().skip(1).map(|(from, _)| *from)
+    }
+
+    /// The signal, ready to be followed from its start.
+    pub(crate) fn course(&self) -> Course {
+        Course {
+            pieces: self.pieces.iter().map(|(from, program)| (*from, Interpreter::new(program))).collect(),
+            active: 0,
+        }
+    }
+}
+
+/// A signal that is followed through time.
+#[derive(Debug)]
+pub(crate) struct Course {
+    pieces: Vec<(f64, Interpreter)>,
+    active: usize,
+}
+
+impl Course {
+    /// Moves on to the formula that holds at `t`; time does not run backwards.
+    pub(crate) fn select(&mut self, t: f64) {
+        while self.pieces.get(self.active + 1).is_some_and(|(from, _)| *from <= t) {
+            self.active += 1;
+        }
+    }
+
+    /// The value of the selected formula at `t`.
+    pub(crate) fn value(&mut self, t: f64) -> f64 {
+        let mut value = [f64::NAN];
+        if let Some((_, formula)) = self.pieces.get_mut(self.active) {
+            formula.run(&[t], &mut value);
+        }
+        value[0]
+    }
+}

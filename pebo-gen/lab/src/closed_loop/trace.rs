@@ -1,0 +1,87 @@
+//! The course of a run: a table on a grid of instants, and the curves of the figure.
+
+use std::fmt::Write as _;
+
+use crate::summary::Summary;
+
+/// What a run gives. Serialises to `columns`, the names, and `values`, row by row.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Trace {
+    columns: Vec<String>,
+    /// Row by row.
+    values: Vec<f64>,
+    /// The points of each panel's curves.
+    #[serde(skip)]
+    pub(crate) curves: Vec<Vec<Vec<(f64, f64)>>>,
+    /// What the run came to.
+    #[serde(skip)]
+    pub(crate) summary: Summary,
+}
+
+impl Trace {
+    /// What the name of the column of a state's error ends with.
+    pub const ERROR: &str = "_error";
+
+    /// The table row by row, the points of each panel's curves, and what the run came to.
+    pub(crate) fn new(
+        (columns, values): (Vec<String>, Vec<f64>),
+        curves: Vec<Vec<Vec<(f64, f64)>>>,
+        summary: Summary,
+    ) -> Self {
+        Self { columns, values, curves, summary }
+    }
+
+    /// What the run came to.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
+
+    /// The names of the columns: `t`, states of x and y, inputs, `<x>_hat` and `<x>_error` for each recovered state,
+    /// `<baseline>.<x>_hat`.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// The rows, from the first instant to the last.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.values.chunks_exact(self.columns.len())
+    }
+
+    /// The last instant, in seconds.
+    pub fn end(&self) -> f64 {
+        self.rows().last().map_or(0.0, |row| row[0])
+    }
+
+    /// The values of the column of that name.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let position = self.columns.iter().position(|column| column == name)?;
+        Some(self.rows().map(|row| row[position]).collect())
+    }
+
+    /// The table as CSV: a header row, then numbers with as many digits as it takes to read the same number back.
+    pub fn csv(&self) -> String {
+        let mut text = self.columns.join(",");
+        text.push('\n');
+        for row in self.rows() {
+            for (position, value) in row.iter().enumerate() {
+                let separator = if position + 1 == row.len() { '\n' } else { ',' };
+                let written = write_number(&mut text, *value);
+                debug_assert!(written.is_ok(), "a string takes everything");
+                text.push(separator);
+            }
+        }
+        text
+    }
+}
+
+/// The shortest text that reads back as the same number; an exponent where that is shorter than zeros.
+pub(crate) fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        text.write_char('0')
+    } else if (1e-5..1e16).contains(&magnitude) {
+        write!(text, "{value}")
+    } else {
+        write!(text, "{value:e}")
+    }
+}

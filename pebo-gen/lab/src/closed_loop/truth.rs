@@ -1,0 +1,123 @@
+//! The plant as it is, which is not always what the model says of it.
+//!
+//! In: the plant, and the section `simulation`. Out: the true value of each parameter, a number or a course in time, and
+//! of each state and output that is not integrated: a constant state that is given a course, an output that is given by
+//! its value. Only the plant's own motion uses these; observers and control law have the model's parameters.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use pebo_cas::{Expr, Symbol};
+use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
+
+use super::layout::{course, time};
+use super::scope::Names;
+
+/// What is true of the plant.
+#[derive(Debug)]
+pub(crate) struct Truth {
+    /// The values of the parameters, and of an input that is the time.
+    numbers: BTreeMap<Symbol, Expr>,
+    /// States and outputs that have their values by a formula in the others, inputs and signals.
+    given: BTreeMap<Symbol, Expr>,
+}
+
+impl Truth {
+    /// The truth of a simulation; what cannot be true is reported.
+    pub(crate) fn resolve(names: &Names, problems: &mut Diagnostics) -> Self {
+        let mut truth = Self { numbers: names.numbers(), given: BTreeMap::new() };
+        // The plant moves in time itself, not in the samples of it that observers are told.
+        let arena = &names.plant.arena;
+        truth.numbers.extend(names.plant.time.map(|told| (told, arena.of_symbol(time(arena)))));
+        truth.courses(names, problems);
+        truth.values(names, problems);
+        for entry in &names.simulation.initial {
+            let symbol = names.plant.arena.symbol(&entry.name.value);
+            if truth.given.contains_key(&symbol) {
+                let message = format!("`{}` has a value of its own at the start", entry.name.value);
+                problems.push(
+                    Diagnostic::error(Code::SettingConflict, entry.name.span, message)
+                        .help("remove it from `initial`: its value is what `plant` or `g_y` says"),
+                );
+            }
+        }
+        truth
+    }
+
+    /// The plant as the model has it, with outputs that are given by their value put in; none where these need one
+    /// another, which is reported with the truth.
+    pub(crate) fn of_model(names: &Names) -> Option<Self> {
+        let mut model = Self { numbers: names.numbers(), given: BTreeMap::new() };
+        let mut circles = Diagnostics::new();
+        model.values(names, &mut circles);
+        (!circles.has_errors()).then_some(model)
+    }
+
+    /// Parameters and constant states with a course.
+    fn courses(&mut self, names: &Names, problems: &mut Diagnostics) {
+        let arena = &names.plant.arena;
+        for entry in &names.simulation.plant {
+            let name = &entry.name.value;
+            let symbol = arena.symbol(name);
+            let value = arena.of_symbol(course(arena, name));
+            let Some(state) = names.plant.x.iter().find(|state| state.symbol == symbol) else {
+                self.numbers.insert(symbol, value);
+                continue;
+            };
+            if !arena.is_zero(state.rate.expr) {
+                let message = format!("`{name}` moves by its own rate, and cannot be given a course");
+                problems.push(
+                    Diagnostic::error(Code::SettingConflict, entry.name.span, message)
+                        .also(state.rate.span, "its rate")
+                        .help("give courses to parameters, and to states whose rate is 0"),
+                );
+            }
+            self.given.insert(symbol, value);
+        }
+    }
+
+    /// Outputs that are given by their value. A value may need others: each round puts one level of them in.
+    fn values(&mut self, names: &Names, problems: &mut Diagnostics) {
+        let (plant, arena) = (names.plant, &names.plant.arena);
+        let outputs = || plant.y.iter().filter(|output| output.value.is_some());
+        for output in outputs() {
+            let value = output.value.map(|value| arena.substitute(value.expr, &self.numbers));
+            self.given.extend(value.map(|value| (output.symbol, value)));
+        }
+        let known: BTreeSet<Symbol> = self.given.keys().copied().collect();
+        for _ in outputs() {
+            let put = |value: &Expr| arena.substitute(*value, &self.given);
+            self.given = self.given.iter().map(|(symbol, value)| (*symbol, put(value))).collect();
+        }
+        let circle = outputs().filter(|output| arena.depends_on(self.given[&output.symbol], &known));
+        let circle: Vec<_> = circle.collect();
+        if let Some(first) = circle.first() {
+            let circular: Vec<String> = circle.iter().map(|output| arena.name(output.symbol)).collect();
+            let message = format!("the values of {} need one another", listed(circular.iter().map(String::as_str)));
+            problems.push(
+                Diagnostic::error(Code::CircularDefinition, first.span, message)
+                    .help("give one of them by the states and inputs, or by its rate under `f_y`"),
+            );
+        }
+    }
+
+    /// Whether the value of this state or output is given, so that it is not integrated.
+    pub(crate) fn gives(&self, symbol: Symbol) -> bool {
+        self.given.contains_key(&symbol)
+    }
+
+    /// The formulas of these states and outputs whose values are given, each with its place among them.
+    pub(crate) fn given(&self, symbols: &[Symbol]) -> Vec<(usize, Expr)> {
+        let found = symbols.iter().enumerate().filter_map(|(place, symbol)| Some((place, *self.given.get(symbol)?)));
+        found.collect()
+    }
+
+    /// Formulas of the plant in what is integrated, inputs and signals.
+    pub(crate) fn of_plant(&self, names: &Names, formulas: &[Expr]) -> Vec<Expr> {
+        self.between_samples(names, &names.plant.arena.substitute_all(formulas, &self.numbers))
+    }
+
+    /// Formulas without the parameters, in the same.
+    pub(crate) fn between_samples(&self, names: &Names, formulas: &[Expr]) -> Vec<Expr> {
+        names.plant.arena.substitute_all(formulas, &self.given)
+    }
+}

@@ -1,0 +1,127 @@
+//! What the figure needs to know of a value that is sampled a million times.
+//!
+//! In: every sample. Out: for each of some hundred equal spans of time, the first, the least, the largest
+//! and the last value with their instants. A line through these looks as one through all samples would
+//! (Jugel, Jerzak, Hackenbroich, Markl, M4, 2014).
+
+/// Spans of time: more than the figure has columns of dots in print.
+const SPANS: u64 = 800;
+
+/// Where a curve goes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Curve {
+    /// Instants and values, in the order of time; a value that is not finite is a gap.
+    points: Vec<(f64, f64)>,
+    span: Option<Span>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    index: u64,
+    first: (f64, f64),
+    least: (f64, f64),
+    largest: (f64, f64),
+    last: (f64, f64),
+}
+
+impl Curve {
+    /// Adds the sample of this number out of `samples`.
+    pub(crate) fn add(&mut self, sample: u64, samples: u64, point: (f64, f64)) {
+        // At most SPANS * 2^28 or so.
+        let index = sample * SPANS / samples.max(1);
+        match &mut self.span {
+            Some(span) if span.index == index && point.1.is_finite() && span.least.1.is_finite() => {
+                if point.1 < span.least.1 {
+                    span.least = point;
+                }
+                if point.1 > span.largest.1 {
+                    span.largest = point;
+                }
+                span.last = point;
+            }
+            _ => {
+                self.close();
+                self.span = Some(Span { index, first: point, least: point, largest: point, last: point });
+            }
+        }
+    }
+
+    /// The points, after the last sample.
+    pub(crate) fn finish(mut self) -> Vec<(f64, f64)> {
+        self.close();
+        self.points
+    }
+
+    fn close(&mut self) {
+        if let Some(span) = self.span.take() {
+            span.append(&mut self.points);
+        }
+    }
+}
+
+impl Span {
+    /// Adds the points to a line that ends before them.
+    fn append(self, points: &mut Vec<(f64, f64)>) {
+        let Self { first, mut least, mut largest, last, .. } = self;
+        if least.0 > largest.0 {
+            std::mem::swap(&mut least, &mut largest);
+        }
+        for point in [first, least, largest, last] {
+            if points.last().is_none_or(|before| before.0 < point.0) {
+                points.push(point);
+            }
+        }
+    }
+
+    /// This and the next in one. What is not finite is a gap only where there is nothing else.
+    fn and(self, next: Self) -> Self {
+        if !self.least.1.is_finite() {
+            return Self { index: self.index, ..next };
+        }
+        if !next.least.1.is_finite() {
+            return self;
+        }
+        let least = if next.least.1 < self.least.1 { next.least } else { self.least };
+        let largest = if next.largest.1 > self.largest.1 { next.largest } else { self.largest };
+        Self { least, largest, last: next.last, ..self }
+    }
+}
+
+/// The same of a curve that is as long as it turns out to be: its spans grow with it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Growing {
+    /// At most twice as many as a curve of known length has.
+    spans: Vec<Span>,
+    /// A span has two to this power samples.
+    doublings: u32,
+    samples: u64,
+}
+
+impl Growing {
+    /// Adds the next sample.
+    pub(crate) fn add(&mut self, point: (f64, f64)) {
+        let mut index = self.samples >> self.doublings;
+        if index >= 2 * SPANS {
+            let halved = self.spans.chunks(2).map(|pair| {
+                let both = pair.iter().copied().reduce(Span::and).unwrap_or(pair[0]);
+                Span { index: both.index / 2, ..both }
+            });
+            self.spans = halved.collect();
+            self.doublings += 1;
+            index /= 2;
+        }
+        self.samples += 1;
+        let span = Span { index, first: point, least: point, largest: point, last: point };
+        match self.spans.last_mut() {
+            Some(last) if last.index == index => *last = last.and(span),
+            _ => self.spans.push(span),
+        }
+    }
+
+    /// The points, after the last sample.
+    pub(crate) fn finish(self) -> Vec<(f64, f64)> {
+        let mut points = Vec::new();
+        self.spans.into_iter().for_each(|span| span.append(&mut points));
+        points
+    }
+}

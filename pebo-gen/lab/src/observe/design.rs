@@ -1,0 +1,170 @@
+//! The observer as it was derived, with its settings: what the interpreted model computes.
+
+use std::collections::BTreeMap;
+
+use pebo_cas::{Expr, Symbol};
+use pebo_design::analysis::{Derivation, LeftInverse, RegressionKind};
+use pebo_design::program::Program;
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::certainty::Wanted;
+use super::request::Asked;
+use super::setup::Settings;
+use super::sizes::LARGEST;
+use crate::closed_loop::layout::program;
+use crate::score::SETTLED;
+
+/// An observer, ready to be interpreted.
+#[derive(Debug)]
+pub(crate) struct Design {
+    /// The states that it recovers.
+    pub(crate) recovered: Vec<Symbol>,
+    /// Whether the regression is static.
+    pub(crate) is_static: bool,
+    /// Positions in y of the outputs whose rates the dynamic regression uses.
+    pub(crate) rows: Vec<usize>,
+    /// The number of outputs y.
+    pub(crate) outputs: usize,
+    /// The number of inputs u.
+    pub(crate) inputs: usize,
+    /// The number of coordinates z.
+    pub(crate) coordinates: usize,
+    /// The number of equations of the regression.
+    pub(crate) equations: usize,
+    /// Whether the cascade is generalised.
+    pub(crate) is_generalised: bool,
+    /// From y, u to h, and in a generalised cascade behind it to Lambda by rows.
+    pub(crate) cascade: Program,
+    /// From the extension, y, u to the known part of the regression, and behind it to the factor of the unknowns by rows.
+    pub(crate) regression: Program,
+    /// From the extension and y to the same under the derivative, in an implicit regression.
+    pub(crate) primitive: Option<Program>,
+    /// From eta to theta.
+    pub(crate) theta: Program,
+    /// From z, y to the recovered states.
+    pub(crate) phi_left: Program,
+    /// The number of unknowns eta of the model's regression.
+    pub(crate) unknowns: usize,
+    /// What is estimated, as formulas in theta.
+    pub(crate) unknown_names: Vec<String>,
+    /// Regression and estimator.
+    pub(crate) settings: Settings,
+    /// The standard errors that are wanted.
+    pub(crate) wanted: Vec<Wanted>,
+}
+
+impl Design {
+    /// The design of an accepted derivation; `numbers` are the values of the parameters.
+    pub(crate) fn resolve(
+        asked: &Asked,
+        derivation: &Derivation,
+        numbers: &BTreeMap<Symbol, Expr>,
+        period: Option<f64>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let plant = asked.plant;
+        let span = asked.model.name.span;
+        let cascade = derivation.cascade.result.as_ref()?;
+        let inverse = derivation.left_inverse.result.as_ref()?;
+        let regression = derivation.regression.result.as_ref()?;
+        let settings = Settings::resolve(asked, derivation, (regression, inverse), period, problems)?;
+        let arena = &plant.arena;
+        let regression = &regression.computed(arena, settings.output || settings.gate.is_some());
+        let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {
+            let outputs = arena.substitute_all(outputs, numbers);
+            problems.keep(program(arena, &inputs.concat(), &outputs, span))
+        };
+        let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
+        let extension = match cascade.lambda {
+            Some(_) => [plant.xi.clone(), plant.psi.concat()].concat(),
+            None => plant.chi.clone(),
+        };
+        let sides = |known: &[Expr], factor: &[Vec<Expr>]| [known, &factor.concat()].concat();
+        let lambda = cascade.lambda.as_ref().map(|rows| rows.concat()).unwrap_or_default();
+        let at_sample: [&[Symbol]; 2] = [&y, &plant.u];
+        let regressed: [&[Symbol]; 3] = [&extension, &y, &plant.u];
+        // The unknowns of the output form are what stands under the derivative at the start, then those of z.
+        let outputs = regression.rows.iter().map(|row| format!("{}(0)", arena.name(plant.y[*row].symbol)));
+        let starts: Vec<String> = if settings.output { outputs.collect() } else { Vec::new() };
+        let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+        let design = Self {
+            equations: regression.phi_0.len(),
+            is_generalised: cascade.lambda.is_some(),
+            cascade: compile(&at_sample, &[cascade.h.as_slice(), &lambda].concat())?,
+            regression: compile(&regressed, &sides(&regression.phi_0, &regression.phi_1))?,
+            primitive: match regression.kind {
+                RegressionKind::Implicit => {
+                    Some(compile(&[&extension, &y], &sides(&regression.primitive_0, &regression.primitive_1))?)
+                }
+                RegressionKind::Dynamic | RegressionKind::Static => None,
+            },
+            theta: compile(&[&regression.eta_symbols], &regression.theta)?,
+            phi_left: compile(&[&plant.z, &y], &states)?,
+            recovered: inverse.x.iter().map(|(state, _)| *state).collect(),
+            is_static: regression.kind == RegressionKind::Static,
+            rows: regression.rows.clone(),
+            outputs: plant.y.len(),
+            inputs: plant.u.len(),
+            coordinates: plant.phi.len(),
+            unknowns: regression.eta.len(),
+            unknown_names: starts
+                .into_iter()
+                .chain(regression.eta.iter().map(|unknown| arena.print(*unknown)))
+                .collect(),
+            settings,
+            wanted: wanted(asked, inverse, problems),
+        };
+        problems.keep(design.admit_size(span))?;
+        Some(design)
+    }
+
+    /// The largest number of quantities of one kind.
+    pub(crate) fn size(&self) -> usize {
+        let regression = self.equations.max(self.unknowns);
+        let plant = self.outputs.max(self.inputs).max(self.coordinates);
+        plant.max(regression).max(self.recovered.len()).max(self.settings.chi_0.len())
+    }
+
+    /// The number of unknowns that are estimated.
+    pub(crate) fn estimated(&self) -> usize {
+        self.unknown_names.len()
+    }
+
+    /// Whether a value of a recovered state is beyond the bounds that `within` says of it, by more than settles.
+    pub(crate) fn is_outside(&self, state: usize, value: f64) -> bool {
+        let [lower, upper] = &self.settings.within;
+        let slack = SETTLED * value.abs();
+        lower.get(state).is_some_and(|lower| value + slack < *lower)
+            || upper.get(state).is_some_and(|upper| value - slack > *upper)
+    }
+
+    fn admit_size(&self, span: Span) -> Result<(), Diagnostic> {
+        let size = self.size();
+        if size <= LARGEST {
+            return Ok(());
+        }
+        let message = format!("an observer with {size} quantities of one kind is too large to be simulated");
+        Err(Diagnostic::error(Code::SimulationUnsupported, span, message).help(format!(
+            "the simulator has room for {LARGEST} states, outputs, inputs or unknowns: simulate the emitted code"
+        )))
+    }
+}
+
+/// The standard errors that are wanted of the recovered states; of a state that is not recovered none can be had.
+fn wanted(asked: &Asked, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
+    let arena = &asked.plant.arena;
+    let mut found = Vec::new();
+    for entry in &asked.model.observer.wanted {
+        let state = &entry.name.value;
+        let Some(estimate) = inverse.x.iter().position(|(recovered, _)| arena.name(*recovered) == *state) else {
+            let message = format!("`wanted` names `{state}`, which this observer does not recover");
+            problems.push(
+                Diagnostic::error(Code::SettingConflict, entry.name.span, message)
+                    .help("remove it, or add its formula to `phi_left`"),
+            );
+            continue;
+        };
+        found.push(Wanted { estimate, state: state.clone(), error: entry.value.value.to_f64() });
+    }
+    found
+}

@@ -1,0 +1,322 @@
+//! Every estimator of the runtime library behind one face, so that the observer need not be compiled for each.
+//!
+//! A model is padded with zeros to one of a few sizes. Zero rows and columns of a regressor change no estimate of a
+//! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: what its extension has to
+//! say of the padding is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled
+//! once for each size, not for every number of unknowns.
+
+use std::fmt;
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+use pebo_runtime::{
+    Drem, Estimator, Fault, FiniteTime, Gradient, Kreisselmeier, LeastSquares, NormalisedGradient, RegressorExtension,
+    Response, Turn, Uncertain,
+};
+
+use super::setup::{self, Covariance, Extension};
+use super::sizes::{LARGEST, MOST_MIXED, pad, padded, resized};
+
+/// An estimator of a model that was padded to the size N.
+/// Not behind a pointer where that can be: the observer works on a copy in each step.
+#[derive(Debug)]
+pub(crate) enum Chosen<const N: usize> {
+    Gradient(Gradient<f64, N>),
+    Normalised(NormalisedGradient<f64, N>),
+    /// The one that knows how uncertain it is.
+    Squares(LeastSquares<f64, N>),
+    Mixed(Box<dyn Face<N>>),
+}
+
+impl<const N: usize> Chosen<N> {
+    /// The estimator with its settings, which have a value for each of the unknowns.
+    pub(crate) fn new(settings: &setup::Estimator) -> Result<Self, Fault> {
+        // What is set for a padded unknown has no effect, but must be positive.
+        let all = |values: &[f64]| -> SVector<f64, N> { padded(values, 1.0) };
+        Ok(match settings {
+            setup::Estimator::Gradient(gain) => Self::Gradient(Gradient::diagonal(&all(gain))?),
+            setup::Estimator::NormalisedGradient { gain, mu } => {
+                Self::Normalised(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
+            }
+            setup::Estimator::LeastSquares(Covariance { start, forgetting, process_noise }) => {
+                let squares = LeastSquares::diagonal(&all(start), *forgetting)?;
+                Self::Squares(match process_noise {
+                    Some(noise) => squares.with_process_noise(&pad(noise))?,
+                    None => squares,
+                })
+            }
+            setup::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => {
+                Self::Mixed(mixed(gain, extension)?)
+            }
+            // Refused with the settings.
+            setup::Estimator::Drem { .. } => return Err(Fault::Gain),
+        })
+    }
+}
+
+impl<const N: usize> Clone for Chosen<N> {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Gradient(gradient) => Self::Gradient(*gradient),
+            Self::Normalised(gradient) => Self::Normalised(*gradient),
+            Self::Squares(squares) => Self::Squares(*squares),
+            Self::Mixed(mixed) => Self::Mixed(mixed.boxed()),
+        }
+    }
+}
+
+impl<const N: usize> Chosen<N> {
+    fn face(&self) -> &dyn Face<N> {
+        match self {
+            Self::Gradient(gradient) => gradient,
+            Self::Normalised(gradient) => gradient,
+            Self::Squares(squares) => squares,
+            Self::Mixed(mixed) => &**mixed,
+        }
+    }
+
+    fn face_mut(&mut self) -> &mut dyn Face<N> {
+        match self {
+            Self::Gradient(gradient) => gradient,
+            Self::Normalised(gradient) => gradient,
+            Self::Squares(squares) => squares,
+            Self::Mixed(mixed) => &mut **mixed,
+        }
+    }
+}
+
+impl<const N: usize> Uncertain<f64, N> for Chosen<N> {
+    fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
+        match self {
+            Self::Squares(squares) => squares.covariance_root(dt),
+            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => None,
+        }
+    }
+}
+
+impl<const N: usize> Estimator<f64, N, N> for Chosen<N> {
+    fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
+        self.face_mut().advance(regressor, regressand, dt)
+    }
+
+    fn estimate(&self) -> SVector<f64, N> {
+        self.face().estimate()
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, N>) {
+        self.face_mut().shift(shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        self.face_mut().turn(turn);
+    }
+
+    fn reset(&mut self, estimate: &SVector<f64, N>) {
+        self.face_mut().reset(estimate);
+    }
+
+    fn is_finite(&self) -> bool {
+        self.face().is_finite()
+    }
+}
+
+/// An estimator whose type is not known.
+pub(crate) trait Face<const N: usize>: fmt::Debug {
+    fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault>;
+    fn estimate(&self) -> SVector<f64, N>;
+    fn shift(&mut self, shift: &SVector<f64, N>);
+    fn turn(&mut self, turn: &Turn<f64, N>);
+    fn reset(&mut self, estimate: &SVector<f64, N>);
+    fn is_finite(&self) -> bool;
+    fn boxed(&self) -> Box<dyn Face<N>>;
+}
+
+impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> Face<N> for E {
+    fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
+        Estimator::advance(self, regressor, regressand, dt)
+    }
+
+    fn estimate(&self) -> SVector<f64, N> {
+        Estimator::estimate(self)
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, N>) {
+        Estimator::shift(self, shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        Estimator::turn(self, turn);
+    }
+
+    fn reset(&mut self, estimate: &SVector<f64, N>) {
+        Estimator::reset(self, estimate);
+    }
+
+    fn is_finite(&self) -> bool {
+        Estimator::is_finite(self)
+    }
+
+    fn boxed(&self) -> Box<dyn Face<N>> {
+        Box::new(self.clone())
+    }
+}
+
+/// DREM of as many unknowns as there are gains.
+fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn Face<N>>, Fault> {
+    // Padding has no error to lose, and with the largest gain it is never what a finite-time estimator waits for.
+    let gains = padded(gain, gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max));
+    let all = |values: &[f64]| -> SVector<f64, MOST_MIXED> { padded(values, 1.0) };
+    let (extension, finite_time): (Box<dyn Extended>, _) = match extension {
+        Extension::Kreisselmeier { gain, forgetting, finite_time } => {
+            (Box::new(Kreisselmeier::new(&all(gain), *forgetting)?), finite_time.as_ref())
+        }
+        Extension::Gradient(gain) => (Box::new(response(Gradient::diagonal(&all(gain))?)?), None),
+        Extension::LeastSquares(Covariance { start, forgetting, .. }) => {
+            (Box::new(response(LeastSquares::diagonal(&all(start), *forgetting)?)?), None)
+        }
+    };
+    let drem = Drem::new(Completed { extension, unknowns: gain.len() }, &gains)?;
+    Ok(match finite_time {
+        None => Box::new(Wide(drem)),
+        Some(setup::FiniteTime { clip, period: None }) => Box::new(Wide(FiniteTime::once(drem, *clip)?)),
+        Some(setup::FiniteTime { clip, period: Some(period) }) => {
+            Box::new(Wide(FiniteTime::tracking(drem, *clip, *period)?))
+        }
+    })
+}
+
+fn response<E>(estimator: E) -> Result<Response<f64, E, LARGEST, MOST_MIXED>, Fault>
+where
+    E: Estimator<f64, LARGEST, MOST_MIXED> + Copy,
+{
+    Response::new(estimator)
+}
+
+/// A regressor extension whose type is not known.
+trait Extended: fmt::Debug {
+    fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault>;
+    fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED>;
+    fn vector(&self) -> SVector<f64, MOST_MIXED>;
+    fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>);
+    fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>);
+    fn reset(&mut self);
+    fn is_finite(&self) -> bool;
+    fn boxed(&self) -> Box<dyn Extended>;
+}
+
+/// The equations of DREM, padded to the largest size.
+type Rows = SMatrix<f64, LARGEST, MOST_MIXED>;
+
+impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> Extended for X {
+    fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault> {
+        RegressorExtension::advance(self, regressor, regressand, dt)
+    }
+
+    fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED> {
+        RegressorExtension::matrix(self)
+    }
+
+    fn vector(&self) -> SVector<f64, MOST_MIXED> {
+        RegressorExtension::vector(self)
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>) {
+        RegressorExtension::shift(self, shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>) {
+        RegressorExtension::turn(self, turn);
+    }
+
+    fn reset(&mut self) {
+        RegressorExtension::reset(self);
+    }
+
+    fn is_finite(&self) -> bool {
+        RegressorExtension::is_finite(self)
+    }
+
+    fn boxed(&self) -> Box<dyn Extended> {
+        Box::new(self.clone())
+    }
+}
+
+/// An extension of a padded regression, with the identity where the padding is.
+#[derive(Debug)]
+struct Completed {
+    extension: Box<dyn Extended>,
+    unknowns: usize,
+}
+
+impl Clone for Completed {
+    fn clone(&self) -> Self {
+        Self { extension: self.extension.boxed(), unknowns: self.unknowns }
+    }
+}
+
+impl RegressorExtension<f64, LARGEST, MOST_MIXED> for Completed {
+    fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault> {
+        self.extension.advance(regressor, regressand, dt)
+    }
+
+    fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED> {
+        let mut matrix = self.extension.matrix();
+        (self.unknowns..MOST_MIXED).for_each(|padding| matrix[(padding, padding)] = 1.0);
+        matrix
+    }
+
+    fn vector(&self) -> SVector<f64, MOST_MIXED> {
+        self.extension.vector()
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, MOST_MIXED>) {
+        self.extension.shift(shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>) {
+        self.extension.turn(turn);
+    }
+
+    fn reset(&mut self) {
+        self.extension.reset();
+    }
+
+    fn is_finite(&self) -> bool {
+        self.extension.is_finite()
+    }
+}
+
+/// DREM in a padded model, of which it takes the unknowns that there may be. Its equations are padded to the largest
+/// size.
+#[derive(Clone, Debug)]
+struct Wide<E>(E);
+
+impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N> for Wide<E> {
+    fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
+        let mut rows = Rows::zeros();
+        for (mut wide, column) in rows.column_iter_mut().zip(regressor.column_iter()) {
+            wide.rows_mut(0, N).copy_from(&column);
+        }
+        self.0.advance(&rows, &resized(regressand), dt)
+    }
+
+    fn estimate(&self) -> SVector<f64, N> {
+        resized(&self.0.estimate())
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, N>) {
+        self.0.shift(&resized(shift));
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        // What one of the sizes has beyond the other is padding, which no turn mixes with the unknowns.
+        self.0.turn(&turn.leading());
+    }
+
+    fn reset(&mut self, estimate: &SVector<f64, N>) {
+        self.0.reset(&resized(estimate));
+    }
+
+    fn is_finite(&self) -> bool {
+        self.0.is_finite()
+    }
+}

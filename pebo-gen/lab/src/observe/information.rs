@@ -1,0 +1,70 @@
+//! An estimator beside which the information in its data is kept.
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+use pebo_runtime::{Estimator, Fault, Turn, Uncertain};
+
+use super::estimator::Chosen;
+use super::excitation::{Information, Said};
+use super::setup::{self, Covariance, Extension};
+
+/// An estimator of a padded model, with what its data say.
+#[derive(Clone, Debug)]
+pub(crate) struct Watched<const N: usize> {
+    estimator: Chosen<N>,
+    information: Information<N>,
+}
+
+impl<const N: usize> Watched<N> {
+    /// The estimator with its settings, of so many unknowns before padding.
+    pub(crate) fn new(settings: &setup::Estimator, unknowns: usize) -> Result<Self, Fault> {
+        let forgetting = match settings {
+            setup::Estimator::LeastSquares(Covariance { forgetting, .. })
+            | setup::Estimator::Drem { extension: Extension::Kreisselmeier { forgetting, .. }, .. }
+            | setup::Estimator::Drem { extension: Extension::LeastSquares(Covariance { forgetting, .. }), .. } => {
+                *forgetting
+            }
+            _ => 0.0,
+        };
+        Ok(Self { estimator: Chosen::new(settings)?, information: Information::new(unknowns, forgetting) })
+    }
+
+    /// What the data say of each component of the unknown.
+    pub(crate) fn said(&self) -> Said {
+        self.information.said()
+    }
+}
+
+impl<const N: usize> Estimator<f64, N, N> for Watched<N> {
+    fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
+        self.information.add(regressor, dt);
+        self.estimator.advance(regressor, regressand, dt)
+    }
+
+    fn estimate(&self) -> SVector<f64, N> {
+        self.estimator.estimate()
+    }
+
+    fn shift(&mut self, shift: &SVector<f64, N>) {
+        self.estimator.shift(shift);
+    }
+
+    fn turn(&mut self, turn: &Turn<f64, N>) {
+        self.information.turn(turn);
+        self.estimator.turn(turn);
+    }
+
+    fn reset(&mut self, estimate: &SVector<f64, N>) {
+        self.information.reset();
+        self.estimator.reset(estimate);
+    }
+
+    fn is_finite(&self) -> bool {
+        self.estimator.is_finite()
+    }
+}
+
+impl<const N: usize> Uncertain<f64, N> for Watched<N> {
+    fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
+        self.estimator.covariance_root(dt)
+    }
+}

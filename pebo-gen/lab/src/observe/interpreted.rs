@@ -1,0 +1,512 @@
+//! The runtime library's observer on a derived model that is interpreted.
+//!
+//! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of
+//! a few sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
+//! target, but for the functions of the model.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::marker::PhantomData;
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+use pebo_runtime::{
+    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Limits, Model, Observer, Regression, Sides,
+    Uncertain, Within,
+};
+
+use crate::settings::Prediction;
+use pebo_design::plant::settings::PATIENCE;
+use pebo_design::program::{Interpreter, Program};
+
+use super::design::Design;
+use super::excitation::Said;
+use super::information::Watched;
+use super::setup::{self, Covariance, Estimator, Operator, Rebase};
+use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
+use super::uncertainty::{Interval, Told, Uncertainty};
+use super::window::Passage;
+
+/// An observer of some size.
+pub(crate) trait Estimation: fmt::Debug {
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An output
+    /// that is missing is NaN, where [`has_parts`](Self::has_parts).
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+
+    /// Whether a sample may lack outputs.
+    fn has_parts(&self) -> bool;
+
+    /// The standard errors of the estimates, if the last sample is so many seconds old; nothing where they are not known.
+    fn standard_errors(&self, age: f64) -> Option<Vec<f64>>;
+
+    /// How often it began anew after a gap that was too long.
+    fn restarts(&self) -> u64;
+
+    /// How far a sample is from what is expected of it: the normalised square of its innovation, of each row on average.
+    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
+
+    /// What the data so far say of each component of the unknown.
+    fn said(&self) -> Said;
+
+    /// The coordinates z that a value of theta gives with the extension as it is.
+    #[cfg(test)]
+    fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
+}
+
+/// The observer of a design, of the smallest size that has room for it: a step takes time as the square of that, or its cube.
+pub(crate) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    const FEW: usize = SMALL[0];
+    const SOME: usize = SMALL[1];
+    let size = design.size();
+    if size <= FEW {
+        of_size::<FEW>(design)
+    } else if size <= SOME {
+        of_size::<SOME>(design)
+    } else if size <= MOST_MIXED {
+        of_size::<MOST_MIXED>(design)
+    } else {
+        of_size::<LARGEST>(design)
+    }
+}
+
+fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+    if design.settings.output {
+        return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
+    }
+    Ok(match (design.is_generalised, design.is_static) {
+        (false, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (false, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
+        (true, false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (true, true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
+    })
+}
+
+/// The kind of a regression, as a type.
+trait Kind: fmt::Debug + 'static {
+    const REGRESSION: Regression;
+}
+
+#[derive(Debug)]
+struct Dynamic;
+#[derive(Debug)]
+struct Static;
+
+impl Kind for Dynamic {
+    const REGRESSION: Regression = Regression::Dynamic;
+}
+
+impl Kind for Static {
+    const REGRESSION: Regression = Regression::Static;
+}
+
+/// An extension that shows what the regression depends on.
+trait Known<const N: usize>: Extension<f64, N> + 'static {
+    /// A number of an extension of `n` coordinates: one of these, or behind them of its fundamental matrix by rows.
+    fn value(&self, n: usize, place: usize) -> f64;
+
+    /// What stands for z beside theta, and the factor of theta.
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
+}
+
+impl<const N: usize> Known<N> for Integrator<f64, N> {
+    fn value(&self, _: usize, place: usize) -> f64 {
+        self.chi()[place]
+    }
+
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (*self.chi(), SMatrix::identity())
+    }
+}
+
+impl<const N: usize> Known<N> for Fundamental<f64, N> {
+    fn value(&self, n: usize, place: usize) -> f64 {
+        if place < n { self.xi()[place] } else { self.psi()[((place - n) / n, (place - n) % n)] }
+    }
+
+    fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        (*self.xi(), *self.psi())
+    }
+}
+
+/// The model of a design. The trait's methods take `&self`, an interpreter's table does not: hence the cells.
+#[derive(Debug)]
+struct Derived<X, K, const N: usize> {
+    ny: usize,
+    nz: usize,
+    nr: usize,
+    ne: usize,
+    /// The numbers of the extension that the functions read.
+    known: usize,
+    rows: Vec<usize>,
+    cascade: RefCell<Interpreter>,
+    regression: RefCell<Interpreter>,
+    primitive: Option<RefCell<Interpreter>>,
+    theta: RefCell<Interpreter>,
+    phi_left: RefCell<Interpreter>,
+    /// In the output form: the rows of the regression, and the model's own extension, which its functions read at its
+    /// start. That of the output form is another.
+    output: Option<(usize, X)>,
+    /// There, the places of the outputs that estimates are made of as they are expected.
+    expected: Option<Vec<usize>>,
+    kind: PhantomData<(X, K)>,
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
+    fn new(design: &Design) -> Self {
+        let nz = design.coordinates;
+        Self {
+            expected: design.settings.expected.clone(),
+            output: design.settings.output.then(|| (design.equations, X::new(SVector::zeros()))),
+            known: if design.is_generalised { nz + nz * nz } else { nz },
+            ny: design.outputs,
+            nz: design.coordinates,
+            nr: design.equations,
+            ne: design.unknowns,
+            rows: design.rows.clone(),
+            cascade: interpreter(&design.cascade),
+            regression: interpreter(&design.regression),
+            primitive: design.primitive.as_ref().map(interpreter),
+            theta: interpreter(&design.theta),
+            phi_left: interpreter(&design.phi_left),
+            kind: PhantomData,
+        }
+    }
+
+    /// The cascade of the model itself.
+    fn cascade(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
+        let mut cascade = self.cascade.borrow_mut();
+        let mut values = cascade.evaluate(|place| if place < self.ny { y[place] } else { u[place - self.ny] });
+        let h = column(&mut values, self.nz);
+        Flow { lambda: rows(&mut values, self.nz), h }
+    }
+
+    /// The sides of the model's own regression; in the output form, as a function of z.
+    fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        self.both(&mut self.regression.borrow_mut(), extension, y, u)
+    }
+
+    /// Both sides of equations by the function that has their values: what is known, then the factor by rows.
+    fn both(
+        &self,
+        function: &mut Interpreter,
+        extension: &X,
+        y: &SVector<f64, N>,
+        u: &SVector<f64, N>,
+    ) -> Sides<f64, N, N> {
+        let extension = self.output.as_ref().map_or(extension, |(_, start)| start);
+        let mut values = function.evaluate(|place| match place.checked_sub(self.known) {
+            None => extension.value(self.nz, place),
+            Some(place) if place < self.ny => y[place],
+            Some(place) => u[place - self.ny],
+        });
+        let known = column(&mut values, self.nr);
+        Sides { known, factor: rows(&mut values, self.ne) }
+    }
+}
+
+fn interpreter(program: &Program) -> RefCell<Interpreter> {
+    RefCell::new(Interpreter::new(program))
+}
+
+/// The next `n` values, and zeros behind them.
+fn column<const N: usize>(values: &mut impl Iterator<Item = f64>, n: usize) -> SVector<f64, N> {
+    let mut padded = SVector::zeros();
+    for (place, value) in values.take(n).enumerate() {
+        padded[place] = value;
+    }
+    padded
+}
+
+/// All values that are left as rows of so many columns, and zeros besides.
+fn rows<const N: usize>(values: &mut impl Iterator<Item = f64>, columns: usize) -> SMatrix<f64, N, N> {
+    let mut padded = SMatrix::zeros();
+    let (mut row, mut column) = (0, 0);
+    for value in values {
+        padded[(row, column)] = value;
+        column += 1;
+        if column == columns {
+            (row, column) = (row + 1, 0);
+        }
+    }
+    padded
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
+    type Scalar = f64;
+    type Extension = X;
+    type X = SVector<Self::Scalar, N>;
+    type Y = SVector<Self::Scalar, N>;
+    type U = SVector<Self::Scalar, N>;
+    type Terms = SVector<f64, N>;
+    const REGRESSION: Regression = K::REGRESSION;
+
+    fn terms(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
+        *y
+    }
+
+    fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
+        let inner = self.cascade(y, u);
+        let Some((rows, _)) = self.output else { return inner };
+        // As the runtime's `OutputForm`, whose sizes are constants.
+        let rate = self.sides(&X::new(SVector::zeros()), y, u);
+        let (mut lambda, mut h) = (SMatrix::zeros(), SVector::zeros());
+        for i in 0..rows + self.nz {
+            h[i] = if i < rows { rate.known[i] } else { inner.h[i - rows] };
+            for j in 0..self.nz {
+                lambda[(i, rows + j)] = if i < rows { rate.factor[(i, j)] } else { inner.lambda[(i - rows, j)] };
+            }
+        }
+        Flow { lambda, h }
+    }
+
+    fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
+        let held = self.primitive(extension, y);
+        let mut through = SMatrix::<f64, N, N>::zeros();
+        for i in 0..rows {
+            through[(i, i)] = 1.0;
+            for j in 0..self.nz {
+                through[(i, rows + j)] = -held.factor[(i, j)];
+            }
+        }
+        let (offset, map) = extension.parts();
+        Sides { known: held.known - through * offset, factor: through * map }
+    }
+
+    fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
+        if let Some(primitive) = &self.primitive {
+            return self.both(&mut primitive.borrow_mut(), extension, y, &SVector::zeros());
+        }
+        let mut used = SVector::zeros();
+        for (row, &output) in self.rows.iter().enumerate() {
+            used[row] = y[output];
+        }
+        Sides { known: used, factor: SMatrix::zeros() }
+    }
+
+    fn theta(&self, eta: &SVector<f64, N>) -> SVector<f64, N> {
+        if self.output.is_some() {
+            return *eta;
+        }
+        column(&mut self.theta.borrow_mut().evaluate(|place| eta[place]), self.nz)
+    }
+
+    fn begin(&self, extension: &X, y: &SVector<f64, N>) -> X {
+        if self.output.is_none() {
+            return *extension;
+        }
+        let seen = self.regression(extension, y, &SVector::zeros()).known;
+        let mut begun = *extension;
+        begun.rebase(&-seen);
+        begun
+    }
+
+    fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut y = *y;
+        for (row, place) in self.expected.iter().flatten().enumerate() {
+            y[*place] = z[row];
+        }
+        let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
+        let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };
+        column(&mut self.phi_left.borrow_mut().evaluate(of), N)
+    }
+}
+
+/// The promise is kept by those who ask for re-basing: a design has it only where it is proved.
+impl<X: Known<N>, K: Kind, const N: usize> pebo_runtime::Rebase<N, N, N, N, N> for Derived<X, K, N> {}
+
+type Inner<X, K, const N: usize> =
+    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
+
+/// The runtime's observer at size N.
+struct Padded<X: Known<N>, K: Kind, const N: usize> {
+    observer: Inner<X, K, N>,
+    /// What refuses outliers.
+    gate: Option<Gate<f64>>,
+    /// What refuses samples off their range, and says when a gap was too long.
+    limits: Option<Limits<f64, N, N>>,
+    /// The extension at the start.
+    chi_0: SVector<f64, N>,
+    /// How often it began anew.
+    restarts: u64,
+    /// The place of the output of each row, where rows may be left out.
+    rows: Option<[usize; N]>,
+    /// The recovered states, and the rows of the regression.
+    sizes: (usize, usize),
+    /// Whether errors are predicted from what is known of the sensors.
+    is_certain: bool,
+    /// By how much the estimates err, where the noise of a sample is elsewhere than in its row too.
+    uncertainty: Option<Uncertainty<N>>,
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
+    fn new(design: &Design) -> Result<Self, Fault> {
+        let settings = &design.settings;
+        let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
+        let estimator = Bounded::new(Watched::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
+        let passage = Passage::new(settings)?;
+        let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
+        let model = Within::new(Derived::new(design), &lower, &upper)?;
+        let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
+        let mut rows = [usize::MAX; N];
+        rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
+        let whole = settings.output && design.primitive.is_none();
+        Ok(Self {
+            observer: match settings.rebase {
+                Some(Rebase::Samples(every)) => observer.rebasing(every)?,
+                Some(Rebase::Drift(form)) => observer.without_drift(form)?,
+                None => observer,
+            },
+            gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,
+            limits: settings.limits.as_ref().map(limits).transpose()?,
+            chi_0: pad(&settings.chi_0),
+            restarts: 0,
+            rows: whole.then_some(rows),
+            sizes: (design.recovered.len(), design.equations),
+            is_certain: matches!(settings.prediction, Some(Prediction::Covariance | Prediction::Noise(_))),
+            uncertainty: told(design, whole).map(|told| Uncertainty::new(&told)),
+        })
+    }
+
+    /// The estimate of z as the extension has it.
+    fn coordinates_now(&self) -> SVector<f64, N> {
+        self.observer.extension().coordinates(&self.observer.theta())
+    }
+
+    /// A step of the observer, which may lack outputs that have these rows.
+    fn step(&mut self, y: &[f64], parted: Option<[usize; N]>, u: &[f64], dt: f64) -> Result<SVector<f64, N>, Fault> {
+        match parted {
+            Some(rows) => self.observer.step_partly(pad(y), &rows, pad(u), dt),
+            None => self.observer.step(pad(y), pad(u), dt),
+        }
+    }
+
+    /// Follows a step with what its sample errs by.
+    fn follow(&mut self, before: Option<(SVector<f64, N>, SVector<f64, N>)>, y: &[f64], u: &[f64], dt: f64) {
+        let (Some(uncertainty), Some(after)) = (&mut self.uncertainty, self.observer.terms()) else { return };
+        let (model, u) = (self.observer.model(), pad(u));
+        let Some((before, z)) = before else { return uncertainty.begin(model, after, &u) };
+        let (_, map) = self.observer.extension().parts();
+        let taken = self.observer.estimator().covariance_root(0.0).is_some_and(|root| {
+            let missing: Vec<bool> = y.iter().map(|output| output.is_nan()).collect();
+            let interval = Interval { before: &before, after, u: &u, dt, z };
+            uncertainty.take(model, &interval, &(map * root), &missing).is_ok()
+        });
+        if !taken {
+            uncertainty.reset();
+        }
+    }
+}
+
+/// What is told of the noise of a design, where that of a sample is elsewhere than in its row too.
+fn told(design: &Design, whole: bool) -> Option<Told> {
+    let settings = &design.settings;
+    let (Some(Prediction::Noise(noise)), Operator::Sampled(weights), Estimator::LeastSquares(Covariance { start, .. })) =
+        (&settings.prediction, &settings.operator, &settings.estimator)
+    else {
+        return None;
+    };
+    Some(Told {
+        sensors: noise.sensors.clone(),
+        weights: weights.clone(),
+        start: start.clone(),
+        drift: noise.drift.clone(),
+        rows: if settings.output { design.equations } else { 0 },
+        measured: if whole { design.rows.clone() } else { Vec::new() },
+    })
+}
+
+/// The limits of a run, as the runtime has them.
+fn limits<const N: usize>(known: &setup::Limits) -> Result<Limits<f64, N, N>, Fault> {
+    let side = |each: &[Option<[f64; 2]>], side: usize, other: f64| {
+        let values: Vec<f64> = each.iter().map(|limit| limit.map_or(other, |limit| limit[side])).collect();
+        padded::<N>(&values, other)
+    };
+    let least = |each: &[Option<[f64; 2]>]| side(each, 0, f64::NEG_INFINITY);
+    let most = |each: &[Option<[f64; 2]>]| side(each, 1, f64::INFINITY);
+    let limits = Limits::none()
+        .outputs(&least(&known.outputs), &most(&known.outputs))?
+        .inputs(&least(&known.inputs), &most(&known.inputs))?;
+    match known.gap {
+        Some(longest) => limits.gap(longest),
+        None => Ok(limits),
+    }
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Padded").field(self.observer.model()).finish()
+    }
+}
+
+impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+        if let Some(limits) = &self.limits {
+            // What is missing is in no range: it is left out, or refused for that.
+            let seen = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
+            match limits.check(&pad(&seen), &pad(u), dt) {
+                Err(Fault::Gap) => {
+                    self.observer.restart(self.chi_0, &SVector::zeros())?;
+                    self.restarts += 1;
+                    self.uncertainty.iter_mut().for_each(Uncertainty::reset);
+                }
+                Err(Fault::OutputRange { index }) if y[index].is_nan() => {}
+                checked => checked?,
+            }
+        }
+        let parted = self.rows.filter(|_| y.iter().any(|output| output.is_nan()));
+        if let (Some(gate), None) = (&mut self.gate, parted) {
+            gate.admit(&self.observer.innovation(pad(y), pad(u), dt)?)?;
+        }
+        let estimate = if self.uncertainty.is_some() {
+            let before = self.observer.terms().map(|before| (*before, self.coordinates_now()));
+            let estimate = self.step(y, parted, u, dt)?;
+            self.follow(before, y, u, dt);
+            estimate
+        } else {
+            self.step(y, parted, u, dt)?
+        };
+        hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
+        Ok(())
+    }
+
+    fn has_parts(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn standard_errors(&self, age: f64) -> Option<Vec<f64>> {
+        let errors = match &self.uncertainty {
+            Some(uncertainty) => {
+                let at = (&self.coordinates_now(), self.observer.terms()?);
+                uncertainty.of(at, age, |z, y| self.observer.model().recover_unbounded(z, y))?
+            }
+            None => self.is_certain.then(|| self.observer.standard_error_after(age))??,
+        };
+        Some(errors.as_slice()[..self.sizes.0].to_vec())
+    }
+
+    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64> {
+        let innovation = self.is_certain.then(|| self.observer.innovation(pad(y), pad(u), dt).ok())??;
+        let square = match (&self.uncertainty, self.observer.terms()) {
+            (Some(uncertainty), Some(before)) => {
+                let (after, u) = (&pad(y), &pad(u));
+                let interval = Interval { before, after, u, dt, z: self.coordinates_now() };
+                uncertainty.surprise(self.observer.model(), &interval, &innovation.value, self.sizes.1)?
+            }
+            _ => innovation.normalised_square,
+        };
+        Some(square / crate::timing::real(u64::try_from(self.sizes.1).ok()?))
+    }
+
+    fn restarts(&self) -> u64 {
+        self.restarts
+    }
+
+    fn said(&self) -> Said {
+        self.observer.estimator().estimator().said()
+    }
+
+    #[cfg(test)]
+    fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
+        self.observer.extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
+    }
+}

@@ -1,0 +1,300 @@
+//! By how much the estimates of an observer err where measured outputs drive its cascade.
+//!
+//! ```text
+//! e' = F e + G n + G n'        the extension goes on from the sample with the noise n to that with n'
+//! e+ = (1 - K H) e' + K E n'   least squares take the sample
+//! ```
+//!
+//! In: each step of the observer, with what it is told of its sensors. Out: the covariance of `(e, n)`, the error of z and the
+//! noise of the last sample, and from it standard errors of the estimates and what an innovation should be.
+//!
+//! The runtime's least squares take the noise of a sample and that of the cascade for independent, and weigh both by their
+//! variances. It is the same noise. Their own covariance is that of another plant, often twice as large as what is seen; the
+//! gain `K = P H^T R^-1` that they make of it is the one that the observer has, and what comes of that is worked out here:
+//! the covariance of a filter whose gain is given (Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7),
+//! with the noise of the last sample as a state beside the error.
+
+use pebo_runtime::nalgebra::{Cholesky, SMatrix, SVector};
+use pebo_runtime::{Extension, Fault, Flow, Fundamental, Model};
+
+use super::sizes::{pad, padded};
+
+/// What is told of the noise that an observer has to do with, each with a value for every output or coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Told {
+    /// The standard deviations of the outputs' samples.
+    pub(crate) sensors: Vec<f64>,
+    /// Those of the rows of the regression, by which they are weighed.
+    pub(crate) weights: Vec<f64>,
+    /// The variances of the unknown at the start.
+    pub(crate) start: Vec<f64>,
+    /// How much it drifts, as a variance per second: without what the sensors add.
+    pub(crate) drift: Vec<f64>,
+    /// The first coordinates that are rows of the regression: all of these in the output form, else none.
+    pub(crate) rows: usize,
+    /// The place of the output that each row is, where outputs may be missing.
+    pub(crate) measured: Vec<usize>,
+}
+
+/// The covariance of error and noise, at the last sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Uncertainty<const N: usize> {
+    sensors: SVector<f64, N>,
+    weights: SVector<f64, N>,
+    start: SVector<f64, N>,
+    drift: SVector<f64, N>,
+    rows: usize,
+    measured: Vec<usize>,
+    /// None before the first sample.
+    joint: Option<Joint<N>>,
+}
+
+/// Of the error of z, and of the noise of the last sample.
+#[derive(Clone, Copy, Debug)]
+struct Joint<const N: usize> {
+    errors: SMatrix<f64, N, N>,
+    /// The expectation of error times noise.
+    both: SMatrix<f64, N, N>,
+    noise: SMatrix<f64, N, N>,
+}
+
+/// The ends of a step, and what is estimated at its start.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Interval<'a, const N: usize> {
+    pub(crate) before: &'a SVector<f64, N>,
+    pub(crate) after: &'a SVector<f64, N>,
+    pub(crate) u: &'a SVector<f64, N>,
+    pub(crate) dt: f64,
+    /// The estimate of z before the step.
+    pub(crate) z: SVector<f64, N>,
+}
+
+/// What an interval makes of errors, before its sample is taken: `F`, `G` and `E`, and the map `H` of the rows.
+#[derive(Clone, Copy, Debug)]
+struct Propagated<const N: usize> {
+    of_errors: SMatrix<f64, N, N>,
+    of_noise: SMatrix<f64, N, N>,
+    of_sample: SMatrix<f64, N, N>,
+    rows: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> Uncertainty<N> {
+    pub(crate) fn new(told: &Told) -> Self {
+        Self {
+            sensors: pad(&told.sensors),
+            weights: padded(&told.weights, 1.0),
+            start: pad(&told.start),
+            drift: pad(&told.drift),
+            rows: told.rows,
+            measured: told.measured.clone(),
+            joint: None,
+        }
+    }
+
+    /// Before the first sample again.
+    pub(crate) fn reset(&mut self) {
+        self.joint = None;
+    }
+
+    /// Takes the first sample: in the output form it is what is known of the outputs, and errs by its noise.
+    pub(crate) fn begin<M>(&mut self, model: &M, y: &SVector<f64, N>, u: &SVector<f64, N>)
+    where
+        M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
+    {
+        let noise = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
+        let (mut errors, mut both) = (SMatrix::from_diagonal(&self.start), SMatrix::zeros());
+        if self.rows > 0 {
+            let of_sample = self.of_sample(model, y, u, &SVector::zeros());
+            both = of_sample * noise;
+            let (seen, size) = (both * of_sample.transpose(), (self.rows, self.rows));
+            errors.view_mut((0, 0), size).copy_from(&seen.view((0, 0), size));
+        }
+        self.joint = Some(Joint { errors, both, noise });
+    }
+
+    /// Takes a step that went well, after which least squares have the covariance `root root^T` of z. A missing output has
+    /// been replaced by what the observer expects of it.
+    ///
+    /// # Errors
+    /// [`Fault::Singular`] where the flow has no exponential, as of the step itself.
+    pub(crate) fn take<M>(
+        &mut self,
+        model: &M,
+        interval: &Interval<'_, N>,
+        root: &SMatrix<f64, N, N>,
+        missing: &[bool],
+    ) -> Result<(), Fault>
+    where
+        M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
+    {
+        let Some(Joint { errors, both, noise }) = self.joint else { return Ok(()) };
+        let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval)?;
+        let one = SMatrix::<f64, N, N>::identity();
+        let (mut present, mut expected) = (one, SMatrix::<f64, N, N>::zeros());
+        let mut weights = self.weights.map(|deviation| 1.0 / (deviation * deviation));
+        for (row, output) in self.measured.iter().enumerate().filter(|(_, output)| missing[**output]) {
+            // What stands in for a missing output errs as what is expected of it does.
+            present[(*output, *output)] = 0.0;
+            expected[(*output, row)] = 1.0;
+            weights[row] = 0.0;
+        }
+        let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&weights);
+        let told = (one - gain * rows) * (one + of_noise * expected);
+        // Of error, noise of the last sample, and noise of this one: what becomes of them in the error and in the noise.
+        let fresh = of_noise * present;
+        let to_errors = [told * of_errors, told * of_noise, told * fresh + gain * of_sample * present];
+        let to_noise = [expected * of_errors, expected * of_noise, expected * fresh + present];
+        let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
+        let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
+        let between = |left: &[SMatrix<f64, N, N>; 3], right: &[SMatrix<f64, N, N>; 3]| {
+            let [by_error, by_noise, by_sample] = left;
+            by_error * (errors * right[0].transpose() + both * right[1].transpose())
+                + by_noise * (both.transpose() * right[0].transpose() + noise * right[1].transpose())
+                + by_sample * sensors * right[2].transpose()
+        };
+        self.joint = Some(Joint {
+            errors: between(&to_errors, &to_errors) + told * drift * told.transpose(),
+            both: between(&to_errors, &to_noise) + told * drift * expected.transpose(),
+            noise: between(&to_noise, &to_noise) + expected * drift * expected.transpose(),
+        });
+        Ok(())
+    }
+
+    /// The square of an innovation in the norm of its covariance; `innovation` is in standard deviations of the rows.
+    pub(crate) fn surprise<M>(
+        &self,
+        model: &M,
+        interval: &Interval<'_, N>,
+        innovation: &SVector<f64, N>,
+        equations: usize,
+    ) -> Option<f64>
+    where
+        M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
+    {
+        let Joint { errors, both, noise } = self.joint?;
+        let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
+        let (by_error, by_noise, by_sample) = (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
+        let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
+        let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
+        let covariance = by_error * (errors * by_error.transpose() + both * by_noise.transpose())
+            + by_noise * (both.transpose() * by_error.transpose() + noise * by_noise.transpose())
+            + by_sample * sensors * by_sample.transpose()
+            + rows * drift * rows.transpose();
+        let scaled = SMatrix::<f64, N, N>::from_fn(|i, j| match (i < equations, j < equations) {
+            (true, true) => covariance[(i, j)] / (self.weights[i] * self.weights[j]),
+            _ => f64::from(u8::from(i == j)),
+        });
+        let square = innovation.dot(&Cholesky::new(scaled)?.solve(innovation));
+        square.is_finite().then_some(square)
+    }
+
+    /// The standard errors of what is made of z and a sample: by what it changes with each column of a root of their
+    /// covariance, to the side where that is less, as an angle may come round on the other. The last sample is `age` seconds
+    /// old, in which z has drifted.
+    pub(crate) fn of(
+        &self,
+        (z, y): (&SVector<f64, N>, &SVector<f64, N>),
+        age: f64,
+        value: impl Fn(&SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, N>,
+    ) -> Option<SVector<f64, N>> {
+        let middle = value(z, y);
+        let mut squares = SVector::<f64, N>::zeros();
+        for (error, noise) in self.columns(age)? {
+            let sides = [value(&(z + error), &(y + noise)) - middle, value(&(z - error), &(y - noise)) - middle];
+            for (place, square) in squares.iter_mut().enumerate() {
+                let [above, below] = sides.each_ref().map(|side| side[place].abs());
+                // The lesser of NaN and a number would be the number.
+                *square += above.min(below).powi(2) + 0.0 * (above + below);
+            }
+        }
+        squares.iter().all(|square| square.is_finite()).then(|| squares.map(f64::sqrt))
+    }
+
+    /// The columns of a root of the covariance: by how much z and the outputs err together.
+    fn columns(&self, age: f64) -> Option<Vec<(SVector<f64, N>, SVector<f64, N>)>> {
+        let Joint { errors, both, noise } = self.joint.as_ref()?;
+        let errors = errors + SMatrix::from_diagonal(&(self.drift * age));
+        let at = |i: usize, j: usize| match (i.checked_sub(N), j.checked_sub(N)) {
+            (None, None) => errors[(i, j)],
+            (None, Some(j)) => both[(i, j)],
+            (Some(i), None) => both[(j, i)],
+            (Some(i), Some(j)) => noise[(i, j)],
+        };
+        let mut left: Vec<Vec<f64>> = (0..2 * N).map(|i| (0..2 * N).map(|j| at(i, j)).collect()).collect();
+        let mut columns: Vec<(SVector<f64, N>, SVector<f64, N>)> = Vec::new();
+        // By pivots, largest share first: what is left of a matrix that is singular is rounding.
+        let whole: Vec<f64> = (0..2 * N).map(|i| left[i][i]).collect();
+        let mut open: Vec<usize> = (0..2 * N).filter(|i| whole[*i] > 0.0).collect();
+        while let Some(place) =
+            open.iter().copied().max_by(|a, b| (left[*a][*a] / whole[*a]).total_cmp(&(left[*b][*b] / whole[*b])))
+        {
+            if left[place][place] <= ROUNDING * whole[place] {
+                break;
+            }
+            let root = left[place][place].sqrt();
+            let column: Vec<f64> = (0..2 * N).map(|i| left[i][place] / root).collect();
+            for (i, row) in left.iter_mut().enumerate() {
+                row.iter_mut().zip(&column).for_each(|(entry, other)| *entry -= column[i] * other);
+            }
+            open.retain(|other| *other != place);
+            columns.push((pad(&column[..N]), pad(&column[N..])));
+        }
+        columns.iter().all(|(e, n)| e.iter().chain(n.iter()).all(|value| value.is_finite())).then_some(columns)
+    }
+
+    fn propagated<M>(&self, model: &M, interval: &Interval<'_, N>) -> Result<Propagated<N>, Fault>
+    where
+        M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
+    {
+        let Interval { before, after, u, dt, z } = interval;
+        let flows = [model.flow(before, u), model.flow(after, u)];
+        let mut extension = Fundamental::<f64, N>::new(*z);
+        let [first, last] = &flows;
+        extension.advance(first, last, *dt)?;
+        let of_errors = *extension.psi();
+        let z = extension.xi();
+        let rate = |y: &SVector<f64, N>| {
+            let Flow { lambda, h } = model.flow(y, u);
+            lambda * z + h
+        };
+        let one = SMatrix::<f64, N, N>::identity();
+        // The mean of both ends drives the flow over the interval; what it does in it, by the trapezoidal rule.
+        let of_noise = (one + of_errors) * self.slopes(after, rate) * (0.25 * dt);
+        let rows = model.regression(&M::Extension::new(SVector::zeros()), after, u).factor;
+        Ok(Propagated { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows })
+    }
+
+    /// How the rows of a sample change with its outputs: what they show, less what is expected at z.
+    fn of_sample<M>(
+        &self,
+        model: &M,
+        y: &SVector<f64, N>,
+        u: &SVector<f64, N>,
+        z: &SVector<f64, N>,
+    ) -> SMatrix<f64, N, N>
+    where
+        M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
+    {
+        let extension = M::Extension::new(SVector::zeros());
+        self.slopes(y, |y| {
+            let sides = model.regression(&extension, y, u);
+            sides.known - sides.factor * z
+        })
+    }
+
+    /// The derivative of a function by the outputs, over a standard deviation of their sensors to either side.
+    fn slopes(&self, y: &SVector<f64, N>, value: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
+        let mut slopes = SMatrix::<f64, N, N>::zeros();
+        for (output, &deviation) in self.sensors.iter().enumerate().filter(|(_, deviation)| **deviation > 0.0) {
+            let [mut above, mut below] = [*y; 2];
+            above[output] += deviation;
+            below[output] -= deviation;
+            let between = above[output] - below[output];
+            slopes.set_column(output, &((value(&above) - value(&below)) / between));
+        }
+        slopes
+    }
+}
+
+/// The part of a variance that is rounding where others determine it.
+const ROUNDING: f64 = 1e-12;

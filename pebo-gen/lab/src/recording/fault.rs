@@ -1,0 +1,85 @@
+//! What was wrong with rows, counted by kind: facts about the data, not ends of a run.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::log::Blank;
+
+/// A kind of fault.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// A cell of this column has nothing in it.
+    Empty(usize),
+    /// A cell of this column is NaN or infinite.
+    NotFinite(usize),
+    /// A row has no instant.
+    Timeless,
+    /// A row is not later than the one before.
+    Backwards,
+    /// More time than a row and a half has passed.
+    Gap,
+    /// The last row breaks off with the file.
+    Cut,
+    /// This input has no value.
+    Input(usize),
+}
+
+impl Kind {
+    /// That of a cell of this column.
+    pub(super) fn of_cell(column: usize, blank: Blank) -> Self {
+        match blank {
+            Blank::Empty => Self::Empty(column),
+            Blank::NotFinite => Self::NotFinite(column),
+        }
+    }
+}
+
+/// How often each kind occurred, and the line of the first.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
+    counts: Vec<(Kind, u64, u64)>,
+}
+
+impl Faults {
+    /// Counts one.
+    pub(super) fn count(&mut self, kind: Kind, line: u64) {
+        match self.counts.iter_mut().find(|(known, ..)| *known == kind) {
+            Some((_, count, _)) => *count += 1,
+            None => self.counts.push((kind, 1, line)),
+        }
+    }
+
+    /// In words, in the order of their first lines; `columns` and `inputs` are the names that kinds number.
+    pub(super) fn worded(&self, [columns, inputs]: [&[String]; 2]) -> Vec<FaultCount> {
+        let word = |kind: Kind| match kind {
+            Kind::Empty(column) => format!("empty cells of `{}`", columns[column]),
+            Kind::NotFinite(column) => format!("cells of `{}` that are NaN or infinite", columns[column]),
+            Kind::Timeless => "rows skipped that have no time".to_owned(),
+            Kind::Backwards => "rows skipped whose time is not later than that of the row before".to_owned(),
+            Kind::Gap => "gaps, where the time steps by more than one and a half periods".to_owned(),
+            Kind::Cut => "last row dropped, as it breaks off with the file".to_owned(),
+            Kind::Input(input) => format!("rows without a value of `{}`: the value before was held", inputs[input]),
+        };
+        let mut counts = self.counts.clone();
+        counts.sort_by_key(|(.., line)| *line);
+        counts.into_iter().map(|(kind, count, line)| FaultCount { what: word(kind), count, line }).collect()
+    }
+}
+
+impl fmt::Display for FaultCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}, first in line {}", self.what, self.count, self.line)
+    }
+}
+
+/// A kind of fault, and how often it occurred.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FaultCount {
+    /// What was wrong, in words.
+    pub what: String,
+    /// How often.
+    pub count: u64,
+    /// The line of the first.
+    pub line: u64,
+}

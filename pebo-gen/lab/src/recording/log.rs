@@ -1,0 +1,306 @@
+//! Recorded data as CSV, row by row.
+//!
+//! In: bytes. Out: the names of the columns, then the numbers of those columns that are wanted, one row at a time; a
+//! cell that is empty or not finite is a fact, one that is no number is a [`Malformed`]. No more than a row is held.
+
+use std::fmt;
+use std::io::{BufRead as _, BufReader, Read};
+
+use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
+
+use pebo_design::source::quoted;
+
+/// What parts the columns: that of these which the header has most of.
+const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
+
+/// Bytes that are asked for at once.
+const BUFFER: usize = 1 << 16;
+
+/// The most bytes of a row: a file of another kind may have no lines.
+pub(super) const LONGEST: usize = 1 << 20;
+
+/// What some programs write before UTF-8 text.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// A recording of which the header is read.
+pub struct Log<'a> {
+    name: String,
+    columns: Vec<String>,
+    lines: Lines<'a>,
+    row: Row,
+}
+
+/// Lines that are neither comments nor blank.
+struct Lines<'a> {
+    bytes: BufReader<Box<dyn Read + 'a>>,
+    /// The line that was read, with its end.
+    line: Vec<u8>,
+    /// Its number, from 1.
+    number: u64,
+    /// The bytes that have been read.
+    read: u64,
+}
+
+impl Lines<'_> {
+    /// Reads a line; whether there is one.
+    fn advance(&mut self) -> Result<bool, Unreadable> {
+        loop {
+            self.line.clear();
+            let most = u64::try_from(LONGEST).unwrap_or(u64::MAX).saturating_add(1);
+            let count =
+                self.bytes.by_ref().take(most).read_until(b'\n', &mut self.line).map_err(Unreadable::Refused)?;
+            self.number += 1;
+            self.read += u64::try_from(count).unwrap_or(u64::MAX);
+            if count > LONGEST {
+                let what = format!("the line has more than {LONGEST} bytes");
+                let help = "give CSV text with a line for each sample";
+                return Err(Unreadable::Malformed(Malformed { line: self.number, column: None, what, help }));
+            }
+            if count == 0 {
+                return Ok(false);
+            }
+            if self.number == 1 && self.line.starts_with(MARK) {
+                self.line.drain(..MARK.len());
+            }
+            let text = self.line.trim_ascii_start();
+            if !text.is_empty() && !text.starts_with(b"#") {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// Whether the line has its end; the last of a file may have none.
+    fn is_whole(&self) -> bool {
+        self.line.ends_with(b"\n")
+    }
+}
+
+/// The cells of a line.
+struct Row {
+    reader: Reader,
+    text: Vec<u8>,
+    ends: Vec<usize>,
+    count: usize,
+}
+
+impl Row {
+    fn new(delimiter: u8) -> Self {
+        let reader = ReaderBuilder::new().delimiter(delimiter).build();
+        Self { reader, text: Vec::new(), ends: Vec::new(), count: 0 }
+    }
+
+    /// Takes the cells of a line; whether all its quotes are closed.
+    fn split(&mut self, line: &[u8]) -> bool {
+        // No cell is longer than the line, nor are there more cells than letters.
+        if self.text.len() <= line.len() {
+            self.text.resize(line.len() + 1, 0);
+            self.ends.resize(line.len() + 2, 0);
+        }
+        self.reader.reset();
+        let (mut result, read, written, count) = self.reader.read_record(line, &mut self.text, &mut self.ends);
+        self.count = count;
+        if result == ReadRecordResult::InputEmpty && read == line.len() {
+            // The end of the line, or of the file.
+            let (text, ends) = (&mut self.text[written..], &mut self.ends[count..]);
+            let (ended, _, _, more) = self.reader.read_record(b"\n", text, ends);
+            result = ended;
+            self.count += more;
+        }
+        result == ReadRecordResult::Record
+    }
+
+    fn cell(&self, place: usize) -> &[u8] {
+        let start = place.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.text[start..self.ends[place]].trim_ascii()
+    }
+
+    fn cells(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.count).map(|place| self.cell(place))
+    }
+}
+
+/// A cell that holds no finite number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Blank {
+    /// There is nothing in it.
+    Empty,
+    /// It is NaN or infinite.
+    NotFinite,
+}
+
+/// What comes next in a log.
+pub(super) enum Next {
+    /// A row, which begins in this line.
+    Row(u64),
+    /// A row that breaks off with the file.
+    Cut(u64),
+    /// Nothing more.
+    End,
+}
+
+/// Why a log cannot be read, or not further.
+#[derive(Debug)]
+pub enum Unreadable {
+    /// The operating system refused.
+    Refused(std::io::Error),
+    /// There is no line that names the columns.
+    Nameless,
+    /// A row has something else than numbers, or not as many as there are columns.
+    Malformed(Malformed),
+}
+
+/// A cell that should be another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Malformed {
+    /// The line, from 1.
+    pub line: u64,
+    /// The column, from 1; none where it is about the whole row.
+    pub column: Option<usize>,
+    /// What is wrong.
+    pub what: String,
+    help: &'static str,
+}
+
+impl<'a> Log<'a> {
+    /// Reads the header of a recording; `name` is what messages call it.
+    pub fn open(name: impl Into<String>, bytes: impl Read + 'a) -> Result<Self, Unreadable> {
+        let bytes: Box<dyn Read + 'a> = Box::new(bytes);
+        let bytes = BufReader::with_capacity(BUFFER, bytes);
+        let mut lines = Lines { bytes, line: Vec::new(), number: 0, read: 0 };
+        if !lines.advance()? {
+            return Err(Unreadable::Nameless);
+        }
+        let header = lines.line.trim_ascii();
+        let mut row = Row::new(delimiter(header));
+        let is_closed = row.split(header);
+        if !is_closed || row.cells().all(|name| number(name).is_some()) {
+            return Err(Unreadable::Nameless);
+        }
+        let columns = row.cells().enumerate().map(|(place, name)| spelled(place, name)).collect();
+        Ok(Self { name: name.into(), columns, lines, row })
+    }
+
+    /// What messages call it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The names of the columns, as formulas write them.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// The bytes that have been read.
+    pub fn bytes(&self) -> u64 {
+        self.lines.read
+    }
+
+    /// Reads a row: the numbers of the `wanted` columns, NaN where there is none; `blank` is told of each of these.
+    pub(super) fn next(
+        &mut self,
+        wanted: &[usize],
+        numbers: &mut [f64],
+        blank: impl FnMut(usize, Blank, u64),
+    ) -> Result<Next, Unreadable> {
+        if !self.lines.advance()? {
+            return Ok(Next::End);
+        }
+        let line = self.lines.number;
+        match self.take(line, wanted, numbers, blank) {
+            Ok(()) => Ok(Next::Row(line)),
+            // A log that ends with the power supply ends within a row.
+            Err(_) if !self.lines.is_whole() => Ok(Next::Cut(line)),
+            Err(malformed) => Err(Unreadable::Malformed(malformed)),
+        }
+    }
+
+    fn take(
+        &mut self,
+        line: u64,
+        wanted: &[usize],
+        numbers: &mut [f64],
+        mut blank: impl FnMut(usize, Blank, u64),
+    ) -> Result<(), Malformed> {
+        let columns = self.columns.len();
+        if !self.row.split(&self.lines.line) {
+            let what = "a quote is not closed".to_owned();
+            return Err(Malformed { line, column: None, what, help: "close it, in the same line" });
+        }
+        let found = self.row.count;
+        // Some loggers write a comma behind the last cell too.
+        if found < columns || self.row.cells().skip(columns).any(|cell| !cell.is_empty()) {
+            let what = format!("the row has {found} cells and the header {columns}");
+            let help = "complete the row or remove it; a value that is not known is an empty cell";
+            return Err(Malformed { line, column: Some(found.min(columns) + 1), what, help });
+        }
+        for (value, &column) in numbers.iter_mut().zip(wanted) {
+            let cell = self.row.cell(column);
+            *value = match number(cell) {
+                Some(value) if value.is_finite() => value,
+                Some(_) => {
+                    blank(column, Blank::NotFinite, line);
+                    f64::NAN
+                }
+                None if cell.is_empty() => {
+                    blank(column, Blank::Empty, line);
+                    f64::NAN
+                }
+                None => return Err(self.no_number(line, column, cell)),
+            };
+        }
+        Ok(())
+    }
+
+    fn no_number(&self, line: u64, column: usize, cell: &[u8]) -> Malformed {
+        let text = String::from_utf8_lossy(cell);
+        let what = format!("{} in the column `{}` is not a number", quoted(&text), self.columns[column]);
+        let help = if number(text.replace(',', ".").as_bytes()).is_some() {
+            "write decimals with a point"
+        } else {
+            "write a number as `-1.5e-3`, or leave the cell empty; lines that begin with # are comments"
+        };
+        Malformed { line, column: Some(column + 1), what, help }
+    }
+}
+
+impl fmt::Debug for Log<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Log").field("name", &self.name).field("columns", &self.columns).finish_non_exhaustive()
+    }
+}
+
+fn delimiter(header: &[u8]) -> u8 {
+    let count = |delimiter: u8| header.split(|byte| *byte == delimiter).count();
+    // Of equals the first: `max_by_key` takes the last.
+    DELIMITERS.into_iter().rev().max_by_key(|delimiter| count(*delimiter)).unwrap_or(b',')
+}
+
+fn number(cell: &[u8]) -> Option<f64> {
+    std::str::from_utf8(cell).ok()?.parse().ok()
+}
+
+/// The name by which formulas call a column: what cannot be in a name is an underscore, of which there is none at the end.
+fn spelled(place: usize, name: &[u8]) -> String {
+    let mut spelled = String::new();
+    for letter in String::from_utf8_lossy(name).chars() {
+        if letter.is_ascii_alphanumeric() || letter == '_' {
+            spelled.push(letter);
+        } else if !spelled.is_empty() && !spelled.ends_with('_') {
+            spelled.push('_');
+        }
+    }
+    if spelled.starts_with(|first: char| first.is_ascii_digit()) {
+        spelled.insert(0, '_');
+    }
+    if spelled.ends_with('_') && !name.ends_with(b"_") {
+        spelled.pop();
+    }
+    if spelled.is_empty() || spelled == "_" { format!("column_{}", place + 1) } else { spelled }
+}
+
+impl Malformed {
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        self.help
+    }
+}

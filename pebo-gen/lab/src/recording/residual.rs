@@ -1,0 +1,108 @@
+//! What the outputs do that the model with the estimates does not explain.
+//!
+//! ```text
+//! r' = y' - f_y(x_hat, y, u) - r/T        r = y - g_y(x_hat, y, u)
+//! ```
+//!
+//! On the left for an output that has a rate: the output less what its rate adds up to, over the last hundred samples or
+//! so. It needs no measured x, is in the unit of the output, and stays near the noise of the sensor if estimates and model
+//! are right: one sample would tell little beside that noise, and many would tell of estimates long ago.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use pebo_cas::{Expr, Symbol};
+use pebo_design::plant::Plant;
+use pebo_design::program::{Interpreter, Program};
+use pebo_design::source::{Diagnostics, Span};
+
+use super::layout::Layout;
+
+/// T in samples.
+const MEMORY: f64 = 100.0;
+
+/// The outputs of which the model says how they move, with programs from the table.
+#[derive(Debug)]
+pub(super) struct Residuals {
+    /// Positions in y, and whether it is the rate that is given.
+    pub(super) outputs: Vec<(usize, bool)>,
+    /// Their rates, or their values.
+    formulas: Program,
+}
+
+impl Residuals {
+    /// Those that can be worked out from estimates, outputs and inputs alone.
+    pub(super) fn resolve(
+        plant: &Plant,
+        layout: &Layout,
+        numbers: &BTreeMap<Symbol, Expr>,
+        (span, problems): (Span, &mut Diagnostics),
+    ) -> Option<Self> {
+        let arena = &plant.arena;
+        let hidden: BTreeSet<Symbol> =
+            plant.x.iter().map(|state| state.symbol).chain(plant.w.iter().copied()).collect();
+        let mut known = numbers.clone();
+        known.extend(layout.estimated.iter().map(|(state, hat)| (*state, arena.of_symbol(*hat))));
+        let meaning = |output: &pebo_design::plant::Output| {
+            let (formula, is_rate) = match (output.value, output.rate) {
+                (Some(value), _) => (value, false),
+                (None, rate) => (rate?, true),
+            };
+            let formula = arena.substitute(formula.expr, &known);
+            (!arena.depends_on(formula, &hidden)).then_some((formula, is_rate))
+        };
+        let found = plant.y.iter().enumerate().filter_map(|(place, output)| Some((place, meaning(output)?)));
+        let (outputs, formulas): (Vec<_>, Vec<Expr>) =
+            found.map(|(place, (formula, is_rate))| ((place, is_rate), formula)).unzip();
+        let formulas = problems.keep(layout.program(arena, &formulas, span))?;
+        Some(Self { outputs, formulas })
+    }
+
+    /// At work.
+    pub(super) fn start(&self) -> Course<'_> {
+        let nothing = vec![0.0; self.outputs.len()];
+        let interpreter = Interpreter::new(&self.formulas);
+        Course { residuals: self, interpreter, end: nothing.clone(), start: None, values: nothing }
+    }
+}
+
+/// Residuals from sample to sample.
+#[derive(Debug)]
+pub(super) struct Course<'a> {
+    residuals: &'a Residuals,
+    interpreter: Interpreter,
+    /// The formulas at the end of an interval.
+    end: Vec<f64>,
+    /// The formulas at its start, and the outputs there.
+    start: Option<(Vec<f64>, Vec<f64>)>,
+    values: Vec<f64>,
+}
+
+impl Course<'_> {
+    /// Takes an accepted sample, at the end of an interval of `dt` seconds; `y` is part of the table, the inputs are those
+    /// of the interval. Of the first sample nothing is known.
+    pub(super) fn sample(&mut self, table: &[f64], y: &[f64], dt: f64) {
+        let Some((rates, outputs)) = &self.start else { return };
+        self.interpreter.run(table, &mut self.end);
+        let kept = (-1.0 / MEMORY).exp();
+        for (place, &(output, is_rate)) in self.residuals.outputs.iter().enumerate() {
+            self.values[place] = if is_rate {
+                let unexplained = (y[output] - outputs[output]) / dt - 0.5 * (rates[place] + self.end[place]);
+                kept * self.values[place] + (1.0 - kept) * MEMORY * dt * unexplained
+            } else {
+                y[output] - self.end[place]
+            };
+        }
+    }
+
+    /// Begins the interval behind an accepted sample, with its inputs in the table.
+    pub(super) fn begin(&mut self, table: &[f64], y: &[f64]) {
+        let (rates, outputs) = self.start.get_or_insert_with(|| (self.end.clone(), y.to_vec()));
+        self.interpreter.run(table, rates);
+        outputs.copy_from_slice(y);
+    }
+
+    /// The residuals at the last accepted sample; none before the second.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+}

@@ -1,0 +1,342 @@
+//! The observer over the rows of a log.
+//!
+//! ```text
+//! row 0: y_0 -> observer, u_0 held -> row 1: y_1 -> observer, told of u_0 -> ..
+//! ```
+//!
+//! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then on.
+//! No more than a row is in memory, and what is kept of the run does not grow with it.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+
+use crate::closed_loop::scenario::Judged;
+use crate::closed_loop::trace::write_number;
+use crate::figure::Sheet;
+use crate::figure::label::Label;
+use crate::observe::certainty::Following;
+use crate::observe::excitation::Watch;
+use crate::observe::interpreted::observer;
+use crate::observe::stepping::Stepping;
+use crate::score::Scoring;
+use crate::score::expected::Expected;
+use crate::summary::{Rated, Summary};
+use pebo_design::program::Interpreter;
+
+use super::clock::{Clock, Instant};
+use super::failure::Failure;
+use super::fault::{Faults, Kind};
+use super::log::{Blank, Log, Next};
+use super::panels::Curves;
+use super::replayed::{OutputResidual, Replayed};
+use super::residual;
+use super::scene::Replay;
+
+/// Rows from one look at what the data determine to the next.
+const GLANCES: u64 = 32;
+
+/// Rows from one look at the caller's clock to the next.
+const LOOKS: u64 = 1024;
+
+/// Times that are this many durations away from zero are shown from the first row on.
+const FAR: f64 = 20.0;
+
+impl Replay {
+    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` is told of rows and bytes
+    /// now and then, and may end the run there.
+    pub fn run(
+        &self,
+        log: &mut Log,
+        estimates: Option<&mut dyn Write>,
+        watch: &mut dyn FnMut(u64, u64) -> ControlFlow<()>,
+    ) -> Result<Replayed, Failure> {
+        let mut machine = Machine::start(self, estimates)?;
+        machine.header()?;
+        loop {
+            let next = machine.read(log)?;
+            let line = match next {
+                Next::Row(line) => line,
+                Next::Cut(line) => {
+                    machine.faults.count(Kind::Cut, line);
+                    break;
+                }
+                Next::End => break,
+            };
+            machine.row(line)?;
+            if machine.rows % GLANCES == 0 {
+                machine.look();
+            }
+            if machine.rows % LOOKS == 0 && watch(machine.rows, log.bytes()).is_break() {
+                return Err(Failure::Stopped { line });
+            }
+        }
+        machine.finish()
+    }
+}
+
+/// The observer at one row.
+struct Machine<'a, 'w> {
+    replay: &'a Replay,
+    clock: Clock,
+    signals: Interpreter,
+    /// The cells of the row, and what they say.
+    cells: Vec<f64>,
+    said: Vec<f64>,
+    /// All values, see [`Layout`](super::layout::Layout).
+    table: Vec<f64>,
+    stepping: Stepping,
+    residuals: residual::Course<'a>,
+    errors: (Interpreter, Vec<f64>),
+    faults: Faults,
+    curves: Curves<'a>,
+    scores: Vec<Scoring>,
+    misfits: Vec<Scoring>,
+    watch: Watch,
+    expected: Expected,
+    certain: Following<'a>,
+    rows: u64,
+    samples: u64,
+    /// The first instant, and that of the last accepted sample.
+    first: Option<f64>,
+    last: f64,
+    /// That of the last one that had all outputs.
+    whole: f64,
+    estimates: Option<&'w mut dyn Write>,
+    text: String,
+}
+
+impl<'a, 'w> Machine<'a, 'w> {
+    fn start(replay: &'a Replay, estimates: Option<&'w mut dyn Write>) -> Result<Self, Failure> {
+        let Replay { signals, layout, design, residuals, .. } = replay;
+        Ok(Self {
+            replay,
+            clock: Clock::new(signals.period),
+            signals: Interpreter::new(&signals.program),
+            cells: vec![0.0; signals.wanted.len()],
+            said: vec![0.0; signals.program.outputs.len()],
+            table: vec![0.0; layout.len()],
+            stepping: Stepping::new(observer(design).map_err(Failure::Refused)?),
+            residuals: residuals.start(),
+            errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
+            faults: Faults::default(),
+            curves: replay.panels.start(),
+            scores: replay.judged.iter().map(|judged| Scoring::new(judged.period)).collect(),
+            // Of these none is small in itself: what is told is the last tenth.
+            misfits: residuals.outputs.iter().map(|_| Scoring::new(Some(0.0))).collect(),
+            watch: Watch::default(),
+            expected: Expected::default(),
+            certain: Following::new(&design.wanted),
+            rows: 0,
+            samples: 0,
+            first: None,
+            last: 0.0,
+            whole: 0.0,
+            estimates,
+            text: String::new(),
+        })
+    }
+
+    fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
+        let Self { faults, replay, cells, stepping, .. } = self;
+        let wanted = &replay.signals.wanted;
+        // An output that is not there is no fault of an observer that leaves its row out.
+        let is_part = |column: usize, blank| {
+            matches!(blank, Blank::Empty) && stepping.observer.has_parts() && replay.signals.of_outputs[column]
+        };
+        let place = |column: usize| wanted.iter().position(|known| *known == column).unwrap_or_default();
+        let mut count = |column, blank, line| {
+            if !is_part(place(column), blank) {
+                faults.count(Kind::of_cell(place(column), blank), line);
+            }
+        };
+        log.next(wanted, cells, &mut count).map_err(Failure::Unreadable)
+    }
+
+    /// Takes the row that was read.
+    fn row(&mut self, line: u64) -> Result<(), Failure> {
+        self.rows += 1;
+        self.signals.run(&self.cells, &mut self.said);
+        let (told, signals) = match self.replay.signals.period {
+            Some(_) => (f64::NAN, self.said.as_slice()),
+            None => (self.said[0], &self.said[1..]),
+        };
+        let (t, dt) = match self.clock.row(told) {
+            Instant::First(t) => (t, 1.0),
+            Instant::Later { t, dt, gap } => {
+                if gap {
+                    self.faults.count(Kind::Gap, line);
+                }
+                (t, dt)
+            }
+            Instant::Backwards => {
+                self.faults.count(Kind::Backwards, line);
+                return Ok(());
+            }
+            Instant::Timeless => {
+                self.faults.count(Kind::Timeless, line);
+                return Ok(());
+            }
+        };
+        self.first.get_or_insert(t);
+        let layout = &self.replay.layout;
+        let outputs = layout.y.end;
+        self.table[..outputs].copy_from_slice(&signals[..outputs]);
+        let inputs = signals[outputs..].to_vec();
+        let accepted = self.sample(t, dt, &inputs);
+        for (input, value) in inputs.into_iter().enumerate() {
+            if value.is_finite() {
+                self.table[layout.u.start + input] = value;
+            } else {
+                self.faults.count(Kind::Input(input), line);
+            }
+        }
+        if accepted {
+            // What a part of a sample says of residuals waits for a whole one.
+            if self.is_whole() {
+                self.residuals.begin(&self.table, &self.table[layout.y.clone()]);
+                self.whole = t;
+            }
+        } else {
+            self.table[layout.hat.clone()].fill(f64::NAN);
+            self.errors.1.fill(f64::NAN);
+        }
+        self.curves.add(t, &self.table, &self.errors.1, self.residuals.values());
+        self.write(t)
+    }
+
+    /// Gives the observer the outputs at the end of an interval, in which the inputs of the table were held; whether it
+    /// took them.
+    fn sample(&mut self, t: f64, dt: f64, inputs: &[f64]) -> bool {
+        // It begins where the inputs of the interval to come are known.
+        if !self.stepping.has_started() && inputs.iter().any(|input| !input.is_finite()) {
+            return false;
+        }
+        let layout = &self.replay.layout;
+        // An input holds for an interval: of one that moves on, the mean does. Residuals are of the instant.
+        layout.told.into_iter().for_each(|told| self.table[told] = t - dt / 2.0);
+        let (given, hat) = self.table.split_at_mut(layout.hat.start);
+        let taken = self.stepping.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
+        layout.told.into_iter().for_each(|told| self.table[told] = t);
+        if taken.is_err() {
+            return false;
+        }
+        let since = t - self.whole;
+        (self.last, self.samples) = (t, self.samples + 1);
+        let is_whole = self.is_whole();
+        let layout = &self.replay.layout;
+        if is_whole {
+            self.residuals.sample(&self.table, &self.table[layout.y.clone()], since);
+        }
+        if is_whole && self.samples > 1 {
+            for (place, misfit) in self.misfits.iter_mut().enumerate() {
+                let output = self.replay.residuals.outputs[place].0;
+                misfit.add(t, self.residuals.values()[place], self.table[layout.y.start + output]);
+            }
+        }
+        let (errors, values) = &mut self.errors;
+        errors.run(&self.table, values);
+        for ((score, judged), error) in self.scores.iter_mut().zip(&self.replay.judged).zip(values) {
+            // A cell without a number has been counted.
+            if error.is_finite() {
+                score.add(t, *error, self.table[judged.truth]);
+            }
+        }
+        true
+    }
+
+    /// Whether all outputs of the row are there.
+    fn is_whole(&self) -> bool {
+        self.table[self.replay.layout.y.clone()].iter().all(|output| output.is_finite())
+    }
+
+    /// Looks at what the data determine.
+    fn look(&mut self) {
+        self.watch.look(self.last, &self.stepping.observer.said());
+        let predicted = self.stepping.standard_errors();
+        self.certain.look(self.last, predicted.as_deref());
+        self.expected.add(self.last, predicted);
+    }
+
+    fn header(&mut self) -> Result<(), Failure> {
+        let Some(file) = &mut self.estimates else { return Ok(()) };
+        writeln!(file, "{}", self.replay.columns.join(",")).map_err(Failure::Unwritten)
+    }
+
+    /// Writes the row; what is not known is an empty cell.
+    fn write(&mut self, t: f64) -> Result<(), Failure> {
+        let Some(file) = &mut self.estimates else { return Ok(()) };
+        let text = &mut self.text;
+        text.clear();
+        let mut cell = |value: f64| {
+            if !text.is_empty() {
+                text.push(',');
+            }
+            if value.is_finite() {
+                let written = write_number(text, value);
+                debug_assert!(written.is_ok(), "a string takes everything");
+            }
+        };
+        cell(t);
+        let mut errors = self.replay.measured.iter().zip(&self.errors.1).peekable();
+        for (recovered, hat) in self.table[self.replay.layout.hat.clone()].iter().enumerate() {
+            cell(*hat);
+            if let Some((_, error)) = errors.next_if(|(state, _)| **state == recovered) {
+                cell(*error);
+            }
+        }
+        text.push('\n');
+        file.write_all(text.as_bytes()).map_err(Failure::Unwritten)
+    }
+
+    fn finish(mut self) -> Result<Replayed, Failure> {
+        self.look();
+        let Replay { names, panels, residuals, title, design, .. } = self.replay;
+        let faults = self.faults.worded([&names.columns, &names.u]);
+        let Some(first) = self.first.filter(|_| self.samples > 0) else {
+            let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
+            return Err(Failure::Silent { rows: self.rows, faults, refused });
+        };
+        let rated = |((judged, score), place): ((&Judged, &Scoring), &usize)| {
+            let score = score.finish();
+            let expected = self.expected.since(score.since, *place);
+            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: false }
+        };
+        let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
+            output: names.y[*output].clone(),
+            unit: names.units[*output].clone(),
+            score: score.finish(),
+        };
+        let misfits = residuals.outputs.iter().zip(&self.misfits).filter(|_| self.samples > 1);
+        let far = first.abs() > FAR * (self.last - first);
+        let (zero, name) = if far { (first, "t since the first row") } else { (0.0, "") };
+        let mut curves = self.curves.finish();
+        curves.iter_mut().flatten().flatten().for_each(|point| point.0 -= zero);
+        let time = if far { Label::text(name) } else { Label::name("t") };
+        let sheet = Sheet {
+            title: (title, Label::text(title).remark("replay")),
+            time: ([first - zero, self.last - zero], time),
+            panels: panels.panels(),
+            curves: &curves,
+        };
+        Ok(Replayed {
+            rows: self.rows,
+            start: first,
+            summary: Summary {
+                end: self.last,
+                samples: self.rows - 1,
+                estimates: self.replay.judged.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
+                excitation: self.watch.excitation(&design.unknown_names),
+                faults: self.stepping.faults().clone(),
+                dropped: 0,
+                parted: self.stepping.parted(),
+                restarts: self.stepping.restarts(),
+                surprise: self.stepping.surprise(),
+                certainty: self.certain.certainty(),
+                known: design.settings.known.clone(),
+            },
+            residuals: misfits.map(misfit).collect(),
+            faults,
+            figure: sheet.draw(),
+        })
+    }
+}

@@ -1,0 +1,203 @@
+//! From the columns of a log to the signals of the plant.
+//!
+//! In: the section `recording`, and the names of the columns. Out: a program from the cells of a row to its time and
+//! signals, or what is missing. A signal without a formula is the column of its own name.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::closed_loop::layout::program;
+use crate::observe::request::Asked;
+use pebo_cas::{Expr, Symbol};
+use pebo_design::model::formula::{Formula, PI};
+use pebo_design::model::{Entry, Recording, unknown_name};
+use pebo_design::plant::{Scope, lower};
+use pebo_design::program::Program;
+use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
+
+use super::log::Log;
+
+/// What a row says.
+#[derive(Debug)]
+pub(super) struct Signals {
+    /// The columns that are read.
+    pub(super) wanted: Vec<usize>,
+    /// From their cells to the time if rows say it, to the states that were measured, to outputs and to inputs but for
+    /// the time.
+    pub(super) program: Program,
+    /// The period as a fraction, if rows do not say their time.
+    pub(super) period: Option<(f64, f64)>,
+    /// Positions in x of the states that were measured.
+    pub(super) measured: Vec<usize>,
+    /// Whether the columns that are read say nothing but outputs.
+    pub(super) of_outputs: Vec<bool>,
+}
+
+impl Signals {
+    pub(super) fn resolve(asked: &Asked, log: &Log, problems: &mut Diagnostics) -> Option<Self> {
+        let written = asked.model.recording.clone().unwrap_or_default();
+        let columns = Columns::of(asked, log);
+        let mut pass = Pass { asked, log, written: &written, columns, problems };
+        let (plant, arena) = (asked.plant, &asked.plant.arena);
+        let period = written.step.as_ref().map(|step| pass.period(step));
+        let mut formulas = Vec::new();
+        if period.is_none() {
+            formulas.push(pass.time());
+        }
+        let states: Vec<Option<Expr>> = plant.x.iter().map(|state| pass.measured(&arena.name(state.symbol))).collect();
+        let measured = (0..states.len()).filter(|place| states[*place].is_some()).collect();
+        formulas.extend(states.into_iter().flatten().map(Some));
+        let needed = plant.y.iter().map(|output| output.symbol).chain(plant.commanded());
+        formulas.extend(needed.map(|signal| pass.needed(&arena.name(signal))));
+        let formulas = formulas.into_iter().collect::<Option<Vec<Expr>>>()?;
+        let period = match period {
+            Some(period) => Some(period?),
+            None => None,
+        };
+        let used = arena.symbols_of(&formulas);
+        let used = pass.columns.symbols.iter().enumerate().filter(|(_, symbol)| used.contains(symbol));
+        let (wanted, symbols): (Vec<usize>, Vec<Symbol>) = used.map(|(place, symbol)| (place, *symbol)).unzip();
+        let inputs = formulas.len() - plant.commanded().count();
+        let before = inputs - plant.y.len();
+        let others = arena.symbols_of(&[&formulas[..before], &formulas[inputs..]].concat());
+        let of_outputs = symbols.iter().map(|symbol| !others.contains(symbol)).collect();
+        let program = problems.keep(program(arena, &symbols, &formulas, asked.section))?;
+        Some(Self { wanted, program, period, measured, of_outputs })
+    }
+}
+
+/// The columns as names of formulas.
+struct Columns {
+    /// A symbol for each.
+    symbols: Vec<Symbol>,
+    scope: Scope,
+    /// Each name that there is, with the column that has it alone.
+    places: BTreeMap<String, Option<usize>>,
+}
+
+impl Columns {
+    fn of(asked: &Asked, log: &Log) -> Self {
+        let arena = &asked.plant.arena;
+        let symbols: Vec<Symbol> =
+            (0..log.columns().len()).map(|place| arena.generated(&format!("column {}", place + 1))).collect();
+        let mut places: BTreeMap<String, Option<usize>> = BTreeMap::new();
+        for (place, name) in log.columns().iter().enumerate() {
+            places.entry(name.clone()).and_modify(|other| *other = None).or_insert(Some(place));
+        }
+        let mut scope = Scope::new();
+        let numbers = asked.numbers();
+        let parameters = asked.plant.parameters.iter().map(|parameter| parameter.symbol);
+        let parameters: BTreeMap<String, Expr> =
+            parameters.filter_map(|symbol| Some((arena.name(symbol), *numbers.get(&symbol)?))).collect();
+        for (name, value) in &parameters {
+            if places.contains_key(name) {
+                scope.bar(name, "both a parameter and a column of the recording: rename the column");
+            } else {
+                scope.define(name, *value);
+            }
+        }
+        for (name, place) in &places {
+            match place {
+                Some(place) if !parameters.contains_key(name) => scope.define(name, arena.of_symbol(symbols[*place])),
+                Some(_) => {}
+                None => scope.bar(name, "several columns of the recording have this name: rename them"),
+            }
+        }
+        Self { symbols, scope, places }
+    }
+}
+
+struct Pass<'a> {
+    asked: &'a Asked<'a>,
+    log: &'a Log<'a>,
+    written: &'a Recording,
+    columns: Columns,
+    problems: &'a mut Diagnostics,
+}
+
+impl Pass<'_> {
+    /// The meaning of a formula; each of its names that is none is reported.
+    fn formula(&mut self, formula: &Formula) -> Option<Expr> {
+        let known: BTreeSet<&str> =
+            self.columns.scope.names().chain(self.columns.places.keys().map(String::as_str)).collect();
+        let names = formula.names();
+        let unknown: Vec<_> = names.iter().filter(|(name, _)| !known.contains(name) && *name != PI).collect();
+        for (name, span) in &unknown {
+            let diagnostic = unknown_name(name, *span, known.iter().copied());
+            self.problems.push(diagnostic.note(self.listed()));
+        }
+        if !unknown.is_empty() {
+            return None;
+        }
+        self.problems.keep(lower(&self.asked.plant.arena, &self.columns.scope, formula))
+    }
+
+    /// The period, a number above zero.
+    fn period(&mut self, step: &Entry<Formula>) -> Option<(f64, f64)> {
+        let arena = &self.asked.plant.arena;
+        let value = self.formula(&step.value)?;
+        let number = arena.as_number(value).filter(|number| number.signum() > 0);
+        if number.is_none() {
+            let message = "the step of a recording is a number above zero";
+            self.problems.push(
+                Diagnostic::error(Code::NumberOutOfRange, step.value.span, message)
+                    .help("write seconds from row to row, as `step: 1e-5`, or `t`, a formula in columns"),
+            );
+        }
+        number.map(|number| (number.numerator().to_f64(), number.denominator().to_f64()))
+    }
+
+    fn time(&mut self) -> Option<Expr> {
+        if let Some(entry) = &self.written.t {
+            return self.formula(&entry.value);
+        }
+        let declared =
+            self.asked.plant.time.is_none() && self.asked.model.names().any(|name| name.value == Recording::T);
+        if let Some(column) = self.column(Recording::T).filter(|_| !declared) {
+            return Some(column);
+        }
+        self.lacks(
+            "the time of its rows",
+            "add `t`, a formula in columns, or `step`, the seconds from row to row, under `recording`",
+        );
+        None
+    }
+
+    /// A state, if it was measured.
+    fn measured(&mut self, name: &str) -> Option<Expr> {
+        match self.written.of_signal(name) {
+            Some(entry) => self.formula(&entry.value),
+            None => self.column(name),
+        }
+    }
+
+    /// A signal without which the observer cannot run.
+    fn needed(&mut self, name: &str) -> Option<Expr> {
+        if let Some(entry) = self.written.of_signal(name) {
+            return self.formula(&entry.value);
+        }
+        let column = self.column(name);
+        if column.is_none() {
+            let help = format!("add `{name}`, a formula in columns and parameters, under `recording`");
+            self.lacks(&format!("`{name}`"), &help);
+        }
+        column
+    }
+
+    /// The column of this name.
+    fn column(&self, name: &str) -> Option<Expr> {
+        let place = (*self.columns.places.get(name)?)?;
+        Some(self.asked.plant.arena.of_symbol(self.columns.symbols[place]))
+    }
+
+    fn lacks(&mut self, what: &str, help: &str) {
+        let message = format!("{} does not say {what}", self.log.name());
+        self.problems.push(
+            Diagnostic::error(Code::RecordingIncomplete, self.asked.section, message).note(self.listed()).help(help),
+        );
+    }
+
+    fn listed(&self) -> String {
+        let names = self.log.columns().iter().map(String::as_str);
+        format!("the columns of {} are {}", self.log.name(), listed(names))
+    }
+}

@@ -1,0 +1,60 @@
+//! Tables of text in, what the observer makes of them out.
+
+mod columns;
+mod rows;
+mod truth;
+
+use std::ops::ControlFlow;
+
+use pebo_design::analysis::Derivation;
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+use pebo_design::source::{Diagnostic, Source};
+
+use super::{Failure, Log, Replay, Replayed};
+
+/// A cart of one kilogram that a force moves; its position is measured.
+const CART: &str = "
+model: cart
+parameters: {m: 1, offset: 0.5, spare: 3}
+x: [p]
+y: [q]
+u: [f]
+assume: [m > 0]
+f_x: {p: f}
+f_y: {q: p/m}
+phi: [p]
+observer: {gain: 50, filter: 5}
+";
+
+/// The replay of a model for this header.
+fn resolve(text: &str, log: &Log) -> Result<Replay, Vec<Diagnostic>> {
+    let source = Source::new("test", text).expect("a short text");
+    let model = Model::parse(&source)?;
+    let plant = Plant::resolve(&model)?;
+    let derivation = Derivation::derive(&plant);
+    Replay::resolve(&model, &plant, &derivation, log)
+}
+
+/// What came of it, and the estimates.
+fn replay(model: &str, recording: &str) -> Result<(Replayed, String), Failure> {
+    let mut log = Log::open("log.csv", recording.as_bytes()).map_err(Failure::Unreadable)?;
+    let replay = resolve(model, &log).expect("the columns have a meaning");
+    let mut estimates = Vec::new();
+    let replayed = replay.run(&mut log, Some(&mut estimates), &mut |_, _| ControlFlow::Continue(()))?;
+    Ok((replayed, String::from_utf8(estimates).expect("a text")))
+}
+
+/// The faults of a recording of the cart.
+fn faults(recording: &str) -> Vec<String> {
+    let (replayed, _) = replay(CART, recording).expect("a replay");
+    replayed.faults.iter().map(ToString::to_string).collect()
+}
+
+/// What is said of a recording of the cart that cannot be read.
+fn refusal(recording: &str) -> String {
+    let failure = replay(CART, recording).expect_err("it cannot be read");
+    let log = Log::open("log.csv", "t,q,f\n".as_bytes()).expect("a header");
+    let diagnostic = resolve(CART, &log).expect("the cart").explain(&failure, "log.csv");
+    format!("{}: {} | {}", diagnostic.code.name(), diagnostic.message, diagnostic.help.unwrap_or_default())
+}

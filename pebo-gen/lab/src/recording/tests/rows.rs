@@ -1,0 +1,158 @@
+//! What is wrong with rows, and what comes of the others.
+
+use std::ops::ControlFlow;
+
+use super::{CART, Failure, Log, faults, refusal, replay, resolve};
+use crate::recording::log::LONGEST;
+
+#[test]
+fn faults_are_counted_by_kind_and_do_not_end_the_run() {
+    let recording = "\
+# a comment
+t,q,f,note
+0,0,0,starts
+0.1,,0,an empty cell
+0.2,nan,0,
+0.3,0,,no input
+# another comment
+0.4,0,inf,none either
+0.3,0,0,backwards
+0.3,0,0,
+,0,0,no time
+0.5,0,0,
+0.9,0,0,three rows are missing
+1.0,0,0,
+";
+    let expected = [
+        "empty cells of `q`: 1, first in line 4",
+        "cells of `q` that are NaN or infinite: 1, first in line 5",
+        "empty cells of `f`: 1, first in line 6",
+        "rows without a value of `f`: the value before was held: 2, first in line 6",
+        "cells of `f` that are NaN or infinite: 1, first in line 8",
+        "rows skipped whose time is not later than that of the row before: 2, first in line 9",
+        "empty cells of `t`: 1, first in line 11",
+        "rows skipped that have no time: 1, first in line 11",
+        "gaps, where the time steps by more than one and a half periods: 1, first in line 13",
+    ];
+    assert_eq!(faults(recording), expected);
+    let (replayed, estimates) = replay(CART, recording).expect("a replay");
+    assert_eq!((replayed.rows, replayed.summary.faults.count(), replayed.summary.end), (11, 2, 1.0));
+    let rows: Vec<&str> = estimates.lines().collect();
+    // A row for each that has a time of its own, with empty cells where the sample was refused.
+    assert_eq!(&rows[..4], ["t,p_hat", "0,0", "0.1,", "0.2,"]);
+    assert_eq!(rows.len(), 1 + 8);
+}
+
+#[test]
+fn after_a_long_gap_the_observer_begins_anew() {
+    let row = |k: u32| format!("{},{},1\n", f64::from(k) / 64.0, (f64::from(k) / 64.0).powi(2) / 2.0);
+    let recording = |start: u32| {
+        let rows: String = (0..100).chain(start..start + 200).map(row).collect();
+        format!("t,q,f\n{rows}")
+    };
+    let impatient = CART.replace("filter: 5", "filter: 5, gap: 1");
+    let (replayed, estimates) = replay(&impatient, &recording(1000)).expect("a replay");
+    assert_eq!(replayed.summary.restarts, 1);
+    assert!(replayed.text().contains("begun anew: once"), "{}", replayed.text());
+    // From the row behind the gap on it is as if nothing had been before.
+    let alone: String = (1000..1200).map(row).collect();
+    let (_, fresh) = replay(&impatient, &format!("t,q,f\n{alone}")).expect("a replay");
+    let last = |text: &str, count: usize| {
+        let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        lines[lines.len() - count..].to_vec()
+    };
+    assert_eq!(last(&estimates, 200), last(&fresh, 200));
+    let (replayed, _) = replay(&impatient, &recording(120)).expect("a replay");
+    assert_eq!(replayed.summary.restarts, 0);
+}
+
+#[test]
+fn a_refused_sample_leaves_its_time_and_input_to_the_next() {
+    let last = |rows: Vec<(f64, Option<f64>, f64)>| {
+        let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        let rows: Vec<String> = rows.into_iter().map(|(t, q, f)| format!("{t},{},{f}\n", cell(q))).collect();
+        let (_, estimates) = replay(CART, &format!("t,q,f\n{}", rows.concat())).expect("a replay");
+        let row = estimates.lines().last().expect("a row");
+        row.split(',').nth(1).expect("an estimate").parse::<f64>().expect("a number")
+    };
+    let t = |k: u32| f64::from(k) / 64.0;
+    let q = |k: u32| t(k).powi(3) / 6.0 + t(k);
+    let is_hole = |k: u32| k % 32 > 20;
+    let holed = (0..=512).map(|k| (t(k), Some(q(k)).filter(|_| !is_hole(k)), t(k) + 0.5 / 64.0)).collect();
+    // One row for the twelve intervals, with the mean of their inputs.
+    let whole = (0..=512).filter(|k| !is_hole(*k));
+    let coarse = whole.map(|k| (t(k), Some(q(k)), t(k) + if k % 32 == 20 { 6.0 } else { 0.5 } / 64.0)).collect();
+    let (holed, coarse) = (last(holed), last(coarse));
+    // To the rounding of a mean: sixteen times some units of the last place of numbers below 64.
+    assert!((holed - coarse).abs() < 1e-12, "{holed} {coarse}");
+    // And near the truth, t^2/2 + 1: a filter of bandwidth a takes the rate of an output to be constant over a step, which
+    // costs a f dt^2/12 of the momentum.
+    assert!((holed - 33.0).abs() < 5.0 * 8.0 * (12.0_f64 / 64.0).powi(2) / 12.0, "{holed}");
+}
+
+#[test]
+fn an_observer_begins_where_the_inputs_are_known() {
+    let (replayed, estimates) = replay(CART, "t,q,f\n0,0,\n1,0,\n2,0,1\n3,0.5,1\n").expect("a replay");
+    assert_eq!(replayed.rows, 4);
+    assert!(estimates.starts_with("t,p_hat\n0,\n1,\n2,0\n3,"), "{estimates}");
+}
+
+#[test]
+fn a_row_that_is_no_row_is_refused_with_line_and_column() {
+    let table = [
+        ("t,q,f\n0,0,0\n0.1,x,0\n", "line 3, column 2: `x` in the column `q` is not a number"),
+        ("# c\nt,q,f\n\n0,0,0\n# c\n0.1,0,zero\n", "line 6, column 3: `zero` in the column `f` is not a number"),
+        ("t,q,f\r\n0,0,0\r\n0.1,0\r\n", "line 3, column 3: the row has 2 cells and the header 3"),
+        ("t,q,f\n0,0,0,1\n0,0,0\n", "line 2, column 4: the row has 4 cells and the header 3"),
+        ("t;q;f\n0;0,5;0\n", "line 2, column 2: `0,5` in the column `q` is not a number | write decimals with a point"),
+        ("t,q,f\n0,\u{fffd},0\n", "line 2, column 2: `\u{fffd}` in the column `q` is not a number"),
+        ("t,q,f\n0,\"0,0\n1,0,0\n", "line 2: a quote is not closed"),
+        ("t,q,f\n", "log.csv has no rows"),
+    ];
+    for (recording, expected) in table {
+        let said = refusal(recording);
+        assert!(said.starts_with("recording-malformed: log.csv"), "{said}");
+        assert!(said.contains(expected), "{recording:?}: {said}");
+    }
+    // What no formula reads may be anything.
+    assert_eq!(faults("t,note,q,f\n0,\"a, b\",0,0\n1,,0,0\n"), [""; 0]);
+    // Nor is a cell too many one if it is empty.
+    assert_eq!(faults("t,q,f\n0,0,0,\n1,0,0,\n"), [""; 0]);
+}
+
+#[test]
+fn a_recording_may_break_off_within_its_last_row() {
+    let dropped =
+        |line: u32| vec![format!("last row dropped, as it breaks off with the file: 1, first in line {line}")];
+    assert_eq!(faults("t,q,f\n0,0,0\n1,0,0\n2,0."), dropped(4));
+    assert_eq!(faults("t,q,f\n0,0,0\n1,0,-"), dropped(3));
+    // A whole last line needs no end.
+    assert_eq!(faults("t,q,f\n0,0,0\n1,0,0"), [""; 0]);
+}
+
+#[test]
+fn a_row_without_end_is_refused_and_not_held() {
+    let said = refusal(&format!("t,q,f\n0,0,0\n{}", "1,".repeat(LONGEST)));
+    assert!(said.contains("log.csv, line 3: the line has more than 1048576 bytes"), "{said}");
+}
+
+#[test]
+fn a_recording_of_which_nothing_is_taken_says_why() {
+    let said = refusal("t,q,f\n0,,0\n1,,0\n");
+    assert!(said.starts_with("simulation-failed: the observer took no sample of the 2 rows of log.csv"), "{said}");
+}
+
+#[test]
+fn a_caller_may_end_it() {
+    let rows: Vec<String> = (0..5000).map(|k| format!("{k},0,0\n")).collect();
+    let text = format!("t,q,f\n{}", rows.concat());
+    let mut log = Log::open("log.csv", text.as_bytes()).expect("a header");
+    let replay = resolve(CART, &log).expect("the cart");
+    let mut seen = Vec::new();
+    let failure = replay.run(&mut log, None, &mut |rows, _| {
+        seen.push(rows);
+        if rows > 2000 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(matches!(failure, Err(Failure::Stopped { line: 2049 })), "{failure:?}");
+    assert_eq!(seen, [1024, 2048]);
+}

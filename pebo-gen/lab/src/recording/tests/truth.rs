@@ -1,0 +1,119 @@
+//! A simulation's own table, replayed.
+
+use std::ops::ControlFlow;
+
+use super::{CART, Failure, Log, replay, resolve};
+use crate::{Overrides, Scenario, Trace};
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+use pebo_design::source::Source;
+
+const CUK: &str = include_str!("../../../../../models/cuk.yaml");
+const MOTOR: &str = include_str!("../../../../../models/motor.yaml");
+const BATTERY: &str = include_str!("../../../../../models/battery.yaml");
+const DRIVE: &str = include_str!("../../../../../models/two_mass_drive.yaml");
+
+/// A run of the model's own scenario of which the table has every sample.
+fn simulated(text: &str, (duration, step): (f64, f64)) -> Trace {
+    let model = Model::parse(&Source::new("model", text).expect("a short text")).expect("a model");
+    let plant = Plant::resolve(&model).expect("a plant");
+    let derivation = pebo_design::analysis::Derivation::derive(&plant);
+    let overrides = Overrides { duration: Some(duration), step: Some(step), every: Some(step), ..Overrides::default() };
+    let scenario = Scenario::resolve(&model, &plant, &derivation, &overrides).expect("a scenario");
+    scenario.run().expect("a run to its end")
+}
+
+fn columns(csv: &str) -> Vec<(String, Vec<f64>)> {
+    let mut lines = csv.lines();
+    let names = lines.next().expect("a header").split(',');
+    let mut columns: Vec<(String, Vec<f64>)> = names.map(|name| (name.to_owned(), Vec::new())).collect();
+    for line in lines {
+        for (column, cell) in columns.iter_mut().zip(line.split(',')) {
+            column.1.push(cell.parse().expect("a number"));
+        }
+    }
+    columns
+}
+
+/// The largest difference of an estimate or error, in parts of the largest that there is.
+fn apart(trace: &Trace, csv: &str) -> f64 {
+    let mut worst = 0.0_f64;
+    for (name, values) in columns(csv) {
+        let expected = trace.column(&name).expect("a column of the simulation");
+        assert_eq!(values.len(), expected.len());
+        let scale = expected.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let apart = values.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        worst = worst.max(apart / scale.max(f64::MIN_POSITIVE));
+    }
+    worst
+}
+
+/// A mass that a force pushes back and forth whose course over time is known.
+const SHAKEN: &str = "
+model: shaken
+x: [v]
+y: [q]
+f_x: {v: 3*sin(2*t) - q}
+f_y: {q: v}
+phi: [v]
+observer: {sensors: {q: 0.001}, start: {v: 5}}
+simulation: {duration: 10, step: 0.01, initial: {v: 2, q: 1}}
+";
+
+const RUNS: [(&str, &str, (f64, f64)); 5] = [
+    ("cuk", CUK, (0.05, 1e-5)),
+    ("motor", MOTOR, (0.1, 1e-5)),
+    ("battery", BATTERY, (2000.0, 1.0)),
+    ("drive", DRIVE, (1.0, 1e-3)),
+    ("shaken", SHAKEN, (10.0, 0.01)),
+];
+
+/// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two instants
+/// that are rounded to 2^-53 of themselves, and so off by some t/dt times that of the step, where the simulation has the
+/// step itself. Over 10^4 steps that is 10^-12 of each step; what the observer makes of it, ten times that.
+#[test]
+fn a_recording_on_which_nothing_settles_says_why() {
+    let advice = |model: &str, recording: &str| {
+        let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
+        let replay = resolve(model, &log).expect("the columns have a meaning");
+        let replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
+        replay.advise(&replayed).map(|found| (found.notes.concat(), found.help.unwrap_or_default()))
+    };
+    // Moved at 1 m/s; the sensor of the momentum shows 10 % more.
+    let rows = |momentum: f64| {
+        let row = |k: u32| format!("{0},{0},0,{momentum}\n", f64::from(k) / 64.0);
+        format!("t,q,f,p\n{}", (0..2000).map(row).collect::<String>())
+    };
+    assert_eq!(advice(CART, &rows(1.0)), None);
+    let (note, help) = advice(CART, &rows(1.1)).expect("it is off");
+    assert!(note.contains("the error of `p` hardly falls any more") && help.contains("the bench"), "{note} {help}");
+    let (note, help) = advice(&CART.replace("gain: 50", "gain: 0.05"), &rows(1.0)).expect("it is slow");
+    assert!(note.contains("still falls") && help.contains("raise `gain`, or record longer"), "{note} {help}");
+    // Without that sensor there is no error to be seen, and nothing to be said.
+    assert_eq!(advice(CART, &rows(1.0).replace(",p\n", "\n").replace(",0,1\n", ",0\n")), None);
+}
+
+#[test]
+fn the_estimates_are_those_of_the_simulation_to_the_rounding_of_its_times() -> Result<(), Failure> {
+    for (name, model, run) in RUNS {
+        let trace = simulated(model, run);
+        let (replayed, estimates) = replay(model, &trace.csv())?;
+        let apart = apart(&trace, &estimates);
+        assert!(apart < 1e-11, "{name}: {apart}");
+        assert_eq!((replayed.faults.len(), replayed.summary.faults.count()), (0, 0), "{name}");
+    }
+    Ok(())
+}
+
+/// With the step in place of the instants nothing is rounded differently.
+#[test]
+fn with_the_step_of_the_simulation_they_are_the_same_to_the_last_bit() -> Result<(), Failure> {
+    for (name, model, run) in RUNS {
+        let trace = simulated(model, run);
+        let (_, estimates) = replay(&format!("{model}\nrecording: {{step: {:e}}}\n", run.1), &trace.csv())?;
+        for (column, values) in columns(&estimates) {
+            assert_eq!(Some(values), trace.column(&column), "{name}: {column}");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! The standard errors that an observer expects of its estimates, as a run goes on.
+
+/// What was expected at some instants.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Expected {
+    instants: Vec<(f64, Vec<f64>)>,
+}
+
+/// More instants than that are thinned out.
+const MOST: usize = 4096;
+
+impl Expected {
+    /// Takes what is expected at an instant, if that is known.
+    pub(crate) fn add(&mut self, t: f64, errors: Option<Vec<f64>>) {
+        let Some(errors) = errors else { return };
+        if self.instants.len() == MOST {
+            let mut is_odd = false;
+            self.instants.retain(|_| {
+                is_odd = !is_odd;
+                is_odd
+            });
+        }
+        self.instants.push((t, errors));
+    }
+
+    /// The root mean square of what is expected of an estimate from an instant on.
+    pub(crate) fn since(&self, t: f64, estimate: usize) -> Option<f64> {
+        let later = || self.instants.iter().filter(|(at, _)| *at >= t).filter_map(|(_, errors)| errors.get(estimate));
+        let count = crate::timing::real(u64::try_from(later().count()).ok()?);
+        let squares: f64 = later().map(|error| error * error).sum();
+        (count > 0.0).then(|| (squares / count).sqrt())
+    }
+}

@@ -1,0 +1,427 @@
+//! From standard deviations to the settings of least squares.
+//!
+//! ```text
+//! P(0) = D_x phi start^2 D_x phi^T     Q = D phi disturbance^2 D phi^T + D_y z' sensors^2 D_y z'^T dt
+//! ```
+//!
+//! of which the diagonals are taken. Measured outputs drive the cascade, so what their sensors err by is noise of the
+//! process too. Of a regression whose unknowns are functions of theta, both are carried over to these functions.
+
+use pebo_cas::{Expr, Rational, Symbol};
+use pebo_design::analysis::{Derivation, RegressionKind};
+use pebo_design::model::{Decimal, Form, Model};
+use pebo_design::plant::Plant;
+use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+
+use super::derived::Tuned;
+use super::digits::rounded;
+use super::kind::Kind;
+use super::magnitude::Deviations;
+use super::point::Point;
+#[cfg(feature = "simulate")]
+use super::prediction::{Noise, Prediction};
+use super::spread::Slopes;
+use super::start::beginning;
+#[cfg(feature = "simulate")]
+use crate::settings::words::Known;
+
+/// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
+pub(crate) const BANDWIDTH: f64 = 0.1;
+
+/// Of what is known exactly at the start, this part of the largest variance is left: none would be no covariance.
+const CERTAIN: f64 = 1e-12;
+
+/// The settings that known numbers come to.
+pub(super) fn derive(
+    model: &Model,
+    plant: &Plant,
+    derivation: &Derivation,
+    period: Option<f64>,
+    problems: &mut Diagnostics,
+) -> Option<Tuned> {
+    let can_rebase = derivation.can_rebase(plant);
+    let kind = kind(model, plant, derivation, problems)?;
+    if let Some(hold) = model.observer.hold.as_ref().filter(|_| kind != Kind::Filtered) {
+        problems.push(idle_hold(plant, hold.span));
+        return None;
+    }
+    let frame = frame(model, plant, derivation, problems)?;
+    let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
+    let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
+    let formulas = Formulas::of(plant, derivation, kind == Kind::Output || frame.gate.is_some())?;
+    let said = Point::of(model, plant);
+    let asked = model.observer.known();
+    if let Some(lacking) = said.lacks(&formulas.needed(plant)) {
+        // Nobody asked for numbers: then there is no observer either.
+        if let Some((key, span)) = asked {
+            problems.push(no_point(plant, (key, span), lacking));
+        }
+        return None;
+    }
+    let start = match frame.chi_0.clone() {
+        Some(written) => written,
+        None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
+    };
+    let point = completed(&said, plant, &formulas, &start)?;
+    let deviations = Deviations::of(model, plant, &said, period)?;
+
+    let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
+    let Coordinates { covariance, mut drift, noise } = coordinates;
+    #[cfg(feature = "simulate")]
+    let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
+
+    let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
+    let mut chi_0 = start;
+    let (operator, covariance, noise) = match kind {
+        Kind::Output => {
+            let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
+            drift.splice(0..0, of_rows.iter().copied());
+            let of_rows = heard(&formulas.rates, &point, &deviations, period, &of_rows)?;
+            // The first sample is where the outputs begin.
+            let start = rows.iter().map(|deviation| deviation.powi(2));
+            let covariance: Vec<f64> = start.chain(covariance).collect();
+            chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
+            (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
+        }
+        Kind::Sampled => {
+            let [covariance, noise] = formulas.of_unknowns(&point, [&covariance, &noise])?;
+            (Operator::Sampled(rows), covariance, noise)
+        }
+        Kind::Filtered => {
+            let Some(period) = period else {
+                if let Some(asked) = asked {
+                    problems.push(no_period(plant, asked));
+                }
+                return None;
+            };
+            filtered(&rows, formulas.of_unknowns(&point, [&covariance, &noise])?, period)
+        }
+    };
+    let exact = exact(&operator, &covariance, &noise);
+    let Some((operator, start, process_noise)) = exact else {
+        problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
+        return None;
+    };
+    let settings = Settings {
+        operator,
+        output: kind == Kind::Output,
+        expected: if kind == Kind::Output { expected(plant, derivation) } else { None },
+        straight: frame.straight,
+        estimator: Estimator::LeastSquares(Covariance {
+            start,
+            forgetting: Rational::from(0),
+            process_noise: Some(process_noise),
+        }),
+        lower: None,
+        upper: None,
+        within: frame.within,
+        rebase: if can_rebase { Some(frame.rebase.unwrap_or(Rebase::Samples(Rational::ONE))) } else { None },
+        chi_0,
+        gate: frame.gate,
+        limits: None,
+    };
+    #[cfg(feature = "simulate")]
+    let prediction = {
+        let is_heard = is_heard(plant, derivation, &formulas, kind);
+        Prediction::of(kind, is_heard, can_rebase, Noise { sensors: deviations.sensors, drift })
+    };
+    Some(Tuned {
+        settings,
+        #[cfg(feature = "simulate")]
+        known: Some(known.predicted(&prediction)),
+        #[cfg(feature = "simulate")]
+        prediction,
+    })
+}
+
+/// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
+/// the left inverse.
+#[cfg(feature = "simulate")]
+fn is_heard(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: Kind) -> bool {
+    let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
+    let y = plant.y.iter().map(|output| output.symbol).collect();
+    let left_inverse = derivation.left_inverse.result.as_ref();
+    let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
+    recovered || depends(&formulas.flow) || (kind == Kind::Output && depends(&formulas.rates))
+}
+
+/// Variances of the coordinates.
+struct Coordinates {
+    /// At the start.
+    covariance: Vec<f64>,
+    /// Of what they drift by in a second.
+    drift: Vec<f64>,
+    /// The same with what the sensors add, where outputs drive the cascade.
+    noise: Vec<f64>,
+}
+
+impl Coordinates {
+    fn of(
+        formulas: &Formulas,
+        point: &Point,
+        deviations: &Deviations,
+        frame: &Frame<Rational>,
+        period: Option<f64>,
+    ) -> Option<Self> {
+        let all = |written: &Vec<Rational>| written.iter().map(Rational::to_f64).collect::<Vec<_>>();
+        let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
+        let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
+        let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
+        let drift = formulas.phi.variances(point, &drifts)?;
+        let noise = heard(&formulas.flow, point, deviations, period, &drift)?;
+        let written = frame.process_noise.as_ref().map(all);
+        Some(Self {
+            covariance: frame.covariance.as_ref().map_or(at_start, all),
+            drift: written.clone().unwrap_or(drift),
+            noise: written.unwrap_or(noise),
+        })
+    }
+}
+
+/// Variances with what the noise of samples adds to rates, a sample for a period.
+fn heard(
+    rates: &Slopes,
+    point: &Point,
+    deviations: &Deviations,
+    period: Option<f64>,
+    variances: &[f64],
+) -> Option<Vec<f64>> {
+    let added = rates.variances(point, &deviations.sensors)?;
+    Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
+}
+
+/// What the section says beside its standard deviations.
+fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Frame<Rational>> {
+    let states = derivation.left_inverse.result.as_ref()?.x.len();
+    let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+    Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
+}
+
+/// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
+/// outputs: then from those that are expected.
+fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
+    let regression = derivation.regression.result.as_ref()?;
+    let inverse = derivation.left_inverse.result.as_ref()?;
+    let y = plant.y.iter().map(|output| output.symbol).collect();
+    let depends = inverse.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y));
+    (depends && regression.kind == RegressionKind::Dynamic).then(|| regression.rows.clone())
+}
+
+/// The rates through a filter. The rate of white samples errs by `alpha s` there at once, and no two time constants are
+/// independent: an intensity that is not too small for any time, over which least squares have their covariances.
+fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (Operator<f64>, Vec<f64>, Vec<f64>) {
+    let alpha = BANDWIDTH / period;
+    let intensity = rows.iter().fold(0.0, |most: f64, s| most.max(2.0 * alpha * s * s));
+    let over = |values: Vec<f64>| values.into_iter().map(|value| value / intensity).collect();
+    (Operator::Filter(alpha), over(covariance), over(noise))
+}
+
+/// What the regression admits and the section asks for.
+fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Kind> {
+    let regression = derivation.regression.result.as_ref()?;
+    let is_static = regression.kind == RegressionKind::Static;
+    let written = model.observer.form.as_ref();
+    let Some(form) = written.filter(|form| form.value == Form::Output) else {
+        return Some(match written {
+            _ if is_static => Kind::Sampled,
+            None if derivation.can_rebase(plant) => Kind::Output,
+            _ => Kind::Filtered,
+        });
+    };
+    let refused = |message: String, help: &str| Diagnostic::error(Code::SettingConflict, form.span, message).help(help);
+    let problem = if is_static {
+        refused(
+            format!("`{}` has no regression of rates", plant.name),
+            "remove `form`: a static regression is one of the outputs themselves already",
+        )
+    } else if !derivation.can_rebase(plant) {
+        refused(
+            format!("`{}` has no output form", plant.name),
+            "remove `form`: it takes a regression that is affine in z, with theta itself as its unknown",
+        )
+    } else {
+        return Some(Kind::Output);
+    };
+    problems.push(problem);
+    None
+}
+
+fn idle_hold(plant: &Plant, hold: Span) -> Diagnostic {
+    let message = format!("the observer of `{}` takes each sample by itself: there is no hold between two", plant.name);
+    Diagnostic::error(Code::SettingConflict, hold, message)
+        .help("remove `hold`, or choose a `filter` or `window` and the numbers of an estimator")
+}
+
+fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagnostic {
+    let name = plant.arena.name(lacking);
+    let message = format!("what `{key}` comes to depends on where the plant operates: `{name}` is not known");
+    let is_parameter = plant.parameters.iter().any(|parameter| parameter.symbol == lacking);
+    let help = if is_parameter {
+        format!("write the value of the parameter: `{name}: 1`")
+    } else if plant.u.contains(&lacking) {
+        format!("say with which input, as `simulation: {{control: {{{name}: 0}}}}`")
+    } else {
+        format!("say where it starts, as `simulation: {{initial: {{{name}: 0}}}}`")
+    };
+    Diagnostic::error(Code::SimulationIncomplete, span, message).help(help)
+}
+
+fn out_of_range(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::NumberOutOfRange, span, "the numbers that are derived of these are out of range")
+        .help("choose standard deviations, and units, in which numbers are nearer to 1")
+}
+
+fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
+    let message = format!("the filter of `{}` depends on the period of its samples", plant.name);
+    Diagnostic::error(Code::SimulationIncomplete, span, message)
+        .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
+}
+
+/// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
+fn completed<'a>(said: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[Rational]) -> Option<Point<'a>> {
+    let signals = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).chain(plant.u.clone());
+    let all: Vec<Symbol> = signals.chain(plant.w.clone()).chain(plant.parameters.iter().map(|p| p.symbol)).collect();
+    let missing: Vec<Symbol> = all.into_iter().filter(|symbol| said.of_symbol(*symbol).is_none()).collect();
+    let point = said.with(&missing, &vec![0.0; missing.len()]);
+    let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
+    let z = point.values(&phi)?;
+    let chi_0: Vec<f64> = chi_0.iter().map(Rational::to_f64).collect();
+    let theta: Vec<f64> = z.iter().zip(&chi_0).map(|(z, chi)| z - chi).collect();
+    let count = z.len();
+    let identity: Vec<f64> = (0..count * count).map(|k| if k / count == k % count { 1.0 } else { 0.0 }).collect();
+    let point = point.with(&plant.z, &z).with(&plant.chi, &chi_0).with(&plant.xi, &chi_0);
+    let point = point.with(&plant.psi.concat(), &identity).with(&plant.theta, &theta);
+    let eta = point.values(&formulas.unknowns.formulas)?;
+    Some(point.with(&formulas.eta, &eta))
+}
+
+/// The formulas whose slopes are asked for.
+struct Formulas {
+    /// phi, by x and y.
+    phi: Slopes,
+    /// The rates of z, by y.
+    flow: Slopes,
+    /// What stands under the derivative, by y.
+    held: Slopes,
+    /// Its rate, or what a static regression says to be zero, by y.
+    rates: Slopes,
+    /// How these slopes change with the unknowns, of each row.
+    bends: Vec<Expr>,
+    /// The unknowns, by theta.
+    unknowns: Slopes,
+    eta: Vec<Symbol>,
+    is_static: bool,
+}
+
+impl Formulas {
+    /// Of the whole regression where all equations serve, else of those with an unknown.
+    fn of(plant: &Plant, derivation: &Derivation, all_serve: bool) -> Option<Self> {
+        let arena = &plant.arena;
+        let cascade = derivation.cascade.result.as_ref()?;
+        let regression = &derivation.regression.result.as_ref()?.computed(arena, all_serve);
+        let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+        let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
+        let eta = regression.eta_symbols.clone();
+        let times = |factors: &[Expr], unknowns: &[Symbol]| {
+            let terms = factors.iter().zip(unknowns).map(|(factor, s)| arena.mul(*factor, arena.of_symbol(*s)));
+            terms.fold(arena.zero(), |sum, term| arena.add(sum, term))
+        };
+        let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
+        let flow: Vec<Expr> = match &cascade.lambda {
+            Some(lambda) => {
+                let moved = cascade.h.iter().zip(lambda);
+                moved.map(|(h, row)| arena.add(*h, times(row, &plant.z))).collect()
+            }
+            None => cascade.h.clone(),
+        };
+        let is_static = regression.kind == RegressionKind::Static;
+        let both = |known: &[Expr], factor: &[Vec<Expr>], minus: bool| -> Vec<Expr> {
+            let rows = known.iter().zip(factor);
+            let row = |(known, factor): (&Expr, &Vec<Expr>)| {
+                let rest = times(factor, &eta);
+                if minus { arena.sub(*known, rest) } else { arena.add(*known, rest) }
+            };
+            rows.map(row).collect()
+        };
+        let rates = both(&regression.phi_0, &regression.phi_1, is_static);
+        let held: Vec<Expr> = match regression.kind {
+            RegressionKind::Static => Vec::new(),
+            RegressionKind::Dynamic => regression.rows.iter().map(|row| arena.of_symbol(y[*row])).collect(),
+            RegressionKind::Implicit => both(&regression.primitive_0, &regression.primitive_1, false),
+        };
+        let bent = |row: &Expr| {
+            let slopes = y.iter().flat_map(|output| {
+                let slope = arena.derivative(*row, *output);
+                eta.iter().map(move |unknown| arena.derivative(slope, *unknown))
+            });
+            slopes.collect::<Vec<_>>()
+        };
+        Some(Self {
+            phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
+            flow: Slopes::new(plant, &flow, &y),
+            bends: if is_static { rates.iter().flat_map(bent).collect() } else { Vec::new() },
+            held: Slopes::new(plant, &held, &y),
+            rates: Slopes::new(plant, &rates, &y),
+            unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
+            eta,
+            is_static,
+        })
+    }
+
+    /// What must have numbers: all slopes, and phi itself, at which most of them are taken.
+    fn needed(&self, plant: &Plant) -> Vec<Expr> {
+        let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.bends];
+        let mut needed: Vec<Expr> = slopes.into_iter().flatten().copied().collect();
+        let here = plant.z.iter().chain(&self.eta).chain(&plant.chi).chain(&plant.xi).copied().collect();
+        if needed.iter().any(|slope| plant.arena.depends_on(*slope, &here)) {
+            needed.extend(&self.phi.formulas);
+        }
+        needed
+    }
+
+    /// Variances of the unknowns at the start and of their drift, from those of theta.
+    fn of_unknowns(&self, point: &Point, [covariance, noise]: [&[f64]; 2]) -> Option<[Vec<f64>; 2]> {
+        let roots = |variances: &[f64]| variances.iter().map(|variance| variance.sqrt()).collect::<Vec<_>>();
+        let start = self.unknowns.wide_variances(point, &roots(covariance))?;
+        Some([start, self.unknowns.variances(point, &roots(noise))?])
+    }
+
+    /// The standard deviation of each row's samples.
+    fn deviations(&self, point: &Point, sensors: &[f64], covariance: &[f64]) -> Option<Vec<f64>> {
+        let rows = if self.is_static { &self.rates } else { &self.held };
+        let variances = rows.variances(point, sensors)?;
+        let bends = point.values(&self.bends)?;
+        let width = sensors.len() * self.eta.len();
+        let deviation = |(row, variance): (usize, f64)| {
+            if variance > 0.0 {
+                return variance.sqrt();
+            }
+            // Where the plant is, its outputs say nothing: away from there they do.
+            let bend = |(place, bend): (usize, &f64)| {
+                let (sensor, unknown) = (place / self.eta.len(), place % self.eta.len());
+                let spread = covariance.get(unknown).copied().unwrap_or(1.0);
+                (bend * sensors[sensor]).powi(2) * spread
+            };
+            let around: f64 = bends.iter().skip(row * width).take(width).enumerate().map(bend).sum();
+            if around > 0.0 { around.sqrt() } else { 1.0 }
+        };
+        Some(variances.into_iter().enumerate().map(deviation).collect())
+    }
+}
+
+/// Operator, covariance and process noise in four digits, if all are in range.
+type Exact = (Operator<Rational>, Vec<Rational>, Vec<Rational>);
+
+fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<Exact> {
+    let all = |values: &[f64]| values.iter().map(|value| rounded(*value)).collect::<Option<Vec<_>>>();
+    let operator = match operator {
+        Operator::Filter(alpha) => Operator::Filter(rounded(*alpha)?),
+        Operator::Window(samples) => Operator::Window(rounded(*samples)?),
+        Operator::Sampled(deviations) => Operator::Sampled(all(deviations)?),
+    };
+    let largest = covariance.iter().copied().fold(0.0, f64::max);
+    let least = if largest > 0.0 { CERTAIN * largest } else { CERTAIN };
+    let covariance: Vec<f64> = covariance.iter().map(|variance| variance.max(least)).collect();
+    Some((operator, all(&covariance)?, all(noise)?))
+}

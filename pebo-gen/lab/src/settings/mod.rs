@@ -1,0 +1,85 @@
+//! The numbers of an observer, from what is known of its sensors, its start and its disturbances.
+//!
+//! ```text
+//! sensors, start, disturbance -> operating point -> slopes of phi, h and the regression -> covariance, process noise
+//! ```
+//!
+//! In: a model with its proved derivation. Out: settings with which the runtime's observer is built, the same for emitted
+//! code and for a run, and the numbers that they were derived from, to be shown. Where the author wrote gains these are the
+//! settings, and nothing is derived.
+//!
+//! The observer of known numbers is least squares on samples that are weighed by their sensors: in the output form where the
+//! regression is of rates, re-based at every sample, which makes it a Kalman filter of the transformed plant. Where the
+//! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
+
+mod derived;
+
+#[cfg(feature = "simulate")]
+mod words;
+
+mod derive;
+mod digits;
+mod kind;
+mod magnitude;
+mod point;
+#[cfg(feature = "simulate")]
+mod prediction;
+mod spread;
+mod start;
+
+#[cfg(test)]
+pub mod tests;
+
+use pebo_cas::Rational;
+use pebo_design::analysis::Derivation;
+use pebo_design::model::{Decimal, Model};
+use pebo_design::plant::settings::{Limits, cannot_rebase};
+use pebo_design::plant::{Plant, Settings};
+use pebo_design::source::Diagnostics;
+
+pub use derived::Tuned;
+pub(crate) use start::start;
+
+#[cfg(feature = "simulate")]
+pub(crate) use derive::BANDWIDTH;
+#[cfg(feature = "simulate")]
+pub(crate) use prediction::Prediction;
+#[cfg(feature = "simulate")]
+pub use words::{Known, Numbers, Value};
+
+impl Tuned {
+    /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what
+    /// it says is reported. `period` is that of the samples in seconds, where the model does not say it.
+    pub fn of(
+        model: &Model,
+        plant: &Plant,
+        derivation: &Derivation,
+        period: Option<f64>,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
+        let inverse = derivation.left_inverse.result.as_ref()?;
+        let regression = derivation.regression.result.as_ref()?;
+        if let Some(rebase) = model.observer.rebase.place().filter(|_| !derivation.can_rebase(plant)) {
+            problems.push(cannot_rebase(&plant.name, rebase));
+            return None;
+        }
+        let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
+        let limits = Limits::of(model, read);
+        if model.observer.has_gains() {
+            let sizes = (regression.eta.len(), plant.phi.len(), inverse.x.len());
+            let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
+            let begun = Some(()).filter(|()| model.observer.extension.is_empty());
+            let chi_0 = begun.and_then(|()| start(model, plant, derivation)).unwrap_or(settings.chi_0);
+            return Some(Self {
+                settings: Settings { chi_0, limits, ..settings },
+                #[cfg(feature = "simulate")]
+                known: None,
+                #[cfg(feature = "simulate")]
+                prediction: Prediction::None("gains do not say what sensors err by"),
+            });
+        }
+        let mut tuned = derive::derive(model, plant, derivation, period, problems)?;
+        tuned.settings.limits = limits;
+        Some(tuned)
+    }
+}

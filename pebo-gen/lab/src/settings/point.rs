@@ -1,0 +1,127 @@
+//! The operating point: where slopes are taken.
+//!
+//! In: the section `simulation`, which says where the plant starts and with which inputs. Out: numbers for parameters,
+//! states, outputs and inputs as far as they are said, and the values of formulas there.
+
+use std::collections::BTreeMap;
+
+use pebo_cas::{Expr, Symbol};
+use pebo_design::model::{Entry, Formula, Model, Piece};
+use pebo_design::plant::{Plant, Scope, lower};
+use pebo_design::program::{self, Interpreter};
+
+/// Numbers for symbols.
+#[derive(Clone, Debug)]
+pub(super) struct Point<'a> {
+    plant: &'a Plant,
+    values: BTreeMap<Symbol, f64>,
+}
+
+impl<'a> Point<'a> {
+    /// Where the model says that the plant starts; a formula that has no value there is left out.
+    pub(super) fn of(model: &Model, plant: &'a Plant) -> Self {
+        let arena = &plant.arena;
+        let given = plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.as_ref()?.to_f64())));
+        let mut point = Self { plant, values: given.collect() };
+        point.values.extend(plant.time.map(|time| (time, 0.0)));
+        let Some(simulation) = &model.simulation else { return point };
+        let mut scope = Scope::new();
+        for parameter in &plant.parameters {
+            scope.define(arena.name(parameter.symbol), arena.of_symbol(parameter.symbol));
+        }
+        scope.define("t", arena.zero());
+        for (name, formula) in firsts(&simulation.signals).chain(firsts(&simulation.plant)) {
+            if let Ok(value) = lower(arena, &scope, formula) {
+                scope.define(name, value);
+            }
+        }
+        // The true values of parameters are not the model's.
+        for parameter in &plant.parameters {
+            scope.define(arena.name(parameter.symbol), arena.of_symbol(parameter.symbol));
+        }
+        let states = || plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
+        let courses: Vec<Symbol> = states().collect();
+        for symbol in courses {
+            let name = arena.name(symbol);
+            let written = simulation.initial.iter().find(|entry| entry.name.value == name).map(|entry| &entry.value);
+            let course = || firsts(&simulation.plant).find(|(known, _)| *known == name).map(|(_, formula)| formula);
+            let value = written.or_else(course).and_then(|formula| lower(arena, &scope, formula).ok());
+            point.set(symbol, value);
+        }
+        for output in &plant.y {
+            if !point.values.contains_key(&output.symbol) {
+                point.set(output.symbol, output.value.map(|value| value.expr));
+            }
+        }
+        for symbol in states() {
+            scope.define(arena.name(symbol), arena.of_symbol(symbol));
+            scope.define_estimate(arena.name(symbol), arena.of_symbol(symbol));
+        }
+        for entry in model.define.iter().chain(&simulation.define) {
+            if let Ok(value) = lower(arena, &scope, &entry.value) {
+                scope.define(&entry.name.value, value);
+            }
+        }
+        for input in plant.commanded() {
+            let name = arena.name(input);
+            let law = simulation.control.iter().find(|entry| entry.name.value == name);
+            point.set(input, law.and_then(|entry| lower(arena, &scope, &entry.value).ok()));
+        }
+        // Outputs that are given by their value may need inputs.
+        for output in &plant.y {
+            if !point.values.contains_key(&output.symbol) {
+                point.set(output.symbol, output.value.map(|value| value.expr));
+            }
+        }
+        point
+    }
+
+    fn set(&mut self, symbol: Symbol, formula: Option<Expr>) {
+        let value = formula.and_then(|formula| self.value(formula)).filter(|value| value.is_finite());
+        if let Some(value) = value {
+            self.values.insert(symbol, value);
+        }
+    }
+
+    /// The same point with numbers for more symbols, or others.
+    pub(super) fn with(&self, symbols: &[Symbol], numbers: &[f64]) -> Self {
+        let mut point = self.clone();
+        point.values.extend(symbols.iter().copied().zip(numbers.iter().copied()));
+        point
+    }
+
+    /// The number of a symbol.
+    pub(super) fn of_symbol(&self, symbol: Symbol) -> Option<f64> {
+        self.values.get(&symbol).copied()
+    }
+
+    /// The first parameter, state, output or input of these formulas that has no number.
+    pub(super) fn lacks(&self, formulas: &[Expr]) -> Option<Symbol> {
+        let plant = self.plant;
+        let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
+        let parameters = plant.parameters.iter().map(|parameter| parameter.symbol);
+        let used = plant.arena.symbols_of(formulas);
+        let mut all = parameters.chain(states).chain(plant.u.iter().copied());
+        all.find(|symbol| used.contains(symbol) && !self.values.contains_key(symbol))
+    }
+
+    /// The values of formulas; what has none is NaN. None where a symbol has no number.
+    pub(super) fn values(&self, formulas: &[Expr]) -> Option<Vec<f64>> {
+        let symbols: Vec<Symbol> = self.values.keys().copied().collect();
+        let numbers: Vec<f64> = self.values.values().copied().collect();
+        let program = program::lower(&self.plant.arena, &symbols, formulas).ok()?;
+        let mut values = vec![0.0; formulas.len()];
+        Interpreter::new(&program).run(&numbers, &mut values);
+        Some(values)
+    }
+
+    /// The value of a formula, if its symbols have numbers.
+    pub(super) fn value(&self, formula: Expr) -> Option<f64> {
+        Some(self.values(&[formula])?[0])
+    }
+}
+
+/// What signals begin with.
+fn firsts(entries: &[Entry<Vec<Piece>>]) -> impl Iterator<Item = (&str, &Formula)> {
+    entries.iter().filter_map(|entry| Some((entry.name.value.as_str(), &entry.value.first()?.formula)))
+}

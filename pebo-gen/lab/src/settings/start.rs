@@ -1,0 +1,72 @@
+//! Where the extension starts if nobody says so.
+//!
+//! In: the left inverse, and where the plant starts as far as that is said. Out: numbers for z of which the left inverse has
+//! a value: zeros if it has one there, else phi of a state that the assumptions admit. A flux of 0 has no position, and what
+//! is divided by a component of phi none either.
+
+use pebo_cas::{Expr, Rational, Relation, Symbol};
+use pebo_design::analysis::Derivation;
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+
+use super::digits::rounded;
+use super::point::Point;
+
+/// Parts of the state that the plant is said to start with which the extension may start from, the first that will do: not
+/// the state itself before all others, which the observer is to find.
+const PARTS: [f64; 4] = [0.5, 2.0, 0.9, 1.0];
+
+/// Of so many states, all signs are tried at a distance of 1 from zero.
+const MOST_SIGNS: usize = 6;
+
+/// What stands for a signal or parameter that is nowhere said.
+const ANY: f64 = 1.0;
+
+/// The extension at the start of a model that does not say it; none where nothing was found of which the left inverse has a
+/// value.
+pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
+    beginning(&Point::of(model, plant), plant, derivation)
+}
+
+/// The same where the plant is known to start at a point.
+pub(super) fn beginning(said: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
+    let inverse = derivation.left_inverse.result.as_ref()?;
+    let left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+    let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
+    let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
+    let unknown = x.iter().copied().collect();
+    let others = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied()).chain(plant.w.clone());
+    let others = others.chain(plant.parameters.iter().map(|parameter| parameter.symbol));
+    let unsaid: Vec<Symbol> = others.filter(|symbol| said.of_symbol(*symbol).is_none()).collect();
+    let around = said.with(&unsaid, &vec![ANY; unsaid.len()]);
+    let has_value = |z: &[f64]| {
+        let values = around.with(&plant.z, z).values(&left);
+        values.is_some_and(|values| values.iter().all(|value| value.is_finite()))
+    };
+    let zeros = vec![0.0; phi.len()];
+    if has_value(&zeros) {
+        return exact(&zeros);
+    }
+    let of_state = |state: &[f64]| around.with(&x, state).values(&phi).filter(|z| has_value(z)).and_then(|z| exact(&z));
+    let is_admitted = |state: &[f64]| {
+        let at = around.with(&x, state);
+        let about_states = plant.assumptions.iter().filter(|known| plant.arena.depends_on(known.expr, &unknown));
+        about_states.into_iter().all(|assumption| match (at.value(assumption.expr), assumption.relation) {
+            (Some(value), Relation::Positive) => value > 0.0,
+            (Some(value), Relation::NonNegative) => value >= 0.0,
+            (Some(value), Relation::NonZero) => value != 0.0,
+            (None, _) => true,
+        })
+    };
+    let origin = of_state(&vec![0.0; x.len()]);
+    let known: Option<Vec<f64>> = x.iter().map(|state| said.of_symbol(*state)).collect();
+    let near = known.into_iter().flat_map(|state| PARTS.map(|part| state.iter().map(|value| part * value).collect()));
+    let signs = (0..1_usize << x.len().min(MOST_SIGNS)).map(|signs| -> Vec<f64> {
+        (0..x.len()).map(|place| if signs >> place.min(MOST_SIGNS) & 1 == 1 { -1.0 } else { 1.0 }).collect()
+    });
+    origin.or_else(|| near.chain(signs).filter(|state| is_admitted(state)).find_map(|state| of_state(&state)))
+}
+
+fn exact(z: &[f64]) -> Option<Vec<Rational>> {
+    z.iter().map(|value| rounded(*value)).collect()
+}

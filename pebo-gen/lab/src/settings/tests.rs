@@ -1,0 +1,183 @@
+//! Known numbers in, settings out; and what does not go together.
+
+use pebo_cas::Rational;
+use pebo_design::analysis::Derivation;
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+use pebo_design::plant::settings::{Covariance, Estimator, Operator, Rebase, Settings};
+use pebo_design::source::{Diagnostic, Diagnostics, Source};
+
+use super::Tuned;
+
+const CUK: &str = "
+model: cuk
+parameters: {L1: 10e-3, C2: 22e-6, L3: 10e-3, C4: 22.9e-6, G: 0.0447, E: 12}
+x: [i1, i3]
+y: [v2, v4]
+u: [d]
+assume: [0 < d < 1]
+f_x: {i1: (E - (1 - d)*v2)/L1, i3: -(d*v2 + v4)/L3}
+f_y: {v2: ((1 - d)*i1 + d*i3)/C2, v4: (i3 - G*v4)/C4}
+phi: [2*i1, i3]
+";
+
+const KNOWN: &str = "observer: {sensors: {v2: 0.1, v4: 0.2}, start: {i1: 5, i3: 3}, disturbance: {i1: 1}}\n";
+
+const SCENARIO: &str = "simulation: {step: 1e-5, initial: {i1: 0.5, i3: -1, v2: 10, v4: -12}, control: {d: 0.5}}\n";
+
+fn tuned(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
+    let model = match Source::new("test", text).map_err(|found| vec![found]).and_then(|source| Model::parse(&source)) {
+        Ok(model) => model,
+        Err(found) => return (None, found),
+    };
+    let plant = Plant::resolve(&model).unwrap();
+    let derivation = Derivation::derive(&plant);
+    let mut problems = Diagnostics::new();
+    let tuned = Tuned::of(&model, &plant, &derivation, None, &mut problems);
+    (tuned.map(|tuned| tuned.settings), problems.into_vec())
+}
+
+fn numbers(settings: &Settings<Rational>) -> [Vec<f64>; 3] {
+    let Estimator::LeastSquares(Covariance { start, process_noise, .. }) = &settings.estimator else {
+        panic!("{settings:?}")
+    };
+    let all = |values: &[Rational]| values.iter().map(Rational::to_f64).collect::<Vec<_>>();
+    let operator = match &settings.operator {
+        Operator::Sampled(deviations) => all(deviations),
+        Operator::Filter(alpha) => vec![alpha.to_f64()],
+        Operator::Window(_) => panic!("{settings:?}"),
+    };
+    [all(start), all(process_noise.as_ref().unwrap()), operator]
+}
+
+fn close(found: &[f64], expected: &[f64]) -> bool {
+    // Four digits are kept.
+    found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= 1e-3 * b.abs())
+}
+
+#[test]
+fn deviations_become_covariances_through_the_slopes_of_phi() {
+    let (settings, problems) = tuned(&format!("{CUK}{KNOWN}{SCENARIO}"));
+    assert!(problems.is_empty(), "{problems:?}");
+    let settings = settings.unwrap();
+    let [start, noise, sensors] = numbers(&settings);
+    assert!(settings.output && settings.expected.is_none() && settings.rebase == Some(Rebase::Samples(Rational::ONE)));
+    assert!(close(&sensors, &[0.1, 0.2]), "{sensors:?}");
+    // The outputs' first samples, then (2*5)^2 and 3^2.
+    assert!(close(&start, &[0.01, 0.04, 100.0, 9.0]), "{start:?}");
+    // v2' is free of outputs, v4' is not; 2*i1 drifts by 2, and by what the sample of v2 errs by: 2*(1 - d)*0.1/L1 = 10 over a
+    // step; i3 by d*0.1/L3 = 5 and 0.2/L3 = 20.
+    let of_v4 = (0.0447_f64 / 22.9e-6 * 0.2).powi(2) * 1e-5;
+    let expected = [0.0, of_v4, 4.0 + 100.0 * 1e-5, (25.0 + 400.0) * 1e-5];
+    assert!(close(&noise, &expected), "{noise:?} {expected:?}");
+}
+
+#[test]
+fn covariances_of_z_may_be_written() {
+    let known =
+        "observer: {sensors: {v2: 0.1, v4: 0.2}, covariance: [7, 8], process_noise: 0.5, within: {lower: -9}}\n";
+    let (settings, problems) = tuned(&format!("{CUK}{known}{SCENARIO}"));
+    let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+    let [start, noise, _] = numbers(&settings);
+    assert!(close(&start[2..], &[7.0, 8.0]) && close(&noise[2..], &[0.5, 0.5]), "{start:?} {noise:?}");
+    assert_eq!(settings.within[0].as_ref().map(Vec::len), Some(2));
+}
+
+#[test]
+fn where_nobody_says_a_number_there_are_settings_if_the_start_is_known() {
+    let (settings, problems) = tuned(&format!("{CUK}{SCENARIO}"));
+    assert!(problems.is_empty() && settings.is_some_and(|settings| settings.output), "{problems:?}");
+    // Nothing is known of the step: there is no observer, and no complaint.
+    assert_eq!(tuned(CUK), (None, Vec::new()));
+}
+
+#[test]
+fn what_is_known_may_depend_on_where_the_plant_operates() {
+    let (settings, problems) = tuned(&format!("{CUK}{KNOWN}"));
+    assert!(settings.is_none());
+    assert!(problems[0].message.contains("`d` is not known"), "{problems:?}");
+}
+
+#[test]
+fn unknown_names_bad_numbers_and_contradictions_are_reported() {
+    for (section, message) in [
+        ("sensors: {v3: 0.1}", "`v3` under `sensors` is not an output of y"),
+        ("start: {v2: 1}", "`v2` under `start` is not a state of x"),
+        ("disturbance: {d: 1}", "`d` under `disturbance` is not a state of x or y"),
+        ("sensors: {v2: 0}", "the standard deviation of a sensor must be positive"),
+        ("start: {i1: -1}", "a standard deviation must not be negative"),
+        ("sensors: {v2: 1}, gain: 5", "`gain` stands beside `sensors`"),
+        ("sensors: {v2: 1}, filter: 5", "`filter` stands beside `sensors`"),
+        ("form: output, window: 5", "`window` stands beside `form`"),
+        ("start: {i1: 1}, covariance: 5", "`covariance` stands beside the `start`"),
+        ("disturbance: {i1: 1}, process_noise: 5", "`process_noise` stands beside the `disturbance`"),
+        ("sensors: {v2: 1}, estimator: drem", "`estimator` stands beside `sensors`"),
+        ("sensors: {v2: 1}, bounds: {lower: 0}", "`bounds` stands beside `sensors`"),
+        ("gain: 1, filter: 1, gate: 9", "`gate` stands beside gains"),
+        ("sensors: {v2: 1}, gate: 0", "the limit of the gate must be positive"),
+        ("sensors: {v2: 1e200}", "out of range"),
+        ("sensors: {v2: 1}, start: {i1: 1e160}", "out of range"),
+    ] {
+        let (_, problems) = tuned(&format!("{CUK}observer: {{{section}}}\n{SCENARIO}"));
+        let found = problems.iter().any(|problem| problem.message.contains(message) && problem.help.is_some());
+        assert!(found, "{section}: {problems:?}");
+    }
+}
+
+#[test]
+fn a_static_regression_has_no_output_form() {
+    let plant = "
+model: level
+x: [a]
+y: [q]
+f_x: {a: -a}
+identities: [q - a]
+phi: [a]
+";
+    let (_, problems) = tuned(&format!("{plant}observer: {{form: output}}\nsimulation: {{initial: {{a: 1, q: 1}}}}"));
+    assert!(problems[0].message.contains("no regression of rates"), "{problems:?}");
+    let known = "observer: {sensors: {q: 0.1}, start: {a: 2}}\nsimulation: {step: 1, initial: {a: 1, q: 1}}";
+    let (settings, problems) = tuned(&format!("{plant}{known}"));
+    let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+    let [start, noise, sensors] = numbers(&settings);
+    assert!(!settings.output && close(&start, &[4.0]) && close(&sensors, &[0.1]), "{start:?} {sensors:?}");
+    // The identity lets the output drive the cascade, `z' = -q`.
+    assert!(close(&noise, &[0.01]), "{noise:?}");
+}
+
+/// A heat exchanger, whose phi has no left inverse at zero.
+pub(crate) const EXCHANGER: &str = "
+model: exchanger
+parameters: {V: 1, rc: 4}
+x: [Th, U]
+y: [Tc]
+u: [qh, qc, Thin, Tcin]
+assume: [U > 0, V > 0, rc > 0]
+f_x: {Th: qh/V*(Thin - Th) - U/(rc*V)*(Th - Tc), U: 0}
+f_y: {Tc: qc/V*(Tcin - Tc) + U/(rc*V)*(Th - Tc)}
+phi: [U, U*(Th + Tc)]
+";
+
+#[test]
+fn an_extension_starts_where_the_left_inverse_has_a_value() {
+    // Th = z2/z1 - Tc has no value at zero, and phi of a state that is zero is zero.
+    let start = |rest: &str| {
+        let (settings, problems) = tuned(&format!("{EXCHANGER}{rest}"));
+        let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+        settings.chi_0.iter().map(Rational::to_f64).collect::<Vec<_>>()
+    };
+    let gains = "observer: {gain: 1, filter: 1}\n";
+    let scenario =
+        "simulation: {step: 0.01, initial: {Th: 50, U: 3, Tc: 20}, control: {qh: 0.5, qc: 0.4, Thin: 60, Tcin: 15}}";
+    // Half of where the plant starts: U = 1.5, Th = 25.
+    assert_eq!(start(&format!("{gains}{scenario}")), [1.5, 67.5]);
+    // The same for known numbers, in whose extension the output stands first.
+    assert_eq!(start(scenario), [0.0, 1.5, 67.5]);
+    // Where nothing is said, a state of the domain at a distance of 1; what the author writes is what it is.
+    assert_eq!(start(gains), [1.0, 2.0]);
+    assert_eq!(start("observer: {gain: 1, filter: 1, extension: [0, 0]}\n"), [0.0, 0.0]);
+    // Half of it is not in this domain, twice is: U = 6.
+    let far = EXCHANGER.replace("assume: [", "assume: [Th > 40, ");
+    let (settings, _) = tuned(&format!("{far}{gains}{scenario}"));
+    assert_eq!(settings.unwrap().chi_0[0], Rational::from(6));
+}

@@ -1,0 +1,108 @@
+//! What an observer's numbers were derived from, and what they came to, in words.
+
+use serde::Serialize;
+
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+
+use super::kind::Kind;
+use super::magnitude::Deviations;
+use super::prediction::Prediction;
+
+/// What is known of sensors, start and disturbances, with what was derived of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Known {
+    /// What the observer is, in words.
+    pub observer: String,
+    /// Each kind of number with its values.
+    pub numbers: Vec<Numbers>,
+    /// Why no standard errors are predicted; none where they are.
+    pub unpredicted: Option<String>,
+}
+
+/// Numbers of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Numbers {
+    /// What they are.
+    pub what: String,
+    /// Whether nobody wrote them.
+    pub assumed: bool,
+    /// Names and values, with units.
+    pub values: Vec<Value>,
+}
+
+/// The value of a name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Value {
+    /// Of what.
+    pub name: String,
+    /// How much.
+    pub value: f64,
+    /// In what unit, if the model has one.
+    pub unit: Option<String>,
+}
+
+impl Known {
+    pub(super) fn new(
+        plant: &Plant,
+        model: &Model,
+        deviations: &Deviations,
+        (kind, rebased): (Kind, bool),
+        [covariance, noise]: [&[f64]; 2],
+    ) -> Self {
+        let arena = &plant.arena;
+        let x: Vec<_> = plant.x.iter().map(|state| state.symbol).collect();
+        let y: Vec<_> = plant.y.iter().map(|output| output.symbol).collect();
+        let named = |symbols: &[pebo_cas::Symbol], values: &[f64], per: &str| -> Vec<Value> {
+            let value = |(symbol, value): (&pebo_cas::Symbol, &f64)| Value {
+                name: arena.name(*symbol),
+                value: *value,
+                unit: plant.units.get(symbol).map(|unit| format!("{unit}{per}")),
+            };
+            symbols.iter().zip(values).map(value).collect()
+        };
+        let coordinates = |values: &[f64]| -> Vec<Value> {
+            let value =
+                |(place, value): (usize, &f64)| Value { name: format!("z{}", place + 1), value: *value, unit: None };
+            values.iter().enumerate().map(value).collect()
+        };
+        let written = &model.observer;
+        let lacks = |symbols: &[pebo_cas::Symbol], entries: &[pebo_design::model::Entry<_>]| {
+            let known = |symbol| {
+                entries.iter().any(|entry: &pebo_design::model::Entry<_>| entry.name.value == arena.name(symbol))
+            };
+            !symbols.iter().all(|symbol| known(*symbol))
+        };
+        let root = " per root second";
+        let mut drifts = named(&x, &deviations.disturbance, root);
+        drifts.extend(named(&y, &deviations.of_outputs, root).into_iter().filter(|drift| drift.value > 0.0));
+        let numbers = |what: &str, assumed, values| Numbers { what: what.to_owned(), assumed, values };
+        let observer = match (kind, rebased) {
+            (Kind::Output, _) => "output form, a Kalman filter of the transformed plant",
+            (Kind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
+            (Kind::Sampled, false) => "least squares of samples",
+            (Kind::Filtered, _) => "least squares through a filter",
+        };
+        let silent = written.known().is_none_or(|(key, _)| key == "form");
+        Self {
+            observer: observer.to_owned(),
+            numbers: vec![
+                numbers("sensors", lacks(&y, &written.sensors), named(&y, &deviations.sensors, "")),
+                numbers("start", lacks(&x, &written.start), named(&x, &deviations.start, "")),
+                numbers("disturbance", silent, drifts),
+                numbers("covariance", false, coordinates(covariance)),
+                numbers("process noise", false, coordinates(noise)),
+            ],
+            unpredicted: None,
+        }
+    }
+
+    /// The same with the reason for which nothing is predicted, if there is one.
+    pub(super) fn predicted(self, prediction: &Prediction) -> Self {
+        let unpredicted = match prediction {
+            Prediction::None(reason) => Some((*reason).to_owned()),
+            Prediction::Covariance | Prediction::Noise(_) => None,
+        };
+        Self { unpredicted, ..self }
+    }
+}

@@ -1,0 +1,196 @@
+//! Why a run did not converge, and what mends it.
+//!
+//! In: what a run came to, and in what its plant and sensors differ from what the model says, or that they were recorded.
+//! Out: a diagnostic, if an estimate of the model's observer has not settled, or if a recording without measured states
+//! does not determine the unknown. What is said is what was seen: refused samples come first, then data
+//! that do not determine the unknown, then an error that still falls, then one that rests.
+
+use pebo_design::source::{Code, Diagnostic, Span, listed};
+
+use super::{Rated, Summary, short};
+use crate::observe::excitation::Excitation;
+use crate::observe::setup::Estimator;
+use crate::score::SETTLED;
+use crate::timing::real;
+
+/// More samples refused than this share explain by themselves that an estimate does not settle.
+const REFUSED: f64 = 0.1;
+
+/// An error that is smaller than this part of what it was a quarter of the run before still falls. Of the noise of a
+/// sensor, a quarter of a run has rather many samples: what is left is well within a tenth of its root mean square.
+const FALLING: f64 = 0.9;
+
+/// Where the samples of a run are from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Origin<'a> {
+    /// A simulation, with that in which its plant and sensors differ from what the model says, and the first state that is
+    /// given a course, if no parameter is.
+    Simulated(&'a [&'static str], Option<&'a str>),
+    Recorded,
+}
+
+/// What there is to say of a run that did not converge; `where_said` is the section that describes it.
+pub(crate) fn advise(
+    summary: &Summary,
+    (estimator, origin): (&Estimator, Origin<'_>),
+    where_said: Span,
+) -> Option<Diagnostic> {
+    let unsettled = summary.unsettled();
+    let Some(slowest) = unsettled.iter().max_by(|a, b| a.score.trend.total_cmp(&b.score.trend)) else {
+        let is_blind = matches!(origin, Origin::Recorded) && summary.estimates.is_empty();
+        let message = "the recording does not determine all estimates";
+        return unexcited(Diagnostic::warning(Code::NotConverged, where_said, message), summary).filter(|_| is_blind);
+    };
+    let names = listed(unsettled.iter().map(|rated| rated.estimate.state.as_str()));
+    let message = match unsettled.len() {
+        1 => format!("the estimate of {names} has not settled to 1 % within {} s", short(summary.end)),
+        _ => format!("the estimates of {names} have not settled to 1 % within {} s", short(summary.end)),
+    };
+    let diagnostic = Diagnostic::warning(Code::NotConverged, where_said, message);
+    let raised = match estimator {
+        _ if summary.known.is_some() => "`start` or `disturbance` under `observer`",
+        Estimator::LeastSquares(_) => "`covariance`",
+        Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => "`gain`",
+    };
+    let faster = match origin {
+        Origin::Simulated(..) => format!("raise {raised}, or simulate longer"),
+        Origin::Recorded => format!("raise {raised}, or record longer"),
+    };
+    let (refused, trend) = (summary.faults.count(), slowest.score.trend);
+    Some(if real(refused) > REFUSED * real(summary.samples + 1) {
+        let reason =
+            summary.faults.iter().max_by_key(|(_, count)| *count).map(|(reason, _)| reason).unwrap_or_default();
+        diagnostic
+            .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples + 1))
+            .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
+    } else if let Some(rated) = unsettled.iter().find(|rated| rated.outside) {
+        let state = &rated.estimate.state;
+        diagnostic
+            .note(format!(
+                "`{state}` itself is beyond the bounds of `within` in this run, and its estimate is kept within them"
+            ))
+            .help(format!("widen the bounds of `{state}` under `within`, or start the plant within them"))
+    } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
+        diagnostic
+    } else if let Some((rated, steps, step)) = unsettled.iter().find_map(|rated| steps_away(rated)) {
+        let state = &rated.estimate.state;
+        let count = if steps.abs() > 1.0 { format!("{} steps", steps.abs()) } else { "one step".to_owned() };
+        diagnostic
+            .note(format!("the estimate of `{state}` is {count} of {} off, which the outputs do not show", short(step)))
+            .help(format!(
+                "if `{state}` is an angle, declare its period under `angles`: such an error is then none; if not, measure \
+                 another output"
+            ))
+    } else if trend < FALLING {
+        diagnostic
+            .note(format!(
+                "the error of `{}` still falls: it is {} % of what it was a quarter of the run before",
+                slowest.estimate.state,
+                short(100.0 * trend)
+            ))
+            .help(faster)
+    } else {
+        let note = format!(
+            "the error of `{}` hardly falls any more: its root mean square at the end is {}",
+            slowest.estimate.state,
+            short(slowest.score.rms)
+        );
+        match (origin, explained(slowest)) {
+            (Origin::Recorded, _) => diagnostic.note(note).help(
+                "compare parameters and offsets of sensors with those of the bench: what they err by stays in the \
+                 estimate; the sensor that it is compared with counts too",
+            ),
+            (Origin::Simulated(..), Some(expected)) => diagnostic
+                .note(format!(
+                    "{note}, no more than the {} that the observer expects of its sensors and disturbances",
+                    short(expected)
+                ))
+                .help("choose a lower `disturbance` under `observer`, which averages more samples, or a better sensor"),
+            (Origin::Simulated([], _), None) => {
+                let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
+                diagnostic.note(note).help(help)
+            }
+            (Origin::Simulated(departures @ [first, ..], moved), None) => {
+                let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
+                let help = match moved {
+                    Some(state) if *first == "plant" => follow(state, (estimator, summary.known.is_some())),
+                    _ => mend(first, summary.known.is_some()).to_owned(),
+                };
+                diagnostic.note(note).help(help)
+            }
+        }
+    })
+}
+
+/// The standard error that the observer expects, if the errors are no larger: then nothing else is wrong.
+fn explained(rated: &Rated) -> Option<f64> {
+    rated.expected.filter(|expected| rated.score.rms <= *expected)
+}
+
+/// The number of steps that an estimate rests away from its state, and their length, where the outputs show the state only
+/// up to multiples of these.
+fn steps_away(rated: &Rated) -> Option<(&Rated, f64, f64)> {
+    let (step, error) = (rated.step?.abs(), rated.score.last);
+    let count = (error / step).round();
+    // What an angle has settled to, and on average too: it was no moment on the way.
+    let rests = |error: f64| (error.abs() - count.abs() * step).abs() <= SETTLED * step;
+    (count != 0.0 && rests(error) && rests(rated.score.rms)).then_some((rated, count, step))
+}
+
+/// With what there is to say of data that do not determine the unknown.
+fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
+    match &summary.excitation {
+        Excitation::Converged { .. } => None,
+        Excitation::NotYet { weakest } => Some(
+            diagnostic
+                .note(format!("excitation: the data never told `{weakest}` apart from the rest of the unknown"))
+                .help(
+                    "let inputs or set points move more, or longer: the verdict on identifiability says which motions \
+                     it needs",
+                ),
+        ),
+        Excitation::Lost { since, weakest } => {
+            let since = short(*since);
+            Some(
+                diagnostic
+                    .note(format!(
+                        "excitation: from t = {since} s on nothing new was said of `{weakest}`, which was forgotten"
+                    ))
+                    .help("lower `forgetting`, or let inputs or set points go on moving"),
+            )
+        }
+    }
+}
+
+/// What helps an observer to follow a state that moves where the model has it constant.
+fn follow(state: &str, (estimator, known): (&Estimator, bool)) -> String {
+    let setting = match estimator {
+        _ if known => format!("raise `disturbance` of `{state}` under `observer`"),
+        Estimator::LeastSquares(_) => format!("raise `process_noise` of `{state}`, or `forgetting`"),
+        Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } => "raise `gain`".to_owned(),
+        Estimator::Drem { .. } => "raise `gain` and `forgetting`".to_owned(),
+    };
+    format!(
+        "{setting}, so that the observer follows where `{state}` moves; what moves all the time it follows with a lag"
+    )
+}
+
+/// What helps against the first of the things in which a plant and its sensors differ from the model; observers of known
+/// numbers have no filter and no gain to choose.
+fn mend(departure: &str, known: bool) -> &'static str {
+    match departure {
+        "plant" => "measure the parameter that differs, or make it a state with rate 0, which is then estimated too",
+        "bias" => "calibrate the sensor, or make its offset a state with rate 0, which is then estimated too",
+        "delay" if known => "give the observer the inputs as late as the outputs, or raise `sensors` under `observer`",
+        "delay" => "give the observer the inputs as late as the outputs, or choose a lower `filter` or `gain`",
+        "jitter" => {
+            "give the observer the time that has passed in place of the period, as `step` takes it in the emitted code"
+        }
+        "quantisation" if known => "choose a finer converter, or a lower `disturbance`, which averages more samples",
+        "quantisation" => "choose a finer converter, or a lower `filter` or `gain`, which averages more samples",
+        "every" => "let that output be sampled more often, or simulate longer",
+        "dropped" => "choose a shorter `step`, so that less happens in a gap",
+        _ if known => "choose a lower `disturbance`, which averages more samples, or a better sensor",
+        _ => "choose a lower `filter` or `gain`, which averages more samples, or a better sensor",
+    }
+}

@@ -1,0 +1,227 @@
+//! What a run comes to, for people and for programs.
+//!
+//! In: the scores of the estimates, what the data were good for, and the samples that were lost. Out: the same together,
+//! and as a table in text. Knows nothing of where samples are from.
+
+pub(crate) mod advice;
+
+use serde::Serialize;
+
+use super::score::Score;
+use crate::observe::certainty::Certainty;
+use crate::observe::excitation::Excitation;
+use crate::score::faults::Faults;
+use crate::settings::{Known, Numbers, Value};
+
+/// What a run comes to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// When it ended, in seconds.
+    pub end: f64,
+    /// The samples after the first.
+    pub samples: u64,
+    /// The estimates of the model's observer, then those of each baseline.
+    pub estimates: Vec<Rated>,
+    /// What the data of the model's observer were good for.
+    pub excitation: Excitation,
+    /// The samples that the model's observer refused.
+    pub faults: Faults,
+    /// The samples that never arrived.
+    pub dropped: u64,
+    /// The samples that were taken without some of their outputs.
+    pub parted: u64,
+    /// How often the model's observer began anew after a gap that was too long.
+    pub restarts: u64,
+    /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right; none
+    /// where the observer does not know its sensors.
+    pub surprise: Option<f64>,
+    /// Whether estimates are known as well as `wanted`; none where nothing is wanted.
+    pub certainty: Option<Certainty>,
+    /// What the settings of the model's observer were derived from; none where the author chose them.
+    pub known: Option<Known>,
+}
+
+/// The estimate of a state, with how good it was.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rated {
+    /// Whose estimate, and of what.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+    /// How good it was.
+    #[serde(flatten)]
+    pub score: Score,
+    /// The standard error that the observer expects, from when the errors are told on; none where it does not know.
+    pub expected: Option<f64>,
+    /// What the outputs show the state up to multiples of, where it is not declared an angle; none where they show it.
+    pub step: Option<f64>,
+    /// Whether the state itself was beyond the bounds that `within` says of it, where that is known.
+    pub outside: bool,
+}
+
+/// Whose estimate, and of what.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Estimate {
+    /// The baseline; none for the model's own observer.
+    pub baseline: Option<String>,
+    /// The state.
+    pub state: String,
+    /// Its unit, if the model has one for it.
+    pub unit: Option<String>,
+}
+
+impl Estimate {
+    /// The state's name behind its baseline's.
+    pub fn name(&self) -> String {
+        match &self.baseline {
+            Some(baseline) => format!("{baseline}.{}", self.state),
+            None => self.state.clone(),
+        }
+    }
+
+    /// The name with the unit.
+    pub(super) fn heading(&self) -> String {
+        let unit = self.unit.as_ref().map_or_else(String::new, |unit| format!(" in {unit}"));
+        self.name() + &unit
+    }
+}
+
+impl Summary {
+    /// The states whose estimates by the model's own observer did not settle.
+    pub fn unsettled(&self) -> Vec<&Rated> {
+        let own = self.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
+        own.filter(|rated| rated.score.settled.is_none()).collect()
+    }
+
+    /// A table of the estimates, and a line each for excitation, faults and lost samples.
+    pub fn text(&self) -> String {
+        let mut text = if self.estimates.is_empty() { String::new() } else { table(&self.rows()) };
+        for line in self.lines() {
+            text.extend([line.as_str(), "\n"]);
+        }
+        text
+    }
+
+    /// The table of the estimates with its headings; a column that nobody has anything in is empty.
+    pub fn rows(&self) -> Vec<[String; 7]> {
+        let headings =
+            ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then", "expected"];
+        let mut rows = vec![headings.map(str::to_owned)];
+        for Rated { estimate, score, expected, .. } in &self.estimates {
+            let settled = match score.settled {
+                Some(t) => format!("{} s", short(t)),
+                None => "no".to_owned(),
+            };
+            let errors = [score.first, score.last].map(short);
+            let [first, last] = errors;
+            let expected = expected.map_or_else(|| "-".to_owned(), short);
+            rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst), expected]);
+        }
+        // A column that nobody has anything in is none.
+        if self.estimates.iter().all(|rated| rated.expected.is_none()) {
+            for row in &mut rows {
+                row[6].clear();
+            }
+        }
+        rows
+    }
+
+    /// What there is to say beside the table.
+    pub fn lines(&self) -> Vec<String> {
+        // The first is one of them too.
+        let all = self.samples + 1;
+        let mut lines = Vec::new();
+        let mut line = |name: &str, what: &str| lines.push(format!("{name}: {what}"));
+        match &self.excitation {
+            Excitation::NotYet { weakest } => line("excitation", &format!("not yet, `{weakest}` is not determined")),
+            Excitation::Converged { since } => line("excitation", &format!("enough from t = {} s on", short(*since))),
+            Excitation::Lost { since, weakest } => {
+                line("excitation", &format!("lost at t = {} s, `{weakest}` has been forgotten", short(*since)));
+            }
+        }
+        match &self.certainty {
+            None => {}
+            Some(Certainty::NotYet { weakest, error: Some(error), wanted }) => line(
+                "certainty",
+                &format!(
+                    "not yet, `{weakest}` is known to {} at the end, where {} is wanted",
+                    short(*error),
+                    short(*wanted)
+                ),
+            ),
+            Some(Certainty::NotYet { error: None, .. }) => {
+                line("certainty", "not known, as no standard error is predicted");
+            }
+            Some(Certainty::Converged { since }) => {
+                line("certainty", &format!("as wanted from t = {} s on", short(*since)));
+            }
+            Some(Certainty::Lost { since, weakest }) => {
+                line(
+                    "certainty",
+                    &format!("lost at t = {} s, `{weakest}` is no longer known as wanted", short(*since)),
+                );
+            }
+        }
+        if let Some(surprise) = self.surprise {
+            line("innovation", &format!("normalised square {} on average, where 1 is expected", short(surprise)));
+        }
+        if let Some(reason) = self.known.as_ref().and_then(|known| known.unpredicted.as_ref()) {
+            line("expected", &format!("no standard error is predicted: {reason}"));
+        }
+        if self.parted > 0 {
+            line("in part", &format!("{} of {all} samples lack an output", self.parted));
+        }
+        if self.dropped > 0 {
+            line("dropped", &format!("{} of {all} samples", self.dropped));
+        }
+        if self.restarts > 0 {
+            let often = if self.restarts == 1 { "once".to_owned() } else { format!("{} times", self.restarts) };
+            line("begun anew", &format!("{often}, after more than `gap` without a sample"));
+        }
+        for (reason, count) in self.faults.iter() {
+            line("refused", &format!("{count} of {all} samples: {reason}"));
+        }
+        if let Some(known) = &self.known {
+            line("observer", &known.observer);
+            for Numbers { what, assumed, values } in &known.numbers {
+                let value = |value: &Value| {
+                    let unit = value.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+                    format!("{} {}{unit}", value.name, short(value.value))
+                };
+                let values = values.iter().map(value).collect::<Vec<_>>().join(", ");
+                line(&format!("  {what}"), &(values + if *assumed { " (assumed)" } else { "" }));
+            }
+        }
+        lines
+    }
+}
+
+/// Three digits.
+pub(super) fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e4).contains(&magnitude) {
+        // Of each power of ten the decimals that leave three digits.
+        let decimals = [1000.0, 100.0, 10.0, 1.0, 0.1, 0.01, 0.0].iter().position(|power| magnitude >= *power);
+        format!("{value:.0$}", decimals.unwrap_or_default().saturating_sub(1))
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// Columns beside one another: the first to the left, the others to the right.
+pub(super) fn table<const N: usize>(rows: &[[String; N]]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default();
+    let widths: [usize; N] = std::array::from_fn(width);
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(widths).enumerate().map(|(column, (cell, width))| match column {
+            0 => format!("{cell:<width$}"),
+            _ => format!("   {cell:>width$}"),
+        });
+        let line: String = cells.collect();
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}

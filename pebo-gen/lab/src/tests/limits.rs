@@ -1,0 +1,144 @@
+//! What samples may be, and how long the observer waits for one.
+
+use crate::{Certainty, Overrides};
+
+use super::{SPRING, resolve, run, with};
+
+/// The spring from rest's place, so that its first sample is within limits; q is sin(2 t).
+fn spring(observer: &str, simulation: &str) -> String {
+    let moving = with(SPRING, "initial: {v: 0, q: 1}", &format!("initial: {{v: 2, q: 0}}{simulation}"));
+    with(&moving, "filter: 5", &format!("filter: 5{observer}"))
+}
+
+#[test]
+fn a_sample_off_its_range_is_refused_and_bridged() {
+    let trace = run(&spring(", limits: {q: [-0.9, 0.9]}", ""), &Overrides::default());
+    let summary = trace.summary();
+    let refused: Vec<(&str, u64)> = summary.faults.iter().collect();
+    // |sin| > 0.9 on 0.902 rad of each half turn: six of them in 20 rad, 45.1 samples each, and 1.5 at the end; a sample to
+    // either side of each of the 13 crossings.
+    assert!(matches!(refused[..], [(reason, 266..=279)] if reason.contains("output sample 0")), "{refused:?}");
+    assert_eq!((summary.restarts, summary.dropped), (0, 0));
+    // A gap of 0.45 s, a seventh of the period, is bridged by a straight line: the estimate errs by some percent of 2 m/s.
+    assert!(summary.estimates[0].score.rms < 0.1, "{}", summary.text());
+    // No number of them ends the run, also at its start.
+    let low = run(&spring(", limits: {q: [-2, -0.1]}", "").replace("step: 0.01", "step: 1e-3"), &Overrides::default());
+    let summary = low.summary();
+    assert!(summary.faults.count() > 5000, "{}", summary.text());
+    // The first of all samples is one too.
+    assert!(summary.text().contains(" of 10001 samples: output sample 0"), "{}", summary.text());
+    // Limits that nothing reaches change nothing.
+    let wide = run(&spring(", limits: {q: [-2, 2]}, gap: 1", ""), &Overrides::default());
+    assert_eq!(wide.csv(), run(&spring("", ""), &Overrides::default()).csv());
+}
+
+#[test]
+fn after_a_long_gap_the_observer_begins_anew() {
+    // Two samples in a row are lost about every 25th time: the next comes after 30 ms.
+    let text = spring(", gap: 0.025", ", dropped: 0.2");
+    let summary = run(&text, &Overrides::default()).summary().clone();
+    assert!((15..70).contains(&summary.restarts), "{}", summary.text());
+    assert!(summary.text().contains("begun anew: "), "{}", summary.text());
+    assert_eq!(summary.faults.count(), 0);
+    let patient = run(&spring(", gap: 1", ", dropped: 0.2"), &Overrides::default());
+    assert_eq!(patient.summary().restarts, 0);
+    assert_eq!(patient.csv(), run(&spring("", ", dropped: 0.2"), &Overrides::default()).csv());
+}
+
+#[test]
+fn limits_leave_missing_outputs_to_the_observer() {
+    let text = "
+model: m
+x: [p]
+y: [q, r]
+f_x: {p: 0}
+f_y: {q: p, r: p}
+phi: [p]
+observer: {sensors: {q: 0.01, r: 0.01}, limits: {q: [1, 50], r: [1, 50]}}
+simulation: {duration: 5, step: 0.01, initial: {p: 1, q: 2, r: 2}, every: {r: 10}}
+";
+    let summary = run(text, &Overrides::default()).summary().clone();
+    assert_eq!((summary.parted, summary.faults.count(), summary.restarts), (450, 0, 0), "{}", summary.text());
+}
+
+/// A mass on which an unknown constant force acts, with its speed measured.
+const FORCE: &str = "
+model: force
+x: [F]
+y: [v]
+u: [a]
+f_x: {F: 0}
+f_y: {v: F + a}
+phi: [F]
+observer: {sensors: {v: 0.01}, start: {F: 10}, disturbance: {F: 0.1}}
+simulation: {duration: 10, step: 0.01, initial: {F: 3, v: 0}, control: {a: -v}, noise: {v: 0.01}}
+";
+
+#[test]
+fn certainty_is_told_beside_what_is_wanted() {
+    let line = |wanted: &str| {
+        let text = with(FORCE, "disturbance: {F: 0.1}", &format!("disturbance: {{F: 0.1}}, wanted: {{F: {wanted}}}"));
+        let text = run(&text, &Overrides::default()).summary().text();
+        text.lines().find(|line| line.starts_with("certainty: ")).map(str::to_owned)
+    };
+    // What such sensor and drift come to: P = q sqrt(r dt) of the pair (v, F) is about 0.04^2.
+    assert!(line("0.2").is_some_and(|line| line.starts_with("certainty: as wanted from t = 0.")), "{:?}", line("0.2"));
+    assert!(line("1e-3").is_some_and(|line| line.contains("not yet, `F` is known to 0.0")), "{:?}", line("1e-3"));
+    assert_eq!(run(FORCE, &Overrides::default()).summary().certainty, None);
+}
+
+#[test]
+fn certainty_is_lost_while_no_sample_is_taken() {
+    // v goes to 3 - 5 up to 5 s, and to 3 + 5 then: its sensor ends at 6.
+    let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.1}, wanted: {F: 0.05}, limits: {v: [-10, 6]}");
+    let text = with(&text, "a: -v", "a: -v + 5*tanh(100*(t - 5))");
+    let summary = run(&text, &Overrides::default()).summary().clone();
+    // v > 6 after 5 + log(5) s; F was known to 0.04, and drifts to 0.07 within 0.4 s.
+    let Some(Certainty::Lost { since, weakest }) = &summary.certainty else { panic!("{}", summary.text()) };
+    assert!(weakest == "F" && (6.6..7.5).contains(since), "{}", summary.text());
+}
+
+#[test]
+fn bounds_that_exclude_the_truth_are_told_and_leave_the_standard_error() {
+    let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.1}, within: {lower: 5, upper: 6}");
+    let scenario = resolve(&text, &Overrides::default()).unwrap();
+    let trace = scenario.run().unwrap();
+    let (summary, free) = (trace.summary(), run(FORCE, &Overrides::default()));
+    let advice = scenario.advise(summary).unwrap();
+    assert!(advice.notes[0].contains("`F` itself is beyond the bounds of `within`"), "{advice:?}");
+    assert!(summary.estimates[0].outside && !free.summary().estimates[0].outside);
+    // An estimate that is moved to a bound is known no better: over the last tenth, as it never settles.
+    let last = |trace: &crate::Trace| trace.summary().estimates[0].expected.unwrap();
+    assert!((last(&trace) / last(&free) - 1.0).abs() < 0.2, "{} {}", last(&trace), last(&free));
+}
+
+#[test]
+fn a_state_that_moves_is_followed_by_a_disturbance() {
+    let text = with(FORCE, "initial: {F: 3, v: 0}", "initial: {v: 0}, plant: {F: 3*sin(2*pi*t)}");
+    let text = with(&text, "{v: 0.01}", "{v: 0.001}");
+    let text = with(&text, "disturbance: {F: 0.1}", "disturbance: {F: 0.001}");
+    let scenario = resolve(&text, &Overrides::default()).unwrap();
+    let trace = scenario.run().unwrap();
+    let help = scenario.advise(trace.summary()).unwrap().help.unwrap();
+    assert!(help.contains("raise `disturbance` of `F`") && !help.contains("parameter"), "{help}");
+    // And so it is: of 2.1 rms a twentieth is lag, behind (3/(0.001^2*0.01)^(1/2))^(1/2) rad/s, and an eighth noise.
+    let rms = |text: &str| run(text, &Overrides::default()).summary().estimates[0].score.rms;
+    let mended = with(&text, "disturbance: {F: 0.001}", "disturbance: {F: 3}");
+    assert!(rms(&mended) < 0.3 * rms(&text), "{} {}", rms(&mended), rms(&text));
+}
+
+#[test]
+fn time_in_a_plant_is_an_input_as_one_that_is_declared() {
+    // Of a force that hardly drifts: to less than a hundredth.
+    let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.001}");
+    let text = with(&text, "v: F + a", "v: F + a + sin(t)");
+    let trace = run(&text, &Overrides::default());
+    assert!(trace.summary().unsettled().is_empty(), "{}", trace.summary().text());
+    let declared = with(&with(&text, "sin(t)", "sin(time)"), "u: [a]", "u: [a, time]");
+    let declared = with(&declared, "control: {a: -v}", "control: {a: -v, time: t + 0.01/2}");
+    let other = run(&declared, &Overrides::default());
+    let [found, expected] = [&trace, &other].map(|trace| trace.column("F_hat").unwrap());
+    // The plant with the declared input has its steps, each of which is off by less than dt^3 s^-2/24 m/s; the noise is one.
+    let apart = found.iter().zip(&expected).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-4, "{apart}");
+}

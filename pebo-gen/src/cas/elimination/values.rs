@@ -1,8 +1,0 @@
-//! What equations make of the symbols that are solved for.
-
-use std::collections::BTreeMap;
-
-use crate::cas::expr::{Expr, Symbol};
-
-/// Values of symbols, in those that are free.
-pub(super) type Values = BTreeMap<Symbol, Expr>;
