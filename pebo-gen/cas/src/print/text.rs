@@ -48,7 +48,7 @@ impl Arena {
     /// that, the text says no more than how long it is.
     ///
     /// ```
-    /// use pebo_gen::cas::Arena;
+    /// use pebo_cas::Arena;
     ///
     /// let arena = Arena::new();
     /// let [theta, c] = ["theta1", "C"].map(|name| arena.of_symbol(arena.symbol(name)));

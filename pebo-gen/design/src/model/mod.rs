@@ -48,7 +48,7 @@ use crate::source::{Diagnostic, Diagnostics, Source};
 /// reader says.
 ///
 /// ```
-/// let schema: serde_json::Value = serde_json::from_str(&pebo_gen::model::json_schema()).expect("JSON");
+/// let schema: serde_json::Value = serde_json::from_str(&pebo_design::model::json_schema()).expect("JSON");
 /// assert!(schema["properties"]["f_x"]["description"].as_str().is_some_and(|about| about.contains("derivative")));
 /// ```
 #[cfg(feature = "yaml")]

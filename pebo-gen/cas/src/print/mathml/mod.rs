@@ -85,7 +85,7 @@ impl Arena {
     /// long it is.
     ///
     /// ```
-    /// use pebo_gen::cas::Arena;
+    /// use pebo_cas::Arena;
     ///
     /// let arena = Arena::new();
     /// let [theta, c] = ["theta1", "C"].map(|name| arena.of_symbol(arena.symbol(name)));
