@@ -23,11 +23,7 @@ fn main() -> Result<(), BuildError> {
             let (model, type_name) = (&built.model, &built.type_name);
             writeln!(root, "#[path = {:?}]\npub mod {model}_{name};", built.path.display().to_string())
                 .expect("a string");
-            writeln!(
-                table,
-                "    ({model:?}, {name:?}, |point| crate::evaluate(&{model}_{name}::{type_name}::new(&crate::defaults()), point)),"
-            )
-            .expect("a string");
+            writeln!(table, "    ({model:?}, {name:?}, evaluated!({model}_{name}::{type_name})),").expect("a string");
         }
     }
     table.push_str("];\n");

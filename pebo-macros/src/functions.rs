@@ -6,7 +6,7 @@ use pebo_gen::emit::Scalar;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 use syn::ext::IdentExt as _;
-use syn::{Fields, Item, ItemFn, ItemMod, ItemStruct, Visibility};
+use syn::{Fields, Item, ItemMod, ItemStruct, Visibility};
 
 /// What the functions are written for.
 pub(crate) struct Functions<'a> {
@@ -17,18 +17,15 @@ pub(crate) struct Functions<'a> {
 }
 
 impl Functions<'_> {
-    /// `h`, `phi_0`, `phi_1` and `phi_left`, but for those that the module has already; and a use of the author's
+    /// `h`, `phi_0`, `phi_1` and `phi_left`, but for names that the module has already; and a use of the author's
     /// functions, which nothing but the macro may call.
     pub(crate) fn tokens(&self) -> TokenStream {
-        let names = ["h", "phi_0", "phi_1", "phi_left"];
-        let bodies = [self.h(), self.phi_0(), self.phi_1(), self.phi_left()];
-        let added = names.into_iter().zip(bodies).filter(|(name, _)| self.function(name).is_none());
-        let added: Vec<(&str, TokenStream)> = added.filter_map(|(name, body)| Some((name, body?))).collect();
+        let added = self.paper().into_iter().filter(|(name, _)| self.visibility_of(name).is_none());
+        let (names, added): (Vec<&str>, Vec<TokenStream>) = added.unzip();
         let own = ["f_x", "f_y", "g_y", "phi", "phi_left", "identities"]
             .into_iter()
-            .filter(|name| self.function(name).is_some());
-        let used = own.chain(added.iter().map(|(name, _)| *name)).map(|name| format_ident!("{name}"));
-        let added = added.iter().map(|(_, body)| body);
+            .filter(|name| self.visibility_of(name).is_some());
+        let used = own.chain(names).map(|name| format_ident!("{name}"));
         let conversions = self.conversions();
         quote! {
             #conversions
@@ -37,6 +34,49 @@ impl Functions<'_> {
                 #(let _ = #used;)*
             };
         }
+    }
+
+    /// The emitted functions for the author's structs. The left inverse is there if it is of all states.
+    fn paper(&self) -> Vec<(&'static str, TokenStream)> {
+        if self.structure("Y").is_none() {
+            return Vec::new();
+        }
+        let (type_name, visibility) = (self.type_name, self.visibility());
+        let scalar = format_ident!("{}", self.scalar.name());
+        let model = quote!(observer::#type_name::new(&observer::Parameters::default()));
+        let (signals, inputs) = match self.structure("U") {
+            Some(_) => (quote!(y: &Y, u: &U), quote!(u.into())),
+            None => (quote!(y: &Y), quote!(observer::U)),
+        };
+        let (start, extension) = match self.derived.derivation.class {
+            Class::Pebo => (quote!(chi), quote!([#scalar; NZ])),
+            // Its state is a vector and a matrix, which only the runtime moves as they belong together.
+            Class::Gpebo => (quote!(extension), quote!(&pebo_runtime::Fundamental<#scalar, NZ>)),
+        };
+        let h = quote! {
+            /// `h` of the cascade.
+            #visibility fn h(#signals) -> [#scalar; NZ] { #model.h(y.into(), #inputs) }
+        };
+        let phi_0 = quote! {
+            /// What is known in the regression.
+            #visibility fn phi_0(#start: #extension, #signals) -> [#scalar; NR] {
+                #model.phi_0(#start, y.into(), #inputs)
+            }
+        };
+        let phi_1 = quote! {
+            /// The factor of the unknown in the regression, by rows.
+            #visibility fn phi_1(#start: #extension, #signals) -> [[#scalar; NE]; NR] {
+                #model.phi_1(#start, y.into(), #inputs)
+            }
+        };
+        let phi_left = self.recovered().map(|_| {
+            quote! {
+                /// The left inverse: the states for which `phi(x, y) = z`.
+                #visibility fn phi_left(z: [#scalar; NZ], y: &Y) -> X { #model.phi_left(z, y.into()).into() }
+            }
+        });
+        let always = [("h", h), ("phi_0", phi_0), ("phi_1", phi_1)];
+        always.into_iter().chain(phi_left.map(|phi_left| ("phi_left", phi_left))).collect()
     }
 
     /// From the author's samples to the observer's, and from its estimates to the author's. The structures themselves
@@ -56,7 +96,7 @@ impl Functions<'_> {
         });
         let samples: TokenStream = samples.collect();
         let estimate = self.recovered().map(|entries| {
-            let scalar = self.scalar();
+            let scalar = format_ident!("{}", self.scalar.name());
             quote! {
                 impl From<observer::X> for X {
                     fn from(x: observer::X) -> Self {
@@ -80,82 +120,6 @@ impl Functions<'_> {
         Some(quote!(#(#fields: x[#places]),*))
     }
 
-    fn h(&self) -> Option<TokenStream> {
-        let (visibility, scalar, model) = (self.visibility(), self.scalar(), self.model());
-        let (signals, values) = self.signals()?;
-        Some(quote! {
-            /// `h` of the cascade.
-            #visibility fn h(#signals) -> [#scalar; NZ] {
-                pebo_runtime::Model::h(&#model, #values).into()
-            }
-        })
-    }
-
-    fn phi_0(&self) -> Option<TokenStream> {
-        let (visibility, scalar, model) = (self.visibility(), self.scalar(), self.model());
-        let (signals, values) = self.signals()?;
-        let (argument, extension) = self.extension();
-        Some(quote! {
-            /// What is known in the regression.
-            #visibility fn phi_0(#argument, #signals) -> [#scalar; NR] {
-                pebo_runtime::Model::phi_0(&#model, #extension, #values).into()
-            }
-        })
-    }
-
-    fn phi_1(&self) -> Option<TokenStream> {
-        let (visibility, scalar, model) = (self.visibility(), self.scalar(), self.model());
-        let (signals, values) = self.signals()?;
-        let (argument, extension) = self.extension();
-        Some(quote! {
-            /// The factor of the unknown in the regression, by rows.
-            #visibility fn phi_1(#argument, #signals) -> [[#scalar; NE]; NR] {
-                pebo_runtime::Model::phi_1(&#model, #extension, #values).transpose().into()
-            }
-        })
-    }
-
-    /// The left inverse, if it is of all states.
-    fn phi_left(&self) -> Option<TokenStream> {
-        let (visibility, scalar, model) = (self.visibility(), self.scalar(), self.model());
-        let entries = self.recovered()?;
-        let outputs = self.vector("Y", &format_ident!("y"))?;
-        Some(quote! {
-            /// The left inverse: the states for which `phi(x, y) = z`.
-            #visibility fn phi_left(z: [#scalar; NZ], y: &Y) -> X {
-                let z = pebo_runtime::nalgebra::SVector::from(z);
-                let x: [#scalar; NX] = pebo_runtime::Model::phi_left(&#model, &z, &#outputs).into();
-                X { #entries }
-            }
-        })
-    }
-
-    /// The arguments `y` and `u`, and the vectors that they are.
-    fn signals(&self) -> Option<(TokenStream, TokenStream)> {
-        let outputs = self.vector("Y", &format_ident!("y"))?;
-        Some(match self.structure("U") {
-            Some(_) => {
-                let inputs = self.vector("U", &format_ident!("u"))?;
-                (quote!(y: &Y, u: &U), quote!(&#outputs, &#inputs))
-            }
-            None => (quote!(y: &Y), quote!(&#outputs, &pebo_runtime::nalgebra::SVector::zeros())),
-        })
-    }
-
-    /// The argument for the dynamic extension, and the extension that it is.
-    fn extension(&self) -> (TokenStream, TokenStream) {
-        let scalar = self.scalar();
-        match self.derived.derivation.class {
-            Class::Pebo => {
-                let start = quote!(pebo_runtime::nalgebra::SVector::from(chi));
-                let new = quote!(<pebo_runtime::Integrator<#scalar, NZ> as pebo_runtime::Extension<#scalar, NZ>>::new);
-                (quote!(chi: [#scalar; NZ]), quote!(&#new(#start)))
-            }
-            // Its state is a vector and a matrix, which only the runtime moves as they belong together.
-            Class::Gpebo => (quote!(extension: &pebo_runtime::Fundamental<#scalar, NZ>), quote!(extension)),
-        }
-    }
-
     fn vector(&self, letter: &str, argument: &Ident) -> Option<TokenStream> {
         let fields = fields(self.structure(letter)?);
         Some(if fields.is_empty() {
@@ -165,23 +129,16 @@ impl Functions<'_> {
         })
     }
 
-    fn model(&self) -> TokenStream {
-        let type_name = self.type_name;
-        quote!(observer::#type_name::new(&observer::Parameters::default()))
-    }
-
-    fn scalar(&self) -> Ident {
-        format_ident!("{}", self.scalar.name())
-    }
-
     /// As visible as the author's transform.
     fn visibility(&self) -> &Visibility {
-        self.function("phi").or_else(|| self.function("f_x")).map_or(&Visibility::Inherited, |item| &item.vis)
+        self.visibility_of("phi").or_else(|| self.visibility_of("f_x")).unwrap_or(&Visibility::Inherited)
     }
 
-    fn function(&self, name: &str) -> Option<&ItemFn> {
+    /// Of the function or constant of this name, if there is one.
+    fn visibility_of(&self, name: &str) -> Option<&Visibility> {
         self.items().find_map(|item| match item {
-            Item::Fn(item) if item.sig.ident == name => Some(item),
+            Item::Fn(item) if item.sig.ident == name => Some(&item.vis),
+            Item::Const(item) if item.ident == name => Some(&item.vis),
             _ => None,
         })
     }

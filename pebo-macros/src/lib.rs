@@ -23,7 +23,7 @@ use syn::{Error, Item, LitStr};
 ///
 /// - the module `observer`, which `pebo-gen` would emit for the model, and its items: the model's type, named like
 ///   the module in camel case, `Parameters`, `Observer` and the sizes;
-/// - `h`, `phi_0`, `phi_1` and, unless it is given, `phi_left` as functions of the module's structs;
+/// - `h`, `phi_0`, `phi_1` and `phi_left` as functions of the module's structs, but for names that it has already;
 /// - conversions by which `Observer::step` takes the module's `Y` and `U` as they are, and its estimate becomes an `X`.
 ///
 /// ```

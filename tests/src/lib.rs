@@ -2,7 +2,7 @@
 #![no_std]
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Extension as _, Model, Real};
+use pebo_runtime::{Extension as _, Fundamental, Integrator, Model, Real};
 
 /// Where to evaluate the functions of a model: values of each argument, as many as it takes.
 #[derive(Clone, Copy)]
@@ -17,7 +17,8 @@ pub struct Point<'a> {
     pub eta: &'a [f64],
     /// The coordinates of the transform.
     pub z: &'a [f64],
-    /// Where results go: `h`, `lambda`, `phi_0`, `phi_1` by rows, `theta`, `phi_left`.
+    /// Where results go: `h`, `lambda`, `phi_0`, `phi_1` by rows, `theta`, `phi_left`; behind `own` those of the model's own
+    /// functions.
     pub results: &'a dyn Fn(&str, usize, f64),
 }
 
@@ -39,14 +40,9 @@ pub fn evaluate<
 ) where
     M: Model<NX, NY, NU, NZ, NR, NE>,
 {
-    let chi = vector::<M::Scalar, NZ>(point.chi);
     let (y, u) = (vector::<M::Scalar, NY>(point.y), vector::<M::Scalar, NU>(point.u));
-    let extension = M::Extension::new(chi);
-    let report = |name: &str, values: &[M::Scalar]| {
-        for (index, value) in values.iter().enumerate() {
-            (point.results)(name, index, value.to_f64());
-        }
-    };
+    let extension = extension(model, point);
+    let report = |name: &str, values: &[M::Scalar]| report(point, name, values);
     report("h", model.h(&y, &u).as_slice());
     report("lambda", model.lambda(&y, &u).transpose().as_slice());
     report("phi_0", model.phi_0(&extension, &y, &u).as_slice());
@@ -61,12 +57,79 @@ fn rows<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> S
     matrix.transpose()
 }
 
+/// The extension of a model at its start.
+fn extension<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>(
+    _model: &M,
+    point: Point<'_>,
+) -> M::Extension
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+{
+    M::Extension::new(vector(point.chi))
+}
+
+/// Hands over what a function returned.
+fn report<S: Real>(point: Point<'_>, name: &str, values: &[S]) {
+    for (index, value) in values.iter().enumerate() {
+        (point.results)(name, index, value.to_f64());
+    }
+}
+
 fn vector<S: Real, const N: usize>(values: &[f64]) -> SVector<S, N> {
-    SVector::from_fn(|row, _| Real::from_f64(values.get(row).copied().unwrap_or(f64::NAN)))
+    SVector::from(array::<S, N>(values))
+}
+
+fn array<S: Real, const N: usize>(values: &[f64]) -> [S; N] {
+    core::array::from_fn(|index| Real::from_f64(values.get(index).copied().unwrap_or(f64::NAN)))
+}
+
+/// An extension as the model's own functions take it.
+trait Given {
+    type Argument<'a>
+    where
+        Self: 'a;
+
+    fn given(&self) -> Self::Argument<'_>;
+}
+
+impl<S: Real, const NZ: usize> Given for Integrator<S, NZ> {
+    type Argument<'a> = [S; NZ];
+
+    fn given(&self) -> [S; NZ] {
+        (*self.chi()).into()
+    }
+}
+
+impl<S: Real, const NZ: usize> Given for Fundamental<S, NZ> {
+    type Argument<'a> = &'a Self;
+
+    fn given(&self) -> &Self {
+        self
+    }
+}
+
+/// Calls every function of a model at a point, and those that the paper names as its own.
+macro_rules! evaluated {
+    ($module:ident :: $model:ident) => {
+        |point| {
+            let model = $module::$model::new(&crate::defaults());
+            crate::evaluate(&model, point);
+            let extension = crate::extension(&model, point);
+            let y = $module::Y::from(crate::vector(point.y));
+            let u = $module::U::from(crate::vector(point.u));
+            crate::report(point, "own h", &model.h(y, u));
+            crate::report(point, "own phi_0", &model.phi_0(extension.given(), y, u));
+            crate::report(point, "own phi_1", model.phi_1(extension.given(), y, u).as_flattened());
+            let x = crate::SVector::from(model.phi_left(crate::array(point.z), y));
+            crate::report(point, "own phi_left", x.as_slice());
+        }
+    };
 }
 
 /// The emitted modules, and a table of them: model, scalar, evaluation.
 pub mod emitted {
+    use crate::Given as _;
+
     include!(concat!(env!("OUT_DIR"), "/emitted.rs"));
 }
 

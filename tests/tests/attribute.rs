@@ -1,6 +1,5 @@
 //! The attribute with the path of a model file gives what the command line gives.
 
-use pebo_runtime::Model as _;
 use pebo_runtime::nalgebra::SVector;
 use tests::emitted::{cuk_case2_f32, cuk_f64};
 
@@ -19,8 +18,9 @@ struct Converter;
 fn a_module_is_filled() {
     let attribute = cuk::Cuk::new(&cuk::Parameters::default());
     let emitted = cuk_f64::Cuk::new(&cuk_f64::Parameters::default());
-    let (y, u) = (SVector::from([10.0, -12.0]), SVector::from([0.68]));
-    assert_eq!(attribute.h(&y, &u), emitted.h(&y, &u));
+    let (y, u) = (cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.68 });
+    let (same_y, same_u) = (cuk_f64::Y { v2: 10.0, v4: -12.0 }, cuk_f64::U { d: 0.68 });
+    assert_eq!(SVector::from(attribute.h(y, u)), SVector::from(emitted.h(same_y, same_u)));
     assert_eq!(cuk::NX, cuk_f64::NX);
 }
 
@@ -28,16 +28,18 @@ fn a_module_is_filled() {
 fn a_struct_becomes_the_models_type() {
     let attribute = CukCase2::new(&cuk_case2::Parameters::default());
     let emitted = cuk_case2_f32::CukCase2::new(&cuk_case2_f32::Parameters::default());
-    let (y, u) = (SVector::from([10.0_f32, -1.0]), SVector::from([0.68_f32]));
-    assert_eq!(attribute.h(&y, &u), emitted.h(&y, &u));
+    let h = attribute.h(cuk_case2::Y { v2: 10.0, i3: -1.0 }, cuk_case2::U { d: 0.68 });
+    let same = emitted.h(cuk_case2_f32::Y { v2: 10.0, i3: -1.0 }, cuk_case2_f32::U { d: 0.68 });
+    assert_eq!(SVector::from(h), SVector::from(same));
 }
 
 #[test]
 fn a_struct_keeps_its_name() {
     let renamed = Converter::new(&converter::Parameters::default());
     let emitted = cuk_f64::Cuk::new(&cuk_f64::Parameters::default());
-    let (y, u) = (SVector::from([10.0, -12.0]), SVector::from([0.68]));
-    assert_eq!(renamed.h(&y, &u), emitted.h(&y, &u));
+    let h = renamed.h(converter::Y { v2: 10.0, v4: -12.0 }, converter::U { d: 0.68 });
+    let same = emitted.h(cuk_f64::Y { v2: 10.0, v4: -12.0 }, cuk_f64::U { d: 0.68 });
+    assert_eq!(SVector::from(h), SVector::from(same));
 }
 
 /// What cargo looks at when it decides whether to build again.

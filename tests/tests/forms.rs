@@ -79,3 +79,46 @@ fn what_was_read_is_what_is_compiled() {
         assert!((factor[0][0] - 0.5_f32).abs() < 1e-6 && factor[0][1] == 0.0);
     }
 }
+
+/// Names of the paper that the author gives to something else.
+#[pebo_model(assume(h > 0))]
+mod taken {
+    #![allow(non_upper_case_globals)]
+
+    pub(crate) const h: f64 = 2.0;
+
+    pub(crate) struct X {
+        pub(crate) lambda: f64,
+    }
+    pub(crate) struct Y {
+        pub(crate) phi_0: f64,
+    }
+
+    pub(crate) fn phi_1(y: &Y) -> f64 {
+        h * y.phi_0
+    }
+    pub(crate) fn f_x(y: &Y) -> X {
+        X { lambda: phi_1(y) }
+    }
+    pub(crate) fn f_y(x: &X) -> Y {
+        Y { phi_0: x.lambda }
+    }
+    pub(crate) fn phi(x: &X) -> [f64; 1] {
+        [x.lambda]
+    }
+}
+
+#[test]
+fn names_that_the_module_has_stay_the_authors() {
+    let y = taken::Y { phi_0: 1.5 };
+    let [known] = taken::phi_0([0.25], &y);
+    let x = taken::phi_left([known], &y);
+    assert_eq!(
+        [taken::h, taken::phi_1(&y), taken::f_y(&x).phi_0].map(f64::to_bits),
+        [2.0, 3.0, 0.25].map(f64::to_bits)
+    );
+    // The model has all of them.
+    let model = taken::Taken::new(&taken::Parameters::default());
+    let ([h], [[factor]]) = (model.h((&y).into(), taken::U), model.phi_1([0.25], y.into(), taken::U));
+    assert_eq!([h, factor].map(f64::to_bits), [3.0, 1.0].map(f64::to_bits));
+}

@@ -10,7 +10,8 @@ use pebo_gen::model::rust::Places;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Ask, Builder, Derived, Standing, answer};
 use pebo_runtime::nalgebra::SVector;
-use pebo_runtime::{Extension as _, Integrator, Model as _};
+use pebo_runtime::{Extension as _, Fundamental};
+use tests::emitted::{cuk_f64, prey_f64, rotating_frame_f64};
 
 /// Compiles the plants, and keeps their texts.
 macro_rules! plants {
@@ -122,12 +123,52 @@ fn the_authors_functions_and_those_added_can_be_called() {
     }
 }
 
+/// Two arrays, bit by bit.
+fn same(a: &[f64], b: &[f64]) {
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
+    assert_eq!(bits(a), bits(b), "{a:?} and {b:?}");
+}
+
+/// Those of a module of plain Rust, for its own structures, and those of a model file have the same values: with inputs and
+/// without, with either extension.
+#[test]
+fn the_papers_functions_agree() {
+    let model = cuk_f64::Cuk::new(&cuk_f64::Parameters::default());
+    let (y, u) = (cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.25 });
+    let (own_y, own_u) = (cuk_f64::Y { v2: 10.0, v4: -12.0 }, cuk_f64::U { d: 0.25 });
+    let chi = [0.25, 2.0];
+    same(&cuk::h(&y, &u), &model.h(own_y, own_u));
+    same(&cuk::phi_0(chi, &y, &u), &model.phi_0(chi, own_y, own_u));
+    same(cuk::phi_1(chi, &y, &u).as_flattened(), model.phi_1(chi, own_y, own_u).as_flattened());
+    let (x, own_x) = (cuk::phi_left(chi, &y), model.phi_left(chi, own_y));
+    same(&[x.i1, x.i3], &[own_x.i1, own_x.i3]);
+
+    let model = prey_f64::Prey::new(&prey_f64::Parameters::default());
+    let (y, own_y, own_u) = (prey::Y { y: 0.75 }, prey_f64::Y { y_: 0.75 }, prey_f64::U);
+    same(&prey::h(&y), &model.h(own_y, own_u));
+    same(&prey::phi_0([0.5], &y), &model.phi_0([0.5], own_y, own_u));
+    same(prey::phi_1([0.5], &y).as_flattened(), model.phi_1([0.5], own_y, own_u).as_flattened());
+    same(&[prey::phi_left([0.5], &y).x], &[model.phi_left([0.5], own_y).x]);
+
+    let model = rotating_frame_f64::RotatingFrame::new(&rotating_frame_f64::Parameters::default());
+    let (y, u) = (rotating_frame::Y { s: 1.5 }, rotating_frame::U { w: 3.0, v: -0.5 });
+    let (own_y, own_u) = (rotating_frame_f64::Y { s: 1.5 }, rotating_frame_f64::U { w: 3.0, v: -0.5 });
+    let extension = Fundamental::new(SVector::from(chi));
+    same(&rotating_frame::h(&y, &u), &model.h(own_y, own_u));
+    same(&model.h(own_y, own_u), &[-0.5, 0.0]);
+    same(model.lambda(own_y, own_u).as_flattened(), &[0.0, 3.0, -3.0, 0.0]);
+    same(&rotating_frame::phi_0(&extension, &y, &u), &model.phi_0(&extension, own_y, own_u));
+    let phi_1 = model.phi_1(&extension, own_y, own_u);
+    same(rotating_frame::phi_1(&extension, &y, &u).as_flattened(), phi_1.as_flattened());
+    same(phi_1.as_flattened(), &[2.0, 0.0]);
+}
+
 #[test]
 fn the_type_and_the_observer_stand_in_the_module() {
     let model = cuk::Cuk::new(&cuk::Parameters { e: 24.0, ..cuk::Parameters::default() });
-    let (y, u) = (SVector::from([10.0, -12.0]), SVector::from([0.25]));
-    assert!((model.h(&y, &u)[0] - (24.0 - 7.5) / 10e-3).abs() < 1e-9);
-    let zero = Integrator::new(SVector::zeros());
-    assert_eq!(model.phi_0(&zero, &y, &u).len(), cuk::NR);
+    let (y, u) = (&cuk::Y { v2: 10.0, v4: -12.0 }, &cuk::U { d: 0.25 });
+    let [h, _] = model.h(y.into(), u.into());
+    assert!((h - (24.0 - 7.5) / 10e-3).abs() < 1e-9);
+    assert_eq!(model.phi_0([0.0; 2], y.into(), u.into()).len(), cuk::NR);
     assert!(size_of::<cuk::Observer>() > size_of::<cuk::Cuk>());
 }

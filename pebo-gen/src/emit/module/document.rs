@@ -5,6 +5,7 @@
 
 use super::Module;
 use super::abbreviation::Abbreviations;
+use super::formulas::{self, equation, is_linear, named, text};
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
 use crate::emit::definition::{Argument, Definitions, Group, VELOCITY};
@@ -112,12 +113,6 @@ fn identities(plant: &Plant) -> impl Iterator<Item = Expr> {
 fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviations) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = section("Observer");
-    let linear = definitions.regression.theta.iter().copied().eq(definitions
-        .regression
-        .eta_symbols
-        .iter()
-        .map(|&eta| arena.of_symbol(eta)));
-    let unknown = if linear { "theta" } else { "eta" };
     lines.push("The transform `z = phi(x, y)`:".to_owned());
     let mut formulas: Vec<String> = Vec::new();
     for (z, phi) in plant.z.iter().zip(&plant.phi) {
@@ -142,20 +137,9 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
             "z = xi + Psi theta".to_owned(),
         ],
     };
-    laws.push(match definitions.regression.kind {
-        RegressionKind::Static => format!("phi_0 = phi_1 {unknown}"),
-        RegressionKind::Implicit if definitions.functions.iter().any(|function| function.name == "primitive_1") => {
-            format!("d/dt (primitive_0 + primitive_1 {unknown}) = phi_0 + phi_1 {unknown}")
-        }
-        RegressionKind::Implicit => format!("d/dt primitive_0 = phi_0 + phi_1 {unknown}"),
-        RegressionKind::Dynamic => {
-            let rows = definitions.regression.rows.iter();
-            let outputs = rows.filter_map(|&row| Some(plant.y.get(row)?.symbol));
-            format!("{}' = phi_0 + phi_1 {unknown}", vector(arena, outputs))
-        }
-    });
+    laws.push(equation(plant, definitions));
     laws.push("x = phi_left(z, y)".to_owned());
-    if !linear {
+    if !is_linear(arena, definitions) {
         for (eta, value) in definitions.regression.eta_symbols.iter().zip(&definitions.regression.eta) {
             laws.push(format!("{} = {}", arena.name(*eta), abbreviations.print(arena, *value)));
         }
@@ -166,13 +150,9 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
     for definition in &definitions.functions {
         match definition.name {
             "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
-            "theta" if linear => {}
+            "theta" if is_linear(arena, definitions) => {}
             "theta" => blocks.extend(named((arena, abbreviations), &plant.theta, &definition.rows)),
-            "phi_left" => {
-                let states: Vec<Symbol> = definitions.left_inverse.x.iter().map(|state| state.0).collect();
-                blocks.extend(named((arena, abbreviations), &states, &definition.rows));
-            }
-            name => blocks.extend(bracketed((arena, abbreviations), name, &definition.rows)),
+            _ => blocks.extend(formulas::of((arena, abbreviations), definitions, definition, MODULE)),
         }
     }
     lines.extend(text(blocks));
@@ -393,51 +373,8 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
     }
 }
 
-fn text(lines: Vec<String>) -> Vec<String> {
-    let block = std::iter::once("```text".to_owned()).chain(lines).chain(["```".to_owned()]);
-    std::iter::once(String::new()).chain(block).collect()
-}
-
 /// Names as code.
 fn listed(arena: &Arena, symbols: impl Iterator<Item = Symbol>) -> String {
     let names: Vec<String> = symbols.map(|symbol| format!("`{}`", arena.name(symbol))).collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-}
-
-fn vector(arena: &Arena, symbols: impl Iterator<Item = Symbol>) -> String {
-    let names: Vec<String> = symbols.map(|symbol| arena.name(symbol)).collect();
-    if let [only] = names.as_slice() { only.clone() } else { format!("({})", names.join(", ")) }
-}
-
-/// What prints a formula.
-type Print<'a> = (&'a Arena, &'a Abbreviations);
-
-fn named((arena, abbreviations): Print, names: &[Symbol], rows: &[Vec<Expr>]) -> Vec<String> {
-    let entries = names.iter().zip(rows.iter().flatten());
-    entries.map(|(name, entry)| format!("{} = {}", arena.name(*name), abbreviations.print(arena, *entry))).collect()
-}
-
-/// A matrix with its columns aligned; entry by entry, where a row of it would be longer than a line.
-fn bracketed((arena, abbreviations): Print, name: &str, rows: &[Vec<Expr>]) -> Vec<String> {
-    let entries: Vec<Vec<String>> =
-        rows.iter().map(|row| row.iter().map(|&entry| abbreviations.print(arena, entry)).collect()).collect();
-    let columns = entries.first().map_or(0, Vec::len);
-    let width = |column: usize| entries.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let rows = entries.iter().enumerate().map(|(index, row)| {
-        let cells: Vec<String> = row.iter().zip(&widths).map(|(entry, &width)| format!("{entry:<width$}")).collect();
-        let lead = if index == 0 { format!("{name} = ") } else { " ".repeat(name.len() + 3) };
-        format!("{lead}[ {} ]", cells.join("   "))
-    });
-    let rows: Vec<String> = rows.collect();
-    if rows.iter().all(|row| row.chars().count() <= MODULE) {
-        return rows;
-    }
-    let place = |row: usize, column: usize| {
-        if columns == 1 { format!("{name}[{}]", row + 1) } else { format!("{name}[{}, {}]", row + 1, column + 1) }
-    };
-    let listed = entries.iter().enumerate().flat_map(|(row, cells)| {
-        cells.iter().enumerate().map(move |(column, entry)| format!("{} = {entry}", place(row, column)))
-    });
-    listed.collect()
 }

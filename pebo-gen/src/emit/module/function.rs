@@ -84,9 +84,11 @@ impl Module<'_> {
             group.members.iter().map(value).collect()
         };
         let (returned, result) = self.returned(group, &values);
-        let read = |&(index, _): &(usize, &Symbol)| program.reads(first_argument + index);
-        let named: Vec<String> =
-            symbols.iter().enumerate().filter(read).map(|(_, symbol)| scope.locals[symbol].clone()).collect();
+        // Terms are fields; without them the outputs have names here too.
+        let outputs = if self.staged.terms.is_empty() { self.definitions.symbols(Argument::Y) } else { Vec::new() };
+        let local = (stored..).zip(&outputs).chain((first_argument..).zip(&symbols));
+        let read = local.filter(|(input, _)| program.reads(*input));
+        let named: Vec<String> = read.map(|(_, symbol)| scope.locals[symbol].clone()).collect();
         let similar = permission::for_names(&[named, variables].concat());
         let long = permission::for_length(statements.len() + program.outputs.len());
         let (name, doc) = (ident(group.name), doc(document::group(group, self.definitions)));

@@ -7,7 +7,9 @@ pub(crate) mod check;
 mod constructors;
 mod describe;
 pub(super) mod document;
+mod formulas;
 mod function;
+pub(crate) mod paper;
 mod parameters;
 mod permission;
 pub(crate) mod prose;
@@ -106,6 +108,7 @@ impl Module<'_> {
         let sampled = self.staged.programs.iter().chain([&self.staged.sample]);
         let precision = permission::for_numbers(self.scalar, sampled.flat_map(numbers));
         let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
+        let paper = self.paper();
         let rebase = self.rebase.then(|| {
             quote! {
                 /// `phi_0` is affine in the extension with the factor `phi_1`: the observer may move a
@@ -136,6 +139,7 @@ impl Module<'_> {
                 #(#functions)*
             }
             #own
+            #paper
             #rebase
             /// The observer of this model, with the gradient estimator unless another is named.
             pub type Observer<E = Gradient<#scalar, NE>> =
@@ -188,6 +192,7 @@ impl Module<'_> {
         let pi = pi.then(|| quote!(use core::#scalar::consts::PI;));
         let mut names = vec!["Flow", "Gradient", self.extension(), "Model", "Regression", "Sides"];
         names.extend(self.programs().any(expression::calls).then_some("Real"));
+        names.extend((self.definitions.class == Class::Pebo).then_some("Extension"));
         names.extend(self.rebase.then_some("Rebase"));
         names.extend((!self.asked.is_empty()).then_some("Fault"));
         names.extend(self.constructors_use());
@@ -277,11 +282,17 @@ pub(super) fn numbers(program: &Program) -> impl Iterator<Item = Rational> {
     })
 }
 
+/// The longest line behind `///` and the indentation of a function in a block.
+const WIDTH: usize = 92;
+
 /// The documentation of an item: a paragraph, wrapped to lines.
 pub(super) fn doc(paragraph: &str) -> TokenStream {
-    /// The longest line behind `///` and the indentation of a function in a block.
-    const WIDTH: usize = 92;
-    let lines = prose::wrapped(vec![paragraph.to_owned()], WIDTH);
+    docs(vec![paragraph.to_owned()])
+}
+
+/// The documentation of an item: paragraphs and blocks.
+fn docs(lines: Vec<String>) -> TokenStream {
+    let lines = prose::wrapped(lines, WIDTH);
     let lines = lines.iter().map(|line| spaced(line));
     quote!(#(#[doc = #lines])*)
 }

@@ -65,3 +65,20 @@ pub(in crate::emit) fn for_length(lines: usize) -> Option<TokenStream> {
         }
     })
 }
+
+/// For methods of the model that not every program calls: of so many constants, and with so many numbers in an argument
+/// at most.
+pub(in crate::emit) fn for_methods(constants: usize, longest: usize) -> TokenStream {
+    /// Clippy wants values that are no larger than a pointer themselves; these are, in single precision.
+    const MOST_CONSTANTS: usize = 2;
+    /// What takes more than 256 bytes in double precision it wants by reference.
+    const MOST_NUMBERS: usize = 32;
+    let lints: Vec<TokenStream> = [
+        (longest > MOST_NUMBERS).then(|| quote!(clippy::large_types_passed_by_value)),
+        (constants <= MOST_CONSTANTS).then(|| quote!(clippy::trivially_copy_pass_by_ref)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    quote!(#[allow(#(#lints,)* dead_code, reason = "one interface for all models, called or not")])
+}

@@ -19,7 +19,7 @@ use super::definition::{Argument, Definitions, GROUPS, VELOCITY};
 use super::error::EmitError;
 use super::literal::Scalar;
 use super::module::check::{self, Condition};
-use super::module::signals;
+use super::module::{paper, signals};
 use block::{body, name_of, only_function, statements};
 use pebo_cas::{Arena, Expr, Rational, Symbol};
 use pebo_design::analysis::{RegressionKind, Sign};
@@ -73,6 +73,9 @@ pub(super) fn confirm(
     if read.functions.len() != definitions.functions.len() {
         return Err(EmitError::Unreadable { code: "another set of functions".to_owned() });
     }
+    if !paper::agrees(definitions, &read.paper, &read.functions) {
+        return Err(EmitError::Unreadable { code: "the functions of the paper".to_owned() });
+    }
     for definition in &definitions.functions {
         let columns = read.functions.get(definition.name).ok_or(EmitError::Missing("function"))?;
         for (row, entries) in definition.rows.iter().enumerate() {
@@ -113,6 +116,23 @@ fn same_conditions(
     read.len() == asked.len() && read.iter().zip(asked).all(|(read, asked)| same(read, asked))
 }
 
+impl Definitions<'_> {
+    /// What an argument is when its function is read.
+    pub(super) fn value(&self, arena: &Arena, argument: Argument) -> Value {
+        let columns = |columns: &[Vec<Symbol>]| {
+            let column = |column: &Vec<Symbol>| column.iter().map(|&s| arena.of_symbol(s)).collect();
+            columns.iter().map(column).collect::<Vec<Vec<Expr>>>()
+        };
+        let parts = self.parts(argument);
+        match parts.as_slice() {
+            [part] if part.access.is_none() => Value::Matrix(columns(&part.columns)),
+            parts => Value::Parts(
+                parts.iter().filter_map(|part| Some((part.access?.to_owned(), columns(&part.columns)))).collect(),
+            ),
+        }
+    }
+}
+
 /// What the tokens say.
 #[derive(Debug, Default)]
 struct Read {
@@ -128,7 +148,9 @@ struct Read {
     /// What the functions need of a sample.
     terms: Option<Value>,
     /// The columns of each value.
-    functions: BTreeMap<String, Vec<Vec<Expr>>>,
+    functions: paper::Columns,
+    /// The same of the methods that the paper names.
+    paper: paper::Columns,
 }
 
 fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Result<Read, EmitError> {
@@ -186,12 +208,13 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                 }
                 Some("From") => read.signals.convert(arena, definitions, item)?,
                 Some("Rebase") if item.items.is_empty() => {}
-                Some("Model") => model(plant, definitions, item, &globals, &stored, &mut read)?,
+                Some("Model") => model(plant, definitions, item, (&mut globals, &stored), &mut read)?,
+                None if paper::is_paper(item) => read.paper = paper::read(arena, definitions, item, &globals)?,
                 None if settings::is_constructors(item) => {
                     read.settings = settings::read(arena, item, (window, rows), &globals)?;
                 }
                 None if only_function(item)?.sig.ident == VELOCITY => {
-                    model(plant, definitions, item, &globals, &stored, &mut read)?;
+                    model(plant, definitions, item, (&mut globals, &stored), &mut read)?;
                 }
                 None if last_segment(&item.self_ty)? == "Parameters" => {
                     let mut scope = globals.clone();
@@ -216,13 +239,12 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
     Ok(read)
 }
 
-/// The functions of the trait: arguments by their position, as the runtime defines them.
+/// The functions of the trait: arguments by their position, as the runtime defines them. What follows may call them.
 fn model(
     plant: &Plant,
     definitions: &Definitions,
     item: &syn::ItemImpl,
-    globals: &Scope,
-    stored: &BTreeMap<String, Expr>,
+    (globals, stored): (&mut Scope, &BTreeMap<String, Expr>),
     read: &mut Read,
 ) -> Result<(), EmitError> {
     let arena = &plant.arena;
@@ -249,17 +271,20 @@ fn model(
                     (_, None) => return Err(unreadable(&function.sig)),
                 };
                 let mut typed = function.sig.inputs.iter().skip(1);
+                let mut read_with = Vec::new();
                 for &argument in arguments {
                     let Some(FnArg::Typed(input)) = typed.next() else {
                         return Err(unreadable(&function.sig));
                     };
                     let value = match (argument, group) {
                         (Argument::Y, Some(_)) => read.terms.clone().ok_or_else(|| unreadable(&function.sig))?,
-                        _ => of_argument(arena, definitions, argument),
+                        _ => definitions.value(arena, argument),
                     };
-                    scope.declare(&name_of(&input.pat)?, value);
+                    scope.declare(&name_of(&input.pat)?, value.clone());
+                    read_with.push(value);
                 }
                 let value = body(arena, function, scope)?;
+                globals.declare_method(&name, read_with, value.clone());
                 let Some(&(_, _, members)) = group else {
                     read.terms = Some(value);
                     continue;
@@ -287,20 +312,6 @@ fn member(field: &str, members: &'static [&'static str]) -> Option<&'static str>
         "h" | "known" => members.first().copied(),
         "lambda" | "factor" => members.get(1).copied(),
         _ => None,
-    }
-}
-
-fn of_argument(arena: &Arena, definitions: &Definitions, argument: Argument) -> Value {
-    let columns = |columns: &[Vec<Symbol>]| {
-        let column = |column: &Vec<Symbol>| column.iter().map(|&s| arena.of_symbol(s)).collect();
-        columns.iter().map(column).collect::<Vec<Vec<Expr>>>()
-    };
-    let parts = definitions.parts(argument);
-    match parts.as_slice() {
-        [part] if part.access.is_none() => Value::Matrix(columns(&part.columns)),
-        parts => Value::Parts(
-            parts.iter().filter_map(|part| Some((part.access?.to_owned(), columns(&part.columns)))).collect(),
-        ),
     }
 }
 

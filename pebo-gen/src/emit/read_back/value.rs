@@ -12,7 +12,7 @@ use crate::emit::literal::read;
 use pebo_cas::{Arena, Expr, Function};
 
 /// What an emitted expression can be.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(in crate::emit) enum Value {
     Scalar(Expr),
     List(Vec<Value>),
@@ -20,7 +20,7 @@ pub(in crate::emit) enum Value {
     Matrix(Vec<Vec<Expr>>),
     /// Named numbers: parameters, stored constants.
     Fields(BTreeMap<String, Expr>),
-    /// What the methods of an extension return.
+    /// What the methods of an extension return, and the fields of what a function of `Model` does.
     Parts(BTreeMap<String, Vec<Vec<Expr>>>),
 }
 
@@ -57,12 +57,19 @@ impl Value {
 #[derive(Clone, Debug, Default)]
 pub(in crate::emit) struct Scope {
     values: BTreeMap<String, Value>,
+    /// The methods of `self`: the arguments that they were read with, and what they return of these.
+    methods: BTreeMap<String, (Vec<Value>, Value)>,
 }
 
 impl Scope {
     /// A name for a value; it hides an earlier one.
     pub(in crate::emit) fn declare(&mut self, name: &str, value: Value) {
         self.values.insert(name.to_owned(), value);
+    }
+
+    /// A method of `self`, with its arguments and what it returns of these.
+    pub(in crate::emit) fn declare_method(&mut self, name: &str, arguments: Vec<Value>, value: Value) {
+        self.methods.insert(name.to_owned(), (arguments, value));
     }
 
     /// The names of a `use` that are values.
@@ -154,13 +161,14 @@ pub(in crate::emit) fn expression(arena: &Arena, syntax: &Syntax, scope: &Scope)
                 (Value::Fields(fields), Member::Named(name)) => {
                     Value::Scalar(*fields.get(&name.to_string()).ok_or_else(unknown)?)
                 }
+                (Value::Parts(mut parts), Member::Named(name)) => {
+                    Value::Matrix(parts.remove(&name.to_string()).ok_or_else(unknown)?)
+                }
                 _ => return Err(unknown()),
             }
         }
-        Syntax::MethodCall(call) if call.args.is_empty() => match expression(arena, &call.receiver, scope)? {
-            Value::Parts(mut parts) => Value::Matrix(parts.remove(&call.method.to_string()).ok_or_else(unknown)?),
-            _ => return Err(unknown()),
-        },
+        Syntax::Reference(reference) if reference.mutability.is_none() => expression(arena, &reference.expr, scope)?,
+        Syntax::MethodCall(call) => method(arena, call, scope)?,
         Syntax::Array(array) => {
             let entries = array.elems.iter().map(|entry| expression(arena, entry, scope));
             Value::List(entries.collect::<Result<_, _>>()?)
@@ -188,6 +196,33 @@ pub(in crate::emit) fn expression(arena: &Arena, syntax: &Syntax, scope: &Scope)
     })
 }
 
+/// A call of a method: of `self`, of an extension, or of a matrix.
+fn method(arena: &Arena, call: &syn::ExprMethodCall, scope: &Scope) -> Result<Value, EmitError> {
+    let unknown = || unreadable(call);
+    let arguments = call.args.iter().map(|argument| expression(arena, argument, scope));
+    let arguments: Vec<Value> = arguments.collect::<Result<_, _>>()?;
+    let name = call.method.to_string();
+    if let (Syntax::Path(receiver), Some((read_with, value))) = (&*call.receiver, scope.methods.get(&name))
+        && receiver.path.is_ident("self")
+    {
+        return if arguments == *read_with { Ok(value.clone()) } else { Err(unknown()) };
+    }
+    match (name.as_str(), expression(arena, &call.receiver, scope)?) {
+        _ if !arguments.is_empty() => Err(unknown()),
+        // A structure of signals, a vector and an array of the same entries.
+        ("into", Value::Matrix(columns)) => Ok(Value::Matrix(columns)),
+        ("transpose", Value::Matrix(columns)) => Ok(Value::Matrix(transposed(&columns))),
+        (name, Value::Parts(mut parts)) => parts.remove(name).map(Value::Matrix).ok_or_else(unknown),
+        _ => Err(unknown()),
+    }
+}
+
+/// The rows of a matrix that is given by columns.
+pub(in crate::emit) fn transposed(columns: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let rows = columns.first().map_or(0, Vec::len);
+    (0..rows).map(|row| columns.iter().filter_map(|column| column.get(row).copied()).collect()).collect()
+}
+
 /// A call of the runtime's scalar functions, or of a constructor.
 fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value, EmitError> {
     let unknown = || unreadable(call);
@@ -209,6 +244,9 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
             }
             _ => Err(unknown()),
         };
+    }
+    if let ("Integrator", "new", [Value::Matrix(start)]) = (owner.as_str(), name.as_str(), arguments.as_slice()) {
+        return Ok(Value::Parts(BTreeMap::from([("chi".to_owned(), start.clone())])));
     }
     if (owner.as_str(), name.as_str(), arguments.len()) == ("SMatrix", "zeros", 0) {
         // No columns: what is not there.

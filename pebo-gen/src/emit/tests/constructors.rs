@@ -202,7 +202,7 @@ fn an_extension_is_kept_bounded_in_the_form_that_is_asked_for() {
         let given = Settings { rebase: Some(form), ..gradient() };
         let text = tuned(&given);
         assert!(text.contains(&format!("observer.{call}")) && text.contains(words), "{text}");
-        assert!(text.contains("Drift, Fault"), "{text}");
+        assert!(text.contains("Drift, Extension"), "{text}");
         let inner = call.trim_start_matches("without_drift(").trim_end_matches(')').to_owned() + ")";
         refuse_changed(&given, &[(inner.as_str(), other)]);
     }

@@ -225,10 +225,38 @@ fn tampered_tokens_are_refused() {
         ("pub d: f64", "pub e: f64"),
         ("type Y = Y", "type Y = SVector<f64, NY>"),
         ("impl From<U> for SVector<f64, NU>", "impl From<U> for SVector<f64, NY>"),
+        ("sides.known.into()", "sides.factor.into()"),
+        ("sides.factor.transpose().into()", "sides.factor.into()"),
+        ("self.recover(&z.into(), &y.into())", "self.recover(&y.into(), &z.into())"),
+        ("self.flow(&y.into(), &u.into()).h", "self.flow(&y.into(), &u.into()).lambda"),
+        ("pub fn h(", "pub fn lambda("),
     ] {
         assert!(text.contains(from), "{from}");
         assert!(confirm(&text.replacen(from, to, 1)).is_err(), "{from} -> {to}");
     }
+}
+
+#[test]
+fn the_functions_of_the_paper_are_those_of_the_class() {
+    let named = |sketch: Sketch| {
+        let text = emitted(sketch);
+        let (_, paper) = text.split_once("/// The functions of the paper").unwrap();
+        let (paper, _) = paper.split_once("\n}\n").unwrap();
+        let heads = paper.lines().filter_map(|line| line.trim().strip_prefix("pub fn ")?.strip_suffix(" {"));
+        heads.map(str::to_owned).collect::<Vec<String>>()
+    };
+    let expected = [
+        "h(&self, y: Y, u: U) -> [f64; NZ]",
+        "phi_0(&self, chi: [f64; NZ], y: Y, u: U) -> [f64; NR]",
+        "phi_1(&self, chi: [f64; NZ], y: Y, u: U) -> [[f64; NE]; NR]",
+        "phi_left(&self, z: [f64; NZ], y: Y) -> X",
+    ];
+    for sketch in [CUK, CUK_CASE2, PMSM] {
+        assert_eq!(named(sketch), expected, "{}", sketch.name);
+    }
+    let generalised = named(PENDULUM);
+    assert_eq!(generalised[1], "lambda(&self, y: Y, u: U) -> [[f64; NZ]; NZ]");
+    assert_eq!(generalised[2], "phi_0(&self, extension: &Fundamental<f64, NZ>, y: Y, u: U) -> [f64; NR]");
 }
 
 #[test]

@@ -1,14 +1,12 @@
 //! The rate of a pendulum's momentum, by code that the build script wrote.
 
-use pebo_runtime::Model as _;
-use pebo_runtime::nalgebra::SVector;
-
 // Declares `pub mod pendulum`.
 include!(concat!(env!("OUT_DIR"), "/pebo.rs"));
 
 fn rate(angle: f64, torque: f64) -> f64 {
     let model = pendulum::Pendulum::new(&pendulum::Parameters::default());
-    model.h(&SVector::from([angle]), &SVector::from([torque]))[0]
+    let [rate] = model.h(pendulum::Y { q: angle }, pendulum::U { tau: torque });
+    rate
 }
 
 fn main() {
