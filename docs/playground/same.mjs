@@ -18,7 +18,7 @@ const texts = (folder, end) =>
     .map((file) => [file, readFileSync(join(root, folder, file), "utf8")]);
 
 const models = [...texts("models", ".yaml"), ...texts("models/recordings", ".yaml"), ...texts("docs/playground/page", ".yaml")];
-const mistakes = texts("pebo-gen/src/source/examples", ".txt");
+const mistakes = texts("pebo-gen/design/src/source/examples", ".txt");
 const recording = texts("models/recordings", ".csv")[0][1].split("\n").slice(0, 400).join("\n");
 
 const questions = [{ what: "version" }, { what: "schema" }, { what: "stories" }, { what: "nonsense" }];

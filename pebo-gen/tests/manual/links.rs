@@ -97,7 +97,7 @@ fn every_link_leads_somewhere() {
 #[test]
 fn a_wrong_link_is_seen() {
     let readme = root().join("README.md");
-    let text = "# A `b` c-d, e\n\n[1](#a-b-c-d-e) [2](docs/architecture.md#layers) [3](https://docs.rs)\n";
+    let text = "# A `b` c-d, e\n\n[1](#a-b-c-d-e) [2](docs/architecture.md#crates-and-layers) [3](https://docs.rs)\n";
     assert_eq!(broken(&readme, &text.replace("[1](#a-b-c-d-e)", "")), "");
     let wrong = broken(&readme, "[1](docs/none.md) [2](docs/architecture.md#none) ![3](none.svg)\n");
     assert_eq!(wrong.lines().count(), 3, "{wrong}");

@@ -1,14 +1,15 @@
 //! A copy of the workspace that may be changed, and its test binaries.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use crate::plan::Module;
+use crate::plan::{Module, Package, Tests};
+use crate::rewrite;
 use crate::sites::Fault;
-use crate::{plan, rewrite};
 
 /// The project as it is, and a copy of it below `target`.
 pub struct Copy {
@@ -16,8 +17,15 @@ pub struct Copy {
     folder: PathBuf,
 }
 
-/// The test binaries of a package by the name of their target.
-pub type Binaries = BTreeMap<String, PathBuf>;
+/// A compiled target of tests.
+pub struct Binary {
+    pub path: PathBuf,
+    /// The folder of its package, in which cargo runs it.
+    pub folder: PathBuf,
+}
+
+/// The test binaries by package and target.
+pub type Binaries = BTreeMap<(&'static str, &'static str), Binary>;
 
 impl Copy {
     /// A copy of what git knows of the project in whose root we are.
@@ -45,11 +53,11 @@ impl Copy {
         &self.original
     }
 
-    /// Builds the tests of a package with the faults; those that do not compile are taken out.
-    pub fn build(&self, package: &str, modules: &[&Module], faults: &mut Vec<Fault>) -> Result<Binaries, String> {
+    /// Builds the tests of modules with the faults in their package; faults that do not compile are taken out.
+    pub fn build(&self, package: &Package, modules: &[&Module], faults: &mut Vec<Fault>) -> Result<Binaries, String> {
         let files: Vec<PathBuf> = faults.iter().map(|fault| fault.file.clone()).collect();
         loop {
-            rewrite::write(&self.original, &self.folder, package, &files, faults)?;
+            rewrite::write(&self.original, &self.folder, package.folder, &files, faults)?;
             let (messages, succeeded) = self.cargo(package, &["check", "--lib"])?;
             if succeeded {
                 break;
@@ -73,29 +81,34 @@ impl Copy {
                 return Err(format!("the copy does not compile, and no fault is to blame:\n{shown}"));
             }
         }
-        let tests: BTreeSet<&str> = modules.iter().flat_map(|module| module.tests).map(|(name, _)| *name).collect();
-        let targets = tests.iter().flat_map(|name| if *name == "lib" { vec!["--lib"] } else { vec!["--test", *name] });
-        let words: Vec<&str> = ["test", "--no-run"].into_iter().chain(targets).collect();
-        let (messages, succeeded) = self.cargo(package, &words)?;
-        if !succeeded {
-            return Err("the tests of the copy do not compile".to_owned());
-        }
         let mut binaries = Binaries::new();
-        for message in &messages {
-            let Some(path) = message["executable"].as_str().filter(|_| message["profile"]["test"] == true) else {
-                continue;
-            };
-            let target = &message["target"];
-            let library = target["kind"].as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind == "lib"));
-            let name = if library { "lib" } else { target["name"].as_str().unwrap_or_default() };
-            binaries.insert(name.to_owned(), PathBuf::from(path));
+        for tests in modules.iter().flat_map(|module| module.tests) {
+            let key = (tests.package.name, tests.target);
+            if let Entry::Vacant(entry) = binaries.entry(key) {
+                entry.insert(self.binary(tests)?);
+            }
         }
         Ok(binaries)
     }
 
-    fn cargo(&self, package: &str, words: &[&str]) -> Result<(Vec<Value>, bool), String> {
+    /// Compiles a target of tests.
+    fn binary(&self, tests: &Tests) -> Result<Binary, String> {
+        let Tests { package, target, .. } = tests;
+        let chosen = if *target == "lib" { vec!["--lib"] } else { vec!["--test", *target] };
+        let words: Vec<&str> = ["test", "--no-run"].into_iter().chain(chosen).collect();
+        let (messages, succeeded) = self.cargo(package, &words)?;
+        let missing = || format!("the tests `{target}` of {} do not compile", package.name);
+        if !succeeded {
+            return Err(missing());
+        }
+        let mut built = messages.iter().filter(|message| message["profile"]["test"] == true);
+        let path = built.find_map(|message| message["executable"].as_str()).ok_or_else(missing)?;
+        Ok(Binary { path: PathBuf::from(path), folder: self.folder.join(package.folder) })
+    }
+
+    fn cargo(&self, package: &Package, words: &[&str]) -> Result<(Vec<Value>, bool), String> {
         let mut command = Command::new("cargo");
-        command.args(words).args(["-p", package, "--message-format=json"]).args(plan::features(package));
+        command.args(words).args(["-p", package.name, "--message-format=json"]).args(package.features);
         command.current_dir(&self.folder).env_remove("CARGO_TARGET_DIR").stderr(Stdio::null());
         let found = command.output().map_err(|error| error.to_string())?;
         let lines = String::from_utf8_lossy(&found.stdout);

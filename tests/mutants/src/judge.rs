@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use crate::copy::Binaries;
-use crate::plan::Module;
+use crate::copy::{Binaries, Binary};
+use crate::plan::{Module, Tests};
 use crate::sites::Fault;
 
 /// How many times longer than without a fault a test may take before it counts as hanging, and what is given besides.
@@ -26,14 +26,14 @@ struct Baseline {
 /// Prints what became of a module's faults.
 pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usize) -> Result<(), String> {
     let mut baselines = Vec::new();
-    for (name, filter) in module.tests {
-        let Some(binary) = binaries.get(*name) else { return Err(format!("no tests `{name}`")) };
-        let folder = binary.with_extension("reached");
+    for tests in module.tests {
+        let binary = &binaries[&(tests.package.name, tests.target)];
+        let folder = binary.path.with_extension("reached");
         let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
         let start = Instant::now();
-        if !passes(binary, filter, 0, Some(&folder), Duration::from_secs(3600)) {
-            return Err(format!("`{name} {filter}` fails without a fault"));
+        if !passes(binary, tests.filter, 0, Some(&folder), Duration::from_secs(3600)) {
+            return Err(format!("`{}` fails without a fault", named(tests)));
         }
         let entries = std::fs::read_dir(&folder).map_err(|error| error.to_string())?.flatten();
         let reached = entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect();
@@ -48,9 +48,10 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
                 while let Some(fault) = faults.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let through = |baseline: &&Baseline| baseline.reached.contains(&fault.number);
                     let ran = baselines.iter().any(|baseline| through(&baseline));
-                    let first = module.tests.iter().zip(&baselines).position(|((name, filter), baseline)| {
+                    let first = module.tests.iter().zip(&baselines).position(|(tests, baseline)| {
                         let patience = baseline.took * PATIENCE.0 + PATIENCE.1;
-                        through(&baseline) && !passes(&binaries[*name], filter, fault.number, None, patience)
+                        let binary = &binaries[&(tests.package.name, tests.target)];
+                        through(&baseline) && !passes(binary, tests.filter, fault.number, None, patience)
                     });
                     if let Some(first) = first {
                         noticed[first].fetch_add(1, Ordering::Relaxed);
@@ -65,8 +66,8 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
     missed.sort_by_key(|(fault, _)| (&fault.file, fault.line));
     let (all, survived) = (faults.len(), missed.len());
     println!("{}: {all} faults, {} noticed, {survived} missed", module.name, all - survived);
-    for ((name, filter), count) in module.tests.iter().zip(noticed) {
-        println!("  first noticed by {name} {filter}: {}", count.into_inner());
+    for (tests, count) in module.tests.iter().zip(noticed) {
+        println!("  first noticed by {}: {}", named(tests), count.into_inner());
     }
     for (fault, ran) in missed {
         let mark = if ran { "" } else { " (no test gets there)" };
@@ -75,9 +76,14 @@ pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usi
     Ok(())
 }
 
+/// The name of tests for a reader.
+fn named(tests: &Tests) -> String {
+    [tests.package.name, tests.target, tests.filter].join(" ").trim_end().to_owned()
+}
+
 /// Whether the tests pass with a fault, in time; the first that fails ends them.
-fn passes(binary: &Path, filter: &str, fault: usize, reached: Option<&Path>, patience: Duration) -> bool {
-    let mut command = Command::new(binary);
+fn passes(binary: &Binary, filter: &str, fault: usize, reached: Option<&Path>, patience: Duration) -> bool {
+    let mut command = Command::new(&binary.path);
     command
         .args([filter, "--test-threads=1"])
         .env("PEBO_MUTANT", fault.to_string())
@@ -85,9 +91,7 @@ fn passes(binary: &Path, filter: &str, fault: usize, reached: Option<&Path>, pat
         .stderr(Stdio::null());
     // As cargo runs it: in the folder of its package, with the project's seed.
     command.env("PROPTEST_RNG_SEED", "2015").env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
-    if let Some(package) = package_of(binary) {
-        command.current_dir(package);
-    }
+    command.current_dir(&binary.folder);
     if let Some(folder) = reached {
         command.env("PEBO_REACHED", folder);
     }
@@ -114,12 +118,4 @@ fn passes(binary: &Path, filter: &str, fault: usize, reached: Option<&Path>, pat
     let _ = child.kill();
     let _ = child.wait();
     false
-}
-
-/// The folder of the package whose tests a binary of the copy has.
-fn package_of(binary: &Path) -> Option<std::path::PathBuf> {
-    let root = binary.ancestors().find(|folder| folder.ends_with("target/mutants"))?;
-    let name = binary.file_name()?.to_str()?;
-    let runtime = name.starts_with("pebo_runtime") || name.starts_with("runtime");
-    Some(root.join(if runtime { "pebo-runtime" } else { "pebo-gen" }))
 }

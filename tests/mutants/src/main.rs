@@ -22,7 +22,7 @@
 //!
 //! | module | faults | noticed before | after | what had no test |
 //! |---|---|---|---|---|
-//! | field | 97 (`--sample 100 --seed 7`) | 79 | 83 | roots of products with parts in common, four times an inverse tangent, negated sums of two, ranges of inverse cosines |
+//! | tower | 97 (`--sample 100 --seed 7`) | 79 | 83 | roots of products with parts in common, four times an inverse tangent, negated sums of two, ranges of inverse cosines |
 //! | analysis | 100 (`--sample 100 --seed 7`) | 82 | 91 | one-way couplings in a cycle, what estimates are asked for, the author's own terms in a regression, an identity where the rates are none, words of doubts |
 //! | program | 39 (`--sample 40`) | 29 | 34 | sums and weights of costs, short decimals |
 //! | runtime | 36 (`--sample 40`) | 27 | 32 | sine and cosine together in single precision |
@@ -69,13 +69,14 @@ fn arguments() -> Result<Arguments, String> {
 
 fn run() -> Result<(), String> {
     let arguments = arguments()?;
-    let copy = copy::Copy::new()?;
-    // Packages are built one by one, with the faults of all modules that they have.
+    // Packages are changed one by one, with the faults of all modules that they have; the others are as they were.
     for package in plan::PACKAGES {
-        let modules: Vec<_> = arguments.modules.iter().copied().filter(|module| module.package == *package).collect();
+        let has = |module: &&plan::Module| module.package.name == package.name;
+        let modules: Vec<_> = arguments.modules.iter().copied().filter(has).collect();
         if modules.is_empty() {
             continue;
         }
+        let copy = copy::Copy::new()?;
         let mut drawn = sites::draw(copy.root(), &modules, arguments.sample, arguments.seed)?;
         let binaries = copy.build(package, &modules, &mut drawn)?;
         for module in modules {

@@ -12,7 +12,7 @@ import time
 RUNS = 20
 TARGET = os.environ.get("CARGO_TARGET_DIR", "target")
 OURS = [f"{TARGET}/release/pebo-gen", "check", "models/cuk.yaml"]
-THEIRS = [sys.executable, "tests/bench/cuk_in_sympy.py"]
+THEIRS = [sys.executable, "tests/bench/cuk/in_sympy.py"]
 
 
 def seconds(command):
