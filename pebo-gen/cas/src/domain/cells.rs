@@ -1,30 +1,30 @@
-//! The parts of a domain on each of which formulas are analytic.
+//! The cells of a domain on which formulas are analytic.
 //!
-//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse sines.
-//! Out: the domain divided by the signs of what stands under these. What is seen at a point of a part holds almost
-//! everywhere in that part, and need not in another: `q + |q|` is no zero, and vanishes wherever q is negative.
+//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse
+//! sines. Out: the domain divided by the signs of their arguments. A property proved at a point of a cell holds almost
+//! everywhere in that cell, but not in others: `q + |q|` is not the zero function, and vanishes wherever q is negative.
 //!
-//! An angle that is taken back from its functions, as `asin(sin(q))`, is another straight line on each of infinitely many
-//! intervals. Where the normal form does not know on which, this is an obstacle.
+//! An angle recovered from its functions, as `asin(sin(q))`, is a different straight line on each of infinitely many
+//! intervals. This is an obstacle where the normal form cannot decide the interval.
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Facts, Rational, Relation};
 
-/// Parts that are looked at one by one.
+/// The greatest number of cells that are examined one by one.
 const MOST_PARTS: usize = 16;
 
-/// A part of a domain.
+/// A cell of a domain.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// The points of the part.
+    /// The points of the cell.
     pub domain: Domain,
-    /// What divides it from the others, and whether that is positive or negative in this part.
+    /// The expressions that divide it from other cells, with their signs in this cell.
     pub sides: Vec<(Expr, Side)>,
 }
 
-/// The sign of what divides.
+/// The sign of a dividing expression.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Side {
     /// `> 0`
@@ -44,8 +44,8 @@ impl Side {
 }
 
 impl Domain {
-    /// The parts on which the formulas are analytic in what varies; one, if they are so everywhere. An obstacle, where there
-    /// are too many or it is open whether one of them has points.
+    /// The cells on which the formulas are analytic in the varying symbols; one cell if they are analytic everywhere.
+    /// An obstacle if there are too many, or if it is open that one of them has points.
     pub fn parts(&self, arena: &Arena, exprs: &[Expr], varies: impl Fn(Expr) -> bool) -> Result<Vec<Part>, Obstacle> {
         let mut parts = Vec::new();
         let mut open = vec![Part { domain: self.clone(), sides: Vec::new() }];
@@ -70,7 +70,7 @@ impl Domain {
         Ok(parts)
     }
 
-    /// The factors of what stands under absolute values, also where these are written as roots of squares or as other
+    /// The factors of the arguments of absolute values, also where these are written as roots of squares or as other
     /// functions: `exp(log(q^2)/2)` is `|q|`.
     pub(crate) fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
         let mut under = arena.dividers(exprs);
@@ -102,8 +102,8 @@ impl Domain {
         Ok(found)
     }
 
-    /// The domain without what is assumed of radicands as they are written, which would be kept for it: that a root has a
-    /// value says nothing of where it bends.
+    /// The domain without the assumptions that radicands are non-negative: that a root has a value says nothing of its
+    /// non-smooth points.
     pub fn but_for_radicands(&self, arena: &Arena, exprs: &[Expr]) -> Self {
         let is_root = |(base, power): &(Expr, Rational)| (!power.is_integer()).then_some(*base);
         let radicands: Vec<Expr> = arena
@@ -123,9 +123,9 @@ impl Domain {
         Self { facts, ..self.clone() }
     }
 
-    /// An obstacle where an inverse circular function that stays in the normal form moves as a multiple of its arguments,
-    /// or as another one: what it differs by is then another number on each of many intervals. Equations of the domain are
-    /// left out: one that gives an output as an angle makes that no other function of its arguments.
+    /// An obstacle if an inverse circular function that remains in the normal form varies as a multiple of its
+    /// arguments or of another one: their difference is then a different number on each of many intervals. Equations of
+    /// the domain are ignored: an output given as an angle is no other function of its arguments.
     fn tell_angles_apart(&self, arena: &Arena, exprs: &[Expr], varies: &impl Fn(Expr) -> bool) -> Result<(), Obstacle> {
         let is_angle = |e: &Expr| {
             let inverse = [Function::Asin, Function::Acos, Function::Atan, Function::Atan2];
@@ -170,7 +170,7 @@ impl Domain {
 }
 
 impl Part {
-    /// What of the part is on either side.
+    /// The two cells of this one on either side of a divisor, if they have points.
     fn divided(&self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
         let sides = [(Side::Positive, divisor), (Side::Negative, arena.neg(divisor))];
         if sides.iter().any(|(_, positive)| self.domain.implies(arena, *positive, Relation::NonNegative)) {
@@ -188,8 +188,8 @@ impl Part {
 }
 
 impl Arena {
-    /// What stands under absolute values, also where these are written as other functions: where it passes zero, formulas
-    /// bend or jump.
+    /// The arguments of absolute values, also where these are written as other functions: formulas are non-smooth or
+    /// jump at their zeros.
     pub fn dividers(&self, exprs: &[Expr]) -> Vec<Expr> {
         let mut found = Vec::new();
         let mut open = exprs.to_vec();
@@ -207,7 +207,7 @@ impl Arena {
         found
     }
 
-    /// The expressions that hold roots or logarithms: what these make together may be a magnitude.
+    /// The expressions that hold roots or logarithms: their combination may be an absolute value.
     pub fn branched(&self, exprs: &[Expr]) -> Vec<Expr> {
         let is_one = |expr: Expr| match self.node(expr) {
             Node::Product(product) => product.factors.iter().any(|(_, power)| !power.is_integer()),
@@ -219,7 +219,7 @@ impl Arena {
         exprs.iter().copied().filter(holds).collect()
     }
 
-    /// What may be the magnitude of something: even roots, and the cosines of inverse sines and cosines.
+    /// Candidates for absolute values: even roots, and the cosines of inverse sines and cosines.
     fn magnitudes(&self, exprs: &[Expr]) -> Vec<Expr> {
         let mut found = Vec::new();
         for node in self.postorder(exprs) {

@@ -1,9 +1,11 @@
-//! Values that a function of one symbol takes twice: at two rational numbers, or by the intermediate value theorem.
+//! Proofs that a function of one symbol is not injective: by two rational numbers, or by the intermediate value
+//! theorem.
 //!
-//! In: a formula, a symbol, what must hold on the domain, and a point of it. Out: two values of the symbol at which the
-//! formula has one value, all other symbols being as at the point; or one value, and an interval that does not hold it, at
-//! one end of which the formula is less than there and at the other end greater. The whole interval lies in the domain
-//! and the formula is continuous on it, which enclosures over it show; so the formula has the same value somewhere within.
+//! In: a formula, a symbol, the facts of the domain, and a point of it. Out: two values of the symbol at which the
+//! formula has the same value, all other symbols being as at the point; or one value, and an interval that does not
+//! hold it, at one end of which the formula is less than there and at the other end greater. The whole interval lies in
+//! the domain and the formula is continuous on it, as enclosures over it prove; so the formula has the same value
+//! somewhere within.
 
 use std::collections::BTreeMap;
 
@@ -15,18 +17,18 @@ use crate::{Domain, Rational, Relation};
 
 const PRECISION: Precision = Precision::new(96);
 
-/// Two places at which a formula has the same value.
+/// Two values of a symbol at which a formula has the same value.
 #[derive(Clone, Debug)]
 pub struct Twice {
     /// One value of the symbol.
     pub at: Rational,
-    /// The other lies between these, or is both.
+    /// An interval that holds the other value, or the other value twice.
     pub between: [Rational; 2],
-    /// The formula at the one, and at the ends of the interval.
+    /// The values of the formula at `at`, and at the ends of the interval.
     pub values: [Interval; 3],
 }
 
-/// Looks for a value that the formula takes twice while the symbol alone changes.
+/// Searches for two values of the symbol with the same value of the formula, all other symbols held.
 pub fn taken_twice(
     arena: &Arena,
     domain: &Domain,
@@ -40,7 +42,7 @@ pub fn taken_twice(
         arena.substitute(expr, &others.collect())
     };
     let formula = here(formula);
-    // The other facts hold at the point as well as elsewhere.
+    // The other facts do not depend on the symbol, so they hold at the point as well as elsewhere.
     let facts = domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&symbol));
     let conditions: Vec<(Expr, Relation)> =
         facts.chain(asks.iter().copied()).map(|(expr, relation)| (here(expr), relation)).collect();
@@ -93,10 +95,10 @@ pub fn taken_twice(
     None
 }
 
-/// Values of the symbol that are tried, ascending: simple ones, and where both its bounds are known, some between these.
+/// Trial values of the symbol, ascending: simple ones, and if both its bounds are known, some between these.
 fn places(arena: &Arena, domain: &Domain, symbol: Symbol, point: &Point) -> Vec<Rational> {
     const PARTS: i64 = 24;
-    // What rises for a short way only does so beside a bound.
+    // A formula that rises for a short way only does so beside a bound.
     const BESIDE: [(i64, i64); 4] = [(1, 256), (1, 64), (63, 64), (255, 256)];
     let eighths = [1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96];
     let simple = eighths.iter().flat_map(|n| [-n, *n]).chain([0]);
@@ -126,7 +128,7 @@ mod tests {
         let call = |function| arena.call(function, &[p]);
         let cubic = arena.sub(power(3), arena.mul(k, p));
         let cases = [
-            // Formula, bounds of p, what is asked, whether a value is taken twice.
+            // Formula, bounds of p, domain conditions, expected collision.
             (cubic, None, None, true),
             (cubic, Some((2, 9)), None, false),
             (power(3), None, None, false),
@@ -135,14 +137,14 @@ mod tests {
             (call(Function::Abs), None, Some((p, Relation::NonZero)), true),
             (call(Function::Sin), Some((0, 3)), None, true),
             (call(Function::Sin), Some((-1, 1)), None, false),
-            // It is one-to-one on both branches together.
+            // It is one-to-one on both branches combined.
             (power(-1), None, None, false),
             (arena.add(power(-1), p), Some((0, 9)), None, true),
             (call(Function::Sign), None, None, true),
         ];
         for (formula, bounds, ask, expected) in cases {
             let mut domain = Domain::default();
-            // Of what the formula does not hold.
+            // A fact about a symbol that the formula does not hold.
             domain.facts.assume(arena.variable("r"), Relation::Positive);
             if let Some((low, high)) = bounds {
                 domain.facts.assume(arena.sub(p, arena.number(low)), Relation::Positive);

@@ -1,11 +1,11 @@
-//! Formulas some of whose functions and sums stay as they are written.
+//! Formulas in which some functions and sums are opaque.
 //!
-//! In: formulas, and the symbols that a question is about. Out: the same over fresh symbols, one for each function, each
-//! root and each factor that is a sum, if it is free of those symbols; and the way back. Or in: formulas and some of their
-//! functions, for which the symbols stand then. What is solved over them is an identity whatever they stand for, so it is
-//! one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))` and `(T - 300)^3`, which a normal form would
-//! write with exponentials, with powers of a cosine, with `q - 1` below the bar, and as a polynomial whose terms cancel to
-//! nothing near T = 300. What needs a relation among them is not seen this way.
+//! In: formulas, and the symbols of a problem. Out: the formulas over fresh symbols, one for each function, each root
+//! and each factor that is a sum, if it is free of those symbols; and the way back. Or in: formulas and some of their
+//! functions, which the fresh symbols replace. A solution over fresh symbols is an identity for any of their values, so
+//! it is one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))` and `(T - 300)^3`, which a normal
+//! form would write with exponentials, with powers of a cosine, with the denominator `q - 1`, and as a polynomial whose
+//! terms cancel near T = 300. Results that need a relation among opaque terms are not found.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,30 +14,30 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::tower::Field;
 use crate::{Arena, Domain, Expr, Node, Rational, Symbol};
 
-/// The fresh symbols, with what they stand for.
+/// The fresh symbols, with the terms they replace.
 pub struct Frozen<'a> {
     arena: &'a Arena,
     which: Which<'a>,
-    /// Over the symbols: what was replaced; of sums also their multiples, by their own with leading coefficient 1.
+    /// The symbols of the opaque terms; of sums also their multiples, by the symbol with leading coefficient 1.
     symbols: FxHashMap<Expr, Expr>,
     values: BTreeMap<Symbol, Expr>,
 }
 
-/// What is replaced.
+/// The selection of opaque terms.
 enum Which<'a> {
-    /// Functions, roots and factors of what is free of these symbols.
+    /// Functions, roots and factors that are free of these symbols.
     FreeOf(&'a BTreeSet<Symbol>),
     /// These functions.
     Calls(&'a BTreeSet<Expr>),
 }
 
 impl<'a> Frozen<'a> {
-    /// For a question about these symbols.
+    /// For a problem in these symbols.
     pub fn new(arena: &'a Arena, about: &'a BTreeSet<Symbol>) -> Self {
         Self { arena, which: Which::FreeOf(about), symbols: FxHashMap::default(), values: BTreeMap::new() }
     }
 
-    /// For a question in which these functions are to stay.
+    /// For a problem in which these functions are opaque.
     pub(crate) fn calls(arena: &'a Arena, calls: &'a BTreeSet<Expr>) -> Self {
         Self { arena, which: Which::Calls(calls), symbols: FxHashMap::default(), values: BTreeMap::new() }
     }
@@ -76,17 +76,17 @@ impl<'a> Frozen<'a> {
         exprs.iter().map(|expr| known[expr]).collect()
     }
 
-    /// Whether nothing was replaced.
+    /// True if there are no opaque terms.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// A formula with what the fresh symbols stand for.
+    /// A formula with the fresh symbols replaced by their terms.
     pub fn thaw(&self, expr: Expr) -> Expr {
         if self.is_empty() { expr } else { upright(self.arena, self.arena.substitute(expr, &self.values)) }
     }
 
-    /// Whether a function is replaced.
+    /// True if a function is opaque.
     fn stays(&self, expr: Expr) -> bool {
         match &self.which {
             Which::FreeOf(about) => {
@@ -97,12 +97,12 @@ impl<'a> Frozen<'a> {
         }
     }
 
-    /// Whether a root of this is replaced, and this where it is a factor.
+    /// True if roots of a base are opaque, and the base itself where it is a factor.
     fn factors_stay(&self, base: Expr) -> bool {
         matches!(self.which, Which::FreeOf(_)) && self.stays(base)
     }
 
-    /// The symbol of a sum, or the multiple of that of a sum in proportion: `q0 - q` after `q - q0`.
+    /// The symbol of a sum, or the multiple of that of a proportional sum: `q0 - q` after `q - q0`.
     fn sum(&mut self, expr: Expr) -> Expr {
         let arena = self.arena;
         let Node::Sum(sum) = arena.node(expr) else { return self.symbol_of(expr) };
@@ -129,8 +129,8 @@ impl<'a> Frozen<'a> {
     }
 }
 
-/// Of expressions with what they consist of, operands first, the sums without divisions but by powers, as `1 + (q/K)^10`:
-/// what others are divided by goes over their common denominator, as in `L - M^2/J`.
+/// The sums among expressions and their operands, operands first, that hold no divisions but by powers, as `1 +
+/// (q/K)^10`: others go over their common denominator, as `L - M^2/J`.
 fn whole_sums(arena: &Arena, parts: &[Expr]) -> FxHashSet<Expr> {
     let mut whole = FxHashSet::default();
     for part in parts {
@@ -174,7 +174,8 @@ fn upright(arena: &Arena, expr: Expr) -> Expr {
             turned = true;
         }
     }
-    // A minus that this leaves goes into a difference above; below, entries of one matrix share what they divide by.
+    // The remaining minus goes into a difference in the numerator; in denominators, entries of one matrix share their
+    // divisors.
     if turned
         && coefficient.is_negative()
         && let Some((base, _)) = factors.iter_mut().find(|(base, power)| power.is_one() && balance(*base) == Some(0))
@@ -185,7 +186,7 @@ fn upright(arena: &Arena, expr: Expr) -> Expr {
     if turned { arena.multiply(&coefficient, factors) } else { expr }
 }
 
-/// The normal form of an expression over what is free of the symbols as it is written, where there is one.
+/// The normal form of an expression with opaque terms free of the symbols, if there is one.
 pub fn as_written(arena: &Arena, domain: &Domain, expr: Expr, about: &BTreeSet<Symbol>) -> Option<Expr> {
     let mut frozen = Frozen::new(arena, about);
     let signals = frozen.freeze(&[expr]);
@@ -215,10 +216,10 @@ mod tests {
             (arena.add(x, power(offset, 3)), "x + signal1^3"),
             (arena.mul(x, twice), "-2*x*signal1"),
             (arena.div(x, arena.add(arena.one(), power(arena.div(y, r), 4))), "x/signal2"),
-            // The common denominator of a fraction in a fraction goes below.
+            // The inner denominator of a nested fraction goes to the outer one.
             (arena.div(x, arena.sub(r, arena.div(power(y, 2), r))), "x/(r - y^2/r)"),
             (arena.div(x, power(offset, 8)), "x/signal1^8"),
-            // What is not a factor may cancel.
+            // A summand that is not a factor may cancel.
             (arena.add(x, offset), "x + y - r"),
             (arena.mul(y, arena.add(x, offset)), "y*(x + y - r)"),
             (arena.mul(x, arena.add(arena.one(), power(offset, 2))), "x*signal3"),

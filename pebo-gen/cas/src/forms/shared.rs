@@ -1,9 +1,9 @@
-//! Long rational formulas over the sums that they hold several times, which stay as they are.
+//! Long rational formulas over the sums that they hold several times, which are opaque.
 //!
-//! In: a formula. Out: the same over a fresh symbol for each such sum, and what the symbols stand for. What is zero
-//! whatever they stand for is zero, and a form of the one is a form of the other. A linear plant in symbols divides by a
-//! determinant of hundreds of terms, and multiplies minors that are no shorter: little of what is asked of it has to open
-//! them. What has to is not seen this way.
+//! In: a formula. Out: the formula over a fresh symbol for each such sum, and the sums. If the result is zero for any
+//! values of the symbols, so is the formula, and a form of the one is a form of the other. A linear plant in symbols
+//! divides by a determinant of hundreds of terms, and multiplies minors that are no shorter: few problems need to
+//! expand them. Results that need the expansion are not found.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,10 +14,10 @@ use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::tower::Field;
 
-/// Subexpressions of a formula up to which its normal form costs no more than looking for another.
+/// Subexpressions of a formula up to which its normal form costs no more than a search for shared sums.
 const SHORT: usize = 200;
 
-/// How often sums that are held several times are opened down to those that they hold.
+/// The number of times that shared sums are expanded down to the shared sums within them.
 const MOST_LAYERS: usize = 2;
 
 /// A formula over symbols for the sums that it held several times.
@@ -27,7 +27,7 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
-    /// None of a formula that is short, that holds functions or roots, or that holds no sum twice.
+    /// None if a formula is short, holds functions or roots, or holds no sum twice.
     pub(crate) fn of(arena: &Arena, expr: Expr) -> Option<Self> {
         let sums = shared_sums(arena, expr);
         (!sums.is_empty()).then(|| Self::over(arena, expr, &sums))
@@ -44,13 +44,13 @@ impl Shared {
         Self { expr: arena.replace(expr, &symbols), values }
     }
 
-    /// A formula in the symbols with what they stand for.
+    /// A formula with the symbols replaced by their sums.
     pub(crate) fn opened(&self, arena: &Arena, expr: Expr) -> Expr {
         arena.substitute(expr, &self.values)
     }
 }
 
-/// Whether it is zero whatever the sums stand for that it holds several times: the outermost, or those that these hold.
+/// True if the expression is zero for any values of its shared sums: the outermost, or those within them.
 pub(crate) fn vanishes_over_shared_sums(arena: &Arena, facts: &Facts, expr: Expr) -> bool {
     let mut sums = shared_sums(arena, expr);
     for _ in 0..MOST_LAYERS {
@@ -70,7 +70,7 @@ pub(crate) fn vanishes_over_shared_sums(arena: &Arena, facts: &Facts, expr: Expr
     false
 }
 
-/// The sums that a long rational formula holds several times; none of another.
+/// The sums that a long rational formula holds several times; none for any other formula.
 fn shared_sums(arena: &Arena, expr: Expr) -> Vec<Expr> {
     let parts = arena.postorder(&[expr]);
     if parts.len() <= SHORT || !parts.iter().all(|part| is_rational(arena, *part)) {
@@ -85,7 +85,7 @@ fn shared_sums(arena: &Arena, expr: Expr) -> Vec<Expr> {
     parts.into_iter().filter(is_shared).collect()
 }
 
-/// Whether the last operation of an expression is one of rational functions.
+/// True if the last operation of an expression is one of rational functions.
 fn is_rational(arena: &Arena, expr: Expr) -> bool {
     match arena.node(expr) {
         Node::Number(_) | Node::Symbol(_) | Node::Sum(_) => true,

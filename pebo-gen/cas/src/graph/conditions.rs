@@ -1,7 +1,7 @@
-//! What an expression asks of its parts to have a value, or to be differentiable.
+//! Domain conditions: the comparisons with zero under which an expression has a value, or is differentiable.
 //!
-//! In: an expression, or an operation that is about to be built. Out: comparisons with zero. The rows of the
-//! operations stand here, those of the functions in [`super::function`]; what is written, derived or emitted asks these.
+//! In: an expression, or an operation that is about to be built. Out: comparisons with zero. This module has the
+//! conditions of the operations, [`super::function`] those of the functions; parser, derivative and emitter share them.
 
 use super::arena::Arena;
 use super::enclosure::Point;
@@ -9,7 +9,7 @@ use super::expr::{Expr, Node};
 use super::function::{Asks, Function};
 use crate::{Rational, Relation};
 
-/// What is wanted of an operation.
+/// The regularity demanded of an operation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Want {
     /// A value.
@@ -19,9 +19,9 @@ pub enum Want {
 }
 
 impl Arena {
-    /// What `base ^ exponent` asks of its base.
+    /// The domain condition of `base ^ exponent`.
     ///
-    /// A root has a slope of its own at zero only from an exponent of one on: `p^(3/2)` has, `p^(1/2)` has not.
+    /// A root is differentiable at zero only from an exponent of one on: `p^(3/2)` is, `p^(1/2)` is not.
     pub fn asked_by_power(&self, base: Expr, exponent: &Rational, want: Want) -> Option<(Expr, Relation)> {
         let relation = match (exponent.is_integer(), exponent.is_negative()) {
             (true, false) => return None,
@@ -33,13 +33,13 @@ impl Arena {
         Some((base, relation))
     }
 
-    /// What `base ^ exponent` asks where the exponent is not a number: it is `exp(exponent * log(base))`.
+    /// The domain condition of `base ^ exponent` for a symbolic exponent: it is `exp(exponent * log(base))`.
     pub fn asked_by_symbolic_power(&self, base: Expr) -> (Expr, Relation) {
         (base, Relation::Positive)
     }
 
-    /// What a division asks of what stands below: of a root that its radicand is not zero, which takes more to see of the
-    /// root.
+    /// The domain conditions of a division: for a root that its radicand is not zero, which is easier to prove than of
+    /// the root.
     pub fn asked_by_division(&self, below: Expr) -> Asks {
         let Node::Product(product) = self.node(below) else { return vec![(below, Relation::NonZero)] };
         let roots = product.factors.iter().filter(|(_, exponent)| !exponent.is_integer());
@@ -50,7 +50,7 @@ impl Arena {
         asks
     }
 
-    /// What a function asks of its arguments.
+    /// The domain conditions of a function.
     pub fn asked_by_call(&self, function: Function, arguments: &[Expr], want: Want) -> Asks {
         let row = function.row();
         match row.smooth {
@@ -59,7 +59,7 @@ impl Arena {
         }
     }
 
-    /// What the outermost operation asks of its operands.
+    /// The domain conditions of the outermost operation.
     pub fn asked_by(&self, expr: Expr, want: Want) -> Asks {
         match self.node(expr) {
             Node::Product(product) => product
@@ -72,7 +72,8 @@ impl Arena {
         }
     }
 
-    /// What the expressions and their parts ask, each once, operands first; not what holds of numbers anyway.
+    /// The domain conditions of the expressions and their subexpressions, each once, operands first; without those that
+    /// hold of numbers.
     pub fn asks(&self, exprs: &[Expr], want: Want) -> Asks {
         let mut found = Asks::new();
         for part in self.postorder(exprs) {
@@ -85,7 +86,7 @@ impl Arena {
         found
     }
 
-    /// Whether this is a comparison of a number with zero that provably holds.
+    /// True if this is a comparison of a number with zero that provably holds.
     pub fn holds_of_number(&self, (expr, relation): (Expr, Relation)) -> bool {
         if !self.symbols_of(&[expr]).is_empty() {
             return false;
@@ -97,7 +98,7 @@ impl Arena {
         value.is_some_and(|value| relation == Relation::NonZero || value.is_positive())
     }
 
-    /// Whether this is a comparison of a number with zero that provably fails.
+    /// True if this is a comparison of a number with zero that provably fails.
     pub fn fails_of_number(&self, (expr, relation): (Expr, Relation)) -> bool {
         if !self.symbols_of(&[expr]).is_empty() {
             return false;
@@ -114,10 +115,10 @@ impl Arena {
 mod tests {
     use super::*;
 
-    /// Asks as `part relation`.
+    /// Conditions as `expression relation`.
     type Shown = &'static [&'static str];
 
-    /// The asks as `part relation`, for a formula in a and b.
+    /// The conditions as `expression relation`, for a formula in a and b.
     fn asked(build: impl Fn(&Arena, Expr, Expr) -> Expr, want: Want) -> Vec<String> {
         let arena = Arena::new();
         let expr = build(&arena, arena.variable("a"), arena.variable("b"));
@@ -192,7 +193,7 @@ mod tests {
             (
                 Function::Atan2,
                 &["a^2 + b^2 != 0"],
-                // The root of the radius is a part of the second ask, not of the formula.
+                // The root of the radius occurs in the second condition, not in the formula.
                 &["b + sqrt(a^2 + b^2) > 0"],
             ),
         ];

@@ -1,8 +1,8 @@
 //! Rigorous values of expressions at exact points.
 //!
 //! In: an expression and a constant for each of its symbols, as a rule a rational one. Out: an interval that contains
-//! the exact real value, or nothing where the value does not exist or could not be separated from a place where it
-//! does not.
+//! the exact real value, or nothing if the value does not exist or could not be separated from a point where it does
+//! not.
 
 use std::collections::BTreeMap;
 
@@ -22,18 +22,18 @@ const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
 /// A rational value with more bits than this is enclosed instead.
 const MOST_BITS: u64 = 1 << 14;
 
-/// What rational arithmetic says of a value.
+/// The result of rational arithmetic.
 enum Exact {
-    /// It is this number.
+    /// The value is this number.
     Value(Rational),
-    /// It does not exist: something is divided by zero.
+    /// The value does not exist: a divisor is zero.
     Undefined,
-    /// It takes more than rational arithmetic.
+    /// Rational arithmetic does not suffice.
     Irrational,
 }
 
 impl Arena {
-    /// Encloses several expressions at a point, none where one of them has no value there.
+    /// Encloses several expressions at a point; none if one of them has no value there.
     pub fn enclose_all(&self, exprs: &[Expr], point: &Point, precision: Precision) -> Option<Vec<Interval>> {
         let mut values = BTreeMap::new();
         for symbol in self.symbols_of(exprs) {
@@ -70,7 +70,7 @@ impl Arena {
         self.enclose_all(&[expr], point, precision)?.pop()
     }
 
-    /// The value at a point, where it takes nothing but rational arithmetic: much cheaper than an enclosure.
+    /// The value at a point, if rational arithmetic suffices: much cheaper than an enclosure.
     fn rational_at(&self, expr: Expr, point: &Point) -> Exact {
         let mut known: FxHashMap<Expr, Rational> = FxHashMap::default();
         for e in self.postorder(&[expr]) {
@@ -101,7 +101,7 @@ impl Arena {
                 Node::Pi | Node::Call(..) => None,
             };
             let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return Exact::Irrational };
-            // What it was made of is of that length too, and has no common factor left.
+            // Its operands are of that length too, and it has no common factor left.
             let words = value.bits().div_ceil(64);
             self.budget().take(words * words * (1 + self.operand_count(e)));
             known.insert(e, value);
@@ -122,7 +122,7 @@ impl Arena {
             .find_map(|&bits| self.enclose(expr, point, Precision::new(bits)).filter(|value| !value.contains_zero()))
     }
 
-    /// Whether the expression provably has a value at the point.
+    /// True if the expression provably has a value at the point.
     pub fn exists_at(&self, expr: Expr, point: &Point) -> bool {
         match self.rational_at(expr, point) {
             Exact::Value(_) => return true,

@@ -1,14 +1,14 @@
-//! The one question behind the claims: an expression as a combination of given functions of x, with
-//! coefficients that are free of x.
+//! The central problem of all claims: an expression as a combination of given functions of x, with coefficients that
+//! are free of x.
 //!
 //! ```text
 //! target, basis, x -> coefficients c with target = sum of c_k * basis_k, each c_k free of x
 //! ```
 //!
-//! Over a common denominator, target and basis are polynomials in the kernels that depend on x, with
-//! coefficients in all others. Comparing them monomial by monomial gives a linear system over the
-//! field of functions of the other symbols. If the kernels are independent, a missing solution means
-//! that there is none; what is found is an identity in any case.
+//! Over a common denominator, target and basis are polynomials in the kernels that depend on x, with coefficients in
+//! all others. Comparing them monomial by monomial gives a linear system over the field of functions of the other
+//! symbols. If the kernels are independent and the system has no solution, there is no combination; a solution is an
+//! identity in any case.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -81,8 +81,8 @@ pub fn relations(field: &Field<'_>, exprs: &[Expr], x: &BTreeSet<Symbol>) -> Res
     Ok(echelon.null_space())
 }
 
-/// The equations that say of coefficients free of the symbols that the combination of each row of expressions vanishes, an
-/// expression for each coefficient.
+/// The equations for coefficients free of the symbols under which the combination of each row of expressions vanishes,
+/// an expression for each coefficient.
 ///
 /// If the kernels are independent it vanishes nowhere else.
 pub fn equations(
@@ -107,7 +107,7 @@ pub fn equations(
     Ok(matrix)
 }
 
-/// As [`combine`], of the domain: coefficients as expressions, with which the combination holds everywhere, else on the
+/// As [`combine`], on the domain: coefficients as expressions, with which the combination holds everywhere, else on the
 /// manifold of the domain.
 pub fn combine_on(
     arena: &Arena,
@@ -117,7 +117,7 @@ pub fn combine_on(
     x: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Expr>>, Obstacle> {
     let roots = [basis, &[target]].concat();
-    // In the author's own functions and sums of what is known, where that is enough.
+    // In the author's own functions and sums of known terms, if that is enough.
     let mut frozen = Frozen::new(arena, x);
     let signals = frozen.freeze(&roots);
     if !frozen.is_empty()
@@ -140,14 +140,14 @@ pub fn combine_on(
     }
 }
 
-/// Divisors that are tried.
+/// The greatest number of divisors that are tried.
 const MOST_DIVISORS: usize = 8;
 
-/// What coefficients are shown with.
+/// The context in which coefficients are written.
 struct Shown<'f, 'a> {
     field: &'f Field<'a>,
     domain: &'f Domain,
-    /// Sums with roots or magnitudes, free of x, that the formulas or equations hold: by these they may divide.
+    /// Sums with roots or absolute values, free of x, that the formulas or equations hold: allowed divisors.
     divisors: Vec<Expr>,
 }
 
@@ -169,8 +169,8 @@ impl<'f, 'a> Shown<'f, 'a> {
         Self { field, domain, divisors }
     }
 
-    /// A coefficient as the shortest of its forms; over sums of the formulas where it asks for less so: the normal
-    /// form has `(1 - abs(q))/(1 - q^2)` for `1/(1 + abs(q))`.
+    /// A coefficient as the shortest of its forms; over sums of the formulas if that has fewer domain conditions: the
+    /// normal form has `(1 - abs(q))/(1 - q^2)` for `1/(1 + abs(q))`.
     fn form(&self, coefficient: &Fraction, thaw: impl Fn(Expr) -> Expr) -> Expr {
         let arena = self.field.arena();
         let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&thaw);
@@ -181,7 +181,7 @@ impl<'f, 'a> Shown<'f, 'a> {
         asking_less(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
     }
 
-    /// A coefficient as what is left of it over such sums, if some make its denominator shorter.
+    /// A coefficient as a quotient by such sums, if some make its denominator shorter.
     fn over_divisors(&self, coefficient: &Fraction) -> Result<Option<(Fraction, Expr)>, Obstacle> {
         let mut rest = coefficient.clone();
         let mut below = Vec::new();

@@ -1,8 +1,8 @@
 //! Determinants over the field of fractions.
 //!
-//! In: a square matrix. Out: its determinant. Rows over a common denominator have polynomials for entries; of these the
-//! minors of the first rows are computed once each, row by row, without a division: fractions of fractions, which
-//! elimination makes, would swell long before they cancel. Where there are too many minors, elimination is left.
+//! In: a square matrix. Out: its determinant. Rows over a common denominator have polynomials for entries; their minors
+//! of the first rows are computed once each, row by row, without a division: fractions of fractions, which elimination
+//! makes, would swell long before they cancel. Elimination takes over if there are too many minors.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::{numbers_of, rational_matrix, subtract};
 use crate::poly::Poly;
 use crate::tower::{Field, Fraction, Obstacle};
 
-/// Minors of one size, past which elimination takes over: those of ten dense rows are no more.
+/// The greatest number of minors of one size before elimination takes over: those of ten dense rows are no more.
 const MOST_MINORS: usize = 256;
 
 /// The determinant of a square matrix.
@@ -25,7 +25,7 @@ pub fn determinant(field: &Field<'_>, rows: Vec<Vec<Fraction>>) -> Result<Fracti
     }
 }
 
-/// By minors; none where there are too many.
+/// By minors; none if there are too many.
 fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fraction>, Obstacle> {
     if rows.len() >= u64::BITS as usize {
         return Ok(None);
@@ -57,7 +57,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
     Ok(Some(field.div(&field.of_polynomial(&total)?, &below)?))
 }
 
-/// By elimination: where most entries are zero or one and the others long, as in the matrix of Hurwitz.
+/// By elimination: for matrices whose entries are mostly zero or one and the others long, as that of Hurwitz.
 pub fn by_elimination(field: &Field<'_>, mut rows: Vec<Vec<Fraction>>) -> Result<Fraction, Obstacle> {
     let mut total = Fraction::one();
     for column in 0..rows.len() {

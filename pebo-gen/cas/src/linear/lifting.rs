@@ -4,10 +4,10 @@
 //! A x = b: x modulo p from the inverse modulo p, (b - A x) / p, and again -> x modulo p^n -> quotients of integers
 //! ```
 //!
-//! In: an invertible matrix, and right sides. Out: a solution for each, as numerators over one denominator; nothing if the
-//! matrix has no inverse modulo the prime, which then divides its determinant. Holds after: a solution that comes out
-//! satisfies its equations, since both sides of `A above = b below` agree modulo a number that neither reaches. What it
-//! takes grows with the digits of the solution, where elimination takes those digits in every step.
+//! In: an invertible matrix, and right sides. Out: a solution for each, as numerators over one denominator; nothing if
+//! the matrix has no inverse modulo the prime, which then divides its determinant. Holds after: a solution satisfies
+//! its equations, since both sides of `A numerators = denominator b` agree modulo a number that neither reaches. The
+//! work grows with the digits of the solution, while elimination takes those digits in every step.
 
 use super::residues::Rows;
 use crate::Integer;
@@ -19,10 +19,10 @@ const BITS_OF_PRIME: u32 = 50;
 /// Bits of the parts into which the entries of the matrix are split.
 const BITS_OF_PART: u32 = 60;
 
-/// Bits that the modulus has beyond those of a quotient: others are as short by chance once in so many.
+/// Bits of the modulus beyond those of a quotient: a wrong quotient is as short only by chance.
 const SPARE_BITS: u64 = 32;
 
-/// `above / below`.
+/// `numerators / denominator`.
 #[derive(Debug)]
 pub(crate) struct Solution {
     pub(crate) above: Vec<Integer>,
@@ -30,7 +30,7 @@ pub(crate) struct Solution {
     pub(crate) below: Integer,
 }
 
-/// A matrix with what is needed to solve for any right side.
+/// A matrix prepared for solutions with any right side.
 #[derive(Debug)]
 pub(crate) struct Lifting {
     prime: PrimeField,
@@ -48,7 +48,7 @@ pub(crate) fn prime() -> Option<PrimeField> {
 }
 
 impl Lifting {
-    /// Inverts the matrix modulo the prime, if that can be.
+    /// Inverts the matrix modulo the prime, if possible.
     pub(crate) fn of(prime: PrimeField, matrix: &[Vec<Integer>], work: &Work) -> Result<Option<Self>, TooLarge> {
         let size = steps(matrix.len());
         work.spend(size.saturating_mul(size).saturating_mul(size) / 4)?;
@@ -92,7 +92,7 @@ impl Lifting {
         }
     }
 
-    /// The next digit of the solution; the residual becomes what is left of the right side.
+    /// The next digit of the solution; the residual becomes the remaining right side.
     fn digit(&self, residual: &mut [Integer], prime: &Integer, work: &Work) -> Result<Vec<u64>, TooLarge> {
         let field = &self.prime;
         let size = residual.len();
@@ -145,7 +145,7 @@ impl Lifting {
     }
 }
 
-/// The representative of least magnitude.
+/// The representative of least absolute value.
 fn centred(value: &Integer, modulus: &Integer) -> Option<Integer> {
     let (_, mut rest) = value.div_rem(modulus)?;
     if rest.is_negative() {
@@ -155,7 +155,7 @@ fn centred(value: &Integer, modulus: &Integer) -> Option<Integer> {
     Some(if other.abs() < rest { other } else { rest })
 }
 
-/// The quotient of short integers that a residue stands for, by Euclid's algorithm (Wang 1981); none if there is none.
+/// The quotient of short integers that a residue represents, by Euclid's algorithm (Wang 1981); none if there is none.
 fn ratio(value: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
     let (mut before, mut rest) = (modulus.clone(), value.clone());
     let (mut earlier, mut factor) = (Integer::ZERO, Integer::ONE);
@@ -178,7 +178,7 @@ fn inverse(prime: &PrimeField, matrix: Vec<Vec<Residue>>) -> Option<Vec<Vec<Resi
         row[size + index] = prime.one();
         rows.insert(row);
     }
-    // As many rows as columns: where each of these has a pivot, none is beyond.
+    // As many rows as columns: if each of these has a pivot, none is beyond.
     let is_regular = rows.pivots().eq(0..size);
     is_regular.then(|| rows.reduced().into_iter().map(|(_, mut row)| row.split_off(size)).collect())
 }

@@ -1,11 +1,11 @@
 //! Elimination of matrices of numbers.
 //!
-//! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every entry
-//! is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is looked for
-//! and numbers grow no longer than the answer. Over fractions of polynomials (`linear`) those determinants would be the
-//! longest entries there are, so that the two share no step. Of a large matrix, rows and pivots are found modulo a prime,
-//! and the rest is solved for by `lifting`; rows that this does not explain, of which that prime was a bad choice, are
-//! left to elimination.
+//! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every
+//! entry is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is
+//! computed and numbers grow no longer than the answer. Over fractions of polynomials (`linear`) those determinants
+//! would be the longest entries, so that the two share no step. Rows and pivots of a large matrix are found modulo a
+//! prime, and the rest is solved for by `lifting`; rows that this does not explain, for which that prime was a bad
+//! choice, are left to elimination.
 
 use super::lifting::{self, Lifting};
 use super::residues::Rows;
@@ -15,7 +15,7 @@ use crate::{Integer, Rational};
 /// Rows and columns from which on lifting is quicker than elimination.
 const LARGE: usize = 16;
 
-/// What elimination leaves of a matrix.
+/// The result of elimination on a matrix.
 pub(crate) struct Reduced {
     /// Rows with their pivot columns, ascending; each is one in its pivot column, and all others are zero there.
     pub(crate) rows: Vec<(usize, Vec<Rational>)>,
@@ -34,7 +34,7 @@ pub(crate) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Re
     eliminated(rows, columns, work)
 }
 
-/// A solution of rows `[matrix | right side]`, with zero for unknowns that stay free; none where there is none.
+/// A solution of rows `[matrix | right side]`, with zero for free unknowns; none if there is none.
 pub(crate) fn solution(
     rows: &[Vec<Rational>],
     unknowns: usize,
@@ -98,7 +98,7 @@ fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<R
         for ((_, row), above) in reduced.iter_mut().zip(&solution.above) {
             row[column] = over(above)?;
         }
-        // What the chosen rows do not explain of another one.
+        // The part of another row that the chosen rows do not explain.
         let words = solution.below.bits().div_ceil(64) + 1;
         for (other, left) in others.iter().zip(&mut rest) {
             work.spend(words.saturating_mul(steps(pivots.len())))?;
@@ -123,7 +123,7 @@ pub(crate) fn determinant(rows: &[Vec<Rational>], work: &Work) -> Result<Rationa
     let mut last = Integer::ONE;
     for column in 0..rows.len() {
         let Some(index) = rest.iter().position(|row| !row[column].is_zero()) else { return Ok(Rational::ZERO) };
-        // A row that comes first past an odd number of others turns the sign.
+        // A row that passes an odd number of others turns the sign.
         let mut row = rest.remove(index);
         if index % 2 == 1 {
             for entry in &mut row {
@@ -212,7 +212,7 @@ mod tests {
             rows.iter().map(|(pivot, row)| (*pivot, row[..columns].to_vec())).collect::<Vec<_>>()
         };
         assert_eq!(before(&by_lifting.rows), before(&by_elimination.rows));
-        // What is carried along is determined but for the rows that are left, which span the same.
+        // The carried columns are determined up to the remaining rows, which span the same.
         let rest = [&by_lifting, &by_elimination].map(|found| {
             assert!(found.rest.iter().all(|row| row[..columns].iter().all(Rational::is_zero)));
             found.rest.iter().map(|row| row[columns..].to_vec()).collect::<Vec<_>>()

@@ -1,7 +1,7 @@
-//! Vectors of residues: which combinations of columns vanish.
+//! Linear relations among columns of residues.
 //!
-//! In: rows over a prime field, as many as one likes. Out: how many of them are independent, and the vectors that all
-//! of them annihilate.
+//! In: any number of rows over a prime field. Out: the number of independent rows, and the vectors that all of them
+//! annihilate.
 
 use crate::poly::{PrimeField, Residue};
 
@@ -20,7 +20,7 @@ impl<'a> Rows<'a> {
         Self { prime, columns, echelon: Vec::new() }
     }
 
-    /// How many of the rows are independent.
+    /// The number of independent rows.
     pub fn rank(&self) -> usize {
         self.echelon.len()
     }
@@ -30,7 +30,7 @@ impl<'a> Rows<'a> {
         self.echelon.iter().map(|(pivot, _)| *pivot)
     }
 
-    /// Adds a row; whether it is independent of those before.
+    /// Adds a row; true if it is independent of those before.
     pub fn insert(&mut self, mut row: Vec<Residue>) -> bool {
         let prime = self.prime;
         for (pivot, known) in &self.echelon {

@@ -7,10 +7,10 @@ use super::layout::{Exponents, Layout};
 use super::multiply::{Factor, Sum, Terms};
 use crate::Integer;
 
-/// Boxes larger than this do not stay in the cache: a hash table or a heap is then no slower.
+/// Larger boxes exceed the cache: a hash table or a heap is then no slower.
 const MAX_CELLS: usize = 1 << 21;
 
-/// Sums that are added to in turn are that near to each other, if they can be.
+/// The size of a block of sums, which are added to in turn.
 const MOST_BYTES_OF_BLOCK: usize = 1 << 15;
 
 /// The monomials up to some degrees, numbered: the exponents are digits, the last variable's the
@@ -128,7 +128,8 @@ impl<'a> ExponentBox<'a> {
         Ok(Outcome::Quotient(keys, coefficients))
     }
 
-    /// How many cells, the monomials in the last variables, stay in the nearest cache while terms are added to them.
+    /// The number of cells, the monomials in the last variables, that remain in the nearest cache while terms are added
+    /// to them.
     fn block(&self, bytes: usize) -> usize {
         let mut block = 1;
         for degree in self.degrees.iter().rev() {

@@ -1,4 +1,4 @@
-//! Looking at a polynomial as one in some of its variables: contents and coefficients.
+//! Contents and coefficients of a polynomial in some of its variables.
 
 use std::cmp::Ordering;
 

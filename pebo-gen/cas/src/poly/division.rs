@@ -1,8 +1,8 @@
 //! Long division of sparse polynomials.
 //!
-//! The sums that the remainder consists of are in an array where the box of exponents is well
-//! filled, and else in a hash table. They are visited in descending order, so that a sum is complete
-//! when its turn comes; it ends at the first that the divisor's leading term does not divide.
+//! The sums that the remainder consists of are in an array if the box of exponents is well filled, and else in a hash
+//! table. They are visited in descending order, so that a sum is complete when its turn comes; the division ends at the
+//! first that the divisor's leading term does not divide.
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
@@ -10,11 +10,11 @@ use super::multiply::{Factor, Sum};
 use super::work::{TooLarge, Work, steps};
 use crate::Integer;
 
-/// What came of a division.
+/// The outcome of a division.
 pub(super) enum Outcome<C> {
-    /// It goes without remainder: descending keys, and their coefficients.
+    /// Exact: descending keys, and their coefficients.
     Quotient(Vec<u64>, Vec<C>),
-    /// It does not.
+    /// Not exact.
     Remainder,
     /// A coefficient of the quotient, if there is one, does not fit the number type.
     Overflow,
@@ -26,7 +26,7 @@ pub(super) trait Rest: Sum {
     fn begin(value: &Integer) -> Option<Self>;
     /// The negative of a coefficient: sums add products.
     fn negative(value: &Self::Factor) -> Self::Factor;
-    /// The quotient, or why there is none.
+    /// The quotient, or the reason why there is none.
     fn over(&self, divisor: &Self::Factor) -> Result<Self::Factor, Outcome<Self::Factor>>;
 }
 

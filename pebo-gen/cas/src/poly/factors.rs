@@ -1,7 +1,7 @@
 //! Factors for a reader: multiplicities, contents, and factors that are linear in a variable.
 //!
-//! In: a polynomial. Out: a product of powers. Each factor that is of degree one in some variable is irreducible;
-//! of the others, only factors that are linear in a variable are looked for, so one may be a product still.
+//! In: a polynomial. Out: a product of powers. Each factor of degree one in some variable is irreducible; in the
+//! others, only factors that are linear in a variable are searched for, so one may still be a product.
 
 use super::Poly;
 use super::evaluate::coordinate;
@@ -13,12 +13,12 @@ use crate::Integer;
 /// Divisors of a coefficient that are tried as parts of a linear factor.
 const MOST_DIVISORS: usize = 24;
 
-/// Terms of a polynomial whose linear factors are looked for: what is longer is not read as a product either.
+/// Terms of a polynomial up to which linear factors are searched for: nobody reads a longer one as a product either.
 const MOST_TERMS: usize = 400;
 
 impl Poly {
-    /// The polynomial as a product, with factors as small as contents, multiplicities and linear factors tell them
-    /// apart: coprime, not constant, primitive with positive leading coefficients, ascending.
+    /// The polynomial as a product, with factors as small as contents, multiplicities and linear factors yield:
+    /// coprime, not constant, primitive with positive leading coefficients, ascending.
     pub fn factored(&self, work: &Work) -> Result<SquareFree, TooLarge> {
         let SquareFree { content, factors } = self.square_free(work)?;
         let mut found = Vec::new();
@@ -42,7 +42,7 @@ fn split(poly: Poly, work: &Work, found: &mut Vec<Poly>) -> Result<(), TooLarge>
             split(lower, work, found)?;
         }
     }
-    // What is left is primitive in each of its variables: of degree one in any, it has no factors.
+    // The rest is primitive in each of its variables: of degree one in any, it has no factors.
     while let Some(linear) = linear_factor(&rest, work)? {
         rest = rest.over(&linear, work)?;
         found.push(linear);
@@ -68,7 +68,7 @@ fn linear_factor(poly: &Poly, work: &Work) -> Result<Option<Poly>, TooLarge> {
     Ok(None)
 }
 
-/// A linear factor of what is quadratic in a variable: there is one if the discriminant is a square.
+/// A linear factor of a polynomial that is quadratic in a variable: there is one if the discriminant is a square.
 fn root_of_two(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarge> {
     let [square, slope, rest] = quadratic(poly, variable);
     let product = square.mul(&rest, work)?.scale(&Integer::from(4));
@@ -112,8 +112,8 @@ fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarg
     Ok(None)
 }
 
-/// What is left of a polynomial in one variable where the others have values modulo a prime: most candidates for a
-/// factor are no factors there.
+/// The image of a polynomial in one variable, the others having values modulo a prime: it excludes most candidates for
+/// a factor.
 struct Image {
     field: PrimeField,
     /// The powers of the variable, highest first, with their coefficients.
@@ -132,7 +132,7 @@ impl Image {
         poly.evaluate_mod(&self.field, |variable| coordinate(&self.field, variable, 1))
     }
 
-    /// Whether `below / above` is a root, as it has to be if `above v - below` divides the polynomial.
+    /// True if `below / above` is a root, as it must be if `above v - below` divides the polynomial.
     fn may_have_root(&self, above: Residue, below: Residue) -> bool {
         let (field, degree) = (&self.field, self.coefficients.first().map_or(0, |(power, _)| *power));
         let sum = self.coefficients.iter().fold(Residue::ZERO, |sum, (power, coefficient)| {

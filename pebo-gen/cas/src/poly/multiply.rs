@@ -1,14 +1,11 @@
 //! Products.
 //!
-//! Every product of two terms is computed once and added to a sum per monomial. What differs is
-//! where the sums are: in an array indexed by the exponents where the box of exponents is not much
-//! larger than the number of products, else in a hash table, whose keys are sorted at the end. And
-//! what they are: a word, a double word, or an integer of any size, by the sizes of the
-//! coefficients.
+//! Every product of two terms is computed once and added to a sum per monomial. The sums are in an array indexed by the
+//! exponents if the box of exponents is not much larger than the number of products, else in a hash table, whose keys
+//! are sorted at the end. They are words, double words, or integers of any size, by the sizes of the coefficients.
 //!
-//! One thing with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table or
-//! one long integer, for products and quotients alike, and each sends to the others what is too sparse or too dense
-//! for it.
+//! One unit with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table
+//! or one long integer, for products and quotients alike, and each delegates what is too sparse or too dense for it.
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
@@ -22,13 +19,13 @@ pub(super) trait Sum: Clone + Default {
     type Factor;
     /// Adds `a * b`.
     fn add_product(&mut self, a: &Self::Factor, b: &Self::Factor);
-    /// Whether nothing remains.
+    /// True if nothing remains.
     fn vanishes(&self) -> bool;
     /// The value.
     fn into_integer(self) -> Integer;
 }
 
-/// Only where the sum is known to fit.
+/// Only if the sum is known to fit.
 impl Sum for i64 {
     type Factor = i64;
     #[inline]
@@ -43,7 +40,7 @@ impl Sum for i64 {
     }
 }
 
-/// Only where the sum is known to fit.
+/// Only if the sum is known to fit.
 impl Sum for i128 {
     type Factor = i64;
     #[inline]
@@ -119,15 +116,15 @@ impl Poly {
         Ok(Self::from_sorted(layout, keys, coefficients))
     }
 
-    /// The power, by repeated multiplication: of a sparse polynomial that is less work than by
-    /// repeated squaring (Fateman, 1974). Of a dense one in one variable it is that of an integer.
+    /// The power, by repeated multiplication: for a sparse polynomial that is less work than by repeated squaring
+    /// (Fateman, 1974). For a dense one in one variable it is that of an integer.
     pub fn pow(&self, exponent: u32, work: &Work) -> Result<Self, TooLarge> {
         if self.term_count() <= 1 {
             return self.power_of_term(exponent, work);
         }
         let degree = self.degrees().first().copied().unwrap_or(0);
         let layout = self.layout.widened(u64::from(degree) * u64::from(exponent))?;
-        // As products would take: their number of terms, and the words of each.
+        // As for products: the number of terms, and the words of each.
         let terms = u64::from(degree).saturating_mul(u64::from(exponent));
         let words = self.bits().saturating_mul(u64::from(exponent)) / 64 + 1;
         if layout.variables().len() == 1 && exponent > 1 {
@@ -183,7 +180,7 @@ fn factor<'a, C>(keys: &'a [u64], coefficients: &'a [C]) -> Factor<'a, C> {
     Factor { keys, coefficients }
 }
 
-/// The product where one factor, or both, is a single term: nothing coincides, the order stays.
+/// The product if one factor, or both, is a single term: nothing coincides, the order is kept.
 fn single(left: &[u64], right: &[u64], a: &[Integer], b: &[Integer]) -> Terms {
     let (one, many, term, rest) = if a.len() == 1 { (left, right, &a[0], b) } else { (right, left, &b[0], a) };
     let keys = many.chunks_exact(one.len()).flat_map(|key| key.iter().zip(one).map(|(x, y)| x + y));

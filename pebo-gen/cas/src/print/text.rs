@@ -1,4 +1,4 @@
-//! Expressions as text in the model file's grammar: what is printed parses back to the same value.
+//! Expressions as text in the model file's grammar: the text parses back to the same value.
 //!
 //! Numbers are written as [`notation`](crate::number::notation) has them.
 
@@ -10,10 +10,10 @@ use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum};
 use crate::number::notation::whole;
 
-/// The length up to which a formula is printed, with all of its parts.
+/// The length up to which a formula is printed, all repetitions included.
 const MOST_CHARACTERS: usize = 10_000_000;
 
-/// How tightly the outermost operation of a text binds.
+/// The binding of a text's outermost operation.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
     Sum,
@@ -44,8 +44,8 @@ impl Text {
 impl Arena {
     /// The expression in the model file's grammar.
     ///
-    /// What is shared is printed wherever it is used, so that a short model can have a result that no page holds: of
-    /// that, the text says no more than how long it is.
+    /// Shared subexpressions are printed at every use, so that a short model can have a result longer than any page:
+    /// then the text only gives its length.
     ///
     /// ```
     /// use pebo_gen::cas::Arena;

@@ -1,7 +1,7 @@
 //! Products of unknowns: as polar coordinates, and by their exponents.
 //!
-//! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle and
-//! the magnitude, from `p*s` and `p*s^2` the quotient of the two.
+//! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle
+//! and the amplitude, from `p*s` and `p*s^2` the quotient of the two.
 
 use super::equation::{Equation, angle_of, unpower};
 use crate::graph::expr::Expr;
@@ -9,7 +9,7 @@ use crate::graph::function::Function;
 use crate::tower::Field;
 use crate::{Arena, Domain, Node, Rational};
 
-/// What products give for the kernels in them.
+/// The kernels that products determine.
 pub(super) fn apart(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
     let products: Vec<Product> = known.iter().filter_map(|equation| Product::of(arena, *equation)).collect();
     let mut found = polar(arena, domain, &products);
@@ -33,7 +33,7 @@ impl Product {
     }
 }
 
-/// Magnitude and angle where both `m*sin(a)` and `m*cos(a)` are known and the sign of m is.
+/// Amplitude and angle, if both `m*sin(a)` and `m*cos(a)` and the sign of m are known.
 fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
     let mut found = Vec::new();
     for Product { factors, value: across } in products {
@@ -58,7 +58,7 @@ fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> 
     found
 }
 
-/// Whether what is not zero is positive or negative throughout the domain, if it is either.
+/// The sign of a non-zero expression throughout the domain: positive (true) or negative (false).
 fn sign(arena: &Arena, domain: &Domain, expr: Expr) -> Option<bool> {
     let field = Field::over(arena, &domain.facts, &[expr]).ok()?;
     let fraction = field.fraction(expr).ok()?;
@@ -67,7 +67,7 @@ fn sign(arena: &Arena, domain: &Domain, expr: Expr) -> Option<bool> {
     signs.find_map(|(part, positive)| field.signs().is_positive(part).ok()?.then_some(positive))
 }
 
-/// A power of a kernel turned into the kernel; a product of several stays as it is.
+/// A power of a kernel turned into the kernel; a product of several is unchanged.
 fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<Equation> {
     match arena.node(formula) {
         Node::Product(product) => match product.factors.as_slice() {
@@ -78,12 +78,12 @@ fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<
     }
 }
 
-/// Kernels as products of powers of the values, where the exponents determine them.
+/// Kernels as products of powers of the values, if the exponents determine them.
 fn by_exponents(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
     let mut kernels: Vec<Expr> = products.iter().flat_map(|p| p.factors.iter().map(|(base, _)| *base)).collect();
     kernels.sort_unstable();
     kernels.dedup();
-    // A row of exponents beside the powers of the values that have them.
+    // Rows of exponents, each beside powers of the values.
     let mut rows: Vec<(Vec<Rational>, Vec<Rational>)> = Vec::new();
     for (index, product) in products.iter().enumerate() {
         let of = |kernel: &Expr| {
@@ -122,7 +122,7 @@ fn by_exponents(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equ
         if exponents.iter().filter(|exponent| !exponent.is_zero()).count() > 1 {
             return None;
         }
-        // Whole exponents on both sides: only then is a root a matter of signs.
+        // Integer exponents on both sides: only then is a root a matter of signs.
         let whole = powers.iter().chain([&exponents[*column]]).try_fold(Rational::ONE, |whole, power| {
             let denominator = Rational::new((power * &whole).denominator(), 1)?;
             Some(&whole * &denominator)

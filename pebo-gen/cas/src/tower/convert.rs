@@ -59,8 +59,8 @@ impl Field<'_> {
         }
     }
 
-    /// A sum: what has a number for a denominator over the common one first, all at once, and so what has the same
-    /// denominator, so that a long sum is not brought to lowest terms at each step.
+    /// A sum: summands with numeric denominators first, all at once, then those of equal denominators, so that a long
+    /// sum is not brought to lowest terms at each step.
     fn of_sum(&self, sum: &Sum) -> Result<Fraction, Obstacle> {
         let mut common = sum.constant.denominator();
         let mut parts = Vec::with_capacity(sum.terms.len() + 1);
@@ -127,7 +127,7 @@ impl Field<'_> {
             Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => self.inverse_function(expr),
             _ => match (function.row().in_terms, self.arena.node(expr)) {
                 (Some(in_terms), Node::Call(_, arguments)) => self.fraction(in_terms(self.arena, &arguments)),
-                // What no rule relates to other functions is a kernel of its own.
+                // A function without rules that relate it to others is a kernel of its own.
                 _ => Ok(self.entered(self.tidy_call(expr)?, None, false)),
             },
         }

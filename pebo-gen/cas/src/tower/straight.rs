@@ -1,12 +1,12 @@
-//! Residues of formulas as they are written, where their normal form would be long and only values are asked for.
+//! Residues of formulas as they are written, where only values are needed and the normal form would be long.
 //!
 //! ```text
 //! formulas -> sums, products and whole powers of atoms; the field of the atoms -> values of kernels -> residues
 //! ```
 //!
-//! In: formulas that share parts. Out: the field of what they are made of, and for values of its kernels a residue of
-//! each formula. Holds after: a residue that comes out is that of the formula's fraction; where the formula divides by
-//! zero there is none, even if the fraction has one.
+//! In: formulas that share subexpressions. Out: the field of their atoms, and for values of its kernels a residue of
+//! each formula. Holds after: a residue is that of the formula's fraction; if the formula divides by zero there is
+//! none, even if the fraction has one.
 
 use std::collections::BTreeSet;
 
@@ -16,28 +16,28 @@ use super::{Field, Fraction, Obstacle};
 use crate::poly::{PrimeField, Residue};
 use crate::{Arena, Expr, Facts, Node, Rational};
 
-/// How a value follows from those before it, which are named by their places.
+/// An instruction: a value computed from earlier ones, which are named by their positions.
 #[derive(Debug)]
 enum Step {
     Sum(Residue, Vec<(usize, Residue)>),
     Product(Residue, Vec<(usize, Power)>),
 }
 
-/// A whole power: the exponent's magnitude, and whether it divides.
+/// An integer power: the exponent's absolute value, and true if it divides.
 #[derive(Clone, Copy, Debug)]
 struct Power {
     exponent: u64,
     divides: bool,
 }
 
-/// Formulas with what is needed to evaluate them modulo the prime for which they were prepared.
+/// A program that evaluates formulas modulo the prime for which they were compiled.
 #[derive(Debug)]
 pub struct Straight<'a> {
     field: Field<'a>,
     /// Symbols, functions and roots, whose values come first.
     atoms: Vec<Fraction>,
     steps: Vec<Step>,
-    /// The place of each formula's value.
+    /// The position of each formula's value.
     values: Vec<usize>,
 }
 
@@ -59,12 +59,12 @@ impl<'a> Straight<'a> {
         &self.field
     }
 
-    /// How many values are worked out for the residues.
+    /// The number of values computed for the residues.
     pub fn length(&self) -> usize {
         self.atoms.len() + self.steps.len()
     }
 
-    /// The residues of all formulas; none where one divides by zero.
+    /// The residues of all formulas; none if one divides by zero.
     pub fn residues(&self, prime: &PrimeField, kernels: &[Residue]) -> Option<Vec<Residue>> {
         let mut values = Vec::with_capacity(self.length());
         for atom in &self.atoms {
@@ -95,7 +95,7 @@ impl Step {
     }
 }
 
-/// A factor of a product as a whole power: of its base, or of the root that it is.
+/// A factor of a product as an integer power of its base, or of the root that it is.
 fn factor(arena: &Arena, base: Expr, exponent: &Rational) -> (Expr, Power) {
     match exponent.to_i64() {
         Some(exponent) => (base, Power { exponent: exponent.unsigned_abs(), divides: exponent < 0 }),
@@ -103,7 +103,7 @@ fn factor(arena: &Arena, base: Expr, exponent: &Rational) -> (Expr, Power) {
     }
 }
 
-/// What formulas are made of: atoms, and the sums and products of them, each after its operands.
+/// The subexpressions of formulas: atoms, and the sums and products of them, each after its operands.
 fn parts(arena: &Arena, formulas: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     let (mut atoms, mut compounds) = (BTreeSet::new(), BTreeSet::new());
     let mut open = formulas.to_vec();
@@ -125,7 +125,7 @@ fn parts(arena: &Arena, formulas: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     (atoms.into_iter().collect(), compounds.into_iter().collect())
 }
 
-/// How a sum or product follows from its operands; none if a number has no residue.
+/// The instruction for a sum or product of its operands; none if a number has no residue.
 fn step(arena: &Arena, prime: &PrimeField, compound: Expr, places: &FxHashMap<Expr, usize>) -> Option<Step> {
     match arena.node(compound) {
         Node::Sum(sum) => {

@@ -1,9 +1,9 @@
-//! The one table of functions: name, value, where it has one and where it is differentiable, derivative,
-//! symmetry, inverse, Rust path and LaTeX, a row each.
+//! The one table of functions: name, value, domain conditions of value and derivative, derivative, symmetry, inverse,
+//! Rust path and LaTeX, a row each.
 //!
-//! The parser, the derivative, the enclosure, the printers, the interpreter, the conditions ([`crate::graph::conditions`], which
-//! has the rows of division and powers) and the tests all read this table; a new function is a variant, a row, and
-//! its cases in [`crate::tower`].
+//! The parser, the derivative, the enclosure, the printers, the interpreter, the conditions
+//! ([`crate::graph::conditions`], which has the rows of division and powers) and the tests all read this table; a new
+//! function is a variant, a row, and its cases in [`crate::tower`].
 
 mod formulas;
 mod kind;
@@ -21,10 +21,10 @@ use formulas::{
 pub use formulas::Asks;
 pub use kind::Function;
 
-/// What happens to the value when the argument changes sign.
+/// The effect of the argument's sign on the value.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Parity {
-    /// The value stays.
+    /// The value is invariant.
     Even,
     /// The value changes sign.
     Odd,
@@ -33,13 +33,13 @@ pub enum Parity {
 /// Value in floating point.
 #[derive(Clone, Copy, Debug)]
 pub enum Value {
-    /// Of one argument.
+    /// One argument.
     Unary(fn(f64) -> f64),
-    /// Of two arguments.
+    /// Two arguments.
     Binary(fn(f64, f64) -> f64),
 }
 
-/// What there is to know of one function.
+/// All properties of one function.
 #[derive(Debug)]
 pub struct Row {
     /// The function.
@@ -62,15 +62,15 @@ pub struct Row {
     pub latex: &'static str,
     /// The value.
     pub value: Value,
-    /// An enclosure of the values over the arguments, or none where it cannot be given.
+    /// An enclosure of the values over the arguments, or none if there is none.
     pub enclosure: fn(&[Interval], Precision) -> Option<Interval>,
-    /// What must hold of the arguments for the function to have a value.
+    /// The domain conditions of its value.
     pub asks: fn(&Arena, &[Expr]) -> Asks,
-    /// What must hold for it to be differentiable, if that is more.
+    /// The further conditions of its derivative, if there are any.
     pub smooth: Option<fn(&Arena, &[Expr]) -> Asks>,
     /// The partial derivatives at the arguments.
     pub derivative: fn(&Arena, &[Expr]) -> Vec<Expr>,
-    /// The same in terms of functions whose relations the normal form knows, wherever this one has a value.
+    /// The same in terms of functions with relations in the normal form, wherever this one has a value.
     pub in_terms: Option<fn(&Arena, &[Expr]) -> Expr>,
     /// The function that undoes this one on its principal branch.
     pub inverse: Option<Function>,

@@ -1,8 +1,8 @@
 //! The constants pi and log 2 as integers.
 //!
-//! In: a scale. Out: exactly floor(c 2^scale). Holds: the answer does not depend on what was asked
-//! before, as the floor of a shifted floor is the floor; so a longer one may be kept for shorter
-//! ones. Both constants are irrational, which is why the search for an unambiguous floor ends.
+//! In: a scale. Out: exactly floor(c 2^scale). Holds: the answer does not depend on earlier calls, as the floor of a
+//! shifted floor is the floor; so a longer one may be kept for shorter ones. Both constants are irrational, which is
+//! why the search for an unambiguous floor ends.
 
 use std::sync::OnceLock;
 

@@ -173,7 +173,7 @@ impl Dyadic {
             };
         }
         let unit = (top - 52).max(-1074);
-        // At most 2^53 in magnitude: exact, as is the product, unless it rounds up to 2^1024.
+        // At most 2^53 in absolute value: exact, as is the product, unless it rounds up to 2^1024.
         let count = self.at_exponent(unit, side).to_f64().value();
         let unit = u64::try_from(unit + 1074).unwrap_or(0);
         count * f64::from_bits(if unit < 52 { 1 << unit } else { (unit - 51) << 52 })

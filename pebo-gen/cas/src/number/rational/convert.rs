@@ -11,7 +11,7 @@ use crate::{Integer, Rational};
 /// gigabytes. Every finite `f64` is well inside.
 const MAX_DECIMALS: usize = 5_000;
 
-/// Why a text is not a number that can be taken.
+/// The reason why a text is not an accepted number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InvalidDecimal {
     /// Not of the form `digits.digits e exponent`.
@@ -127,8 +127,8 @@ fn round_quotient(n: &Integer, d: &Integer) -> f64 {
     scale_rounded(sticky, i64::try_from(dropped).unwrap_or(0) - shift)
 }
 
-/// `bits * 2^exponent` rounded to nearest; `bits` has its highest bit set, and its lowest says
-/// whether anything non-zero lies below.
+/// `bits * 2^exponent` rounded to nearest; `bits` has its highest bit set, and its lowest is the sticky bit of all
+/// lower ones.
 fn scale_rounded(bits: u64, exponent: i64) -> f64 {
     // A subnormal result keeps fewer bits: its last one is 2^-1074.
     let drop = (-1074 - exponent).max(11);

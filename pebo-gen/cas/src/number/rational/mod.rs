@@ -86,17 +86,17 @@ impl Rational {
         }
     }
 
-    /// Whether this is zero.
+    /// True if this is zero.
     pub fn is_zero(&self) -> bool {
         matches!(self.0, Small(0, _))
     }
 
-    /// Whether this is one.
+    /// True if this is one.
     pub fn is_one(&self) -> bool {
         matches!(self.0, Small(1, UNIT))
     }
 
-    /// Whether the denominator is one.
+    /// True if the denominator is one.
     pub fn is_integer(&self) -> bool {
         match &self.0 {
             Small(_, d) => *d == UNIT,
@@ -104,7 +104,7 @@ impl Rational {
         }
     }
 
-    /// Whether this is less than zero.
+    /// True if this is less than zero.
     pub fn is_negative(&self) -> bool {
         self.signum() < 0
     }
@@ -130,7 +130,7 @@ impl Rational {
         }
     }
 
-    /// The number of bits of numerator and denominator together, as a measure of size.
+    /// The number of bits of numerator and denominator combined, as a measure of size.
     pub fn bits(&self) -> u64 {
         match &self.0 {
             Small(n, d) => Integer::from(*n).bits() + Integer::from(d.get()).bits(),
@@ -138,7 +138,7 @@ impl Rational {
         }
     }
 
-    /// The magnitude.
+    /// The absolute value.
     pub fn abs(&self) -> Self {
         if self.is_negative() { -self } else { self.clone() }
     }

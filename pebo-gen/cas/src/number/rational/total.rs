@@ -1,8 +1,8 @@
 //! Sums of many numbers.
 //!
-//! In: pairs of numbers. Out: the sum of their products. Long ones are added over a common denominator and brought to lowest terms once: the
-//! denominators of a linear combination have nearly all factors in common, and a greatest common divisor after each
-//! addition would cost more than all else.
+//! In: pairs of numbers. Out: the sum of their products. Long ones are added over a common denominator and brought to
+//! lowest terms once: the denominators of a linear combination have nearly all factors in common, and a greatest common
+//! divisor after each addition would cost more than all else.
 
 use crate::Integer;
 

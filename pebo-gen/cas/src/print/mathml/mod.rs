@@ -1,8 +1,8 @@
-//! Expressions as presentation `MathML`: what [`Arena::print`] writes in a line, as a page sets it.
+//! Expressions as presentation `MathML`: the formulas of [`Arena::print`] in two dimensions.
 //!
-//! In: an expression. Out: one `math` element, or what stands in it, well-formed as XML and as HTML, without named
-//! entities, in the names of the model: `theta1` is a theta with an index, `L_1` an L. Quotients are fractions, square roots have a bar, and
-//! functions stand upright by the names of the one table. Parentheses stand where reading needs them, and no others.
+//! In: an expression. Out: one `math` element, or its content, well-formed as XML and as HTML, without named entities,
+//! in the names of the model: `theta1` is a theta with an index, `L_1` an L. Quotients are fractions, square roots have
+//! a bar, and functions are upright by the names of the one table. Parentheses are only where reading needs them.
 
 use std::collections::BTreeMap;
 
@@ -15,13 +15,13 @@ use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum, Symbol};
 use crate::graph::function::Function;
 
-/// The length up to which a formula is set, with all of its parts.
+/// The length up to which a formula is set, all repetitions included.
 const MOST_CHARACTERS: usize = 10_000_000;
 
-/// A function before its arguments: no sign is seen.
+/// Invisible sign between a function and its arguments.
 const APPLY: &str = "<mo>&#x2061;</mo>";
 
-/// Between factors: no sign is seen.
+/// Invisible sign between factors.
 const TIMES: &str = "<mo>&#x2062;</mo>";
 
 /// Between factors that would read as one.
@@ -29,7 +29,7 @@ const DOT: &str = "<mo>⋅</mo>";
 
 const MINUS: &str = "<mo>−</mo>";
 
-/// How tightly the outermost operation binds, as far as the eye needs signs to see it.
+/// The binding of the outermost operation, as far as signs show it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
     Sum,
@@ -39,7 +39,7 @@ enum Binding {
     Atom,
 }
 
-/// The elements of an expression, how they may be embedded, and how they look at their two ends.
+/// The elements of an expression, its binding, and its two ends.
 #[derive(Clone, Debug)]
 struct Row {
     elements: String,
@@ -47,7 +47,7 @@ struct Row {
     ends: Ends,
 }
 
-/// What stands at the ends of a row, for the sign between two factors.
+/// The kind of character at an end, for the sign between two factors.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Ends {
     /// A digit.
@@ -81,8 +81,8 @@ impl Row {
 impl Arena {
     /// The expression as a `math` element.
     ///
-    /// What is shared is set wherever it is used; of a formula that no page holds, the element says no more than how
-    /// long it is.
+    /// Shared subexpressions are set at every use; for a formula longer than any page, the element only gives its
+    /// length.
     ///
     /// ```
     /// use pebo_gen::cas::Arena;
@@ -96,8 +96,8 @@ impl Arena {
         format!("<math>{}</math>", self.mathml_elements(expr, &BTreeMap::new()))
     }
 
-    /// What stands in the `math` element, for a larger formula; a symbol of `shown` is set as the formula beside it, in
-    /// parentheses where reading needs them, so that a substitution is seen before anything is made of it.
+    /// The content of the `math` element, for a larger formula; a symbol of `shown` is set as the formula beside it, in
+    /// parentheses where reading needs them: a substitution before any simplification.
     pub fn mathml_elements(&self, expr: Expr, shown: &BTreeMap<Symbol, Expr>) -> String {
         let mut known: FxHashMap<Expr, Row> = FxHashMap::default();
         let mut written = 0;
@@ -128,7 +128,7 @@ impl Arena {
     /// The rate of a signal, as a point over its letter.
     pub fn mathml_rate(&self, symbol: Symbol) -> String {
         let rate = |letter: String| {
-            // The point takes the place of a letter's own.
+            // The dot replaces that of the letter.
             let letter = match letter.as_str() {
                 "<mi>i</mi>" => "<mi>ı</mi>",
                 "<mi>j</mi>" => "<mi>ȷ</mi>",
@@ -144,7 +144,7 @@ impl Arena {
         self.typeset_number_in(value, false).elements
     }
 
-    /// An expression of whose parts these are set.
+    /// The elements of an expression from those of its operands.
     fn typeset(&self, expr: Expr, known: &FxHashMap<Expr, Row>) -> Row {
         match self.node(expr) {
             Node::Number(value) => self.typeset_number(&value),
@@ -276,12 +276,12 @@ fn parenthesised(elements: &str) -> String {
     format!("<mrow><mo>(</mo>{elements}<mo>)</mo></mrow>")
 }
 
-/// What stands for a formula that no page holds.
+/// A substitute for a formula longer than any page.
 fn too_long() -> String {
     format!("<mtext>(a formula of more than {MOST_CHARACTERS} characters)</mtext>")
 }
 
-/// A name: its letter with what is put on it, its index below; several indices with commas between them.
+/// A name: its letter with an accent, its index below; several indices with commas between them.
 fn named(name: &str, put: impl Fn(String) -> String) -> Row {
     let (base, index) = parts(name);
     let letter = put(identifier(base));
@@ -310,7 +310,7 @@ fn identifier(name: &str) -> String {
     }
 }
 
-/// A text as XML and HTML hold it; what they cannot hold in any form is shown as replaced.
+/// A text as XML and HTML encode it; characters that they cannot encode are replaced.
 pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

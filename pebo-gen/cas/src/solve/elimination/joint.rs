@@ -1,8 +1,8 @@
 //! The linear part of a system of equations, as one linear system.
 //!
-//! In: formulas that are to vanish, and the symbols to determine. Out: values of those symbols that the equations which
-//! are linear in all of them together determine, whatever the other equations say; none where these contradict one
-//! another. A value divides by a determinant, and as elsewhere in elimination a solution where it vanishes may be lost.
+//! In: formulas that are to vanish, and the symbols to determine. Out: values of those symbols by the equations that
+//! are linear in all of them combined, for any form of the other equations; none if these are inconsistent. A value
+//! divides by a determinant, and as elsewhere in elimination a solution may be lost at its zeros.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,10 +13,10 @@ use crate::{Arena, Expr, Integer, Rational, Symbol};
 
 use super::values::Values;
 
-/// Monomials on the right sides for every unknown, past which elimination with a column for each is not tried.
+/// The greatest number of monomials on the right sides for every unknown, for elimination with a column for each.
 const MOST_COLUMNS_EACH: usize = 4;
 
-/// An equation: coefficients of unknowns, and what their sum is.
+/// An equation: coefficients of unknowns, and the value of their sum.
 struct Row {
     coefficients: BTreeMap<u32, Poly>,
     right: Poly,
@@ -30,8 +30,8 @@ struct System<'a> {
     rows: Vec<Row>,
 }
 
-/// The values that linear equations determine together of the symbols, whose kernels are given; coefficients are free of
-/// the barred kernels, and what holds reluctant ones is divided by last.
+/// The values that linear equations combined determine of the symbols, whose kernels are given; coefficients are free
+/// of the barred kernels, and divisors with reluctant kernels are taken last.
 pub(super) fn solved(
     arena: &Arena,
     field: &Field<'_>,
@@ -47,7 +47,7 @@ pub(super) fn solved(
     }
     let occurring: BTreeSet<u32> = system.rows.iter().flat_map(|row| row.coefficients.keys().copied()).collect();
     system.unknowns.retain(|(kernel, _)| occurring.contains(kernel));
-    // One alone is found as well without.
+    // A single one is found without this system too.
     if system.unknowns.len() < 2 || system.rows.len() < 2 {
         return Ok(Values::new());
     }
@@ -55,7 +55,7 @@ pub(super) fn solved(
 }
 
 impl System<'_> {
-    /// The row of an equation, if it is linear in the unknowns and they stand in it.
+    /// The row of an equation, if it is linear in the unknowns and holds any.
     fn row(&self, equation: &Poly, kernels: &BTreeSet<u32>, barred: &BTreeSet<u32>) -> Option<Row> {
         let kernels: Vec<u32> = kernels.iter().copied().collect();
         let mut row = Row { coefficients: BTreeMap::new(), right: Poly::zero() };
@@ -74,9 +74,9 @@ impl System<'_> {
         (!row.coefficients.is_empty()).then_some(row)
     }
 
-    /// Of numbers, by elimination; of other coefficients, what one equation after another gives, where each has one
-    /// unknown that those before do not. That comes as products of what stands in the equations: in the normal form of
-    /// elimination their factors would be multiplied out.
+    /// Over numbers, by elimination; over other coefficients, by one equation after another, if each has one unknown
+    /// that those before do not. That gives products of terms of the equations: the normal form of elimination would
+    /// expand their factors.
     fn solve(&self, arena: &Arena, reluctant: &BTreeSet<u32>) -> Result<Values, Obstacle> {
         match self.rights() {
             Some(monomials) => self.eliminated(arena, &monomials),
@@ -139,7 +139,7 @@ impl System<'_> {
     }
 
     /// The monomials of all right sides, if every coefficient is a number and they are not too many: with a column for
-    /// each, elimination stays among numbers.
+    /// each, elimination remains among numbers.
     fn rights(&self) -> Option<BTreeSet<Monomial>> {
         let numbers = |row: &Row| row.coefficients.values().all(Poly::is_constant);
         if !self.rows.iter().all(numbers) {
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn what_stays_free_or_contradicts_is_left() {
-        // x and y are not told apart, z is; and an equation of the second degree says nothing here.
+        // x and y are not identifiable, z is; and an equation of the second degree says nothing here.
         let open = of(|arena, [x, y, z], [a, _]| {
             vec![arena.sum([x, y, z]), arena.sum([x, y, arena.neg(z), a]), arena.sub(arena.mul(x, x), y)]
         });

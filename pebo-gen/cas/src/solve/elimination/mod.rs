@@ -1,12 +1,12 @@
-//! Symbols at which equations hold: one equation at a time, for one symbol at a time.
+//! Symbols that solve equations: one equation at a time, for one symbol at a time.
 //!
-//! In: formulas that are to vanish, states and inputs to determine, and a check of what comes out. Out: the first values
-//! that the check accepts, in symbols that stay free, or a formula that no rule makes vanish.
+//! In: formulas that are to vanish, states and inputs to determine, and a check of the result. Out: the first values
+//! that the check accepts, in symbols that remain free, or a formula that no rule makes vanish.
 //!
-//! What is linear is solved together first ([`joint`]). Then an equation is taken for a symbol in which one of its factors
-//! is linear, which is replaced in all others; where none is, a factor may be quadratic, or inverse functions may help.
-//! Division by what vanishes somewhere can lose solutions, never add one, and where a product vanishes, each factor in
-//! turn is tried. So this is a search, and no elimination of a matrix: what a pivot would be may vanish.
+//! Linear equations are solved combined first ([`joint`]). Then an equation is taken for a symbol in which one of its
+//! factors is linear, which is replaced in all others; if there is none, a factor may be quadratic, or inverse
+//! functions may help. A divisor that vanishes somewhere can lose solutions, never add one, and if a product vanishes,
+//! each factor in turn is tried. So this is a search, and no elimination of a matrix, whose pivots might vanish.
 
 mod joint;
 mod values;
@@ -21,15 +21,15 @@ use crate::{Arena, Domain, Expr, Rational, Relation, Symbol};
 use super::{Equation, solve};
 use values::Values;
 
-/// What is to be determined.
+/// The problem: symbols to determine on a domain.
 pub struct Elimination<'a> {
     /// Owns the formulas.
     pub arena: &'a Arena,
-    /// Where the symbols lie.
+    /// The domain of the symbols.
     pub domain: &'a Domain,
     /// Symbols to determine first.
     pub states: BTreeSet<Symbol>,
-    /// Symbols to determine where the states leave equations: the author would rather choose them.
+    /// Symbols to determine by equations that the states leave over: the author would rather choose them.
     pub inputs: BTreeSet<Symbol>,
 }
 
@@ -48,37 +48,37 @@ struct Step {
     coefficients: Vec<Fraction>,
 }
 
-/// How little a step assumes; the least is taken.
+/// The assumptions of a step; the step with the least is taken.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Cost {
     /// The factor's degree in the symbol: the number of its values.
     degree: u32,
-    /// Whether the symbol's factor holds states, which may vanish.
+    /// True if the symbol's factor holds states, which may vanish.
     bends: bool,
-    /// Whether the symbol is an input.
+    /// True if the symbol is an input.
     input: bool,
-    /// Whether the factor holds inputs.
+    /// True if the factor holds inputs.
     driven: bool,
     /// Terms of factor and rest.
     terms: usize,
 }
 
-/// The partial solutions that a search visits at most from one start. One without alternatives visits as many as there
-/// are symbols to determine.
+/// The greatest number of partial solutions of a search from one start. A search without alternatives visits as many as
+/// there are symbols to determine.
 const MOST_VISITS: usize = 100;
 
-/// Parts of all equations together, past which a branch is given up: elimination makes them longer at each step, and
-/// what would come out nobody reads.
+/// The greatest number of subexpressions of all equations combined: elimination makes them longer at each step, and
+/// nobody reads a longer result.
 const MOST_PARTS: usize = 600;
 
-/// How far the search from one start has come.
+/// The progress of the search from one start.
 struct Progress {
     visits: Cell<usize>,
-    /// Whether linear equations are solved together: until what follows from that fails.
+    /// True while linear equations are solved combined, until a consequence of that fails.
     together: Cell<bool>,
 }
 
-/// The kernels of what is not determined.
+/// The kernels of undetermined symbols.
 struct Unknown {
     symbols: BTreeSet<Symbol>,
     /// Those that depend on each symbol.
@@ -89,7 +89,7 @@ struct Unknown {
 
 impl Elimination<'_> {
     /// The first solution that the check accepts, by the first of the starts that has one; else a formula that was not
-    /// made to vanish. A start is values to begin with.
+    /// made to vanish. A start is a set of initial values.
     pub fn run<T>(
         &self,
         equations: &[Expr],
@@ -142,9 +142,9 @@ impl Elimination<'_> {
         let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
         let unknown = self.unknown(&field, values);
         if progress.together.get() {
-            // What cannot be solved together may be found one at a time.
+            // Symbols without a combined solution may be found one at a time.
             let found = self.states_together(&field, &open, &unknown).unwrap_or_default();
-            // No equation is left where each gave a state: the check sees whether they hold.
+            // No equation is left if each gave a state: the check decides about them.
             if found.len() > 1
                 && found.len() == open.len()
                 && let Some(accepted) = accept(&extended(arena, values, &found))
@@ -170,7 +170,7 @@ impl Elimination<'_> {
         }
         let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.together.get())?;
         for found in alternatives {
-            // Where another equation has no value, or none that is understood, there may be a better one.
+            // If another equation has no value, or is not understood, there may be a better alternative.
             match self.advance(&formulas, values, &found, accept, (progress, &mut *stuck)) {
                 Ok(None) | Err(Obstacle::DivisionByZero | Obstacle::Kernel(_)) => {}
                 found => return found,
@@ -180,8 +180,8 @@ impl Elimination<'_> {
         Ok(None)
     }
 
-    /// Goes on with what was found. Where several at once lead nowhere, from then on it is one at a time, as if they had
-    /// not been tried.
+    /// Continues with the values found. If several at once fail, the search continues one at a time, as if they had not
+    /// been tried.
     fn advance<T>(
         &self,
         formulas: &[Expr],
@@ -201,7 +201,7 @@ impl Elimination<'_> {
         result
     }
 
-    /// The states that linear equations determine together, with inputs in their coefficients.
+    /// The states that linear equations combined determine, with inputs in their coefficients.
     fn states_together(
         &self,
         field: &Field<'_>,
@@ -212,7 +212,7 @@ impl Elimination<'_> {
         joint::solved(self.arena, field, equations, &unknown.of_states, [&BTreeSet::new(), &unknown.of_inputs])
     }
 
-    /// The symbols that are not determined, states and inputs, and where they stand.
+    /// The undetermined symbols, states and inputs, and their kernels.
     fn unknown(&self, field: &Field<'_>, values: &Values) -> Unknown {
         let open = |symbols: &BTreeSet<Symbol>| -> BTreeSet<Symbol> {
             symbols.iter().copied().filter(|s| !values.contains_key(s)).collect()
@@ -223,8 +223,8 @@ impl Elimination<'_> {
         Unknown { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
     }
 
-    /// The ways to make one equation vanish, the one that assumes least first; before them several at once, if inputs are
-    /// to be found.
+    /// The alternatives to make one equation vanish, the one that assumes least first; before them several at once, if
+    /// inputs are to be found.
     fn alternatives(
         &self,
         field: &Field<'_>,
@@ -266,7 +266,7 @@ impl Elimination<'_> {
         Ok(several.into_iter().chain(found.into_iter().map(|one| Values::from([one]))).collect())
     }
 
-    /// The symbols that stand to the first or second power in a factor, in no kernel but themselves.
+    /// The symbols with first or second power in a factor, in no kernel but themselves.
     fn steps(
         &self,
         field: &Field<'_>,

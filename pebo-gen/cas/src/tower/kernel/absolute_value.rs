@@ -1,4 +1,4 @@
-//! Absolute values: of a product, the product of the absolute values of its parts.
+//! Absolute values: for a product, the product of the absolute values of its parts.
 
 use crate::Rational;
 use crate::graph::function::Function;
@@ -16,7 +16,7 @@ impl Field<'_> {
         self.div(&above, &self.magnitude(argument.denominator())?)
     }
 
-    /// `|poly|`: by its sign where that is known, else part by part.
+    /// `|poly|`: by its sign if that is known, else part by part.
     fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
         for signed in [poly.clone(), -poly] {
             if self.signs().of_polynomial(&signed)?.is_some_and(Sign::is_positive_or_zero) {
@@ -33,7 +33,7 @@ impl Field<'_> {
         Ok(total)
     }
 
-    /// `|part|`: by its sign where that is known, else a kernel whose square is known.
+    /// `|part|`: by its sign if that is known, else a kernel with a known square.
     pub(in crate::tower) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
         for signed in [part.clone(), -part] {
             if self.signs().of_part(&signed)?.is_some_and(Sign::is_positive_or_zero) {

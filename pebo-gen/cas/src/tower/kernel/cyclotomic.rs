@@ -1,9 +1,8 @@
 //! Sines and cosines of rational multiples of pi, and the square roots that are among them.
 //!
-//! In: a multiple of pi. Out: for multiples of pi/12, radicals of two and three; for all others,
-//! polynomials in one kernel `x = 2 cos(pi/m)`, whose minimal polynomial is known. The field of that
-//! kernel contains square roots of some primes (Gauss, 1811), which are written over it, so that
-//! `cos(pi/5)` and `sqrt(5)` are seen to be related.
+//! In: a multiple of pi. Out: for multiples of pi/12, radicals of two and three; for all others, polynomials in one
+//! kernel `x = 2 cos(pi/m)`, whose minimal polynomial is known. The field of that kernel contains square roots of some
+//! primes (Gauss, 1811), which are written over it, so that the relation of `cos(pi/5)` and `sqrt(5)` is found.
 
 use crate::graph::function::Function;
 use crate::number::rational::half;
@@ -90,7 +89,7 @@ impl Field<'_> {
         Ok(number)
     }
 
-    /// The square root of a prime, where the kernel's field contains it.
+    /// The square root of a prime, if the kernel's field contains it.
     pub(in crate::tower) fn gauss_sum(&self, prime: &Integer) -> Result<Option<Poly>, Obstacle> {
         let Some(m) = self.finest.get() else { return Ok(None) };
         let Some(p) = prime.to_i64().and_then(|p| u32::try_from(p).ok()) else { return Ok(None) };

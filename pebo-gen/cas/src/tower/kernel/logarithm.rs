@@ -1,8 +1,7 @@
-//! Logarithms: of a product, the sum of the logarithms of the magnitudes of its parts.
+//! Logarithms: for a product, the sum of the logarithms of the absolute values of its parts.
 //!
-//! `log(a*b) = log|a| + log|b|` holds wherever the left side has a value. A part of known sign needs no
-//! magnitude; a single part of unknown sign is positive where the logarithm has a value, which is
-//! learned as a fact.
+//! `log(a*b) = log|a| + log|b|` holds wherever the left side has a value. A part of known sign needs no absolute value;
+//! a single part of unknown sign is positive wherever the logarithm has a value, which is learned as a fact.
 
 use crate::graph::expr::Node;
 use crate::graph::function::Function;
@@ -77,7 +76,7 @@ mod tests {
     use crate::Arena;
     use crate::Facts;
 
-    /// Where x^2*y has a logarithm, y is positive, and nothing is known of x.
+    /// If x^2*y has a logarithm, y is positive, and nothing is known of x.
     #[test]
     fn a_single_odd_part_is_positive() {
         let arena = Arena::new();

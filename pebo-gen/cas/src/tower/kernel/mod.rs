@@ -1,4 +1,4 @@
-//! The table of kernels: what polynomials take as variables, with the relations among them.
+//! The table of kernels: the variables of polynomials, with the relations among them.
 
 mod absolute_value;
 
@@ -26,11 +26,11 @@ use crate::poly::Poly;
 /// A variable of the polynomials.
 #[derive(Debug)]
 pub(in crate::tower) struct Kernel {
-    /// What it stands for.
+    /// The expression it stands for.
     pub expr: Expr,
     /// Its algebraic relation to earlier kernels, if there is one.
     pub relation: Option<Relation>,
-    /// Whether its value is positive wherever it exists.
+    /// True if its value is positive wherever it exists.
     pub positive: bool,
 }
 
@@ -41,7 +41,7 @@ pub(in crate::tower) struct Relation {
     pub value: Poly,
 }
 
-/// The kernels of a round, numbered in the order in which they were met: a relation speaks of earlier ones alone.
+/// The kernels of a round, numbered in the order of entry: a relation holds only earlier ones.
 #[derive(Default, Debug)]
 pub(in crate::tower) struct Kernels {
     entries: Vec<Kernel>,
@@ -54,7 +54,7 @@ impl Kernels {
         self.numbers.get(&expr).copied()
     }
 
-    /// The same, entered if it is new; one that is known stays what it is.
+    /// The same, entered if it is new; a known kernel is unchanged.
     pub(in crate::tower) fn enter(&mut self, kernel: Kernel) -> u32 {
         let next = self.count();
         let number = *self.numbers.entry(kernel.expr).or_insert(next);
@@ -64,12 +64,12 @@ impl Kernels {
         number
     }
 
-    /// Adds the relation of a kernel that could not be told before it had a number.
+    /// Adds the relation of a kernel that could not be computed before it had a number.
     pub(in crate::tower) fn relate(&mut self, number: u32, relation: Relation) {
         self.entries[number as usize].relation = Some(relation);
     }
 
-    /// How many there are: the number that the next will have.
+    /// The number of kernels: the number that the next will have.
     pub(in crate::tower) fn count(&self) -> u32 {
         u32::try_from(self.entries.len()).unwrap_or(u32::MAX)
     }
@@ -99,7 +99,7 @@ impl Field<'_> {
         Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
     }
 
-    /// Whether an algebraic relation says something of a kernel that occurs.
+    /// True if a kernel with an algebraic relation occurs.
     pub(crate) fn has_relations(&self, fraction: &Fraction) -> bool {
         let kernels = self.round.kernels.borrow();
         let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());

@@ -1,11 +1,11 @@
 //! Roots of fractions.
 //!
-//! In: a fraction and a rational exponent. Out: powers of kernels `r = part^(1/q)` with `r^q = part`,
-//! one for each part of known sign (see [`crate::tower::coprime`]). A power of parts of unknown signs has a
-//! kernel for the product: where that has a value, the product is not negative, which is learned as a
-//! fact. Products of such roots are written over those that came before.
+//! In: a fraction and a rational exponent. Out: powers of kernels `r = part^(1/q)` with `r^q = part`, one for each part
+//! of known sign (see [`crate::tower::coprime`]). A power of parts of unknown signs has a kernel for the product:
+//! wherever that has a value, the product is not negative, which is learned as a fact. Products of such roots are
+//! written over earlier ones.
 //!
-//! Everywhere a root stands for the real one of a number that is not negative, so that
+//! Every root is the real one of a number that is not negative, so that
 //! `(a^k b^m)^(1/q) = |a|^(k/q) |b|^(m/q)` wherever it has a value.
 
 use crate::graph::expr::{Expr, Node};
@@ -30,7 +30,7 @@ pub(in crate::tower) struct ProductRoot {
 }
 
 impl Field<'_> {
-    /// `base ^ exponent` for an exponent that is not an integer; the real power of what is not negative.
+    /// `base ^ exponent` for an exponent that is not an integer; the real power of a non-negative base.
     pub(in crate::tower) fn root(&self, base: &Fraction, exponent: &Rational) -> Result<Fraction, Obstacle> {
         if base.is_zero() {
             return if exponent.is_negative() { Err(Obstacle::DivisionByZero) } else { Ok(Fraction::zero()) };
@@ -51,7 +51,7 @@ impl Field<'_> {
         Obstacle::Kernel(format!("the root of {}, which is negative", self.arena.print(self.show(base))))
     }
 
-    /// A root of parts whose signs are not known, of which the whole is not negative.
+    /// A root of parts with unknown signs, whose product is not negative.
     fn root_of_unknown(
         &self,
         negative: bool,
@@ -62,7 +62,7 @@ impl Field<'_> {
         let mut total = Fraction::one();
         let mut odd = Vec::new();
         for (part, times) in parts {
-            // Full powers of even exponent come out as magnitudes; an even power has the magnitude's root.
+            // Full powers of even exponent come out as absolute values; an even power has the absolute value's root.
             let step = if degree % 2 == 0 { degree } else { 2 * degree };
             let inside = times.rem_euclid(step);
             let share = if inside % 2 == 0 { times } else { times - inside };
@@ -89,7 +89,7 @@ impl Field<'_> {
         self.mul(&total, &self.pow(&root, times)?)
     }
 
-    /// The root of a product as one kernel, or over the roots of products that came before.
+    /// The root of a product as one kernel, or over the earlier roots of products.
     fn root_of_product(&self, negative: bool, powers: Vec<(Poly, i64)>, degree: u32) -> Result<Fraction, Obstacle> {
         let mut value = if negative { Poly::constant(-1) } else { Poly::one() };
         for (part, times) in &powers {
@@ -111,8 +111,8 @@ impl Field<'_> {
         Ok(Fraction::polynomial(Poly::variable(kernel)))
     }
 
-    /// A square root as a product of one or two earlier ones over magnitudes: all of them have values,
-    /// so `sqrt(a b) = sqrt(a c) sqrt(b c) / |c|`.
+    /// A square root as a product of one or two earlier ones over absolute values: all of them have values, so `sqrt(a
+    /// b) = sqrt(a c) sqrt(b c) / |c|`.
     fn over_earlier_roots(
         &self,
         negative: bool,
@@ -206,7 +206,7 @@ impl Field<'_> {
                 return self.mul(&outside, &self.pow(&Fraction::polynomial(value), times)?);
             }
         }
-        // A root is zero where its radicand is: positive wherever it exists is only that of a number.
+        // A root is zero where its radicand is: only that of a number is positive wherever it exists.
         let root = self.entered(self.arena.power(key, &unit), Some(Relation { degree, value }), part.is_constant());
         self.mul(&outside, &self.pow(&root, times)?)
     }
@@ -304,7 +304,7 @@ mod tests {
         }
     }
 
-    /// Not over two earlier ones that leave a part to an odd power.
+    /// Not over two earlier ones that leave a part with an odd power.
     #[test]
     fn roots_of_products_are_told_apart_by_their_parts() {
         let arena = Arena::new();
@@ -339,7 +339,7 @@ mod tests {
         }
     }
 
-    /// Without a sign being learned of x.
+    /// The sign of x is not learned.
     #[test]
     fn an_even_power_has_the_root_of_its_magnitude() {
         let arena = Arena::new();

@@ -1,4 +1,4 @@
-//! Symbols on a manifold: what an equation was solved for is no variable of its own.
+//! Symbols on a manifold: a symbol that an equation determines is no variable of its own.
 //!
 //! ```text
 //! s = middle                       s is that expression
@@ -13,7 +13,7 @@ use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
 impl Field<'_> {
-    /// A symbol: a kernel, or what an exact step of the manifold says of it.
+    /// A symbol: a kernel, or its value by an exact step of the manifold.
     pub(in crate::tower) fn of_symbol(&self, expr: Expr, symbol: Symbol) -> Result<Fraction, Obstacle> {
         let Some(step) = self.steps.get(&symbol) else { return Ok(self.entered(expr, None, false)) };
         let middle = self.fraction(step.middle)?;

@@ -1,8 +1,8 @@
 //! Sine and cosine of split angles.
 //!
-//! An angle is split into integer multiples of basis angles; sines and cosines of multiples and sums
-//! follow by the addition theorems. Rational multiples of pi are exact where they have roots of two
-//! and three, and inverse functions cancel (`sin(atan2(a, b)) = a / sqrt(a^2 + b^2)`).
+//! An angle is split into integer multiples of basis angles; sines and cosines of multiples and sums follow by the
+//! addition theorems. Rational multiples of pi are exact if they have roots of two and three, and inverse functions
+//! cancel (`sin(atan2(a, b)) = a / sqrt(a^2 + b^2)`).
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
@@ -61,7 +61,7 @@ impl Field<'_> {
         (sin, Fraction::polynomial(Poly::variable(cos)))
     }
 
-    /// Sine and cosine of `times` as much, by repeated doubling.
+    /// Sine and cosine of `times` the angle, by repeated doubling.
     pub(in crate::tower) fn repeated(&self, basic: &Pair, times: u64) -> Result<Pair, Obstacle> {
         let mut total = (Fraction::zero(), Fraction::one());
         for bit in (0..u64::BITS - times.leading_zeros()).rev() {

@@ -1,8 +1,7 @@
-//! What is known of signs: the assumed inequalities, and what must hold for the expressions to have
-//! values.
+//! Known signs: the assumed inequalities, and the conditions for the expressions to have values.
 //!
-//! In: facts. Out: signs of polynomials that are positive combinations of facts plus what is not
-//! negative. Most questions ask for no sign, so nothing is read before the first that does.
+//! In: facts. Out: signs of polynomials that are positive combinations of facts plus a non-negative polynomial. Most
+//! problems need no sign, so nothing is read before the first query.
 
 use std::collections::BTreeSet;
 
@@ -14,14 +13,14 @@ use crate::poly::Poly;
 use super::{Sign, Signs};
 use crate::tower::Obstacle;
 
-/// How many facts may be combined to show a sign.
+/// The greatest number of facts that are combined to prove a sign.
 const MOST_FACTS: usize = 3;
 
 impl Signs<'_, '_> {
-    /// Takes in the facts that can be used: polynomial ones, those about functions that occur in the
-    /// question, and what was learned in earlier rounds.
+    /// Takes in the usable facts: polynomial ones, those about functions that occur in the problem, and those learned
+    /// in earlier rounds.
     ///
-    /// Most questions ask for no sign, so this waits for the first that does.
+    /// Most problems need no sign, so this waits for the first query.
     pub(super) fn learn(&self) -> Result<(), Obstacle> {
         if self.memory.round.read.replace(true) {
             return Ok(());
@@ -47,13 +46,13 @@ impl Signs<'_, '_> {
         Ok(())
     }
 
-    /// Whether there is any fact to tell a sign by.
+    /// True if there is any fact to prove a sign with.
     pub(in crate::tower) fn has_facts(&self) -> Result<bool, Obstacle> {
         self.learn()?;
         Ok(!self.memory.round.facts.borrow().is_empty())
     }
 
-    /// Something is made of a part because its sign is not known.
+    /// Records that a kernel depends on a part whose sign is not known.
     pub(in crate::tower) fn leave_open(&self, part: &Poly) {
         self.memory.round.undecided.borrow_mut().insert(part.clone());
     }
@@ -77,8 +76,8 @@ impl Signs<'_, '_> {
         Ok(())
     }
 
-    /// Learns the sign of what must have it for the expressions to have values. Where something was
-    /// already made of an unknown sign, the field starts again.
+    /// Learns a sign that must hold for the expressions to have values. If a kernel was already made with the sign
+    /// unknown, the field starts again.
     pub(in crate::tower) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
         let known = self.of_polynomial(poly)?;
         let enough = match compared {
@@ -99,8 +98,8 @@ impl Signs<'_, '_> {
         Ok(())
     }
 
-    /// As a positive combination of facts plus what is not negative, or the negation of that; also after
-    /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
+    /// As a positive combination of facts plus a non-negative polynomial, or the negation of that; also after `cos^2 =
+    /// 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
     pub(in crate::tower) fn by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         let facts = self.facts_about(poly);
         let mut found = None;
@@ -110,7 +109,7 @@ impl Signs<'_, '_> {
             }
             match self.above_facts(&form, &facts, MOST_FACTS) {
                 Some(Sign::Positive) => return Ok(Some(Sign::Positive)),
-                // Another form may show more.
+                // Another form may prove more.
                 Some(sign) => found = Some(sign),
                 None => {}
             }
@@ -138,7 +137,7 @@ impl Signs<'_, '_> {
     fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
         let mut found = None;
         for (fact, compared) in facts {
-            // Most facts are about something else, which their variables tell before any term is looked at.
+            // Most facts are irrelevant: their variables exclude them before any term is examined.
             if *compared == Compared::NonZero || !shares_a_variable(poly, fact) {
                 continue;
             }
@@ -171,7 +170,7 @@ impl Signs<'_, '_> {
     }
 }
 
-/// Whether a variable occurs in both: without one they have no term in common but a constant.
+/// True if a variable occurs in both: without one they have no term in common but a constant.
 fn shares_a_variable(a: &Poly, b: &Poly) -> bool {
     let (few, many) = if a.variables().len() < b.variables().len() { (a, b) } else { (b, a) };
     few.variables().iter().any(|variable| many.variables().binary_search(variable).is_ok())

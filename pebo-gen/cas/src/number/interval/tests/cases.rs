@@ -1,10 +1,10 @@
-//! Values known exactly or to many digits, and where there is none.
+//! Values known exactly or to many digits, and undefined values.
 
 use super::super::constants;
 use super::super::dyadic::scaled;
 use super::*;
 
-/// Whether the result is the one number.
+/// True if the result is the one number.
 fn is(result: Option<Interval>, n: i64) -> bool {
     result.is_some_and(|x| x == number(n))
 }
