@@ -16,7 +16,7 @@ use std::rc::Rc;
 const STEPS_PER_SECOND: f64 = 100_000_000.0;
 
 /// Problems that a budget suffices for if each takes its limit.
-const QUESTIONS: u64 = 20;
+const PROBLEMS: u64 = 20;
 
 /// Steps between two looks at the watch: some milliseconds.
 const BETWEEN_LOOKS: u64 = 1 << 18;
@@ -26,11 +26,11 @@ type Watch = dyn Fn() -> bool;
 
 /// The steps that are left. Clones draw from the same steps.
 #[derive(Clone)]
-pub struct Budget(Rc<Shared>);
+pub struct Budget(Rc<Account>);
 
-struct Shared {
+struct Account {
     left: Cell<u64>,
-    of_one_question: u64,
+    of_one_problem: u64,
     stopped: Cell<bool>,
     watch: Option<Box<Watch>>,
 }
@@ -50,7 +50,7 @@ impl Budget {
     }
 
     /// As [`Self::of_seconds`], with a watch that is asked every few milliseconds and may end the budget too.
-    pub fn watched(seconds: f64, watch: impl Fn() -> bool + 'static) -> Self {
+    pub fn with_watch(seconds: f64, watch: impl Fn() -> bool + 'static) -> Self {
         Self::of(steps_of(seconds), Some(Box::new(watch)))
     }
 
@@ -58,13 +58,13 @@ impl Budget {
         // Unlimited and short budgets give a problem its share of the usual budget.
         let usual = steps_of(Self::SECONDS);
         let whole = if left == u64::MAX { usual } else { left.max(usual) };
-        let of_one_question = whole / QUESTIONS;
-        Self(Rc::new(Shared { left: Cell::new(left), of_one_question, stopped: Cell::new(false), watch }))
+        let of_one_problem = whole / PROBLEMS;
+        Self(Rc::new(Account { left: Cell::new(left), of_one_problem, stopped: Cell::new(false), watch }))
     }
 
     /// The steps that a single normal form may take, so that others can follow where it is given up.
-    pub(super) fn of_one_question(&self) -> u64 {
-        self.0.of_one_question
+    pub(super) fn of_one_problem(&self) -> u64 {
+        self.0.of_one_problem
     }
 
     /// True if nothing is left.
@@ -155,10 +155,10 @@ mod tests {
     }
 
     #[test]
-    fn a_question_has_a_part_of_the_whole_that_grows_with_it() {
-        let usual = Budget::default().of_one_question();
-        assert_eq!(Budget::unlimited().of_one_question(), usual);
-        assert_eq!(Budget::of_seconds(1.0).of_one_question(), usual);
-        assert_eq!(Budget::of_seconds(6.0 * Budget::SECONDS).of_one_question(), 6 * usual);
+    fn a_problem_has_a_share_that_grows_with_the_whole() {
+        let usual = Budget::default().of_one_problem();
+        assert_eq!(Budget::unlimited().of_one_problem(), usual);
+        assert_eq!(Budget::of_seconds(1.0).of_one_problem(), usual);
+        assert_eq!(Budget::of_seconds(6.0 * Budget::SECONDS).of_one_problem(), 6 * usual);
     }
 }

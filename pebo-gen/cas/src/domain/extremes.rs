@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_bounds_an_extreme_is_bounded_apart() {
+    fn bounds_of_an_extreme_are_bounds_of_its_arguments() {
         let arena = Arena::new();
         let [q, u] = ["q", "u"].map(|name| arena.variable(name));
         let call = |function, arguments: &[Expr]| arena.call(function, arguments);

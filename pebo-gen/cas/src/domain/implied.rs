@@ -13,15 +13,15 @@ const MOST_BORDERS: usize = 2;
 
 /// The signs that a value has at some points.
 #[derive(Default)]
-struct Signs {
+struct SampledSigns {
     positive: bool,
     negative: bool,
 }
 
 impl Domain {
     /// True if a domain condition of a formula is granted: it holds of numbers, or the facts prove it.
-    pub fn grants(&self, arena: &Arena, ask: (Expr, Relation)) -> bool {
-        arena.holds_of_number(ask) || self.implies(arena, ask.0, ask.1)
+    pub fn grants(&self, arena: &Arena, condition: (Expr, Relation)) -> bool {
+        arena.holds_of_number(condition) || self.implies(arena, condition.0, condition.1)
     }
 
     /// True if the facts prove that the expression compares so with zero, wherever it has a value.
@@ -35,10 +35,10 @@ impl Domain {
             return true;
         }
         // A proof of a sign takes algebra; one point often refutes it.
-        let seen = self.signs_seen(arena, expr);
+        let sampled = self.sampled_signs(arena, expr);
         let signed = match relation {
-            Relation::Positive | Relation::NonNegative => !seen.negative,
-            Relation::NonZero => !(seen.negative && seen.positive),
+            Relation::Positive | Relation::NonNegative => !sampled.negative,
+            Relation::NonZero => !(sampled.negative && sampled.positive),
         };
         let shown = |field: Result<Field<'_>, Obstacle>| {
             let field = field?;
@@ -46,8 +46,8 @@ impl Domain {
             match relation {
                 Relation::Positive => field.signs().is_positive(&fraction),
                 Relation::NonNegative => field.signs().is_not_negative(&fraction),
-                Relation::NonZero => Ok((!seen.negative && field.signs().is_positive(&fraction)?)
-                    || (!seen.positive && field.signs().is_positive(&fraction.opposite())?)),
+                Relation::NonZero => Ok((!sampled.negative && field.signs().is_positive(&fraction)?)
+                    || (!sampled.positive && field.signs().is_positive(&fraction.opposite())?)),
             }
         };
         let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
@@ -74,15 +74,15 @@ impl Domain {
     }
 
     /// The signs that the expression provably has at some points of the domain.
-    fn signs_seen(&self, arena: &Arena, expr: Expr) -> Signs {
-        let mut seen = Signs::default();
+    fn sampled_signs(&self, arena: &Arena, expr: Expr) -> SampledSigns {
+        let mut sampled = SampledSigns::default();
         for value in self.glimpses(arena, &[expr]).filter_map(|point| arena.separated_from_zero(expr, &point)) {
-            *(if value.is_positive() { &mut seen.positive } else { &mut seen.negative }) = true;
-            if seen.positive && seen.negative {
+            *(if value.is_positive() { &mut sampled.positive } else { &mut sampled.negative }) = true;
+            if sampled.positive && sampled.negative {
                 break;
             }
         }
-        seen
+        sampled
     }
 
     /// True if the expression vanishes only where an expression assumed non-zero does: its factors are among those of
@@ -152,7 +152,7 @@ mod tests {
     use crate::Rational;
 
     #[test]
-    fn what_vanishes_with_a_fact_does_not_vanish() {
+    fn divisors_of_a_fact_do_not_vanish() {
         let arena = Arena::new();
         let [q, k] = ["q", "k"].map(|name| arena.variable(name));
         let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_looked_for_on_both_sides_of_a_bend() {
+    fn signs_are_proved_on_both_sides_of_a_non_smooth_point() {
         use Relation::{NonNegative, NonZero, Positive};
 
         let arena = Arena::new();

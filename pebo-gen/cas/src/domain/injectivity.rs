@@ -19,7 +19,7 @@ const PRECISION: Precision = Precision::new(96);
 
 /// Two values of a symbol at which a formula has the same value.
 #[derive(Clone, Debug)]
-pub struct Twice {
+pub struct Collision {
     /// One value of the symbol.
     pub at: Rational,
     /// An interval that holds the other value, or the other value twice.
@@ -29,14 +29,14 @@ pub struct Twice {
 }
 
 /// Searches for two values of the symbol with the same value of the formula, all other symbols held.
-pub fn taken_twice(
+pub fn collision(
     arena: &Arena,
     domain: &Domain,
-    asks: &[(Expr, Relation)],
+    conditions: &[(Expr, Relation)],
     formula: Expr,
     symbol: Symbol,
     point: &Point,
-) -> Option<Twice> {
+) -> Option<Collision> {
     let here = |expr: Expr| {
         let others = point.iter().filter(|(other, _)| **other != symbol).map(|(other, value)| (*other, *value));
         arena.substitute(expr, &others.collect())
@@ -45,7 +45,7 @@ pub fn taken_twice(
     // The other facts do not depend on the symbol, so they hold at the point as well as elsewhere.
     let facts = domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&symbol));
     let conditions: Vec<(Expr, Relation)> =
-        facts.chain(asks.iter().copied()).map(|(expr, relation)| (here(expr), relation)).collect();
+        facts.chain(conditions.iter().copied()).map(|(expr, relation)| (here(expr), relation)).collect();
     let over = |values: &Interval| {
         let values = BTreeMap::from([(symbol, values.clone())]);
         let holds = |(expr, relation): &(Expr, Relation)| {
@@ -61,9 +61,9 @@ pub fn taken_twice(
         conditions.iter().all(holds).then(|| arena.enclose_over(&[formula], &values, PRECISION)?.pop()).flatten()
     };
     let number = |value: &Rational| Interval::from_rational(value, PRECISION);
-    let places = places(arena, domain, symbol, point);
+    let trial_values = trial_values(arena, domain, symbol, point);
     let known: Vec<(&Rational, Interval)> =
-        places.iter().filter_map(|place| Some((place, over(&number(place)?)?))).collect();
+        trial_values.iter().filter_map(|place| Some((place, over(&number(place)?)?))).collect();
     let exact =
         |place: &Rational| arena.as_number(arena.substitute(formula, &[(symbol, arena.number(place.clone()))].into()));
     let mut exactly: BTreeMap<Rational, &(&Rational, Interval)> = BTreeMap::new();
@@ -73,7 +73,7 @@ pub fn taken_twice(
         let Some(value) = exact(place.0) else { continue };
         if let Some((other, value)) = exactly.insert(value, place) {
             let values = [place.1.clone(), value.clone(), value.clone()];
-            return Some(Twice { at: place.0.clone(), between: [(*other).clone(), (*other).clone()], values });
+            return Some(Collision { at: place.0.clone(), between: [(*other).clone(), (*other).clone()], values });
         }
     }
     let below = |a: &Interval, b: &Interval| b.sub(a, PRECISION).is_some_and(|ahead| ahead.is_positive());
@@ -89,29 +89,29 @@ pub fn taken_twice(
         };
         if let Some((at, value)) = known.iter().find(meets) {
             let values = [value.clone(), first.clone(), last.clone()];
-            return Some(Twice { at: (*at).clone(), between: [(*low).clone(), (*high).clone()], values });
+            return Some(Collision { at: (*at).clone(), between: [(*low).clone(), (*high).clone()], values });
         }
     }
     None
 }
 
 /// Trial values of the symbol, ascending: simple ones, and if both its bounds are known, some between these.
-fn places(arena: &Arena, domain: &Domain, symbol: Symbol, point: &Point) -> Vec<Rational> {
-    const PARTS: i64 = 24;
+fn trial_values(arena: &Arena, domain: &Domain, symbol: Symbol, point: &Point) -> Vec<Rational> {
+    const SUBDIVISIONS: i64 = 24;
     // A formula that rises for a short way only does so beside a bound.
     const BESIDE: [(i64, i64); 4] = [(1, 256), (1, 64), (63, 64), (255, 256)];
     let eighths = [1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96];
     let simple = eighths.iter().flat_map(|n| [-n, *n]).chain([0]);
-    let mut places: Vec<Rational> = simple.filter_map(|n| Rational::new(n, 8)).collect();
-    places.extend(point.get(&symbol).and_then(|value| arena.as_number(*value)));
+    let mut trial_values: Vec<Rational> = simple.filter_map(|n| Rational::new(n, 8)).collect();
+    trial_values.extend(point.get(&symbol).and_then(|value| arena.as_number(*value)));
     if let Some((low, high)) = domain.bounds(arena, &[symbol].into()).remove(&symbol) {
         let width = &high - &low;
         let part = |(n, d)| Some(&low + &(&width * &Rational::new(n, d)?));
-        places.extend((1..PARTS).map(|n| (n, PARTS)).chain(BESIDE).filter_map(part));
+        trial_values.extend((1..SUBDIVISIONS).map(|n| (n, SUBDIVISIONS)).chain(BESIDE).filter_map(part));
     }
-    places.sort();
-    places.dedup();
-    places
+    trial_values.sort();
+    trial_values.dedup();
+    trial_values
 }
 
 #[cfg(test)]
@@ -120,7 +120,7 @@ mod tests {
     use crate::graph::function::Function;
 
     #[test]
-    fn what_rises_and_falls_takes_values_twice() {
+    fn functions_that_rise_and_fall_are_not_injective() {
         let arena = Arena::new();
         let [p, k] = ["p", "k"].map(|name| arena.variable(name));
         let (symbol, other) = (arena.as_symbol(p).unwrap(), arena.as_symbol(k).unwrap());
@@ -150,9 +150,9 @@ mod tests {
                 domain.facts.assume(arena.sub(p, arena.number(low)), Relation::Positive);
                 domain.facts.assume(arena.sub(arena.number(high), p), Relation::Positive);
             }
-            let asks: Vec<_> = ask.into_iter().collect();
+            let conditions: Vec<_> = ask.into_iter().collect();
             let point = Point::from([(symbol, arena.number(1)), (other, arena.number(3))]);
-            let found = taken_twice(&arena, &domain, &asks, formula, symbol, &point);
+            let found = collision(&arena, &domain, &conditions, formula, symbol, &point);
             assert_eq!(found.is_some(), expected, "{}: {found:?}", arena.print(formula));
         }
     }

@@ -76,7 +76,7 @@ mod tests {
     use crate::Function;
 
     #[test]
-    fn what_bends_does_not_jump() {
+    fn continuous_non_smooth_functions_have_no_jump() {
         let arena = Arena::new();
         let [p, q, c] = ["p", "q", "c"].map(|name| arena.variable(name));
         let call = |function, argument| arena.call(function, &[argument]);

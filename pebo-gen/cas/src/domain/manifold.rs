@@ -95,7 +95,7 @@ impl Manifold {
     }
 
     /// All equations that no exact step solves.
-    pub(crate) fn left_open(&self) -> &[Expr] {
+    pub(crate) fn open_equations(&self) -> &[Expr] {
         &self.exact.open
     }
 
@@ -139,7 +139,7 @@ struct Solver<'a> {
 }
 
 /// A candidate for a step; the one with the least cost is taken.
-struct Way {
+struct Candidate {
     /// True if the divisor is no number; the symbol's group; terms of the equation.
     cost: (bool, usize, usize),
     equation: usize,
@@ -152,7 +152,7 @@ impl Solver<'_> {
         let mut open = equations;
         let mut steps: Vec<Step> = Vec::new();
         loop {
-            let ways = self.ways(&mut open, &|degree| degree == 1)?;
+            let ways = self.candidates(&mut open, &|degree| degree == 1)?;
             let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { break };
             open.remove(way.equation);
             let value = BTreeMap::from([(way.step.symbol, way.step.middle)]);
@@ -165,7 +165,7 @@ impl Solver<'_> {
         // Roots are not substituted into one another: each takes symbols that the roots before it do not contain.
         let mut held: BTreeSet<Symbol> = BTreeSet::new();
         loop {
-            let mut ways = self.ways(&mut open, &|degree| degree > 1)?;
+            let mut ways = self.candidates(&mut open, &|degree| degree > 1)?;
             ways.retain(|way| !held.contains(&way.step.symbol));
             let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { break };
             held.extend(arena.symbols_of(&[open.remove(way.equation)]));
@@ -176,7 +176,7 @@ impl Solver<'_> {
     }
 
     /// The ways to solve the equations; those that hold everywhere are dropped.
-    fn ways(&self, open: &mut Vec<Expr>, wanted: &dyn Fn(u32) -> bool) -> Result<Vec<Way>, Obstacle> {
+    fn candidates(&self, open: &mut Vec<Expr>, wanted: &dyn Fn(u32) -> bool) -> Result<Vec<Candidate>, Obstacle> {
         let field = Field::over(self.arena, self.facts, open)?;
         let mut numerators = Vec::new();
         let mut left = Vec::new();
@@ -198,7 +198,7 @@ impl Solver<'_> {
                 }
                 if let Some((step, divided)) = self.step(&field, numerator, symbol, wanted)? {
                     let cost = (!divided, place, numerator.term_count());
-                    ways.push(Way { cost, equation, step });
+                    ways.push(Candidate { cost, equation, step });
                 }
             }
         }
@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn what_vanishes_on_a_circle_is_zero_and_what_differs_there_has_a_point_on_it() {
+    fn expressions_on_a_circle_are_zero_or_have_a_witness_on_it() {
         let arena = Arena::new();
         let [a, b, c, p] = symbols(&arena);
         // A circle with rational points, one without.

@@ -84,10 +84,10 @@ impl Domain {
             .enumerate()
             .filter(|(_, symbol)| !solved.contains(symbol) && !self.fixed.contains_key(symbol))
             .collect();
-        let confined = Confined::new(arena, &facts, free.iter().map(|(_, symbol)| *symbol));
+        let confined = Confinement::new(arena, &facts, free.iter().map(|(_, symbol)| *symbol));
         (0..trials).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
             arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
-            let mut draw = Draw::new(trial);
+            let mut draw = RationalGenerator::new(trial);
             let given = |symbol: &Symbol| Some((*symbol, *self.fixed.get(symbol)?));
             let mut point: Point = symbols.iter().filter(|symbol| !solved.contains(symbol)).filter_map(given).collect();
             for (index, symbol) in &free {
@@ -101,7 +101,7 @@ impl Domain {
 
     /// The same without its equations.
     #[must_use]
-    pub fn everywhere(&self) -> Self {
+    pub fn without_equations(&self) -> Self {
         Self { manifold: Manifold::default(), ..self.clone() }
     }
 
@@ -188,14 +188,14 @@ fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bo
 }
 
 /// Bounds of each symbol by facts in it and in symbols that are drawn before it.
-struct Confined {
+struct Confinement {
     /// By facts in the symbol alone.
     ranges: BTreeMap<Symbol, Range>,
     /// Facts in others as well, and those that are not affine in the symbol.
     others: BTreeMap<Symbol, Vec<(Expr, Relation)>>,
 }
 
-impl Confined {
+impl Confinement {
     /// For symbols that are drawn in this order.
     fn new(arena: &Arena, facts: &[(Expr, Relation)], order: impl Iterator<Item = Symbol>) -> Self {
         let place: BTreeMap<Symbol, usize> = order.enumerate().map(|(place, symbol)| (symbol, place)).collect();
@@ -318,12 +318,12 @@ fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
 }
 
 /// A reproducible sequence of simple rationals (`SplitMix64`, Steele, Lea and Flood 2014).
-struct Draw {
+struct RationalGenerator {
     trial: u64,
     state: u64,
 }
 
-impl Draw {
+impl RationalGenerator {
     fn new(trial: u64) -> Self {
         Self { trial, state: trial.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1 }
     }

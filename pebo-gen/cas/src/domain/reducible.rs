@@ -15,9 +15,9 @@ use crate::{Domain, Relation};
 /// zero.
 pub fn reducible(arena: &Arena, domain: &Domain, concerns: impl Fn(Expr) -> bool) -> Option<Expr> {
     // By the inequalities alone: where the equations hold, each factor is zero or not by the branch.
-    let assumed = domain.everywhere();
+    let assumed = domain.without_equations();
     let roots = domain.manifold.steps().iter().filter_map(|step| squared(arena, step));
-    let equations = roots.chain(domain.manifold.left_open().iter().copied());
+    let equations = roots.chain(domain.manifold.open_equations().iter().copied());
     equations.filter(|equation| concerns(*equation)).find(|equation| {
         // A failed computation does not prove irreducibility.
         holds_in_several_ways(arena, &assumed, *equation).unwrap_or(true)

@@ -5,7 +5,7 @@
 //! the value excludes zero. Neither relies on floating point or on the kernels being independent.
 
 use crate::Domain;
-use crate::forms::shared::vanishes_over_shared_sums;
+use crate::forms::shared_sums::vanishes_over_shared_sums;
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::Expr;

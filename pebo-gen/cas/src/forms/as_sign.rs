@@ -11,8 +11,8 @@ use crate::{Arena, Expr, Node, Product, Rational};
 /// The expression with signs in place of such quotients.
 pub(crate) fn as_sign(arena: &Arena, expr: Expr) -> Expr {
     let nodes = arena.postorder(&[expr]);
-    let is_magnitude = |e: &Expr| matches!(arena.node(*e), Node::Call(Function::Abs, _));
-    if !nodes.iter().any(is_magnitude) {
+    let is_absolute_value = |e: &Expr| matches!(arena.node(*e), Node::Call(Function::Abs, _));
+    if !nodes.iter().any(is_absolute_value) {
         return expr;
     }
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
@@ -40,10 +40,10 @@ fn cancelled(arena: &Arena, product: &Product) -> Option<Expr> {
         (divides && whole).then_some((place, other, inside, sum))
     };
     let (place, other, inside, sum) = product.factors.iter().enumerate().find_map(pair)?;
-    let (magnitude, power) = &product.factors[place];
+    let (absolute, power) = &product.factors[place];
     let own = &product.factors[other].1;
     // The dividing one becomes a sign and a power of the other.
-    let (left, turned) = if own.is_negative() { (*magnitude, own) } else { (inside, power) };
+    let (left, turned) = if own.is_negative() { (*absolute, own) } else { (inside, power) };
     let is_odd = turned.numerator().trailing_zeros() == 0;
     let sign = is_odd.then(|| (arena.call(Function::Sign, &[inside]), Rational::ONE));
     let others = product.factors.iter().enumerate().filter(|(index, _)| ![place, other].contains(index));

@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn squares_of_hyperbolic_functions_come_together() {
+    fn squares_of_hyperbolic_functions_combine() {
         let arena = Arena::new();
         let [m, q] = ["m", "q"].map(|name| arena.variable(name));
         let square = |function| arena.power(arena.call(function, &[q]), &Rational::from(2));

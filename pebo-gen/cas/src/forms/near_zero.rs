@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_that_do_not_cancel_at_zero_stay() {
+    fn sums_that_do_not_cancel_at_zero_are_unchanged() {
         let cos = |arena: &Arena, x| arena.call(Function::Cos, &[x]);
         assert_eq!(shown(|arena, [_, x, _]| arena.add(arena.one(), cos(arena, x))), None);
         assert_eq!(shown(|arena, [a, x, _]| arena.sub(a, cos(arena, x))), None);

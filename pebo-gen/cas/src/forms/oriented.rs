@@ -69,8 +69,8 @@ impl<'a> Orientation<'a> {
         let mut factors = product.factors.clone();
         let mut changed = false;
         for (base, exponent) in &mut factors {
-            let below = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
-            if !below || !matches!(arena.node(*base), Node::Sum(_)) {
+            let in_denominator = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
+            if !in_denominator || !matches!(arena.node(*base), Node::Sum(_)) {
                 continue;
             }
             if self.is_negative(*base) {
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_known_to_be_negative_is_turned_round() {
+    fn denominators_known_to_be_negative_are_turned_round() {
         let arena = Arena::new();
         let [a, b, d] = ["a", "b", "d"].map(|name| arena.variable(name));
         let low = arena.sub(d, arena.one());
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(shown(&domain, squared), "a/(1 - d)^2");
         assert_eq!(shown(&domain, arena.add(b, fraction)), "b + a/(1 - d)");
         assert_eq!(shown(&domain, arena.div(arena.sub(a, b), low)), "(b - a)/(1 - d)");
-        assert_eq!(shown(&domain, arena.mul(a, low)), arena.print(arena.mul(a, low)), "nothing is below a bar");
+        assert_eq!(shown(&domain, arena.mul(a, low)), arena.print(arena.mul(a, low)), "there is no denominator");
         let root = arena.sqrt(arena.sub(arena.one(), d));
         assert_eq!(shown(&domain, arena.div(root, low)), "-1/sqrt(1 - d)");
     }

@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_a_finite_decimal_is_short() {
+    fn numbers_with_finite_decimals_are_short() {
         let short = |n: i64, d: i64| is_short(&Rational::new(n, d).unwrap());
         assert!(short(3, 1) && short(1, 8) && short(7, 25) && short(1, 40));
         assert!(!short(1, 3) && !short(1, 30));

@@ -10,13 +10,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::as_sign::as_sign;
 use super::hyperbolic::without_differences;
 use super::near_zero::near_zero;
-use super::opaque::Frozen;
+use super::opaque::OpaqueTerms;
 use super::oriented::Orientation;
 use super::scaled::scaled;
-use super::shared::Shared;
+use super::shared_sums::SharedSums;
 use crate::domain::zero::decide;
-use crate::graph::conditions::Want;
-use crate::graph::function::{Asks, Function};
+use crate::graph::conditions::Regularity;
+use crate::graph::function::{Conditions, Function};
 use crate::tower::Field;
 use crate::{Arena, Domain, Expr, Facts, Node, Rational, Relation};
 
@@ -28,20 +28,20 @@ const LONG: usize = 500;
 
 /// The shortest of an expression and the forms of its normal form.
 pub fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
-    shortest_turned(arena, &Orientation::new(arena, domain), expr)
+    shortest_oriented(arena, &Orientation::new(arena, domain), expr)
 }
 
 /// As [`shortest`], for one of several expressions with a common orientation.
-pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
+pub fn shortest_oriented(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
     if is_shortest(arena, expr) {
         return expr;
     }
     let expr = as_sign(arena, expr);
     // A long formula over its shared sums: written out, it would be longer.
     if operations(arena, expr) > LONG
-        && let Some(shared) = Shared::of(arena, expr)
+        && let Some(shared) = SharedSums::of(arena, expr)
     {
-        return shared.opened(arena, shortest_turned(arena, orientation, shared.expr));
+        return shared.expanded(arena, shortest_oriented(arena, orientation, shared.expr));
     }
     let domain = orientation.domain();
     let own = functions(arena, &[expr]);
@@ -71,7 +71,7 @@ pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr)
             && kept(form)
             && divides_as(arena, expr, form)
             && !cancels(form)
-            && asks_no_more(arena, domain, expr, form)
+            && adds_no_conditions(arena, domain, expr, form)
         {
             (best, fewest) = (form, taken);
         }
@@ -92,7 +92,7 @@ pub fn others(arena: &Arena, domain: &Domain, expr: Expr, most: usize) -> impl I
     }
     forms.sort_by_key(|(taken, _)| *taken);
     // The domain conditions of a form take long to check: only those of the forms in use are.
-    forms.into_iter().map(|(_, form)| form).filter(move |form| asks_no_more(arena, domain, expr, *form))
+    forms.into_iter().map(|(_, form)| form).filter(move |form| adds_no_conditions(arena, domain, expr, *form))
 }
 
 /// The forms of an expression, some of them several times.
@@ -144,13 +144,13 @@ fn in_own_functions(
     let foreign = |call: &Expr| field.fraction(*call).is_ok_and(|fraction| !kept(field.show(&fraction)));
     let is_call = |call: &Expr| matches!(arena.node(*call), Node::Call(..));
     let calls: BTreeSet<Expr> = own.iter().copied().filter(|call| is_call(call) && foreign(call)).collect();
-    let mut frozen = Frozen::calls(arena, &calls);
-    let over = frozen.freeze(&[expr])[0];
-    if frozen.is_empty() {
+    let mut opaque = OpaqueTerms::calls(arena, &calls);
+    let over = opaque.replace(&[expr])[0];
+    if opaque.is_empty() {
         return Vec::new();
     }
     let Ok(field) = Field::of_long_sums(arena, facts, &[over]) else { return Vec::new() };
-    written(&field, over).into_iter().map(|form| frozen.thaw(form)).collect()
+    written(&field, over).into_iter().map(|form| opaque.restore(form)).collect()
 }
 
 /// True if a call is the root of an even power: `abs(q)` is `sqrt(q^2)`.
@@ -265,14 +265,14 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
         match arena.node(e) {
             Node::Product(product) => {
                 for (base, exponent) in &product.factors {
-                    let magnitude = exponent.abs();
+                    let times_each = exponent.abs();
                     for (inner, times) in &known[base] {
-                        let times = times * &magnitude;
+                        let times = times * &times_each;
                         found.entry(*inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                     }
                     if exponent.is_negative() && matches!(arena.node(*base), Node::Sum(_) | Node::Call(..)) {
-                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &magnitude + &magnitude));
-                        for (inner, times) in sine.into_iter().chain([(*base, magnitude)]) {
+                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &times_each + &times_each));
+                        for (inner, times) in sine.into_iter().chain([(*base, times_each)]) {
                             found.entry(inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                         }
                     }
@@ -304,7 +304,7 @@ fn sine_of_square(arena: &Arena, expr: Expr) -> Option<Expr> {
 }
 
 /// The shortest of equal forms in the functions of the author's formula; the first if none keeps to them.
-pub fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
+pub fn authors_form(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
     let own = functions(arena, &[written]);
     let keeps = |form: &Expr| functions(arena, &[*form]).is_subset(&own) && divides_as(arena, written, *form);
     let kept = forms.iter().copied().filter(keeps);
@@ -312,9 +312,9 @@ pub fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
 }
 
 /// True if every domain condition of a form is one of the expression or proved on the domain.
-pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
-    let own = asks_of_code(arena, expr);
-    let mut more = asks_of_code(arena, form);
+pub(crate) fn adds_no_conditions(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
+    let own = code_conditions(arena, expr);
+    let mut more = code_conditions(arena, form);
     more.retain(|ask| !own.contains(ask));
     if more.is_empty() {
         return true;
@@ -330,13 +330,13 @@ pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
 }
 
 /// The domain conditions of the emitted code: unlike a proof, code has a value for the sign of 0.
-fn asks_of_code(arena: &Arena, expr: Expr) -> Asks {
-    let mut found = Asks::new();
+fn code_conditions(arena: &Arena, expr: Expr) -> Conditions {
+    let mut found = Conditions::new();
     for part in arena.postorder(&[expr]) {
         if matches!(arena.node(part), Node::Call(Function::Sign, _)) {
             continue;
         }
-        for ask in arena.asked_by(part, Want::Value) {
+        for ask in arena.operation_conditions(part, Regularity::Defined) {
             if !found.contains(&ask) && !arena.holds_of_number(ask) {
                 found.push(ask);
             }
@@ -347,17 +347,17 @@ fn asks_of_code(arena: &Arena, expr: Expr) -> Asks {
 
 /// The first of the candidates that has fewer unproved domain conditions than the expression and is proved equal to it:
 /// of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
-pub fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
-    let unshown = |form: Expr| {
-        let asked = asks_of_code(arena, form).into_iter();
+pub fn with_fewer_conditions(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+    let unproved = |form: Expr| {
+        let asked = code_conditions(arena, form).into_iter();
         asked.filter(|(part, relation)| !domain.implies(arena, *part, *relation)).count()
     };
-    let most = unshown(expr);
+    let most = unproved(expr);
     if most == 0 {
         return expr;
     }
     let equal = |form: Expr| decide(arena, arena.sub(form, expr), domain).is_zero();
-    candidates.iter().copied().find(|form| unshown(*form) < most && equal(*form)).unwrap_or(expr)
+    candidates.iter().copied().find(|form| unproved(*form) < most && equal(*form)).unwrap_or(expr)
 }
 
 /// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
@@ -376,7 +376,7 @@ pub fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[
     let mut best = expr;
     for &candidate in candidates {
         if operations(arena, candidate) < operations(arena, best)
-            && asks_no_more(arena, domain, expr, candidate)
+            && adds_no_conditions(arena, domain, expr, candidate)
             && decide(arena, arena.sub(candidate, expr), domain).is_zero()
         {
             best = candidate;
@@ -446,7 +446,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cancels_leaves_beside_functions_that_stay() {
+    fn terms_cancel_beside_opaque_functions() {
         let arena = Arena::new();
         let [p, q, u] = ["p", "q", "u"].map(|name| arena.variable(name));
         let call = |function, argument| arena.call(function, &[argument]);
@@ -483,7 +483,7 @@ mod tests {
 
     /// The absolute value equals the root, and no form of another function.
     #[test]
-    fn a_magnitude_stands_for_the_root_of_a_square_alone() {
+    fn an_absolute_value_replaces_only_the_root_of_a_square() {
         let arena = Arena::new();
         let [p, q] = ["p", "q"].map(|name| arena.variable(name));
         let larger = arena.call(Function::Max, &[p, q]);

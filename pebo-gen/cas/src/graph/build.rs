@@ -19,7 +19,7 @@ const STEPS_OF_A_NODE: u64 = 60;
 const STEPS_OF_AN_OPERAND: u64 = 10;
 
 /// A rational factor and powers to multiply it with.
-type Parts = (Rational, Vec<(Expr, Rational)>);
+type ScaledFactors = (Rational, Vec<(Expr, Rational)>);
 
 impl Arena {
     /// `a + b`.
@@ -238,7 +238,7 @@ impl Arena {
     }
 
     /// `product ^ exponent` taken into the product, where the real value allows it.
-    fn distribute(&self, product: &Product, exponent: &Rational) -> Option<Parts> {
+    fn distribute(&self, product: &Product, exponent: &Rational) -> Option<ScaledFactors> {
         let raised = |factors: &[(Expr, Rational)]| -> Vec<(Expr, Rational)> {
             factors.iter().map(|(base, inner)| (*base, inner * exponent)).collect()
         };

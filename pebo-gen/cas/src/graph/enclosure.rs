@@ -23,7 +23,7 @@ const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
 const MOST_BITS: u64 = 1 << 14;
 
 /// The result of rational arithmetic.
-enum Exact {
+enum RationalValue {
     /// The value is this number.
     Value(Rational),
     /// The value does not exist: a divisor is zero.
@@ -71,7 +71,7 @@ impl Arena {
     }
 
     /// The value at a point, if rational arithmetic suffices: much cheaper than an enclosure.
-    fn rational_at(&self, expr: Expr, point: &Point) -> Exact {
+    fn rational_at(&self, expr: Expr, point: &Point) -> RationalValue {
         let mut known: FxHashMap<Expr, Rational> = FxHashMap::default();
         for e in self.postorder(&[expr]) {
             let value = match self.node(e) {
@@ -84,38 +84,38 @@ impl Arena {
                     let mut total = product.coefficient.clone();
                     for (base, exponent) in &product.factors {
                         let Some(exponent) = exponent.to_i64().and_then(|e| i32::try_from(e).ok()) else {
-                            return Exact::Irrational;
+                            return RationalValue::Irrational;
                         };
                         if exponent < 0 && known[base].is_zero() {
-                            return Exact::Undefined;
+                            return RationalValue::Undefined;
                         }
                         let bits = known[base].bits().saturating_mul(exponent.unsigned_abs().into());
                         if bits > MOST_BITS {
-                            return Exact::Irrational;
+                            return RationalValue::Irrational;
                         }
-                        let Some(power) = known[base].pow(exponent) else { return Exact::Irrational };
+                        let Some(power) = known[base].pow(exponent) else { return RationalValue::Irrational };
                         total = &total * &power;
                     }
                     Some(total)
                 }
                 Node::Pi | Node::Call(..) => None,
             };
-            let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return Exact::Irrational };
+            let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return RationalValue::Irrational };
             // Its operands are of that length too, and it has no common factor left.
             let words = value.bits().div_ceil(64);
             self.budget().take(words * words * (1 + self.operand_count(e)));
             known.insert(e, value);
         }
-        known.remove(&expr).map_or(Exact::Irrational, Exact::Value)
+        known.remove(&expr).map_or(RationalValue::Irrational, RationalValue::Value)
     }
 
     /// The enclosure that excludes zero, at the least precision that shows it.
     pub fn separated_from_zero(&self, expr: Expr, point: &Point) -> Option<Interval> {
         match self.rational_at(expr, point) {
-            Exact::Value(value) if value.is_zero() => return None,
-            Exact::Value(value) => return Interval::from_rational(&value, Precision::new(PRECISIONS[0])),
-            Exact::Undefined => return None,
-            Exact::Irrational => {}
+            RationalValue::Value(value) if value.is_zero() => return None,
+            RationalValue::Value(value) => return Interval::from_rational(&value, Precision::new(PRECISIONS[0])),
+            RationalValue::Undefined => return None,
+            RationalValue::Irrational => {}
         }
         PRECISIONS
             .iter()
@@ -125,9 +125,9 @@ impl Arena {
     /// True if the expression provably has a value at the point.
     pub fn exists_at(&self, expr: Expr, point: &Point) -> bool {
         match self.rational_at(expr, point) {
-            Exact::Value(_) => return true,
-            Exact::Undefined => return false,
-            Exact::Irrational => {}
+            RationalValue::Value(_) => return true,
+            RationalValue::Undefined => return false,
+            RationalValue::Irrational => {}
         }
         PRECISIONS.iter().any(|&bits| self.enclose(expr, point, Precision::new(bits)).is_some())
     }

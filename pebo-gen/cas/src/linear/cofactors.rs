@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_singular_or_not_square_is_left_to_elimination() {
+    fn singular_and_rectangular_systems_are_left_to_elimination() {
         let arena = Arena::new();
         let [a, b] = ["a", "b"].map(|name| arena.variable(name));
         let field = Field::over(&arena, &Facts::new(), &[a, b]).unwrap();

@@ -14,8 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Echelon, solve};
 use crate::Domain;
-use crate::forms::opaque::Frozen;
-use crate::forms::tidy::{asking_less, shorter, shortest};
+use crate::forms::opaque::OpaqueTerms;
+use crate::forms::tidy::{shorter, shortest, with_fewer_conditions};
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::graph::function::Function;
@@ -118,20 +118,20 @@ pub fn combine_on(
 ) -> Result<Option<Vec<Expr>>, Obstacle> {
     let roots = [basis, &[target]].concat();
     // In the author's own functions and sums of known terms, if that is enough.
-    let mut frozen = Frozen::new(arena, x);
-    let signals = frozen.freeze(&roots);
-    if !frozen.is_empty()
+    let mut opaque = OpaqueTerms::new(arena, x);
+    let signals = opaque.replace(&roots);
+    if !opaque.is_empty()
         && let Some((target, basis)) = signals.split_last()
         && let Ok(field) = Field::over(arena, &domain.facts, &signals)
         && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
     {
-        let shown = Shown::new(&field, domain, &signals, x);
-        return Ok(Some(coefficients.iter().map(|c| shown.form(c, |form| frozen.thaw(form))).collect()));
+        let shown = CoefficientForms::new(&field, domain, &signals, x);
+        return Ok(Some(coefficients.iter().map(|c| shown.form(c, |form| opaque.restore(form))).collect()));
     }
     let combined = |field: Result<Field<'_>, Obstacle>| {
         let field = field?;
         let coefficients = combine(&field, target, basis, x)?;
-        let shown = Shown::new(&field, domain, &roots, x);
+        let shown = CoefficientForms::new(&field, domain, &roots, x);
         Ok(coefficients.map(|all| all.iter().map(|c| shown.form(c, |form| form)).collect()))
     };
     match combined(Field::over(arena, &domain.facts, &roots)) {
@@ -144,14 +144,14 @@ pub fn combine_on(
 const MOST_DIVISORS: usize = 8;
 
 /// The context in which coefficients are written.
-struct Shown<'f, 'a> {
+struct CoefficientForms<'f, 'a> {
     field: &'f Field<'a>,
     domain: &'f Domain,
     /// Sums with roots or absolute values, free of x, that the formulas or equations hold: allowed divisors.
     divisors: Vec<Expr>,
 }
 
-impl<'f, 'a> Shown<'f, 'a> {
+impl<'f, 'a> CoefficientForms<'f, 'a> {
     fn new(field: &'f Field<'a>, domain: &'f Domain, formulas: &[Expr], x: &BTreeSet<Symbol>) -> Self {
         let arena = field.arena();
         let is_folded = |part: Expr| match arena.node(part) {
@@ -171,20 +171,20 @@ impl<'f, 'a> Shown<'f, 'a> {
 
     /// A coefficient as the shortest of its forms; over sums of the formulas if that has fewer domain conditions: the
     /// normal form has `(1 - abs(q))/(1 - q^2)` for `1/(1 + abs(q))`.
-    fn form(&self, coefficient: &Fraction, thaw: impl Fn(Expr) -> Expr) -> Expr {
+    fn form(&self, coefficient: &Fraction, restore: impl Fn(Expr) -> Expr) -> Expr {
         let arena = self.field.arena();
-        let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&thaw);
+        let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&restore);
         let [whole, apart] = forms(coefficient);
         let shown = shortest(arena, self.domain, shorter(arena, whole, apart));
-        let Some((rest, below)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
-        let [whole, apart] = forms(&rest).map(|form| arena.div(form, thaw(below)));
-        asking_less(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
+        let Some((rest, divisors_product)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
+        let [whole, apart] = forms(&rest).map(|form| arena.div(form, restore(divisors_product)));
+        with_fewer_conditions(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
     }
 
     /// A coefficient as a quotient by such sums, if some make its denominator shorter.
     fn over_divisors(&self, coefficient: &Fraction) -> Result<Option<(Fraction, Expr)>, Obstacle> {
         let mut rest = coefficient.clone();
-        let mut below = Vec::new();
+        let mut divisors = Vec::new();
         for divisor in &self.divisors {
             let factor = self.field.fraction(*divisor)?;
             while !rest.denominator().is_constant() {
@@ -193,10 +193,10 @@ impl<'f, 'a> Shown<'f, 'a> {
                     break;
                 }
                 rest = next;
-                below.push(*divisor);
+                divisors.push(*divisor);
             }
         }
-        Ok((!below.is_empty()).then(|| (rest, self.field.arena().product(below))))
+        Ok((!divisors.is_empty()).then(|| (rest, self.field.arena().product(divisors))))
     }
 }
 

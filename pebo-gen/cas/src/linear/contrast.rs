@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn points_outside_the_domain_show_nothing() {
+    fn points_outside_the_domain_prove_nothing() {
         let arena = Arena::new();
         let (domain, p, x) = above_three(&arena);
         let cube = arena.power(p, &Rational::from(3));

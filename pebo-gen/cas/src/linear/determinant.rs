@@ -31,7 +31,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
         return Ok(None);
     }
     let work = field.limit();
-    let mut below = Fraction::one();
+    let mut denominator = Fraction::one();
     // By the set of its columns, a bit each.
     let mut minors = BTreeMap::from([(0_u64, Poly::one())]);
     for row in rows {
@@ -39,7 +39,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
         for entry in row {
             common = common.lcm(entry.denominator(), work)?;
         }
-        below = field.mul(&below, &field.of_polynomial(&common)?)?;
+        denominator = field.mul(&denominator, &field.of_polynomial(&common)?)?;
         let entries = row.iter().map(|entry| field.over_denominator(entry, &common)).collect::<Result<Vec<_>, _>>()?;
         let larger = larger_minors(&minors, &entries.iter().collect::<Vec<_>>(), work)?;
         if larger.len() > MOST_MINORS {
@@ -54,7 +54,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
         }
     }
     let total = minors.into_values().next().unwrap_or_default();
-    Ok(Some(field.div(&field.of_polynomial(&total)?, &below)?))
+    Ok(Some(field.div(&field.of_polynomial(&total)?, &denominator)?))
 }
 
 /// By elimination: for matrices whose entries are mostly zero or one and the others long, as that of Hurwitz.

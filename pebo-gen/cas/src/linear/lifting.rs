@@ -9,7 +9,7 @@
 //! its equations, since both sides of `A numerators = denominator b` agree modulo a number that neither reaches. The
 //! work grows with the digits of the solution, while elimination takes those digits in every step.
 
-use super::residues::Rows;
+use super::residues::ResidueRows;
 use crate::Integer;
 use crate::poly::{PrimeField, Residue, TooLarge, Work, steps};
 
@@ -24,10 +24,10 @@ const SPARE_BITS: u64 = 32;
 
 /// `numerators / denominator`.
 #[derive(Debug)]
-pub(crate) struct Solution {
-    pub(crate) above: Vec<Integer>,
+pub(crate) struct QuotientVector {
+    pub(crate) numerators: Vec<Integer>,
     /// Positive.
-    pub(crate) below: Integer,
+    pub(crate) denominator: Integer,
 }
 
 /// A matrix prepared for solutions with any right side.
@@ -62,8 +62,8 @@ impl Lifting {
             let split = |row: &mut Vec<(usize, Integer)>| {
                 row.retain(|(_, entry)| !entry.is_zero());
                 let part = |(column, entry): &mut (usize, Integer)| {
-                    let (above, low) = entry.div_rem(&unit)?;
-                    *entry = above;
+                    let (numerators, low) = entry.div_rem(&unit)?;
+                    *entry = numerators;
                     Some((*column, low.to_i64()?))
                 };
                 row.iter_mut().map(part).collect::<Option<Vec<_>>>()
@@ -75,7 +75,7 @@ impl Lifting {
     }
 
     /// The solution for a right side.
-    pub(crate) fn solve(&self, right: &[Integer], work: &Work) -> Result<Solution, TooLarge> {
+    pub(crate) fn solve(&self, right: &[Integer], work: &Work) -> Result<QuotientVector, TooLarge> {
         let prime = Integer::from(self.prime.prime());
         let (mut residual, mut digits) = (right.to_vec(), Vec::new());
         let (mut modulus, mut wanted) = (Integer::ONE, 2);
@@ -113,34 +113,40 @@ impl Lifting {
     }
 
     /// The solution that these digits determine, if there are enough.
-    fn solution(&self, digits: &[Vec<u64>], prime: &Integer, modulus: &Integer, right: &[Integer]) -> Option<Solution> {
-        let mut above: Vec<Integer> = Vec::with_capacity(right.len());
-        let mut below = Integer::ONE;
+    fn solution(
+        &self,
+        digits: &[Vec<u64>],
+        prime: &Integer,
+        modulus: &Integer,
+        right: &[Integer],
+    ) -> Option<QuotientVector> {
+        let mut numerators: Vec<Integer> = Vec::with_capacity(right.len());
+        let mut denominator = Integer::ONE;
         for index in 0..right.len() {
             let add = |sum: Integer, digit: &Vec<u64>| &(&sum * prime) + &Integer::from(digit[index]);
             let value = digits.iter().rev().fold(Integer::ZERO, add);
-            let value = centred(&(&below * &value), modulus)?;
-            if value.bits() + below.bits() + SPARE_BITS < modulus.bits() {
-                above.push(value);
+            let value = centred(&(&denominator * &value), modulus)?;
+            if value.bits() + denominator.bits() + SPARE_BITS < modulus.bits() {
+                numerators.push(value);
                 continue;
             }
-            let (numerator, denominator) = ratio(&value, modulus)?;
-            for known in &mut above {
-                *known = &*known * &denominator;
+            let (numerator, factor) = ratio(&value, modulus)?;
+            for known in &mut numerators {
+                *known = &*known * &factor;
             }
-            below = &below * &denominator;
-            above.push(numerator);
+            denominator = &denominator * &factor;
+            numerators.push(numerator);
         }
         // Neither side of the equations reaches half of the modulus.
         let most = |entries: &[Integer]| entries.iter().map(Integer::bits).max().unwrap_or(0);
         let size = Integer::from(i64::try_from(right.len()).ok()?).bits();
-        let left = self.bits + most(&above) + size;
-        (left.max(most(right) + below.bits()) + 1 < modulus.bits()).then(|| {
-            if below.is_negative() {
-                above = above.iter().map(|entry| -entry).collect();
-                below = -&below;
+        let left = self.bits + most(&numerators) + size;
+        (left.max(most(right) + denominator.bits()) + 1 < modulus.bits()).then(|| {
+            if denominator.is_negative() {
+                numerators = numerators.iter().map(|entry| -entry).collect();
+                denominator = -&denominator;
             }
-            Solution { above, below }
+            QuotientVector { numerators, denominator }
         })
     }
 }
@@ -172,7 +178,7 @@ fn ratio(value: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
 /// The inverse of a matrix modulo a prime.
 fn inverse(prime: &PrimeField, matrix: Vec<Vec<Residue>>) -> Option<Vec<Vec<Residue>>> {
     let size = matrix.len();
-    let mut rows = Rows::new(prime, 2 * size);
+    let mut rows = ResidueRows::new(prime, 2 * size);
     for (index, mut row) in matrix.into_iter().enumerate() {
         row.resize(2 * size, Residue::ZERO);
         row[size + index] = prime.one();
@@ -210,17 +216,17 @@ mod tests {
             matrix.iter_mut().enumerate().for_each(|(index, row)| row[index] += &Integer::from(100_003_i64));
             let right: Vec<Integer> = (0..size).map(|_| entry()).collect();
             let lifting = Lifting::of(prime().unwrap(), &matrix, &work).unwrap().expect("an inverse");
-            let Solution { above, below } = lifting.solve(&right, &work).unwrap();
-            assert!(!below.is_zero() && !below.is_negative());
+            let QuotientVector { numerators, denominator } = lifting.solve(&right, &work).unwrap();
+            assert!(!denominator.is_zero() && !denominator.is_negative());
             for (row, right) in matrix.iter().zip(&right) {
-                let sum = row.iter().zip(&above).fold(Integer::ZERO, |sum, (a, b)| &sum + &(a * b));
-                assert_eq!(sum, right * &below, "{size}");
+                let sum = row.iter().zip(&numerators).fold(Integer::ZERO, |sum, (a, b)| &sum + &(a * b));
+                assert_eq!(sum, right * &denominator, "{size}");
             }
         }
     }
 
     #[test]
-    fn what_has_no_inverse_has_no_lifting() {
+    fn singular_matrices_have_no_lifting() {
         let matrix = [integers(&[1, 2]), integers(&[2, 4])];
         assert!(Lifting::of(prime().unwrap(), &matrix, &Work::new(1000)).unwrap().is_none());
     }

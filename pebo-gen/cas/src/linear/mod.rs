@@ -18,7 +18,7 @@ pub mod residues;
 use super::poly::Work;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Budget, Rational};
-use rational_matrix::Reduced;
+use rational_matrix::ReducedMatrix;
 
 /// The result of elimination: pivot columns and reduced rows.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ impl Echelon {
         columns: usize,
     ) -> Result<(Self, Vec<Vec<Fraction>>), Obstacle> {
         if let Some(numbers) = numbers_of(&rows) {
-            let Reduced { rows, rest } = rational_matrix::reduced(&numbers, columns, field.limit())?;
+            let ReducedMatrix { rows, rest } = rational_matrix::reduced(&numbers, columns, field.limit())?;
             let fractions = |row: Vec<Rational>| row.iter().map(Fraction::constant).collect::<Vec<_>>();
             let rows = rows.into_iter().map(|(column, row)| (column, fractions(row))).collect();
             return Ok((Self { rows, columns }, rest.into_iter().map(fractions).collect()));
@@ -121,7 +121,7 @@ impl Echelon {
 
 /// A basis of the vectors that rows of numbers annihilate; none if that exceeds the budget.
 pub fn null_space_of_numbers(rows: &[Vec<Rational>], columns: usize, budget: &Budget) -> Option<Vec<Vec<Rational>>> {
-    let Reduced { rows, .. } = rational_matrix::reduced(rows, columns, &Work::within(u64::MAX, budget)).ok()?;
+    let ReducedMatrix { rows, .. } = rational_matrix::reduced(rows, columns, &Work::within(u64::MAX, budget)).ok()?;
     let is_pivot = |column: &usize| rows.iter().any(|(pivot, _)| pivot == column);
     let vector = |free: usize| {
         let mut vector = vec![Rational::ZERO; columns];

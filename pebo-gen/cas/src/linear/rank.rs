@@ -18,11 +18,11 @@ const MOST_POINTS: usize = 6;
 /// True if the matrix provably has full column rank at a point of the domain, hence almost everywhere in the point's
 /// cell, on which the entries are analytic.
 pub fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
-    rows.len() >= columns && rank_seen(arena, domain, rows, columns) == columns
+    rows.len() >= columns && proved_rank(arena, domain, rows, columns) == columns
 }
 
 /// The largest rank that the matrix provably has at a point of the domain; almost everywhere it is no smaller.
-pub fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
+pub fn proved_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
     let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
     let mut most = 0;
     for point in domain.points(arena, &entries).take(MOST_POINTS) {

@@ -36,21 +36,21 @@ impl Notation {
     }
 
     /// True if an absolute value reads better as a fraction than as a decimal.
-    pub(crate) fn as_fraction(&self, magnitude: &Rational) -> bool {
+    pub(crate) fn as_fraction(&self, absolute: &Rational) -> bool {
         const LARGEST_DENOMINATOR: i64 = 12;
         let written = self.written.borrow();
-        if written.contains_key(magnitude) {
+        if written.contains_key(absolute) {
             return false;
         }
         // An author of decimals has tenths and no fifths.
-        let in_tenths = || !written.is_empty() && magnitude.denominator().div_exact(&5.into()).is_some();
-        let is_small = magnitude.denominator().to_i64().is_some_and(|d| d <= LARGEST_DENOMINATOR);
-        (is_small && !in_tenths()) || short_decimal(magnitude).is_none()
+        let in_tenths = || !written.is_empty() && absolute.denominator().div_exact(&5.into()).is_some();
+        let is_small = absolute.denominator().to_i64().is_some_and(|d| d <= LARGEST_DENOMINATOR);
+        (is_small && !in_tenths()) || short_decimal(absolute).is_none()
     }
 
     /// The decimal of an absolute value: the author's, or the exact one if it is short.
-    pub(crate) fn decimal(&self, magnitude: &Rational) -> Option<String> {
-        self.written.borrow().get(magnitude).cloned().or_else(|| short_decimal(magnitude))
+    pub(crate) fn decimal(&self, absolute: &Rational) -> Option<String> {
+        self.written.borrow().get(absolute).cloned().or_else(|| short_decimal(absolute))
     }
 }
 
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn decimals_stay_as_the_author_wrote_them() {
+    fn decimals_are_printed_as_the_author_wrote_them() {
         let notation = Notation::default();
         let fractions = [(71, 8), (1, 2), (3, 10), (1, 3), (1, 5)];
         for (n, d) in fractions {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::division::{Outcome, Rest};
+use super::division::{Outcome, RemainderSum};
 use super::layout::{Exponents, Layout};
 use super::multiply::{Factor, Sum, Terms};
 use crate::Integer;
@@ -73,7 +73,7 @@ impl<'a> ExponentBox<'a> {
 
     /// The quotient of a dividend within the box, with degrees up to the given ones; `spend` is
     /// called for every term of it.
-    pub(super) fn quotient<S: Rest, E>(
+    pub(super) fn quotient<S: RemainderSum, E>(
         &self,
         dividend: &Factor<'_, Integer>,
         divisor: &Factor<'_, S::Factor>,

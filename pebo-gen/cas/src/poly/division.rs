@@ -21,7 +21,7 @@ pub(super) enum Outcome<C> {
 }
 
 /// A coefficient of the remainder while it is summed up.
-pub(super) trait Rest: Sum {
+pub(super) trait RemainderSum: Sum {
     /// The sum that begins with a coefficient of the dividend, if it fits.
     fn begin(value: &Integer) -> Option<Self>;
     /// The negative of a coefficient: sums add products.
@@ -30,7 +30,7 @@ pub(super) trait Rest: Sum {
     fn over(&self, divisor: &Self::Factor) -> Result<Self::Factor, Outcome<Self::Factor>>;
 }
 
-impl Rest for i128 {
+impl RemainderSum for i128 {
     fn begin(value: &Integer) -> Option<Self> {
         // Half of the range is for the products.
         value.to_i128().filter(|value| value.unsigned_abs() < 1 << 126)
@@ -51,7 +51,7 @@ impl Rest for i128 {
     }
 }
 
-impl Rest for Integer {
+impl RemainderSum for Integer {
     fn begin(value: &Integer) -> Option<Self> {
         Some(value.clone())
     }
@@ -76,7 +76,7 @@ pub(super) struct Division<'a> {
 }
 
 impl Division<'_> {
-    pub(super) fn run<S: Rest>(
+    pub(super) fn run<S: RemainderSum>(
         &self,
         dividend: &[Integer],
         divisor: &[S::Factor],

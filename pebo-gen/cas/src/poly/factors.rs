@@ -92,17 +92,17 @@ fn quadratic(poly: &Poly, variable: u32) -> [Poly; 3] {
 fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarge> {
     let coefficients = poly.coefficients_in(variable);
     let (Some((_, first)), Some((0, last))) = (coefficients.first(), coefficients.last()) else { return Ok(None) };
-    let image = Image::of(&coefficients);
-    let belows: Vec<(Residue, Poly)> = divisors(last, work)?.into_iter().map(|e| (image.value(&e), e)).collect();
-    for above in divisors(first, work)? {
-        let value = image.value(&above);
-        let above = above.mul(&Poly::variable(variable), work)?;
-        for (other, below) in &belows {
+    let image = FactorImage::of(&coefficients);
+    let lasts: Vec<(Residue, Poly)> = divisors(last, work)?.into_iter().map(|e| (image.value(&e), e)).collect();
+    for leading in divisors(first, work)? {
+        let value = image.value(&leading);
+        let leading = leading.mul(&Poly::variable(variable), work)?;
+        for (other, constant) in &lasts {
             for (opposite, sign) in [(*other, -1), (image.field.neg(*other), 1)] {
                 if !image.may_have_root(value, opposite) {
                     continue;
                 }
-                let candidate = if sign < 0 { &above - below } else { &above + below };
+                let candidate = if sign < 0 { &leading - constant } else { &leading + constant };
                 if poly.div_exact(&candidate, work)?.is_some() {
                     return Ok(Some(candidate));
                 }
@@ -114,13 +114,13 @@ fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarg
 
 /// The image of a polynomial in one variable, the others having values modulo a prime: it excludes most candidates for
 /// a factor.
-struct Image {
+struct FactorImage {
     field: PrimeField,
     /// The powers of the variable, highest first, with their coefficients.
     coefficients: Vec<(u32, Residue)>,
 }
 
-impl Image {
+impl FactorImage {
     fn of(coefficients: &[(u32, Poly)]) -> Self {
         let field = PrimeField::MERSENNE;
         let mut image = Self { field, coefficients: Vec::new() };
@@ -132,11 +132,12 @@ impl Image {
         poly.evaluate_mod(&self.field, |variable| coordinate(&self.field, variable, 1))
     }
 
-    /// True if `below / above` is a root, as it must be if `above v - below` divides the polynomial.
-    fn may_have_root(&self, above: Residue, below: Residue) -> bool {
+    /// True if `constant / leading` is a root, as it must be if `leading v - constant` divides the polynomial.
+    fn may_have_root(&self, leading: Residue, constant: Residue) -> bool {
         let (field, degree) = (&self.field, self.coefficients.first().map_or(0, |(power, _)| *power));
         let sum = self.coefficients.iter().fold(Residue::ZERO, |sum, (power, coefficient)| {
-            let powers = field.mul(field.pow(below, u64::from(*power)), field.pow(above, u64::from(degree - power)));
+            let powers =
+                field.mul(field.pow(constant, u64::from(*power)), field.pow(leading, u64::from(degree - power)));
             field.add(sum, field.mul(*coefficient, powers))
         });
         sum.is_zero()

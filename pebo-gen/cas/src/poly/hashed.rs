@@ -3,7 +3,7 @@
 use std::collections::BinaryHeap;
 
 use super::divide::key_quotient;
-use super::division::{Division, Outcome, Rest};
+use super::division::{Division, Outcome, RemainderSum};
 use super::layout::MAX_WORDS;
 use super::multiply::{Factor, Sum, Terms};
 use super::work::{TooLarge, steps};
@@ -53,7 +53,7 @@ fn monomial_product<const N: usize>(a: &[u64; N], b: &[u64; N]) -> [u64; N] {
 impl Division<'_> {
     /// The quotient, with the remainder in a table. The dividend's terms are there from the start
     /// and in order; only the terms that come in between have to be queued.
-    pub(super) fn in_table<const N: usize, S: Rest>(
+    pub(super) fn in_table<const N: usize, S: RemainderSum>(
         &self,
         dividend: &[Integer],
         divisor: &[S::Factor],

@@ -28,7 +28,7 @@ mod field;
 mod gcd;
 mod hashed;
 mod layout;
-mod linear;
+mod linear_combination;
 mod monomial;
 mod multiply;
 mod packed;
@@ -269,11 +269,11 @@ impl fmt::Display for Poly {
                 (false, 0) => "",
                 (false, _) => " + ",
             };
-            let magnitude = coefficient.abs();
+            let absolute = coefficient.abs();
             f.write_str(sign)?;
             let mut separator = "";
-            if monomial.is_one() || !magnitude.is_one() {
-                write!(f, "{magnitude}")?;
+            if monomial.is_one() || !absolute.is_one() {
+                write!(f, "{absolute}")?;
                 separator = "*";
             }
             for (variable, exponent) in monomial.powers() {

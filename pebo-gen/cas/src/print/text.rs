@@ -4,7 +4,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::arranged::{Factor, Summand, is_root, quotient, summands};
+use super::arrangement::{Factor, Summand, is_root, quotient, summands};
 use crate::Rational;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum};
@@ -102,12 +102,12 @@ impl Arena {
             Factor::Number(value) => self.print_number(&value).text,
             Factor::Power(base, exponent) => power(&known[&base], &exponent.abs()),
         };
-        let (above, below) = quotient(self, product);
-        let above: Vec<String> = above.into_iter().map(factor).collect();
-        let below: Vec<String> = below.into_iter().map(factor).collect();
-        let single = above.len() + below.len() == 1 && below.is_empty();
-        let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
-        match below.as_slice() {
+        let (numerator, denominator) = quotient(self, product);
+        let numerator: Vec<String> = numerator.into_iter().map(factor).collect();
+        let denominator: Vec<String> = denominator.into_iter().map(factor).collect();
+        let single = numerator.len() + denominator.len() == 1 && denominator.is_empty();
+        let mut text = if numerator.is_empty() { "1".to_owned() } else { numerator.join("*") };
+        match denominator.as_slice() {
             [] => {}
             [one] => text = format!("{text}/{one}"),
             several => text = format!("{text}/({})", several.join("*")),

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use super::equation::Equation;
 use super::quadratic::without_roots;
 use super::turned_once;
-use crate::forms::opaque::Frozen;
+use crate::forms::opaque::OpaqueTerms;
 use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Expr, Node, Symbol};
@@ -54,12 +54,12 @@ fn above_the_line(
     unknown: &BTreeSet<Symbol>,
 ) -> Result<Vec<Expr>, Obstacle> {
     // Known terms are opaque: an exponential of a sum that is split overflows where the sum is small.
-    let mut frozen = Frozen::new(arena, unknown);
-    let form = frozen.freeze(&[form])[0];
+    let mut opaque = OpaqueTerms::new(arena, unknown);
+    let form = opaque.replace(&[form])[0];
     let field = Field::over(arena, &domain.facts, &[form])?;
     let above = field.fraction(form)?.numerator().clone();
     let rational = without_roots(&field, above.clone(), unknown)?;
-    [above, rational].iter().map(|poly| Ok(frozen.thaw(field.show(&field.of_polynomial(poly)?)))).collect()
+    [above, rational].iter().map(|poly| Ok(opaque.restore(field.show(&field.of_polynomial(poly)?)))).collect()
 }
 
 #[cfg(test)]
@@ -69,7 +69,7 @@ mod tests {
     use crate::Relation;
 
     #[test]
-    fn what_stands_around_unknowns_is_taken_away() {
+    fn equations_are_cleared_around_unknowns() {
         let arena = Arena::new();
         let [p, s, v, k] = ["p", "s", "v", "k"].map(|name| arena.variable(name));
         let unknown = arena.symbols_of(&[p, s]);

@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::linear::Echelon;
 use super::poly::Monomial;
 use super::{Arena, Expr, Node, Symbol};
-use crate::forms::opaque::Frozen;
+use crate::forms::opaque::OpaqueTerms;
 use crate::forms::tidy::shorter;
 use crate::graph::function::Function;
 use crate::number::interval::Precision;
@@ -249,9 +249,9 @@ fn eliminate(
     open: &BTreeSet<Symbol>,
     reading: Reading,
 ) -> Result<Vec<Equation>, Obstacle> {
-    let mut frozen = Frozen::new(arena, open);
+    let mut opaque = OpaqueTerms::new(arena, open);
     let differences = match reading {
-        Reading::Written => frozen.freeze(differences),
+        Reading::Written => opaque.replace(differences),
         Reading::Normal => differences.to_vec(),
     };
     let field = Field::over(arena, &domain.facts, &differences)?;
@@ -287,8 +287,8 @@ fn eliminate(
         if alone {
             let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
             let formula = arena.multiply(&Rational::ONE, factors);
-            let value = frozen.thaw(field.show(&row[columns.len()]));
-            known.push(Equation { formula: frozen.thaw(formula), value });
+            let value = opaque.restore(field.show(&row[columns.len()]));
+            known.push(Equation { formula: opaque.restore(formula), value });
         }
     }
     Ok(known)
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_stays_as_it_is_written() {
+    fn known_terms_are_opaque() {
         let arena = Arena::new();
         let [_, p, q, r, k] = ["z1", "p", "q", "r", "k"].map(|name| arena.variable(name));
         let mut domain = Domain::default();
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn products_come_apart() {
+    fn products_are_separated() {
         let arena = Arena::new();
         let [p, s] = ["p", "s"].map(|name| arena.variable(name));
         let mut domain = Domain::default();
@@ -425,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_that_stands_alone_is_not_taken_from_a_power() {
+    fn an_unknown_by_itself_is_not_taken_from_a_power() {
         let arena = Arena::new();
         let p = arena.variable("p");
         let mut domain = Domain::default();

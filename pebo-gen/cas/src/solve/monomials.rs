@@ -44,15 +44,15 @@ fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> 
             if !exponent.is_one() || others.is_empty() {
                 continue;
             }
-            let magnitude = arena.multiply(&Rational::ONE, others);
-            let wanted = arena.mul(magnitude, arena.call(Function::Cos, &argument));
+            let amplitude = arena.multiply(&Rational::ONE, others);
+            let wanted = arena.mul(amplitude, arena.call(Function::Cos, &argument));
             let along = products.iter().find(|p| arena.multiply(&Rational::ONE, p.factors.iter().cloned()) == wanted);
-            let (Some(along), Some(positive)) = (along, sign(arena, domain, magnitude)) else { continue };
+            let (Some(along), Some(positive)) = (along, sign(arena, domain, amplitude)) else { continue };
             let turned = |value| if positive { value } else { arena.neg(value) };
             let [across, along] = [*across, along.value].map(turned);
             found.push(Equation { formula: argument[0], value: angle_of(arena, domain, across, along) });
             let length = arena.sqrt(arena.add(arena.mul(across, across), arena.mul(along, along)));
-            found.extend(single(arena, domain, magnitude, turned(length)));
+            found.extend(single(arena, domain, amplitude, turned(length)));
         }
     }
     found

@@ -21,12 +21,12 @@ impl Field<'_> {
     /// The fraction as an expression.
     pub fn show(&self, fraction: &Fraction) -> Expr {
         self.count(fraction);
-        let (above, num) = primitive(&fraction.num);
-        let (below, den) = primitive(&fraction.den);
+        let (numerator, num) = primitive(&fraction.num);
+        let (denominator, den) = primitive(&fraction.den);
         let (num, mut sines) = self.sines(num, 1);
         let (den, below_sines) = self.sines(den, -1);
         sines.extend(below_sines);
-        let coefficient = Rational::new(above, below).unwrap_or(Rational::ZERO);
+        let coefficient = Rational::new(numerator, denominator).unwrap_or(Rational::ZERO);
         let powers =
             |poly: &Poly, exponent| self.powers(poly, exponent).unwrap_or_else(|| self.factors(poly, exponent));
         let mut factors = powers(&num, 1);
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn differences_with_roots_go_below() {
+    fn differences_with_roots_go_into_the_denominator() {
         let arena = Arena::new();
         let [a, x] = ["a", "x"].map(|name| arena.variable(name));
         let root = |number: i64| arena.sqrt(arena.add(x, arena.number(number)));

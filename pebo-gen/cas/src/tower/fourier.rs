@@ -44,9 +44,9 @@ impl Field<'_> {
             monomial.powers().iter().filter(|(v, _)| factors.contains_key(v)).map(|(_, exponent)| *exponent).sum()
         };
         let degrees = |poly: &Poly| poly.terms().map(|(monomial, _)| degree(&monomial)).max().unwrap_or(0);
-        let (above, below) = (degrees(&fraction.num), degrees(&fraction.den));
+        let (numerator, denominator) = (degrees(&fraction.num), degrees(&fraction.den));
         let long = fraction.num.term_count().max(fraction.den.term_count()) > MOST_TERMS;
-        if above.max(below) < 2 || above.max(below) > MOST_FACTORS || long {
+        if numerator.max(denominator) < 2 || numerator.max(denominator) > MOST_FACTORS || long {
             return None;
         }
         let series = |poly: &Poly| self.series(poly, &angles, &factors);
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_is_equal() {
+    fn printed_fractions_are_equal() {
         let arena = Arena::new();
         let symbols = ["a", "b", "x"].map(|name| arena.variable(name));
         let wave = |function, n: i64| {

@@ -38,7 +38,7 @@ mod obstacle;
 pub mod residue;
 mod sign;
 mod sines;
-pub mod straight;
+pub mod straight_line;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,7 +57,7 @@ pub use sign::Signs;
 
 use coprime::CoprimeBase;
 use kernel::Kernels;
-use kernel::absolute::absolute_angles;
+use kernel::absolute_angles::absolute_angles;
 use kernel::argument::{Atoms, Units};
 use kernel::inverse::{InverseAngle, domain_of};
 use kernel::radical::ProductRoot;
@@ -148,7 +148,7 @@ impl<'a> Field<'a> {
     ) -> Result<Self, Obstacle> {
         let mut field = Self {
             arena,
-            work: Work::within(arena.budget().of_one_question(), arena.budget()),
+            work: Work::within(arena.budget().of_one_problem(), arena.budget()),
             domain: domain_of(facts),
             steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
             roots: roots.to_vec(),

@@ -9,7 +9,7 @@ use crate::{Rational, Relation};
 use super::kind::Function;
 
 /// Comparisons with zero.
-pub type Asks = Vec<(Expr, Relation)>;
+pub type Conditions = Vec<(Expr, Relation)>;
 
 /// `a^2`
 pub(super) fn square(arena: &Arena, a: Expr) -> Expr {
@@ -64,22 +64,22 @@ pub(super) fn radius(arena: &Arena, a: &[Expr]) -> Expr {
 }
 
 /// No condition, for a function that has a value everywhere.
-pub(super) fn nothing(_: &Arena, _: &[Expr]) -> Asks {
+pub(super) fn nothing(_: &Arena, _: &[Expr]) -> Conditions {
     Vec::new()
 }
 
 /// For an inverse sine or cosine: an argument within [-1, 1].
-pub(super) fn within_one(arena: &Arena, a: &[Expr]) -> Asks {
+pub(super) fn within_one(arena: &Arena, a: &[Expr]) -> Conditions {
     vec![(beyond(arena, a[0]), Relation::NonNegative)]
 }
 
 /// For their derivatives, and for an inverse hyperbolic tangent: an argument strictly within.
-pub(super) fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Asks {
+pub(super) fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Conditions {
     vec![(beyond(arena, a[0]), Relation::Positive)]
 }
 
 /// For the larger and the smaller of two: that they differ.
-pub(super) fn apart(arena: &Arena, a: &[Expr]) -> Asks {
+pub(super) fn apart(arena: &Arena, a: &[Expr]) -> Conditions {
     vec![(arena.sub(a[0], a[1]), Relation::NonZero)]
 }
 

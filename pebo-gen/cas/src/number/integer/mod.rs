@@ -219,8 +219,8 @@ impl Integer {
             let negative_one = self.to_i64() == Some(-1);
             return negative_one.then(|| self.clone());
         }
-        let magnitude: UBig = self.big().into_owned().unsigned_abs();
-        let root = Self::from_big(IBig::from(magnitude.nth_root(degree as usize)));
+        let absolute: UBig = self.big().into_owned().unsigned_abs();
+        let root = Self::from_big(IBig::from(absolute.nth_root(degree as usize)));
         let root = if self.is_negative() { -&root } else { root };
         (root.pow(degree) == *self).then_some(root)
     }
@@ -261,8 +261,8 @@ impl Integer {
             Small(value) => (value.unsigned_abs(), 0),
             Big(value) if bits > 64 => {
                 let shift = bits - 64;
-                let magnitude = value.as_ref().unsigned_abs();
-                let (low, high) = magnitude.split_bits(usize::try_from(shift).unwrap_or(usize::MAX));
+                let absolute = value.as_ref().unsigned_abs();
+                let (low, high) = absolute.split_bits(usize::try_from(shift).unwrap_or(usize::MAX));
                 let top = u64::try_from(high).unwrap_or(u64::MAX);
                 (top | u64::from(!low.is_zero()), shift)
             }

@@ -107,7 +107,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_packed_comes_back(
+        fn packing_is_inverted(
             entries in prop::collection::vec(pair(), 1..12),
             more in 1_usize..9,
         ) {

@@ -191,14 +191,15 @@ impl Neg for &Dyadic {
 impl Ord for Dyadic {
     fn cmp(&self, other: &Self) -> Ordering {
         let (sign, other_sign) = (self.mantissa.signum(), other.mantissa.signum());
-        let by_magnitude = || {
+        let by_absolute_value = || {
             self.top().cmp(&other.top()).then_with(|| {
                 let exponent = self.exponent.min(other.exponent);
                 let aligned = |x: &Self| scaled(&x.mantissa, x.exponent - exponent).unsigned_abs();
                 aligned(self).cmp(&aligned(other))
             })
         };
-        sign.cmp(&other_sign).then_with(|| if self.is_negative() { by_magnitude().reverse() } else { by_magnitude() })
+        sign.cmp(&other_sign)
+            .then_with(|| if self.is_negative() { by_absolute_value().reverse() } else { by_absolute_value() })
     }
 }
 

@@ -47,8 +47,8 @@ impl Rational {
         if digits.starts_with(['+', '-']) {
             return Err(InvalidDecimal::Malformed);
         }
-        let magnitude = Integer::from_digits(&digits).ok_or(InvalidDecimal::Malformed)?;
-        let value = if mantissa.starts_with('-') { -magnitude } else { magnitude };
+        let absolute = Integer::from_digits(&digits).ok_or(InvalidDecimal::Malformed)?;
+        let value = if mantissa.starts_with('-') { -absolute } else { absolute };
         // Both are at most MAX_DECIMALS.
         let shift = exponent - i32::try_from(fraction.len()).unwrap_or(i32::MAX);
         let scale = Integer::from(10).pow(shift.unsigned_abs());
@@ -66,8 +66,8 @@ impl Rational {
         let fraction = bits & ((1 << 52) - 1);
         // Subnormal numbers have no hidden bit and the exponent of the smallest normal ones.
         let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
-        let magnitude = Integer::from(mantissa);
-        let signed = if value < 0.0 { -magnitude } else { magnitude };
+        let absolute = Integer::from(mantissa);
+        let signed = if value < 0.0 { -absolute } else { absolute };
         let biased = biased.max(1);
         if biased >= 1075 {
             Self::new(signed.shl(biased - 1075), Integer::ONE)
@@ -87,8 +87,8 @@ impl Rational {
             return *n as f64 / d.get() as f64;
         }
         let (n, d) = (self.numerator().abs(), self.denominator());
-        let magnitude = round_quotient(&n, &d);
-        if self.is_negative() { -magnitude } else { magnitude }
+        let absolute = round_quotient(&n, &d);
+        if self.is_negative() { -absolute } else { absolute }
     }
 }
 

@@ -170,13 +170,13 @@ impl Rational {
     /// bits.
     pub fn pow(&self, exponent: i32) -> Option<Self> {
         let base = if exponent < 0 { self.recip()? } else { self.clone() };
-        let magnitude = exponent.unsigned_abs();
+        let absolute = exponent.unsigned_abs();
         let (n, d) = (base.numerator(), base.denominator());
         let unit = |part: &Integer| part.bits() < 2;
-        if !(unit(&n) && unit(&d)) && base.bits().saturating_mul(u64::from(magnitude)) > MAX_POWER_BITS {
+        if !(unit(&n) && unit(&d)) && base.bits().saturating_mul(u64::from(absolute)) > MAX_POWER_BITS {
             return None;
         }
-        Some(Self::from_lowest(n.pow(magnitude), d.pow(magnitude)))
+        Some(Self::from_lowest(n.pow(absolute), d.pow(absolute)))
     }
 
     /// The root of the given degree, if it is rational: the non-negative one of an even degree.

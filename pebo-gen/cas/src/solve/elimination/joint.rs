@@ -17,7 +17,7 @@ use super::values::Values;
 const MOST_COLUMNS_EACH: usize = 4;
 
 /// An equation: coefficients of unknowns, and the value of their sum.
-struct Row {
+struct LinearEquation {
     coefficients: BTreeMap<u32, Poly>,
     right: Poly,
 }
@@ -27,7 +27,7 @@ struct System<'a> {
     field: &'a Field<'a>,
     /// The kernels that are unknowns, with their symbols.
     unknowns: Vec<(u32, Symbol)>,
-    rows: Vec<Row>,
+    rows: Vec<LinearEquation>,
 }
 
 /// The values that linear equations combined determine of the symbols, whose kernels are given; coefficients are free
@@ -56,9 +56,9 @@ pub(super) fn solved(
 
 impl System<'_> {
     /// The row of an equation, if it is linear in the unknowns and holds any.
-    fn row(&self, equation: &Poly, kernels: &BTreeSet<u32>, barred: &BTreeSet<u32>) -> Option<Row> {
+    fn row(&self, equation: &Poly, kernels: &BTreeSet<u32>, barred: &BTreeSet<u32>) -> Option<LinearEquation> {
         let kernels: Vec<u32> = kernels.iter().copied().collect();
-        let mut row = Row { coefficients: BTreeMap::new(), right: Poly::zero() };
+        let mut row = LinearEquation { coefficients: BTreeMap::new(), right: Poly::zero() };
         for (monomial, coefficient) in equation.collect(&kernels) {
             match monomial.powers() {
                 [] => row.right = -&coefficient,
@@ -88,7 +88,7 @@ impl System<'_> {
     fn one_by_one(&self, arena: &Arena, reluctant: &BTreeSet<u32>) -> Result<Values, Obstacle> {
         let field = self.field;
         let mut known: BTreeMap<u32, Expr> = BTreeMap::new();
-        let mut open: Vec<&Row> = self.rows.iter().collect();
+        let mut open: Vec<&LinearEquation> = self.rows.iter().collect();
         loop {
             let candidates = open.iter().enumerate().filter_map(|(index, row)| {
                 let mut unknowns = row.coefficients.iter().filter(|(kernel, _)| !known.contains_key(kernel));
@@ -115,7 +115,7 @@ impl System<'_> {
     fn eliminated(&self, arena: &Arena, monomials: &BTreeSet<Monomial>) -> Result<Values, Obstacle> {
         let width = self.unknowns.len();
         let number = |n: Option<&Integer>| Fraction::constant(&Rational::from(n.cloned().unwrap_or_default()));
-        let row = |row: &Row| {
+        let row = |row: &LinearEquation| {
             let left = self.unknowns.iter().map(|(kernel, _)| number(row.coefficients.get(kernel).and_then(constant)));
             left.chain(monomials.iter().map(|monomial| number(row.right.coefficient(monomial)))).collect()
         };
@@ -141,7 +141,7 @@ impl System<'_> {
     /// The monomials of all right sides, if every coefficient is a number and they are not too many: with a column for
     /// each, elimination remains among numbers.
     fn rights(&self) -> Option<BTreeSet<Monomial>> {
-        let numbers = |row: &Row| row.coefficients.values().all(Poly::is_constant);
+        let numbers = |row: &LinearEquation| row.coefficients.values().all(Poly::is_constant);
         if !self.rows.iter().all(numbers) {
             return None;
         }
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_stay_numbers_beside_any_right_side() {
+    fn numbers_remain_numbers_beside_any_right_side() {
         let plane = of(|arena, [x, y, z], [a, b]| {
             vec![arena.sum([x, y, arena.neg(a)]), arena.sum([x, arena.neg(y), arena.neg(b)]), arena.sub(z, x)]
         });
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_free_or_contradicts_is_left() {
+    fn free_unknowns_and_contradictions_remain() {
         // x and y are not identifiable, z is; and an equation of the second degree says nothing here.
         let open = of(|arena, [x, y, z], [a, _]| {
             vec![arena.sum([x, y, z]), arena.sum([x, y, arena.neg(z), a]), arena.sub(arena.mul(x, x), y)]

@@ -40,7 +40,7 @@ struct Factor {
 }
 
 /// A symbol that makes a factor of an equation vanish.
-struct Step {
+struct EliminationStep {
     cost: Cost,
     equation: usize,
     symbol: Symbol,
@@ -54,11 +54,11 @@ struct Cost {
     /// The factor's degree in the symbol: the number of its values.
     degree: u32,
     /// True if the symbol's factor holds states, which may vanish.
-    bends: bool,
+    divides_by_states: bool,
     /// True if the symbol is an input.
     input: bool,
     /// True if the factor holds inputs.
-    driven: bool,
+    holds_inputs: bool,
     /// Terms of factor and rest.
     terms: usize,
 }
@@ -69,13 +69,13 @@ const MOST_VISITS: usize = 100;
 
 /// The greatest number of subexpressions of all equations combined: elimination makes them longer at each step, and
 /// nobody reads a longer result.
-const MOST_PARTS: usize = 600;
+const MOST_NODES: usize = 600;
 
 /// The progress of the search from one start.
 struct Progress {
     visits: Cell<usize>,
     /// True while linear equations are solved combined, until a consequence of that fails.
-    together: Cell<bool>,
+    combined: Cell<bool>,
 }
 
 /// The kernels of undetermined symbols.
@@ -99,7 +99,7 @@ impl Elimination<'_> {
         let mut stuck = None;
         let mut obstacle = None;
         for start in starts {
-            let progress = Progress { visits: Cell::new(0), together: Cell::new(true) };
+            let progress = Progress { visits: Cell::new(0), combined: Cell::new(true) };
             match self.search(equations, start, accept, &progress, &mut stuck) {
                 Ok(Some(found)) => return Ok(Ok(found)),
                 Ok(None) => {}
@@ -127,7 +127,7 @@ impl Elimination<'_> {
         }
         let arena = self.arena;
         let equations = arena.substitute_all(equations, values);
-        if arena.postorder(&equations).len() > MOST_PARTS {
+        if arena.postorder(&equations).len() > MOST_NODES {
             return Err(Obstacle::TooLarge);
         }
         let field = Field::over(arena, &self.domain.facts, &equations)?;
@@ -141,9 +141,9 @@ impl Elimination<'_> {
         let Some((first, _)) = open.first() else { return Ok(accept(values)) };
         let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
         let unknown = self.unknown(&field, values);
-        if progress.together.get() {
+        if progress.combined.get() {
             // Symbols without a combined solution may be found one at a time.
-            let found = self.states_together(&field, &open, &unknown).unwrap_or_default();
+            let found = self.combined_states(&field, &open, &unknown).unwrap_or_default();
             // No equation is left if each gave a state: the check decides about them.
             if found.len() > 1
                 && found.len() == open.len()
@@ -168,7 +168,7 @@ impl Elimination<'_> {
             }
             factors.extend(polys.into_iter().map(|poly| Factor { equation, poly }));
         }
-        let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.together.get())?;
+        let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.combined.get())?;
         for found in alternatives {
             // If another equation has no value, or is not understood, there may be a better alternative.
             match self.advance(&formulas, values, &found, accept, (progress, &mut *stuck)) {
@@ -193,7 +193,7 @@ impl Elimination<'_> {
         let (visits, before) = (progress.visits.get(), *stuck);
         let result = self.search(formulas, &extended(self.arena, values, found), accept, progress, stuck);
         if found.len() > 1 && !matches!(result, Ok(Some(_))) {
-            progress.together.set(false);
+            progress.combined.set(false);
             progress.visits.set(visits);
             *stuck = before;
             return Ok(None);
@@ -202,7 +202,7 @@ impl Elimination<'_> {
     }
 
     /// The states that linear equations combined determine, with inputs in their coefficients.
-    fn states_together(
+    fn combined_states(
         &self,
         field: &Field<'_>,
         open: &[(Expr, Fraction)],
@@ -231,7 +231,7 @@ impl Elimination<'_> {
         open: &[(Expr, Fraction)],
         factors: &[Factor],
         unknown: &Unknown,
-        together: bool,
+        combined: bool,
     ) -> Result<Vec<Values>, Obstacle> {
         let mut steps = Vec::new();
         for factor in factors {
@@ -241,7 +241,11 @@ impl Elimination<'_> {
         let chosen = steps.first().map(|step| step.equation);
         let mut found = Vec::new();
         let mut several = Values::new();
-        if together && steps.first().is_some_and(|step| step.cost.input && step.cost.degree == 1 && !step.cost.bends) {
+        if combined
+            && steps
+                .first()
+                .is_some_and(|step| step.cost.input && step.cost.degree == 1 && !step.cost.divides_by_states)
+        {
             let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
             let solved =
                 joint::solved(self.arena, field, equations, &unknown.of_inputs, [&unknown.of_states, &BTreeSet::new()]);
@@ -251,8 +255,8 @@ impl Elimination<'_> {
             found.extend(self.values(field, step)?.into_iter().map(|value| (step.symbol, value)));
         }
         if chosen.is_none() {
-            let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
-            found.extend(self.inverted(&together, &unknown.symbols)?);
+            let combined: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+            found.extend(self.inverted(&combined, &unknown.symbols)?);
         }
         for factor in factors.iter().filter(|factor| chosen.is_none_or(|chosen| factor.equation == chosen)) {
             let formula = field.show(&field.of_polynomial(&factor.poly)?);
@@ -272,7 +276,7 @@ impl Elimination<'_> {
         field: &Field<'_>,
         factor: &Factor,
         unknown: &Unknown,
-        steps: &mut Vec<Step>,
+        steps: &mut Vec<EliminationStep>,
     ) -> Result<(), Obstacle> {
         let arena = self.arena;
         for (symbol, kernels) in &unknown.of_each {
@@ -295,23 +299,23 @@ impl Elimination<'_> {
             let holds = |kernels: &BTreeSet<u32>| slope.variables().any(|kernel| kernels.contains(&kernel));
             let cost = Cost {
                 degree,
-                bends: holds(&unknown.of_states),
+                divides_by_states: holds(&unknown.of_states),
                 input: self.inputs.contains(symbol),
-                driven: holds(&unknown.of_inputs),
+                holds_inputs: holds(&unknown.of_inputs),
                 terms: coefficients.iter().map(|c| c.numerator().term_count()).sum(),
             };
-            steps.push(Step { cost, equation: factor.equation, symbol: *symbol, coefficients });
+            steps.push(EliminationStep { cost, equation: factor.equation, symbol: *symbol, coefficients });
         }
         Ok(())
     }
 
     /// The roots of a step's polynomial.
-    fn values(&self, field: &Field<'_>, step: &Step) -> Result<Vec<Expr>, Obstacle> {
+    fn values(&self, field: &Field<'_>, step: &EliminationStep) -> Result<Vec<Expr>, Obstacle> {
         let arena = self.arena;
-        let [rest, slope, bend @ ..] = step.coefficients.as_slice() else { return Ok(Vec::new()) };
-        let [bend] = bend else { return Ok(vec![field.show(&field.div(rest, slope)?.opposite())]) };
-        let middle = field.div(slope, &field.scale(bend, &Rational::from(-2))?)?;
-        let apart = field.sub(&field.mul(&middle, &middle)?, &field.div(rest, bend)?)?;
+        let [constant, slope, curvature @ ..] = step.coefficients.as_slice() else { return Ok(Vec::new()) };
+        let [curvature] = curvature else { return Ok(vec![field.show(&field.div(constant, slope)?.opposite())]) };
+        let middle = field.div(slope, &field.scale(curvature, &Rational::from(-2))?)?;
+        let apart = field.sub(&field.mul(&middle, &middle)?, &field.div(constant, curvature)?)?;
         let (middle, apart) = (field.show(&middle), arena.sqrt(field.show(&apart)));
         Ok(vec![arena.add(middle, apart), arena.sub(middle, apart)])
     }

@@ -27,7 +27,7 @@ pub(in crate::tower) struct CoprimeBase {
 }
 
 /// A polynomial over a coprime base.
-struct Split {
+struct Splitting {
     /// Elements of the base, whose product it is.
     parts: Vec<Poly>,
     /// True if an element had to be split: kernels made of it before do not go with its parts.
@@ -36,7 +36,7 @@ struct Split {
 
 impl CoprimeBase {
     /// Writes a square-free polynomial over the base, which grows by its new factors.
-    fn split(&mut self, poly: Poly, work: &Work) -> Result<Split, TooLarge> {
+    fn split(&mut self, poly: Poly, work: &Work) -> Result<Splitting, TooLarge> {
         let (mut rest, mut parts, mut finer) = (poly, Vec::new(), false);
         let mut index = 0;
         while let Some(element) = self.entered.get(index).filter(|_| !rest.is_constant()).cloned() {
@@ -58,7 +58,7 @@ impl CoprimeBase {
             self.entered.push(rest.clone());
             parts.push(rest);
         }
-        Ok(Split { parts, finer })
+        Ok(Splitting { parts, finer })
     }
 
     /// Enters an element of an earlier round.
@@ -135,7 +135,7 @@ impl Field<'_> {
     /// A square-free polynomial without monomial factors over the coprime base.
     fn over_base(&self, poly: Poly) -> Result<Vec<Poly>, Obstacle> {
         self.enter_pending()?;
-        let Split { parts, finer } = self.base.borrow_mut().split(poly, self.limit())?;
+        let Splitting { parts, finer } = self.base.borrow_mut().split(poly, self.limit())?;
         if finer {
             self.round.finer.set(true);
         }

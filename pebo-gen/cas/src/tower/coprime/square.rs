@@ -57,13 +57,13 @@ impl Field<'_> {
         let half = parts.iter().map(|(m, _)| degree(m)).max().unwrap_or(0).div_ceil(2);
         let t = Poly::variable(sin);
         let square = t.mul(&t, self.limit())?;
-        let (below, above) = (&Poly::one() + &square, &Poly::one() - &square);
+        let (denominator, numerator) = (&Poly::one() + &square, &Poly::one() - &square);
         let mut total = Poly::zero();
         for (monomial, coefficient) in parts {
             let mut term = coefficient;
             term = term.mul(&t.scale(&Integer::from(2)).pow(monomial.exponent(sin), self.limit())?, self.limit())?;
-            term = term.mul(&above.pow(monomial.exponent(cos), self.limit())?, self.limit())?;
-            term = term.mul(&below.pow(2 * half - degree(&monomial), self.limit())?, self.limit())?;
+            term = term.mul(&numerator.pow(monomial.exponent(cos), self.limit())?, self.limit())?;
+            term = term.mul(&denominator.pow(2 * half - degree(&monomial), self.limit())?, self.limit())?;
             total = &total + &term;
         }
         Ok((total, half))

@@ -12,12 +12,12 @@ use crate::tower::{Field, Obstacle};
 impl Field<'_> {
     /// The absolute value of a fraction.
     pub(in crate::tower) fn absolute(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
-        let above = self.magnitude(argument.numerator())?;
-        self.div(&above, &self.magnitude(argument.denominator())?)
+        let numerator = self.absolute_polynomial(argument.numerator())?;
+        self.div(&numerator, &self.absolute_polynomial(argument.denominator())?)
     }
 
     /// `|poly|`: by its sign if that is known, else part by part.
-    fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
+    fn absolute_polynomial(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
         for signed in [poly.clone(), -poly] {
             if self.signs().of_polynomial(&signed)?.is_some_and(Sign::is_positive_or_zero) {
                 return Ok(Fraction::polynomial(signed));

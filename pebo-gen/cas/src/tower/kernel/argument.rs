@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn units_become_as_fine_as_their_multiples_ask() {
+    fn units_become_as_fine_as_their_multiples_need() {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut units = Units::default();

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_of_a_multiple_of_pi_has_its_value() {
+    fn printed_multiples_of_pi_have_their_value() {
         let arena = Arena::new();
         for (n, d) in [(1, 7), (2, 5), (3, 8), (5, 9)] {
             let angle = arena.scale(arena.pi(), &Rational::new(n, d).unwrap());

@@ -11,7 +11,7 @@ use crate::tower::sign::Sign;
 use crate::tower::{Field, Obstacle};
 
 /// The factors of a fraction without its elements of known sign.
-pub(in crate::tower) struct Unsigned {
+pub(in crate::tower) struct UnsignedFactors {
     /// True if the product must be negated.
     pub negative: bool,
     /// Parts of unknown sign, with their exponents.
@@ -25,8 +25,8 @@ impl Field<'_> {
         &self,
         fraction: &Fraction,
         each: &mut dyn FnMut(&Poly, i64) -> Result<(), Obstacle>,
-    ) -> Result<Unsigned, Obstacle> {
-        let mut left = Unsigned { negative: false, parts: Vec::new() };
+    ) -> Result<UnsignedFactors, Obstacle> {
+        let mut left = UnsignedFactors { negative: false, parts: Vec::new() };
         for (poly, direction) in [(&fraction.num, 1), (&fraction.den, -1)] {
             let mut primes = |number: &Integer, direction: i64| -> Result<(), Obstacle> {
                 let mut powers = prime_powers(number).into_iter();

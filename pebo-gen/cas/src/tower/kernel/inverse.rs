@@ -221,7 +221,7 @@ mod tests {
     use crate::Arena;
 
     #[test]
-    fn half_an_angle_is_told_within_a_half_turn_alone() {
+    fn half_an_angle_is_determined_only_within_a_half_turn() {
         let arena = Arena::new();
         let q = arena.variable("q");
         let [sin, cos] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));

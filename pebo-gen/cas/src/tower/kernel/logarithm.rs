@@ -6,9 +6,9 @@
 use crate::graph::expr::Node;
 use crate::graph::function::Function;
 use crate::poly::Poly;
-use crate::{Rational, Relation as Compared};
+use crate::{Rational, Relation as Comparison};
 
-use super::elements::Unsigned;
+use super::elements::UnsignedFactors;
 use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
@@ -22,7 +22,7 @@ impl Field<'_> {
             self.add(total, &self.scale(&self.log_of_part(part)?, &Rational::from(times))?)
         };
         let mut total = Fraction::zero();
-        let Unsigned { negative, parts: unknown } = self.elements_of(argument, &mut |part, times| {
+        let UnsignedFactors { negative, parts: unknown } = self.elements_of(argument, &mut |part, times| {
             total = with(&total, part, times)?;
             Ok(())
         })?;
@@ -34,7 +34,7 @@ impl Field<'_> {
         for (index, (part, times)) in unknown.iter().enumerate() {
             let size = if odd == [index] {
                 let size = if negative { -part } else { part.clone() };
-                self.signs().learn_from_existence(&size, Compared::Positive)?;
+                self.signs().learn_from_existence(&size, Comparison::Positive)?;
                 size
             } else {
                 self.size(part)?.num
@@ -78,7 +78,7 @@ mod tests {
 
     /// If x^2*y has a logarithm, y is positive, and nothing is known of x.
     #[test]
-    fn a_single_odd_part_is_positive() {
+    fn a_single_odd_factor_is_positive() {
         let arena = Arena::new();
         let [x, y, z] = ["x", "y", "z"].map(|name| arena.variable(name));
         let square = arena.mul(x, x);

@@ -2,7 +2,7 @@
 
 mod absolute_value;
 
-pub(super) mod absolute;
+pub(super) mod absolute_angles;
 pub(super) mod argument;
 mod cyclotomic;
 mod elements;

@@ -12,10 +12,10 @@ use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
-use crate::{Integer, Rational, Relation as Compared};
+use crate::{Integer, Rational, Relation as Comparison};
 
 use super::Relation;
-use super::elements::Unsigned;
+use super::elements::UnsignedFactors;
 use crate::tower::fraction::Fraction;
 use crate::tower::sign::Sign;
 use crate::tower::{Family, Field, Obstacle};
@@ -36,7 +36,7 @@ impl Field<'_> {
             return if exponent.is_negative() { Err(Obstacle::DivisionByZero) } else { Ok(Fraction::zero()) };
         }
         let mut total = Fraction::one();
-        let Unsigned { negative, parts: unknown } = self.elements_of(base, &mut |part, times| {
+        let UnsignedFactors { negative, parts: unknown } = self.elements_of(base, &mut |part, times| {
             total = self.mul(&total, &self.power_of(part, &(&Rational::from(times) * exponent))?)?;
             Ok(())
         })?;
@@ -80,7 +80,7 @@ impl Field<'_> {
         if let [(part, times)] = odd.as_slice() {
             // The part itself has the sign that the root needs.
             let size = if negative { -part } else { part.clone() };
-            self.signs().learn_from_existence(&size, Compared::NonNegative)?;
+            self.signs().learn_from_existence(&size, Comparison::NonNegative)?;
             let power = self.power_of(&size, &(&Rational::from(*times) * exponent))?;
             return self.mul(&total, &power);
         }
@@ -99,7 +99,7 @@ impl Field<'_> {
         for (part, _) in &powers {
             self.signs().leave_open(part);
         }
-        self.signs().learn_from_existence(&value, Compared::NonNegative)?;
+        self.signs().learn_from_existence(&value, Comparison::NonNegative)?;
         if let Some(root) = self.over_earlier_roots(negative, &powers, degree)? {
             return Ok(root);
         }
@@ -306,7 +306,7 @@ mod tests {
 
     /// Not over two earlier ones that leave a part with an odd power.
     #[test]
-    fn roots_of_products_are_told_apart_by_their_parts() {
+    fn roots_of_products_are_distinguished_by_their_parts() {
         let arena = Arena::new();
         let [w, x, y, z] = ["w", "x", "y", "z"].map(|name| arena.variable(name));
         let products = [arena.mul(x, y), arena.mul(y, z), arena.mul(x, z), arena.mul(x, w)];
@@ -324,7 +324,7 @@ mod tests {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut facts = Facts::new();
-        facts.assume(y, Compared::Positive);
+        facts.assume(y, Comparison::Positive);
         let exp = arena.call(Function::Exp, &[x]);
         let next = arena.add(y, arena.one());
         let root = arena.sqrt(next);
@@ -341,7 +341,7 @@ mod tests {
 
     /// The sign of x is not learned.
     #[test]
-    fn an_even_power_has_the_root_of_its_magnitude() {
+    fn an_even_power_has_the_root_of_its_absolute_value() {
         let arena = Arena::new();
         let x = arena.variable("x");
         for (power, degree, expected) in

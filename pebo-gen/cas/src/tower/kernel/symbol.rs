@@ -26,8 +26,8 @@ impl Field<'_> {
         if value.is_zero() {
             return Ok(middle);
         }
-        let below = self.show_polynomial(&radicand.den);
-        let kernel = self.arena.mul(below, self.arena.sub(expr, step.middle));
+        let denominator = self.show_polynomial(&radicand.den);
+        let kernel = self.arena.mul(denominator, self.arena.sub(expr, step.middle));
         let relation = Relation { degree: root.degree, value };
         let offset = self.fraction_of(&Poly::variable(self.enter(kernel, Some(relation), false)), &radicand.den)?;
         self.add(&middle, &offset)

@@ -44,9 +44,9 @@ impl Signs<'_, '_> {
             }
             let Some(upward) = self.of_polynomial(&a)? else { continue };
             let four = Integer::from(4);
-            let below = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
-            // 4 a poly = (2 a v^k + b)^2 + below; where a is zero, b is not unless below is zero.
-            let least = match self.of_polynomial(&below)? {
+            let minus_discriminant = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
+            // 4 a poly = (2 a v^k + b)^2 + minus_discriminant; a = 0 implies b != 0 or minus_discriminant = 0.
+            let least = match self.of_polynomial(&minus_discriminant)? {
                 Some(Sign::Positive) => Sign::Positive,
                 Some(Sign::NonNegative | Sign::Zero)
                     if matches!(upward, Sign::Positive | Sign::Negative)

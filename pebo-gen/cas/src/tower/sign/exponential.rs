@@ -18,11 +18,11 @@ impl Signs<'_, '_> {
         if first.1.is_negative() == second.1.is_negative() {
             return Ok(None);
         }
-        let (above, below) = if first.1.is_negative() { (second, first) } else { (first, second) };
-        let (Some(a), Some(b)) = (self.field.exponent_of(&above.0)?, self.field.exponent_of(&below.0)?) else {
+        let (positive, negative) = if first.1.is_negative() { (second, first) } else { (first, second) };
+        let (Some(a), Some(b)) = (self.field.exponent_of(&positive.0)?, self.field.exponent_of(&negative.0)?) else {
             return Ok(None);
         };
-        let size = above.1.clone().cmp(&below.1.abs());
+        let size = positive.1.clone().cmp(&negative.1.abs());
         let ahead = self.field.sub(&a, &b)?;
         Ok(match (self.of(&ahead)?, size) {
             (Some(Sign::Zero), std::cmp::Ordering::Equal) => Some(Sign::Zero),

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::Relation as Compared;
+use crate::Relation as Comparison;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::poly::Poly;
@@ -26,7 +26,7 @@ impl Signs<'_, '_> {
             return Ok(());
         }
         let occurring: BTreeSet<Expr> = self.field.arena.postorder(&self.field.roots).into_iter().collect();
-        for (expr, compared) in self.field.domain.facts.iter() {
+        for (expr, comparison) in self.field.domain.facts.iter() {
             let foreign = |e: &Expr| match self.field.arena.node(*e) {
                 Node::Call(..) => !occurring.contains(e),
                 Node::Product(product) => {
@@ -37,11 +37,11 @@ impl Signs<'_, '_> {
             if self.field.arena.postorder(&[expr]).iter().any(foreign) {
                 continue;
             }
-            self.learn_sign(expr, compared)?;
+            self.learn_sign(expr, comparison)?;
         }
         let learned = self.memory.learned.borrow().clone();
-        for (expr, compared) in learned {
-            self.learn_sign(expr, compared)?;
+        for (expr, comparison) in learned {
+            self.learn_sign(expr, comparison)?;
         }
         Ok(())
     }
@@ -57,44 +57,44 @@ impl Signs<'_, '_> {
         self.memory.round.undecided.borrow_mut().insert(part.clone());
     }
 
-    fn learn_sign(&self, expr: Expr, compared: Compared) -> Result<(), Obstacle> {
+    fn learn_sign(&self, expr: Expr, comparison: Comparison) -> Result<(), Obstacle> {
         let fraction = self.field.fraction(expr)?;
         if fraction.den.is_constant() {
-            self.memory.round.facts.borrow_mut().push((fraction.num, compared));
+            self.memory.round.facts.borrow_mut().push((fraction.num, comparison));
             return Ok(());
         }
         // n/d > 0 has the sign of n*d. But a denominator may have been cleared of roots by a factor that vanishes where
         // the fact holds: then n*d is zero there.
         let cleared = self.field.has_relations(&fraction);
-        let compared = match compared {
-            Compared::Positive | Compared::NonNegative if cleared => Compared::NonNegative,
-            Compared::NonZero if cleared => return Ok(()),
+        let comparison = match comparison {
+            Comparison::Positive | Comparison::NonNegative if cleared => Comparison::NonNegative,
+            Comparison::NonZero if cleared => return Ok(()),
             exact => exact,
         };
         let product = fraction.num.mul(&fraction.den, self.field.limit())?;
-        self.memory.round.facts.borrow_mut().push((product, compared));
+        self.memory.round.facts.borrow_mut().push((product, comparison));
         Ok(())
     }
 
     /// Learns a sign that must hold for the expressions to have values. If a kernel was already made with the sign
     /// unknown, the field starts again.
-    pub(in crate::tower) fn learn_from_existence(&self, poly: &Poly, compared: Compared) -> Result<(), Obstacle> {
+    pub(in crate::tower) fn learn_from_existence(&self, poly: &Poly, comparison: Comparison) -> Result<(), Obstacle> {
         let known = self.of_polynomial(poly)?;
-        let enough = match compared {
-            Compared::Positive => known == Some(Sign::Positive),
+        let enough = match comparison {
+            Comparison::Positive => known == Some(Sign::Positive),
             _ => known.is_some_and(Sign::is_positive_or_zero),
         };
         if enough || known == Some(Sign::Negative) {
             return Ok(());
         }
-        let entry = (self.field.show_polynomial(poly), compared);
+        let entry = (self.field.show_polynomial(poly), comparison);
         if !self.memory.learned.borrow().contains(&entry) {
             self.memory.learned.borrow_mut().push(entry);
             if !self.memory.round.undecided.borrow().is_empty() {
                 self.field.round.finer.set(true);
             }
         }
-        self.memory.round.facts.borrow_mut().push((poly.clone(), compared));
+        self.memory.round.facts.borrow_mut().push((poly.clone(), comparison));
         Ok(())
     }
 
@@ -121,24 +121,24 @@ impl Signs<'_, '_> {
     }
 
     /// The facts, and that no sine or cosine exceeds one.
-    fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Compared)> {
+    fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Comparison)> {
         let mut facts = self.memory.round.facts.borrow().clone();
         for &variable in poly.variables() {
             if let Node::Call(Function::Sin | Function::Cos, _) = self.field.arena.node(self.field.kernel(variable)) {
                 let value = Poly::variable(variable);
-                facts.push((&Poly::one() - &value, Compared::NonNegative));
-                facts.push((&Poly::one() + &value, Compared::NonNegative));
+                facts.push((&Poly::one() - &value, Comparison::NonNegative));
+                facts.push((&Poly::one() + &value, Comparison::NonNegative));
             }
         }
         facts
     }
 
     /// The sign of `poly = k * fact + rest` for a k > 0 that cancels a term, if the rest is not negative.
-    fn above_facts(&self, poly: &Poly, facts: &[(Poly, Compared)], most: usize) -> Option<Sign> {
+    fn above_facts(&self, poly: &Poly, facts: &[(Poly, Comparison)], most: usize) -> Option<Sign> {
         let mut found = None;
-        for (fact, compared) in facts {
+        for (fact, comparison) in facts {
             // Most facts are irrelevant: their variables exclude them before any term is examined.
-            if *compared == Compared::NonZero || !shares_a_variable(poly, fact) {
+            if *comparison == Comparison::NonZero || !shares_a_variable(poly, fact) {
                 continue;
             }
             let effort = poly.term_count() * fact.term_count();
@@ -158,7 +158,7 @@ impl Signs<'_, '_> {
                 }
                 match sign {
                     Some(Sign::Positive) => return Some(Sign::Positive),
-                    Some(Sign::NonNegative | Sign::Zero) if *compared == Compared::Positive => {
+                    Some(Sign::NonNegative | Sign::Zero) if *comparison == Comparison::Positive => {
                         return Some(Sign::Positive);
                     }
                     Some(Sign::NonNegative | Sign::Zero) => found = Some(Sign::NonNegative),

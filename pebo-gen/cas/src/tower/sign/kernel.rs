@@ -4,7 +4,7 @@ use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
-use crate::{Integer, Relation as Compared};
+use crate::{Integer, Relation as Comparison};
 
 use super::{Sign, Signs};
 
@@ -17,12 +17,12 @@ impl Signs<'_, '_> {
         if let Some(sign) = self.by_function(variable) {
             return Some(sign);
         }
-        for (fact, compared) in self.memory.round.facts.borrow().iter() {
+        for (fact, comparison) in self.memory.round.facts.borrow().iter() {
             if fact.variables() != [variable] {
                 continue;
             }
             // c v + d > 0 fixes the sign of v if the constant helps.
-            if fact.degree(variable) != 1 || *compared == Compared::NonZero {
+            if fact.degree(variable) != 1 || *comparison == Comparison::NonZero {
                 continue;
             }
             let constant = fact
@@ -31,7 +31,7 @@ impl Signs<'_, '_> {
                 .map_or(Integer::ZERO, |(_, coefficient)| coefficient.clone());
             let rising = !fact.leading_coefficient().is_negative();
             // v > -d/c with d <= 0: positive; v < d/|c| with d <= 0: negative.
-            let strict = *compared == Compared::Positive || !constant.is_zero();
+            let strict = *comparison == Comparison::Positive || !constant.is_zero();
             match (rising, constant.is_zero() || constant.is_negative()) {
                 (true, true) if strict => return Some(Sign::Positive),
                 (true, true) => return Some(Sign::NonNegative),
@@ -125,11 +125,11 @@ mod tests {
     use crate::{Arena, Expr};
 
     #[test]
-    fn exponentials_and_roots_of_what_is_positive_are_zero_nowhere() {
+    fn exponentials_and_roots_of_positive_radicands_vanish_nowhere() {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut facts = Facts::new();
-        facts.assume(x, Compared::Positive);
+        facts.assume(x, Comparison::Positive);
         let exp = arena.call(Function::Exp, &[y]);
         let never = |expr: Expr| {
             let field = Field::over(&arena, &facts, &[expr]).unwrap();

@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_answer_within_another_question_ends_with_it() {
+    fn an_answer_within_another_query_ends_with_it() {
         let mut memo = Memo::default();
         assert!(memo.begin(1));
         assert!(memo.begin(2));
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn within_another_kind_of_question_nothing_is_for_good() {
+    fn within_another_kind_of_query_answers_are_provisional() {
         let mut memo = Memo::default();
         assert!(memo.begin(1));
         memo.end((1, 0), None, false);

@@ -21,12 +21,12 @@ const SHORT: usize = 200;
 const MOST_LAYERS: usize = 2;
 
 /// A formula over symbols for the sums that it held several times.
-pub(crate) struct Shared {
+pub(crate) struct SharedSums {
     pub expr: Expr,
     values: BTreeMap<Symbol, Expr>,
 }
 
-impl Shared {
+impl SharedSums {
     /// None if a formula is short, holds functions or roots, or holds no sum twice.
     pub(crate) fn of(arena: &Arena, expr: Expr) -> Option<Self> {
         let sums = shared_sums(arena, expr);
@@ -45,7 +45,7 @@ impl Shared {
     }
 
     /// A formula with the symbols replaced by their sums.
-    pub(crate) fn opened(&self, arena: &Arena, expr: Expr) -> Expr {
+    pub(crate) fn expanded(&self, arena: &Arena, expr: Expr) -> Expr {
         arena.substitute(expr, &self.values)
     }
 }
@@ -57,7 +57,7 @@ pub(crate) fn vanishes_over_shared_sums(arena: &Arena, facts: &Facts, expr: Expr
         if sums.is_empty() {
             return false;
         }
-        let shared = Shared::over(arena, expr, &sums);
+        let shared = SharedSums::over(arena, expr, &sums);
         let field = Field::of_long_sums(arena, facts, &[shared.expr]);
         if field.and_then(|field| field.fraction(shared.expr)).is_ok_and(|fraction| fraction.is_zero()) {
             return true;
@@ -103,7 +103,7 @@ mod tests {
 
     /// `(A B - C (A B/C)) D` over sums of many terms: zero, though written out it would have some 10^9 of them.
     #[test]
-    fn what_cancels_between_long_sums_is_zero_without_writing_them_out() {
+    fn differences_of_long_sums_are_zero_without_expansion() {
         let arena = Arena::within(Budget::of_seconds(0.2));
         let sum = |name: &str| arena.sum((0..60).map(|k| arena.variable(&format!("{name}{k}"))));
         let [a, b, c, d] = ["a", "b", "c", "d"].map(sum);
@@ -124,8 +124,8 @@ mod tests {
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let inner = arena.add(arena.mul(a, x), y);
         let outer = arena.sum([arena.mul(inner, x), arena.mul(inner, y), arena.mul(a, b), arena.div(x, a)]);
-        let shared = Shared::of(&arena, outer).expect("a sum twice");
+        let shared = SharedSums::of(&arena, outer).expect("a sum twice");
         assert_ne!(shared.expr, outer);
-        assert_eq!(shared.opened(&arena, shared.expr), outer);
+        assert_eq!(shared.expanded(&arena, shared.expr), outer);
     }
 }

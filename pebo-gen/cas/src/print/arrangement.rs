@@ -56,24 +56,24 @@ pub(crate) fn summands(arena: &Arena, sum: &Sum) -> Vec<(bool, Summand)> {
 /// Numerator and denominator, without the sign.
 pub(crate) fn quotient<'a>(arena: &Arena, product: &'a Product) -> (Vec<Factor<'a>>, Vec<Factor<'a>>) {
     let coefficient = product.coefficient.abs();
-    let (mut above, mut below) = (Vec::new(), Vec::new());
+    let (mut numerator, mut denominator) = (Vec::new(), Vec::new());
     if arena.notation().as_fraction(&coefficient) {
-        for (part, side) in [(coefficient.numerator(), &mut above), (coefficient.denominator(), &mut below)] {
+        for (part, side) in [(coefficient.numerator(), &mut numerator), (coefficient.denominator(), &mut denominator)] {
             if !part.is_one() {
                 side.push(Factor::Number(part.clone().into()));
             }
         }
     } else {
-        above.push(Factor::Number(coefficient));
+        numerator.push(Factor::Number(coefficient));
     }
     for (base, exponent) in &product.factors {
         if exponent.is_negative() {
-            below.push(Factor::Power(*base, exponent));
+            denominator.push(Factor::Power(*base, exponent));
         } else {
-            above.push(Factor::Power(*base, exponent));
+            numerator.push(Factor::Power(*base, exponent));
         }
     }
-    (above, below)
+    (numerator, denominator)
 }
 
 /// True if the exponent, sign apart, is that of a square root.

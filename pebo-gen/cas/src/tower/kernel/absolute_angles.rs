@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_asks_for_symbols_has_the_sum_split() {
+    fn fields_that_separate_symbols_split_the_sum() {
         let arena = Arena::new();
         let symbols: Vec<Expr> = ["a", "b", "c", "d"].map(|name| arena.variable(name)).to_vec();
         let sine = arena.call(Function::Sin, &[arena.sum(symbols)]);
