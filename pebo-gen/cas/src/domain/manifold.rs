@@ -22,7 +22,7 @@ use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Facts, Rational};
 
 /// A kernel, and the coefficients of its powers.
-type Powers = (u32, BTreeMap<u32, Fraction>);
+type KernelCoefficients = (u32, BTreeMap<u32, Fraction>);
 
 /// The greatest power of a symbol for which a root is taken.
 const MOST_DEGREE: u32 = 12;
@@ -253,7 +253,12 @@ impl Solver<'_> {
     }
 
     /// The coefficients of the powers of a symbol, if it occurs in no kernel but its own.
-    fn powers_of(&self, field: &Field<'_>, poly: &Poly, symbol: Symbol) -> Result<Option<Powers>, Obstacle> {
+    fn powers_of(
+        &self,
+        field: &Field<'_>,
+        poly: &Poly,
+        symbol: Symbol,
+    ) -> Result<Option<KernelCoefficients>, Obstacle> {
         let kernels = field.kernels_of(&BTreeSet::from([symbol]));
         let mut kernels = poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
         let (Some(kernel), None) = (kernels.next(), kernels.next()) else { return Ok(None) };
@@ -279,8 +284,8 @@ impl Solver<'_> {
             let field = Field::over(arena, self.facts, &[radicand])?;
             let fraction = field.fraction(radicand)?;
             for symbol in arena.symbols_of(&[radicand]) {
-                let below = field.kernels_of(&BTreeSet::from([symbol]));
-                let divides = fraction.denominator().variables().iter().any(|kernel| below.contains(kernel));
+                let kernels = field.kernels_of(&BTreeSet::from([symbol]));
+                let divides = fraction.denominator().variables().iter().any(|kernel| kernels.contains(kernel));
                 if divides || taken.contains(&symbol) || own.contains(&symbol) {
                     continue;
                 }
@@ -288,9 +293,9 @@ impl Solver<'_> {
                 if fraction.numerator().degree(kernel) != 2 {
                     continue;
                 }
-                let below = field.of_polynomial(fraction.denominator())?;
+                let denominator = field.of_polynomial(fraction.denominator())?;
                 let shown = |power: u32| match powers.get(&power) {
-                    Some(coefficient) => field.div(coefficient, &below).map(|quotient| field.show(&quotient)),
+                    Some(coefficient) => field.div(coefficient, &denominator).map(|quotient| field.show(&quotient)),
                     None => Ok(arena.zero()),
                 };
                 let coefficients = [shown(0)?, shown(1)?, shown(2)?];
@@ -360,9 +365,9 @@ impl Partner {
             return None;
         }
         let squared = share * share;
-        let below = (&Rational::ONE + &squared).recip()?;
-        let sine = &(share * &Rational::from(2)) * &below;
-        let cosine = &(&Rational::ONE - &squared) * &below;
+        let scale = (&Rational::ONE + &squared).recip()?;
+        let sine = &(share * &Rational::from(2)) * &scale;
+        let cosine = &(&Rational::ONE - &squared) * &scale;
         let across = arena.scale(arena.sqrt(arena.div(height, slope)), &sine);
         point.insert(self.symbol, arena.add(top, across));
         Some(arena.scale(arena.sqrt(height), &cosine))

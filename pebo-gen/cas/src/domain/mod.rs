@@ -53,7 +53,7 @@ pub struct Domain {
 
 /// Bounds of one symbol that the facts state directly.
 #[derive(Clone, Debug, Default)]
-struct Range {
+struct Bounds {
     low: Option<Rational>,
     high: Option<Rational>,
 }
@@ -126,7 +126,7 @@ impl Domain {
     pub(super) fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> BTreeMap<Symbol, (Rational, Rational)> {
         let facts: Vec<_> = self.facts.iter().collect();
         let ranges = ranges(arena, &facts);
-        let both = |(symbol, range): (Symbol, Range)| Some((symbol, (range.low?, range.high?)));
+        let both = |(symbol, range): (Symbol, Bounds)| Some((symbol, (range.low?, range.high?)));
         ranges.into_iter().filter(|(symbol, _)| symbols.contains(symbol)).filter_map(both).collect()
     }
 
@@ -190,7 +190,7 @@ fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bo
 /// Bounds of each symbol by facts in it and in symbols that are drawn before it.
 struct Confinement {
     /// By facts in the symbol alone.
-    ranges: BTreeMap<Symbol, Range>,
+    ranges: BTreeMap<Symbol, Bounds>,
     /// Facts in others as well, and those that are not affine in the symbol.
     others: BTreeMap<Symbol, Vec<(Expr, Relation)>>,
 }
@@ -220,7 +220,7 @@ impl Confinement {
         arena: &Arena,
         symbol: Symbol,
         point: &Point,
-        mut value: impl FnMut(Option<&Range>) -> Rational,
+        mut value: impl FnMut(Option<&Bounds>) -> Rational,
     ) -> Expr {
         let mut range = self.ranges.get(&symbol).cloned();
         let mut bent = Vec::new();
@@ -251,7 +251,7 @@ impl Confinement {
     }
 }
 
-impl Range {
+impl Bounds {
     /// Intersects with another range.
     fn narrow(&mut self, other: Self) {
         if let Some(low) = other.low {
@@ -268,8 +268,8 @@ impl Range {
 }
 
 /// The bounds that facts of the form `c*s + d > 0` state.
-fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> {
-    let mut ranges: BTreeMap<Symbol, Range> = BTreeMap::new();
+fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Bounds> {
+    let mut ranges: BTreeMap<Symbol, Bounds> = BTreeMap::new();
     for (expr, relation) in facts {
         if *relation == Relation::NonZero {
             continue;
@@ -278,9 +278,9 @@ fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> 
         // An irrational constant gives its greater end, which only widens the range.
         let Some(bound) = (-&constant).checked_div(&slope) else { continue };
         let bounds = if slope.is_negative() {
-            Range { low: None, high: Some(bound) }
+            Bounds { low: None, high: Some(bound) }
         } else {
-            Range { low: Some(bound), high: None }
+            Bounds { low: Some(bound), high: None }
         };
         ranges.entry(symbol).or_default().narrow(bounds);
     }
@@ -353,7 +353,7 @@ impl RationalGenerator {
     ///
     /// After the first trials, the signs of five symbols go through all patterns: an expression that is non-zero only
     /// if several of them are negative would be rarely so among random signs.
-    fn value(&mut self, range: Option<&Range>, index: usize) -> Rational {
+    fn value(&mut self, range: Option<&Bounds>, index: usize) -> Rational {
         let (low, high) = range.map_or((None, None), |range| (range.low.as_ref(), range.high.as_ref()));
         let size = 3 + i64::try_from(self.trial / 8).unwrap_or(0);
         let parts = if self.trial < PLAIN_TRIALS { 1 } else { 1 + i64::try_from(self.trial % 7).unwrap_or(0) };

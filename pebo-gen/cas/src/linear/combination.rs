@@ -176,8 +176,8 @@ impl<'f, 'a> CoefficientForms<'f, 'a> {
         let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&restore);
         let [whole, apart] = forms(coefficient);
         let shown = shortest(arena, self.domain, shorter(arena, whole, apart));
-        let Some((rest, divisors_product)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
-        let [whole, apart] = forms(&rest).map(|form| arena.div(form, restore(divisors_product)));
+        let Some((rest, divisor)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
+        let [whole, apart] = forms(&rest).map(|form| arena.div(form, restore(divisor)));
         with_fewer_conditions(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::division::{Outcome, RemainderSum};
 use super::layout::{Exponents, Layout};
-use super::multiply::{Factor, Sum, Terms};
+use super::multiply::{CoefficientSum, PackedFactor, PackedTerms};
 use crate::Integer;
 
 /// Larger boxes exceed the cache: a hash table or a heap is then no slower.
@@ -32,7 +32,11 @@ impl<'a> ExponentBox<'a> {
     }
 
     /// The product of factors whose degrees add up to those of the box.
-    pub(super) fn product<S: Sum>(&self, left: &Factor<'_, S::Factor>, right: &Factor<'_, S::Factor>) -> Terms {
+    pub(super) fn product<S: CoefficientSum>(
+        &self,
+        left: &PackedFactor<'_, S::Factor>,
+        right: &PackedFactor<'_, S::Factor>,
+    ) -> PackedTerms {
         let mut sums = vec![S::default(); self.cells];
         let block = self.block(size_of::<S>());
         let (left_places, right_places) = (self.places(left.keys), self.places(right.keys));
@@ -52,7 +56,7 @@ impl<'a> ExponentBox<'a> {
 
     /// The terms with these coefficients, one for every cell. A block's keys are those of the first block with the
     /// exponents of the block's first monomial added.
-    fn terms<S: Sum>(&self, sums: Vec<S>, block: usize) -> Terms {
+    fn terms<S: CoefficientSum>(&self, sums: Vec<S>, block: usize) -> PackedTerms {
         let words = self.layout.words();
         let count = sums.iter().filter(|sum| !sum.vanishes()).count();
         let (mut keys, mut coefficients) = (Vec::with_capacity(count * words), Vec::with_capacity(count));
@@ -75,8 +79,8 @@ impl<'a> ExponentBox<'a> {
     /// called for every term of it.
     pub(super) fn quotient<S: RemainderSum, E>(
         &self,
-        dividend: &Factor<'_, Integer>,
-        divisor: &Factor<'_, S::Factor>,
+        dividend: &PackedFactor<'_, Integer>,
+        divisor: &PackedFactor<'_, S::Factor>,
         degrees: &[u32],
         spend: impl Fn() -> Result<(), E>,
     ) -> Result<Outcome<S::Factor>, E> {

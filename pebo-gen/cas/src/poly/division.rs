@@ -6,7 +6,7 @@
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
-use super::multiply::{Factor, Sum};
+use super::multiply::{CoefficientSum, PackedFactor};
 use super::work::{TooLarge, Work, steps};
 use crate::Integer;
 
@@ -21,7 +21,7 @@ pub(super) enum Outcome<C> {
 }
 
 /// A coefficient of the remainder while it is summed up.
-pub(super) trait RemainderSum: Sum {
+pub(super) trait RemainderSum: CoefficientSum {
     /// The sum that begins with a coefficient of the dividend, if it fits.
     fn begin(value: &Integer) -> Option<Self>;
     /// The negative of a coefficient: sums add products.
@@ -85,8 +85,8 @@ impl Division<'_> {
         // A cell costs about a nanosecond, an access to the table ten.
         let degrees = self.layout.degrees(self.dividend);
         if let Some(cells) = ExponentBox::new(self.layout, &degrees, 8 * dividend.len()) {
-            let dividend = Factor { keys: self.dividend, coefficients: dividend };
-            let divisor = Factor { keys: self.divisor, coefficients: divisor };
+            let dividend = PackedFactor { keys: self.dividend, coefficients: dividend };
+            let divisor = PackedFactor { keys: self.divisor, coefficients: divisor };
             return cells.quotient::<S, _>(&dividend, &divisor, self.degrees, || self.work.spend(cost));
         }
         match self.layout.words() {

@@ -14,7 +14,7 @@ use super::{Poly, hashed, packed};
 use crate::Integer;
 
 /// A sum of products of coefficients.
-pub(super) trait Sum: Clone + Default {
+pub(super) trait CoefficientSum: Clone + Default {
     /// The coefficients that are multiplied.
     type Factor;
     /// Adds `a * b`.
@@ -26,7 +26,7 @@ pub(super) trait Sum: Clone + Default {
 }
 
 /// Only if the sum is known to fit.
-impl Sum for i64 {
+impl CoefficientSum for i64 {
     type Factor = i64;
     #[inline]
     fn add_product(&mut self, a: &i64, b: &i64) {
@@ -41,7 +41,7 @@ impl Sum for i64 {
 }
 
 /// Only if the sum is known to fit.
-impl Sum for i128 {
+impl CoefficientSum for i128 {
     type Factor = i64;
     #[inline]
     fn add_product(&mut self, a: &i64, b: &i64) {
@@ -55,7 +55,7 @@ impl Sum for i128 {
     }
 }
 
-impl Sum for Integer {
+impl CoefficientSum for Integer {
     type Factor = Integer;
     #[inline]
     fn add_product(&mut self, a: &Integer, b: &Integer) {
@@ -70,13 +70,13 @@ impl Sum for Integer {
 }
 
 /// Keys and coefficients of a factor, in the layout of the product.
-pub(super) struct Factor<'a, C> {
+pub(super) struct PackedFactor<'a, C> {
     pub(super) keys: &'a [u64],
     pub(super) coefficients: &'a [C],
 }
 
 /// Descending keys, and their coefficients.
-pub(super) type Terms = (Vec<u64>, Vec<Integer>);
+pub(super) type PackedTerms = (Vec<u64>, Vec<Integer>);
 
 impl Poly {
     /// The product.
@@ -176,24 +176,24 @@ impl Poly {
     }
 }
 
-fn factor<'a, C>(keys: &'a [u64], coefficients: &'a [C]) -> Factor<'a, C> {
-    Factor { keys, coefficients }
+fn factor<'a, C>(keys: &'a [u64], coefficients: &'a [C]) -> PackedFactor<'a, C> {
+    PackedFactor { keys, coefficients }
 }
 
 /// The product if one factor, or both, is a single term: nothing coincides, the order is kept.
-fn single(left: &[u64], right: &[u64], a: &[Integer], b: &[Integer]) -> Terms {
+fn single(left: &[u64], right: &[u64], a: &[Integer], b: &[Integer]) -> PackedTerms {
     let (one, many, term, rest) = if a.len() == 1 { (left, right, &a[0], b) } else { (right, left, &b[0], a) };
     let keys = many.chunks_exact(one.len()).flat_map(|key| key.iter().zip(one).map(|(x, y)| x + y));
     (keys.collect(), rest.iter().map(|coefficient| coefficient * term).collect())
 }
 
 /// The terms of a product, where its layout and degrees are known.
-fn product<S: Sum>(
+fn product<S: CoefficientSum>(
     layout: &Layout,
     degrees: &[u32],
-    left: &Factor<'_, S::Factor>,
-    right: &Factor<'_, S::Factor>,
-) -> Result<Terms, TooLarge> {
+    left: &PackedFactor<'_, S::Factor>,
+    right: &PackedFactor<'_, S::Factor>,
+) -> Result<PackedTerms, TooLarge> {
     let pairs = left.coefficients.len().saturating_mul(right.coefficients.len());
     match ExponentBox::new(layout, degrees, pairs.saturating_mul(2)) {
         Some(cells) => Ok(cells.product::<S>(left, right)),

@@ -2,7 +2,7 @@
 
 use super::Poly;
 use super::layout::Layout;
-use super::multiply::Terms;
+use super::multiply::PackedTerms;
 use super::work::TooLarge;
 use crate::Integer;
 
@@ -14,7 +14,7 @@ const TERMS_OF_INTEGERS: usize = 8;
 const TERMS_OF_POWERS: usize = 2;
 
 /// The coefficients of a product with at most so many bits, if its factors are dense and long enough.
-pub(super) fn product(layout: &Layout, a: &Poly, b: &Poly, bits: u64) -> Option<Terms> {
+pub(super) fn product(layout: &Layout, a: &Poly, b: &Poly, bits: u64) -> Option<PackedTerms> {
     let least = if bits <= 127 { TERMS_OF_WORDS } else { TERMS_OF_INTEGERS };
     if a.term_count().min(b.term_count()) < least || layout.variables().len() != 1 {
         return None;
@@ -27,7 +27,7 @@ pub(super) fn product(layout: &Layout, a: &Poly, b: &Poly, bits: u64) -> Option<
 }
 
 /// The power of a dense polynomial.
-pub(super) fn power(layout: &Layout, a: &Poly, exponent: u32) -> Result<Option<Terms>, TooLarge> {
+pub(super) fn power(layout: &Layout, a: &Poly, exponent: u32) -> Result<Option<PackedTerms>, TooLarge> {
     if exponent < 2 || a.term_count() < TERMS_OF_POWERS || layout.variables().len() != 1 {
         return Ok(None);
     }
@@ -52,7 +52,7 @@ pub(super) fn pack(poly: &Poly, slot: usize, places: usize) -> Integer {
 }
 
 /// The terms with these coefficients by ascending powers, in a layout of one variable that has room for them.
-fn terms(layout: &Layout, coefficients: Vec<Integer>) -> Terms {
+fn terms(layout: &Layout, coefficients: Vec<Integer>) -> PackedTerms {
     let (_, shift) = layout.place(0);
     let mut keys = Vec::with_capacity(coefficients.len());
     let mut kept = Vec::with_capacity(coefficients.len());

@@ -11,19 +11,20 @@ use crate::{Arena, Domain, Node, Rational};
 
 /// The kernels that products determine.
 pub(super) fn apart(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
-    let products: Vec<Product> = known.iter().filter_map(|equation| Product::of(arena, *equation)).collect();
+    let products: Vec<KernelProduct> =
+        known.iter().filter_map(|equation| KernelProduct::of(arena, *equation)).collect();
     let mut found = polar(arena, domain, &products);
     found.extend(by_exponents(arena, domain, &products));
     found
 }
 
 /// A product of kernels with its value.
-struct Product {
+struct KernelProduct {
     factors: Vec<(Expr, Rational)>,
     value: Expr,
 }
 
-impl Product {
+impl KernelProduct {
     fn of(arena: &Arena, Equation { formula, value }: Equation) -> Option<Self> {
         match arena.node(formula) {
             Node::Product(product) => Some(Self { factors: product.factors.clone(), value }),
@@ -34,9 +35,9 @@ impl Product {
 }
 
 /// Amplitude and angle, if both `m*sin(a)` and `m*cos(a)` and the sign of m are known.
-fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
+fn polar(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equation> {
     let mut found = Vec::new();
-    for Product { factors, value: across } in products {
+    for KernelProduct { factors, value: across } in products {
         for (at, (factor, exponent)) in factors.iter().enumerate() {
             let Node::Call(Function::Sin, argument) = arena.node(*factor) else { continue };
             let mut others = factors.clone();
@@ -79,7 +80,7 @@ fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<
 }
 
 /// Kernels as products of powers of the values, if the exponents determine them.
-fn by_exponents(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
+fn by_exponents(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equation> {
     let mut kernels: Vec<Expr> = products.iter().flat_map(|p| p.factors.iter().map(|(base, _)| *base)).collect();
     kernels.sort_unstable();
     kernels.dedup();

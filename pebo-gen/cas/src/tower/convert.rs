@@ -68,30 +68,30 @@ impl Field<'_> {
         let mut others: Vec<(Poly, Vec<Poly>)> = Vec::new();
         for (term, coefficient) in &sum.terms {
             let term = self.get(*term)?;
-            if let Some(below) = term.den.to_constant() {
-                let below = &below * &coefficient.denominator();
-                common = common.lcm(&below);
-                parts.push((term.num, coefficient.numerator(), below));
+            if let Some(denominator) = term.den.to_constant() {
+                let denominator = &denominator * &coefficient.denominator();
+                common = common.lcm(&denominator);
+                parts.push((term.num, coefficient.numerator(), denominator));
             } else {
-                let below = coefficient.denominator();
-                let below = if below.is_one() { term.den } else { term.den.scale(&below) };
-                let above = term.num.scale(&coefficient.numerator());
-                match others.iter_mut().find(|(known, _)| *known == below) {
-                    Some((_, above_it)) => above_it.push(above),
-                    None => others.push((below, vec![above])),
+                let denominator = coefficient.denominator();
+                let denominator = if denominator.is_one() { term.den } else { term.den.scale(&denominator) };
+                let numerator = term.num.scale(&coefficient.numerator());
+                match others.iter_mut().find(|(known, _)| *known == denominator) {
+                    Some((_, numerators)) => numerators.push(numerator),
+                    None => others.push((denominator, vec![numerator])),
                 }
             }
         }
         parts.push((Poly::one(), sum.constant.numerator(), sum.constant.denominator()));
-        let over = |(poly, above, below): &(Poly, Integer, Integer)| {
-            let missing = common.div_exact(below).unwrap_or_default();
-            poly.scale(&(above * &missing))
+        let over = |(poly, numerator, denominator): &(Poly, Integer, Integer)| {
+            let missing = common.div_exact(denominator).unwrap_or_default();
+            poly.scale(&(numerator * &missing))
         };
         let num = total(parts.iter().map(over).collect());
         self.work().spend(steps(num.term_count()))?;
         let mut result = self.fraction_of(&num, &Poly::constant(common))?;
-        for (below, above) in others {
-            result = self.add(&result, &self.fraction_of(&total(above), &below)?)?;
+        for (denominator, numerators) in others {
+            result = self.add(&result, &self.fraction_of(&total(numerators), &denominator)?)?;
         }
         Ok(result)
     }

@@ -93,7 +93,7 @@ impl Field<'_> {
     pub(super) fn show_apart_over(&self, fraction: &Fraction, also: &Monomial) -> Expr {
         self.count(fraction);
         let Fraction { num, den } = &self.over_sines(fraction).unwrap_or_else(|_| fraction.clone());
-        let (below, den) = primitive(den);
+        let (denominator, den) = primitive(den);
         let own = den.monomial_content();
         let mut powers: BTreeMap<u32, u32> = own.powers().iter().copied().collect();
         for (variable, times) in also.powers() {
@@ -109,7 +109,7 @@ impl Field<'_> {
         }
         let rest: Terms = den.terms().map(|(m, c)| (divided(&m, &own), c.clone())).collect();
         let rest = self.grouped(rest, &|variable| self.kernel(variable));
-        let scale = Rational::new(Integer::ONE, below).unwrap_or(Rational::ONE);
+        let scale = Rational::new(Integer::ONE, denominator).unwrap_or(Rational::ONE);
         self.arena.sum(groups.into_iter().map(|(left, terms)| {
             let (above, terms) = without_content(terms);
             let mut factors: Vec<(Expr, Rational)> =

@@ -138,7 +138,8 @@ mod tests {
     fn square_roots_of_numbers_have_values_modulo_one_of_the_primes() {
         let arena = Arena::new();
         let h = arena.variable("h");
-        let number = |above: i64, below: i64| arena.number(Rational::new(above, below).expect("a rational"));
+        let number =
+            |numerator: i64, denominator: i64| arena.number(Rational::new(numerator, denominator).expect("a rational"));
         let roots = [number(2, 1), number(3, 1), number(5, 7), number(981, 50), number(1, 11), number(13, 1)];
         let nested = arena.sqrt(arena.add(arena.sqrt(number(2, 1)), number(2, 1)));
         let roots: Vec<_> =

@@ -18,10 +18,12 @@ impl Field<'_> {
     /// empty if there are none.
     pub fn show_without_sines(&self, fraction: &Fraction) -> Vec<Expr> {
         let Ok(Some((rest, sines))) = self.without_sines(fraction) else { return Vec::new() };
-        let below = sines.powers().iter().map(|&(sine, times)| (self.kernel(sine), Rational::from(-i64::from(times))));
-        let below: Vec<(Expr, Rational)> = below.collect();
-        let over =
-            |shown: Expr| self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], below.clone()].concat());
+        let divisors =
+            sines.powers().iter().map(|&(sine, times)| (self.kernel(sine), Rational::from(-i64::from(times))));
+        let divisors: Vec<(Expr, Rational)> = divisors.collect();
+        let over = |shown: Expr| {
+            self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], divisors.clone()].concat())
+        };
         let whole = [Some(self.show(&rest)), self.show_by_angles(&rest)].into_iter().flatten().map(over);
         whole.chain([self.show_apart_over(&rest, &sines)]).collect()
     }
@@ -113,16 +115,16 @@ mod tests {
         let sin = |angle| arena.call(Function::Sin, &[angle]);
         let cos = |angle| arena.call(Function::Cos, &[angle]);
         let square = |expr| arena.power(expr, &Rational::from(2));
-        let below = arena.sub(arena.one(), square(cos(q)));
+        let denominator = arena.sub(arena.one(), square(cos(q)));
         let sum = arena.sub(sin(p), arena.mul(cos(q), sin(arena.add(p, q))));
         let cases = [
-            (arena.div(sum, below), Some("-cos(p + q)/sin(q)")),
-            (arena.div(arena.mul(a, sum), square(below)), Some("-a*cos(p + q)/sin(q)^3")),
-            (arena.div(arena.sub(a, cos(q)), arena.mul(below, a)), None),
+            (arena.div(sum, denominator), Some("-cos(p + q)/sin(q)")),
+            (arena.div(arena.mul(a, sum), square(denominator)), Some("-a*cos(p + q)/sin(q)^3")),
+            (arena.div(arena.sub(a, cos(q)), arena.mul(denominator, a)), None),
             (arena.div(sum, a), None),
             // A numerator with a sine is not divided by it.
             (
-                arena.div(arena.mul(sin(q), arena.add(cos(arena.add(p, q)), arena.mul(a, cos(p)))), below),
+                arena.div(arena.mul(sin(q), arena.add(cos(arena.add(p, q)), arena.mul(a, cos(p)))), denominator),
                 Some("cos(p)*(a + cos(q))/sin(q) - sin(p)"),
             ),
         ];

@@ -34,7 +34,7 @@ pub struct Elimination<'a> {
 }
 
 /// A factor of an equation.
-struct Factor {
+struct EquationFactor {
     equation: usize,
     poly: Poly,
 }
@@ -79,7 +79,7 @@ struct Progress {
 }
 
 /// The kernels of undetermined symbols.
-struct Unknown {
+struct UnknownKernels {
     symbols: BTreeSet<Symbol>,
     /// Those that depend on each symbol.
     of_each: BTreeMap<Symbol, BTreeSet<u32>>,
@@ -166,7 +166,7 @@ impl Elimination<'_> {
                 stuck.get_or_insert(open[equation].0);
                 return Ok(None);
             }
-            factors.extend(polys.into_iter().map(|poly| Factor { equation, poly }));
+            factors.extend(polys.into_iter().map(|poly| EquationFactor { equation, poly }));
         }
         let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.combined.get())?;
         for found in alternatives {
@@ -206,21 +206,21 @@ impl Elimination<'_> {
         &self,
         field: &Field<'_>,
         open: &[(Expr, Fraction)],
-        unknown: &Unknown,
+        unknown: &UnknownKernels,
     ) -> Result<Values, Obstacle> {
         let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
         joint::solved(self.arena, field, equations, &unknown.of_states, [&BTreeSet::new(), &unknown.of_inputs])
     }
 
     /// The undetermined symbols, states and inputs, and their kernels.
-    fn unknown(&self, field: &Field<'_>, values: &Values) -> Unknown {
+    fn unknown(&self, field: &Field<'_>, values: &Values) -> UnknownKernels {
         let open = |symbols: &BTreeSet<Symbol>| -> BTreeSet<Symbol> {
             symbols.iter().copied().filter(|s| !values.contains_key(s)).collect()
         };
         let (states, inputs) = (open(&self.states), open(&self.inputs));
         let symbols: BTreeSet<Symbol> = states.union(&inputs).copied().collect();
         let of_each = symbols.iter().map(|symbol| (*symbol, field.kernels_of(&BTreeSet::from([*symbol])))).collect();
-        Unknown { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
+        UnknownKernels { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
     }
 
     /// The alternatives to make one equation vanish, the one that assumes least first; before them several at once, if
@@ -229,8 +229,8 @@ impl Elimination<'_> {
         &self,
         field: &Field<'_>,
         open: &[(Expr, Fraction)],
-        factors: &[Factor],
-        unknown: &Unknown,
+        factors: &[EquationFactor],
+        unknown: &UnknownKernels,
         combined: bool,
     ) -> Result<Vec<Values>, Obstacle> {
         let mut steps = Vec::new();
@@ -274,8 +274,8 @@ impl Elimination<'_> {
     fn steps(
         &self,
         field: &Field<'_>,
-        factor: &Factor,
-        unknown: &Unknown,
+        factor: &EquationFactor,
+        unknown: &UnknownKernels,
         steps: &mut Vec<EliminationStep>,
     ) -> Result<(), Obstacle> {
         let arena = self.arena;

@@ -79,7 +79,7 @@ impl CoprimeBase {
 
 /// A sign and powers of parts.
 #[derive(Debug)]
-pub(in crate::tower) struct Product {
+pub(in crate::tower) struct ElementProduct {
     /// True if the product of the powers must be negated.
     pub negative: bool,
     /// Parts with their exponents: each primitive with a positive leading coefficient.
@@ -90,7 +90,7 @@ pub(in crate::tower) struct Product {
 
 impl Field<'_> {
     /// A primitive polynomial as a product of powers of parts.
-    pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<Product, Obstacle> {
+    pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<ElementProduct, Obstacle> {
         let mut powers: Vec<(Poly, u32)> = Vec::new();
         let mut rest = poly.clone();
         for (sine, square) in self.sines_of(poly)? {
@@ -129,7 +129,7 @@ impl Field<'_> {
                 powers.push((part, times));
             }
         }
-        Ok(Product { negative: found.content.is_negative(), powers, divisor })
+        Ok(ElementProduct { negative: found.content.is_negative(), powers, divisor })
     }
 
     /// A square-free polynomial without monomial factors over the coprime base.

@@ -4,7 +4,7 @@ use crate::Rational;
 use crate::graph::function::Function;
 use crate::poly::Poly;
 
-use super::Relation;
+use super::AlgebraicRelation;
 use crate::tower::fraction::{Fraction, primitive};
 use crate::tower::sign::Sign;
 use crate::tower::{Field, Obstacle};
@@ -43,6 +43,6 @@ impl Field<'_> {
         self.signs().leave_open(part);
         let kernel = self.arena.call(Function::Abs, &[self.show_polynomial(part)]);
         let value = self.reduce(&part.mul(part, self.limit())?)?;
-        Ok(self.entered(kernel, Some(Relation { degree: 2, value }), false))
+        Ok(self.entered(kernel, Some(AlgebraicRelation { degree: 2, value }), false))
     }
 }

@@ -164,9 +164,9 @@ impl Field<'_> {
 
     /// A fraction as a rational multiple of one that is primitive with a positive leading coefficient.
     fn undivided(&self, argument: &Fraction) -> Result<(Expr, Fraction, Rational), Obstacle> {
-        let (above, num) = primitive(&argument.num);
-        let (below, den) = primitive(&argument.den);
-        let mut factor = Rational::new(above, below).ok_or(Obstacle::DivisionByZero)?;
+        let (numerator, num) = primitive(&argument.num);
+        let (denominator, den) = primitive(&argument.den);
+        let mut factor = Rational::new(numerator, denominator).ok_or(Obstacle::DivisionByZero)?;
         let mut key = Fraction { num, den };
         if key.num.leading_coefficient().is_negative() {
             factor = -&factor;
@@ -220,11 +220,11 @@ mod tests {
 
         let arena = Arena::new();
         let y = arena.variable("y");
-        let below = arena.add(arena.scale(y, &Rational::from(3)), arena.one());
+        let denominator = arena.add(arena.scale(y, &Rational::from(3)), arena.one());
         let cases = [
             (arena.add(arena.mul(y, y), y), vec!["y^2", "y"]),
-            (arena.div(arena.mul(y, y), below), vec!["y/3", "-1/9", "1/(9*(3*y + 1))"]),
-            (arena.div(arena.one(), below), vec!["1/(3*y + 1)"]),
+            (arena.div(arena.mul(y, y), denominator), vec!["y/3", "-1/9", "1/(9*(3*y + 1))"]),
+            (arena.div(arena.one(), denominator), vec!["1/(3*y + 1)"]),
         ];
         for (argument, expected) in cases {
             let field = Field::over(&arena, &Facts::new(), &[argument]).unwrap();

@@ -9,7 +9,7 @@ use crate::number::rational::half;
 use crate::poly::Poly;
 use crate::{Integer, Rational};
 
-use super::Relation;
+use super::AlgebraicRelation;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Field, Obstacle};
 
@@ -85,7 +85,7 @@ impl Field<'_> {
         let degree = minimal.degree(number);
         let leading = Poly::variable(number).pow(degree, self.limit())?;
         let value = &leading - &minimal;
-        self.round.kernels.borrow_mut().relate(number, Relation { degree, value });
+        self.round.kernels.borrow_mut().relate(number, AlgebraicRelation { degree, value });
         Ok(number)
     }
 

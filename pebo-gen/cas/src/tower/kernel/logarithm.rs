@@ -6,7 +6,7 @@
 use crate::graph::expr::Node;
 use crate::graph::function::Function;
 use crate::poly::Poly;
-use crate::{Rational, Relation as Comparison};
+use crate::{Rational, Relation};
 
 use super::elements::UnsignedFactors;
 use crate::tower::fraction::Fraction;
@@ -34,7 +34,7 @@ impl Field<'_> {
         for (index, (part, times)) in unknown.iter().enumerate() {
             let size = if odd == [index] {
                 let size = if negative { -part } else { part.clone() };
-                self.signs().learn_from_existence(&size, Comparison::Positive)?;
+                self.signs().learn_from_existence(&size, Relation::Positive)?;
                 size
             } else {
                 self.size(part)?.num

@@ -29,14 +29,14 @@ pub(in crate::tower) struct Kernel {
     /// The expression it stands for.
     pub expr: Expr,
     /// Its algebraic relation to earlier kernels, if there is one.
-    pub relation: Option<Relation>,
+    pub relation: Option<AlgebraicRelation>,
     /// True if its value is positive wherever it exists.
     pub positive: bool,
 }
 
 /// `kernel ^ degree = value`, the value in earlier kernels.
 #[derive(Clone, Debug)]
-pub(in crate::tower) struct Relation {
+pub(in crate::tower) struct AlgebraicRelation {
     pub degree: u32,
     pub value: Poly,
 }
@@ -65,7 +65,7 @@ impl Kernels {
     }
 
     /// Adds the relation of a kernel that could not be computed before it had a number.
-    pub(in crate::tower) fn relate(&mut self, number: u32, relation: Relation) {
+    pub(in crate::tower) fn relate(&mut self, number: u32, relation: AlgebraicRelation) {
         self.entries[number as usize].relation = Some(relation);
     }
 
@@ -90,12 +90,17 @@ impl Index<u32> for Kernels {
 
 impl Field<'_> {
     /// The number of the kernel that stands for an expression, entered if it is new.
-    pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> u32 {
+    pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<AlgebraicRelation>, positive: bool) -> u32 {
         self.round.kernels.borrow_mut().enter(Kernel { expr, relation, positive })
     }
 
     /// The kernel as a fraction.
-    pub(in crate::tower) fn entered(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> Fraction {
+    pub(in crate::tower) fn entered(
+        &self,
+        expr: Expr,
+        relation: Option<AlgebraicRelation>,
+        positive: bool,
+    ) -> Fraction {
         Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
     }
 

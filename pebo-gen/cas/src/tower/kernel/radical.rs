@@ -12,9 +12,9 @@ use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
-use crate::{Integer, Rational, Relation as Comparison};
+use crate::{Integer, Rational, Relation};
 
-use super::Relation;
+use super::AlgebraicRelation;
 use super::elements::UnsignedFactors;
 use crate::tower::fraction::Fraction;
 use crate::tower::sign::Sign;
@@ -80,7 +80,7 @@ impl Field<'_> {
         if let [(part, times)] = odd.as_slice() {
             // The part itself has the sign that the root needs.
             let size = if negative { -part } else { part.clone() };
-            self.signs().learn_from_existence(&size, Comparison::NonNegative)?;
+            self.signs().learn_from_existence(&size, Relation::NonNegative)?;
             let power = self.power_of(&size, &(&Rational::from(*times) * exponent))?;
             return self.mul(&total, &power);
         }
@@ -99,14 +99,14 @@ impl Field<'_> {
         for (part, _) in &powers {
             self.signs().leave_open(part);
         }
-        self.signs().learn_from_existence(&value, Comparison::NonNegative)?;
+        self.signs().learn_from_existence(&value, Relation::NonNegative)?;
         if let Some(root) = self.over_earlier_roots(negative, &powers, degree)? {
             return Ok(root);
         }
         let value = self.reduce(&value)?;
         let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
         let shown = self.arena.power(self.show_polynomial(&value), &exponent);
-        let kernel = self.enter(shown, Some(Relation { degree, value }), false);
+        let kernel = self.enter(shown, Some(AlgebraicRelation { degree, value }), false);
         self.round.products.borrow_mut().push(ProductRoot { degree, negative, powers, kernel });
         Ok(Fraction::polynomial(Poly::variable(kernel)))
     }
@@ -207,7 +207,8 @@ impl Field<'_> {
             }
         }
         // A root is zero where its radicand is: only that of a number is positive wherever it exists.
-        let root = self.entered(self.arena.power(key, &unit), Some(Relation { degree, value }), part.is_constant());
+        let root =
+            self.entered(self.arena.power(key, &unit), Some(AlgebraicRelation { degree, value }), part.is_constant());
         self.mul(&outside, &self.pow(&root, times)?)
     }
 
@@ -324,7 +325,7 @@ mod tests {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut facts = Facts::new();
-        facts.assume(y, Comparison::Positive);
+        facts.assume(y, Relation::Positive);
         let exp = arena.call(Function::Exp, &[x]);
         let next = arena.add(y, arena.one());
         let root = arena.sqrt(next);

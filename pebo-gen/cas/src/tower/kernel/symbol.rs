@@ -8,7 +8,7 @@
 use crate::graph::expr::{Expr, Symbol};
 use crate::poly::Poly;
 
-use super::Relation;
+use super::AlgebraicRelation;
 use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
@@ -28,7 +28,7 @@ impl Field<'_> {
         }
         let denominator = self.show_polynomial(&radicand.den);
         let kernel = self.arena.mul(denominator, self.arena.sub(expr, step.middle));
-        let relation = Relation { degree: root.degree, value };
+        let relation = AlgebraicRelation { degree: root.degree, value };
         let offset = self.fraction_of(&Poly::variable(self.enter(kernel, Some(relation), false)), &radicand.den)?;
         self.add(&middle, &offset)
     }

@@ -9,7 +9,7 @@ use crate::graph::function::Function;
 use crate::poly::Poly;
 use crate::{Integer, Rational};
 
-use super::Relation;
+use super::AlgebraicRelation;
 use super::range::Range;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Family, Field, Obstacle};
@@ -56,7 +56,7 @@ impl Field<'_> {
         let square = Poly::variable(cos);
         // sin^2 = 1 - cos^2; squaring one variable cannot exceed any limit
         let value = square.mul(&square, &self.work).map(|square| &Poly::one() - &square);
-        let relation = value.ok().map(|value| Relation { degree: 2, value });
+        let relation = value.ok().map(|value| AlgebraicRelation { degree: 2, value });
         let sin = self.entered(self.arena.call(Function::Sin, &[angle]), relation, false);
         (sin, Fraction::polynomial(Poly::variable(cos)))
     }

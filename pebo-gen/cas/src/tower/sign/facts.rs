@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::Relation as Comparison;
+use crate::Relation;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::poly::Poly;
@@ -57,7 +57,7 @@ impl Signs<'_, '_> {
         self.memory.round.undecided.borrow_mut().insert(part.clone());
     }
 
-    fn learn_sign(&self, expr: Expr, comparison: Comparison) -> Result<(), Obstacle> {
+    fn learn_sign(&self, expr: Expr, comparison: Relation) -> Result<(), Obstacle> {
         let fraction = self.field.fraction(expr)?;
         if fraction.den.is_constant() {
             self.memory.round.facts.borrow_mut().push((fraction.num, comparison));
@@ -67,8 +67,8 @@ impl Signs<'_, '_> {
         // the fact holds: then n*d is zero there.
         let cleared = self.field.has_relations(&fraction);
         let comparison = match comparison {
-            Comparison::Positive | Comparison::NonNegative if cleared => Comparison::NonNegative,
-            Comparison::NonZero if cleared => return Ok(()),
+            Relation::Positive | Relation::NonNegative if cleared => Relation::NonNegative,
+            Relation::NonZero if cleared => return Ok(()),
             exact => exact,
         };
         let product = fraction.num.mul(&fraction.den, self.field.limit())?;
@@ -78,10 +78,10 @@ impl Signs<'_, '_> {
 
     /// Learns a sign that must hold for the expressions to have values. If a kernel was already made with the sign
     /// unknown, the field starts again.
-    pub(in crate::tower) fn learn_from_existence(&self, poly: &Poly, comparison: Comparison) -> Result<(), Obstacle> {
+    pub(in crate::tower) fn learn_from_existence(&self, poly: &Poly, comparison: Relation) -> Result<(), Obstacle> {
         let known = self.of_polynomial(poly)?;
         let enough = match comparison {
-            Comparison::Positive => known == Some(Sign::Positive),
+            Relation::Positive => known == Some(Sign::Positive),
             _ => known.is_some_and(Sign::is_positive_or_zero),
         };
         if enough || known == Some(Sign::Negative) {
@@ -121,24 +121,24 @@ impl Signs<'_, '_> {
     }
 
     /// The facts, and that no sine or cosine exceeds one.
-    fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Comparison)> {
+    fn facts_about(&self, poly: &Poly) -> Vec<(Poly, Relation)> {
         let mut facts = self.memory.round.facts.borrow().clone();
         for &variable in poly.variables() {
             if let Node::Call(Function::Sin | Function::Cos, _) = self.field.arena.node(self.field.kernel(variable)) {
                 let value = Poly::variable(variable);
-                facts.push((&Poly::one() - &value, Comparison::NonNegative));
-                facts.push((&Poly::one() + &value, Comparison::NonNegative));
+                facts.push((&Poly::one() - &value, Relation::NonNegative));
+                facts.push((&Poly::one() + &value, Relation::NonNegative));
             }
         }
         facts
     }
 
     /// The sign of `poly = k * fact + rest` for a k > 0 that cancels a term, if the rest is not negative.
-    fn above_facts(&self, poly: &Poly, facts: &[(Poly, Comparison)], most: usize) -> Option<Sign> {
+    fn above_facts(&self, poly: &Poly, facts: &[(Poly, Relation)], most: usize) -> Option<Sign> {
         let mut found = None;
         for (fact, comparison) in facts {
             // Most facts are irrelevant: their variables exclude them before any term is examined.
-            if *comparison == Comparison::NonZero || !shares_a_variable(poly, fact) {
+            if *comparison == Relation::NonZero || !shares_a_variable(poly, fact) {
                 continue;
             }
             let effort = poly.term_count() * fact.term_count();
@@ -158,7 +158,7 @@ impl Signs<'_, '_> {
                 }
                 match sign {
                     Some(Sign::Positive) => return Some(Sign::Positive),
-                    Some(Sign::NonNegative | Sign::Zero) if *comparison == Comparison::Positive => {
+                    Some(Sign::NonNegative | Sign::Zero) if *comparison == Relation::Positive => {
                         return Some(Sign::Positive);
                     }
                     Some(Sign::NonNegative | Sign::Zero) => found = Some(Sign::NonNegative),

@@ -4,7 +4,7 @@ use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
-use crate::{Integer, Relation as Comparison};
+use crate::{Integer, Relation};
 
 use super::{Sign, Signs};
 
@@ -22,7 +22,7 @@ impl Signs<'_, '_> {
                 continue;
             }
             // c v + d > 0 fixes the sign of v if the constant helps.
-            if fact.degree(variable) != 1 || *comparison == Comparison::NonZero {
+            if fact.degree(variable) != 1 || *comparison == Relation::NonZero {
                 continue;
             }
             let constant = fact
@@ -31,7 +31,7 @@ impl Signs<'_, '_> {
                 .map_or(Integer::ZERO, |(_, coefficient)| coefficient.clone());
             let rising = !fact.leading_coefficient().is_negative();
             // v > -d/c with d <= 0: positive; v < d/|c| with d <= 0: negative.
-            let strict = *comparison == Comparison::Positive || !constant.is_zero();
+            let strict = *comparison == Relation::Positive || !constant.is_zero();
             match (rising, constant.is_zero() || constant.is_negative()) {
                 (true, true) if strict => return Some(Sign::Positive),
                 (true, true) => return Some(Sign::NonNegative),
@@ -129,7 +129,7 @@ mod tests {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut facts = Facts::new();
-        facts.assume(x, Comparison::Positive);
+        facts.assume(x, Relation::Positive);
         let exp = arena.call(Function::Exp, &[y]);
         let never = |expr: Expr| {
             let field = Field::over(&arena, &facts, &[expr]).unwrap();

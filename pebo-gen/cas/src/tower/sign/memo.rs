@@ -11,22 +11,22 @@ use rustc_hash::FxHashMap;
 use super::Sign;
 
 /// A kernel, and the number of known facts: with more of them its sign may be another.
-pub(super) type State = (u32, usize);
+pub(super) type Query = (u32, usize);
 
 /// The memo.
 #[derive(Default, Debug)]
 pub(in crate::tower) struct Memo {
-    answers: FxHashMap<State, Option<Sign>>,
+    answers: FxHashMap<Query, Option<Sign>>,
     /// Kernels with an open query.
     open: BTreeSet<u32>,
     /// Answers that were found within another query.
-    provisional: Vec<State>,
+    provisional: Vec<Query>,
 }
 
 impl Memo {
     /// The known sign.
-    pub(super) fn answer(&self, state: State) -> Option<&Option<Sign>> {
-        self.answers.get(&state)
+    pub(super) fn answer(&self, query: Query) -> Option<&Option<Sign>> {
+        self.answers.get(&query)
     }
 
     /// Begins a query; false if one for the kernel is open.
@@ -35,16 +35,16 @@ impl Memo {
     }
 
     /// Ends it with an answer; `outermost` if no other kind of query is open around it.
-    pub(super) fn end(&mut self, state: State, sign: Option<Sign>, outermost: bool) {
-        self.open.remove(&state.0);
+    pub(super) fn end(&mut self, query: Query, sign: Option<Sign>, outermost: bool) {
+        self.open.remove(&query.0);
         if self.open.is_empty() && outermost {
-            for state in self.provisional.drain(..) {
-                self.answers.remove(&state);
+            for query in self.provisional.drain(..) {
+                self.answers.remove(&query);
             }
         } else {
-            self.provisional.push(state);
+            self.provisional.push(query);
         }
-        self.answers.insert(state, sign);
+        self.answers.insert(query, sign);
     }
 }
 
@@ -57,7 +57,7 @@ mod tests {
         let mut memo = Memo::default();
         assert!(memo.begin(1));
         assert!(memo.begin(2));
-        assert!(!memo.begin(1), "a question is not asked within itself");
+        assert!(!memo.begin(1), "a query is not repeated within itself");
         memo.end((2, 0), None, true);
         assert_eq!(memo.answer((2, 0)), Some(&None), "until then it is used");
         memo.end((1, 0), Some(Sign::Positive), true);

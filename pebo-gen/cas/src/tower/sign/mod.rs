@@ -48,12 +48,12 @@ pub(in crate::tower) struct SignMemory {
     learned: RefCell<Vec<(Expr, Relation)>>,
     /// Signs of expressions over the box that the facts state.
     boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
-    round: Round,
+    round: KernelSigns,
 }
 
 /// The memory about kernels, discarded with them.
 #[derive(Default, Debug)]
-struct Round {
+struct KernelSigns {
     /// Polynomials of known signs: the facts, once they are read, and the conditions for the expressions to have
     /// values.
     facts: RefCell<Vec<(Poly, Relation)>>,
@@ -70,7 +70,7 @@ struct Round {
 impl SignMemory {
     /// Discards the memory about kernels, which are made anew.
     pub(in crate::tower) fn start_again(&mut self) {
-        self.round = Round::default();
+        self.round = KernelSigns::default();
     }
 }
 

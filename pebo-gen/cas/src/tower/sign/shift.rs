@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use crate::poly::Poly;
-use crate::{Integer, Relation as Comparison};
+use crate::{Integer, Relation};
 
 use super::{Sign, Signs, sign_of_terms};
 use crate::tower::Obstacle;
@@ -37,7 +37,7 @@ impl Signs<'_, '_> {
     fn shifted(
         &self,
         poly: &Poly,
-        facts: &[(Poly, Comparison)],
+        facts: &[(Poly, Relation)],
         distances: &Distances,
         tries: &mut u32,
     ) -> Result<Option<Sign>, Obstacle> {
@@ -48,7 +48,7 @@ impl Signs<'_, '_> {
             }
             // A fact in which a distance stands for its variable would be a different statement.
             let foreign = |fact: &Poly| fact.variables().iter().any(|v| distances.contains_key(v));
-            let bounds = facts.iter().filter(|(fact, comparison)| *comparison != Comparison::NonZero && !foreign(fact));
+            let bounds = facts.iter().filter(|(fact, comparison)| *comparison != Relation::NonZero && !foreign(fact));
             let bounds: Vec<Bound> =
                 bounds.filter_map(|(fact, comparison)| Bound::of(fact, *comparison, variable)).collect();
             let above = bounds.iter().map(|near| (near, None));
@@ -120,14 +120,14 @@ struct Bound {
 
 impl Bound {
     /// The bound that a fact sets; none if it is not affine in the variable with a number as factor.
-    fn of(fact: &Poly, comparison: Comparison, variable: u32) -> Option<Self> {
+    fn of(fact: &Poly, comparison: Relation, variable: u32) -> Option<Self> {
         if fact.degree(variable) != 1 {
             return None;
         }
         let slope = fact.leading_coefficient_in(variable).to_constant()?;
         let is_below = !slope.is_negative();
         let rest = fact - &Poly::variable(variable).scale(&slope);
-        let distance = if comparison == Comparison::Positive { Sign::Positive } else { Sign::NonNegative };
+        let distance = if comparison == Relation::Positive { Sign::Positive } else { Sign::NonNegative };
         Some(Self { is_below, slope: slope.abs(), rest: if is_below { -&rest } else { rest }, distance })
     }
 }
