@@ -49,7 +49,7 @@ impl Budget {
         Self::of(steps_of(seconds), None)
     }
 
-    /// As [`Self::of_seconds`], with a watch that is asked every few milliseconds and may end the budget too.
+    /// As [`Self::of_seconds`], with a watch that is polled every few milliseconds and may end the budget too.
     pub fn with_watch(seconds: f64, watch: impl Fn() -> bool + 'static) -> Self {
         Self::of(steps_of(seconds), Some(Box::new(watch)))
     }

@@ -109,7 +109,7 @@ impl Arena {
         known.remove(&expr).map_or(RationalValue::Irrational, RationalValue::Value)
     }
 
-    /// The enclosure that excludes zero, at the least precision that shows it.
+    /// The enclosure that excludes zero, at the least sufficient precision.
     pub fn separated_from_zero(&self, expr: Expr, point: &Point) -> Option<Interval> {
         match self.rational_at(expr, point) {
             RationalValue::Value(value) if value.is_zero() => return None,

@@ -213,7 +213,7 @@ impl<const N: usize, S: CoefficientSum> Table<N, S> {
 }
 
 /// The slot where the search for a key begins, among so many, which are a power of two and at least two. Hosts whose
-/// addresses have 32 bits get what those of 64 get.
+/// addresses have 32 bits get the same slots as those of 64.
 #[inline]
 fn first_slot(key: &[u64], slots: u64) -> u64 {
     let mixed = key.iter().fold(0_u64, |hash, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15));

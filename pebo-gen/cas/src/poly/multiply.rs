@@ -5,7 +5,8 @@
 //! are sorted at the end. They are words, double words, or integers of any size, by the sizes of the coefficients.
 //!
 //! One unit with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table
-//! or one long integer, for products and quotients alike, and each delegates what is too sparse or too dense for it.
+//! or one long integer, for products and quotients alike, and each delegates polynomials that are too sparse or too
+//! dense for it.
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};

@@ -193,12 +193,12 @@ impl<'a> Field<'a> {
         kernels.iter().filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
     }
 
-    /// The expressions that all kernels stand for.
+    /// The expressions of all kernels.
     pub fn kernels(&self) -> Vec<Expr> {
         self.round.kernels.borrow().iter().map(|(_, kernel)| kernel.expr).collect()
     }
 
-    /// The expression that a kernel stands for.
+    /// The expression of a kernel.
     pub fn kernel(&self, number: u32) -> Expr {
         self.round.kernels.borrow()[number].expr
     }

@@ -67,7 +67,7 @@ impl Integer {
     }
 }
 
-/// The entries of slots that are no longer than a word, with the opposite sign if asked for.
+/// The entries of slots that are no longer than a word, with the opposite sign if required.
 fn of_words(bytes: &[u8], slot: usize, places: usize, negative: bool) -> Vec<Integer> {
     // The digits in the highest bits: the sign is in place, and bytes beyond the slot are gone.
     let shift = 64 - 8 * slot;

@@ -190,7 +190,7 @@ impl Rational {
         self.root_exact(2)
     }
 
-    /// The largest rational of which both are integer multiples: never negative, zero of two zeros.
+    /// The largest rational with both as integer multiples: never negative, zero of two zeros.
     pub fn gcd(&self, other: &Self) -> Self {
         // Lowest terms: a prime of the joint numerator divides neither denominator.
         Self::from_lowest(self.numerator().gcd(&other.numerator()), self.denominator().lcm(&other.denominator()))

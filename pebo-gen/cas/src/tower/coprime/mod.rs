@@ -5,8 +5,8 @@
 //! starts again with the finer base. Holds after: any two elements that occur are coprime, so the relation of
 //! `sqrt(a*b)` and `sqrt(a)` is found.
 //!
-//! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of
-//! sums of sines and cosines are looked for ([`square`]).
+//! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of sums of sines
+//! and cosines are searched for ([`square`]).
 
 mod square;
 

@@ -24,7 +24,7 @@ const MOST_ATOMS: usize = 40;
 /// The greatest multiple of a unit, as in `sin(n*q)`: the polynomials have that degree.
 const MOST_MULTIPLES: i64 = 1 << 10;
 
-/// The atoms of arguments, each with the expression it stands for.
+/// The atoms of arguments, each as an expression and a fraction.
 pub(in crate::tower) type Atoms = BTreeMap<Family, Vec<(Expr, Fraction)>>;
 
 /// The units of atoms: all multiples of an atom that occur are whole multiples of its unit.

@@ -26,7 +26,7 @@ use crate::poly::Poly;
 /// A variable of the polynomials.
 #[derive(Debug)]
 pub(in crate::tower) struct Kernel {
-    /// The expression it stands for.
+    /// Its expression.
     pub expr: Expr,
     /// Its algebraic relation to earlier kernels, if there is one.
     pub relation: Option<AlgebraicRelation>,
@@ -49,7 +49,7 @@ pub(in crate::tower) struct Kernels {
 }
 
 impl Kernels {
-    /// The number of the kernel that stands for an expression.
+    /// The number of the kernel of an expression.
     pub(in crate::tower) fn number_of(&self, expr: Expr) -> Option<u32> {
         self.numbers.get(&expr).copied()
     }
@@ -89,7 +89,7 @@ impl Index<u32> for Kernels {
 }
 
 impl Field<'_> {
-    /// The number of the kernel that stands for an expression, entered if it is new.
+    /// The number of the kernel of an expression, entered if it is new.
     pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<AlgebraicRelation>, positive: bool) -> u32 {
         self.round.kernels.borrow_mut().enter(Kernel { expr, relation, positive })
     }

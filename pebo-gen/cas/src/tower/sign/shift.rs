@@ -20,7 +20,7 @@ const MOST_TRIES: u32 = 24;
 const MOST_TERMS: usize = 24;
 const MOST_DEGREE: u64 = 12;
 
-/// Variables that stand for a distance from a bound, with the sign of that.
+/// Variables that represent a distance from a bound, with the sign of that.
 type Distances = BTreeMap<u32, Sign>;
 
 impl Signs<'_, '_> {
@@ -46,7 +46,7 @@ impl Signs<'_, '_> {
             if distances.contains_key(&variable) {
                 continue;
             }
-            // A fact in which a distance stands for its variable would be a different statement.
+            // A fact in which a distance replaces its variable would be a different statement.
             let foreign = |fact: &Poly| fact.variables().iter().any(|v| distances.contains_key(v));
             let bounds = facts.iter().filter(|(fact, comparison)| *comparison != Relation::NonZero && !foreign(fact));
             let bounds: Vec<Bound> =

@@ -107,7 +107,7 @@ proptest! {
         prop_assert_eq!((x.lo(), x.hi(), x.width()), (value, value, 0.0));
     }
 
-    /// A stack machine: every operation is applied to whatever the earlier ones left.
+    /// A stack machine: every operation is applied to the results of earlier ones.
     #[test]
     fn never_panics(code in prop::collection::vec((0_usize..32, wide(), 0_u32..300), 1..40)) {
         let mut stack = vec![number(1), number(-2).hull(&number(3))];
