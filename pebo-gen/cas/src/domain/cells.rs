@@ -104,6 +104,7 @@ impl Domain {
 
     /// The domain without the assumptions that radicands are non-negative: that a root has a value says nothing of its
     /// non-smooth points.
+    #[must_use]
     pub fn without_radicand_facts(&self, arena: &Arena, exprs: &[Expr]) -> Self {
         let is_root = |(base, power): &(Expr, Rational)| (!power.is_integer()).then_some(*base);
         let radicands: Vec<Expr> = arena

@@ -86,8 +86,8 @@ impl Domain {
     }
 
     /// True if the expression vanishes only where an expression assumed non-zero does: its factors are among those of
-    /// the facts, as `d - 1` is of `L*(1 - d) != 0`, or among those of their squares, as `cos(q)^2 - 1` is of `sin(q)
-    /// != 0`.
+    /// the facts, as `d - 1` is of `L*(1 - d) != 0`, or among those of their squares, as `cos(q)^2 - 1` is of
+    /// `sin(q) != 0`.
     fn divides(&self, arena: &Arena, expr: Expr) -> Result<bool, Obstacle> {
         let symbols = arena.symbols_of(&[expr]);
         let facts = self.facts.iter().filter(|(fact, relation)| {

@@ -129,8 +129,8 @@ impl<'a> OpaqueTerms<'a> {
     }
 }
 
-/// The sums among expressions and their operands, operands first, that hold no divisions but by powers, as `1 +
-/// (q/K)^10`: others go over their common denominator, as `L - M^2/J`.
+/// The sums among expressions and their operands, operands first, that hold no divisions but by powers, as
+/// `1 + (q/K)^10`: others go over their common denominator, as `L - M^2/J`.
 fn whole_sums(arena: &Arena, parts: &[Expr]) -> FxHashSet<Expr> {
     let mut whole = FxHashSet::default();
     for part in parts {

@@ -1,4 +1,4 @@
-//! Expressions as text and as MathML.
+//! Expressions as text and as `MathML`.
 
 mod arrangement;
 pub mod letter;

@@ -1,8 +1,8 @@
 //! Equations cleared of inverse functions, roots and denominators around their unknowns.
 //!
 //! In: a difference that vanishes, and the unknowns in it. Out: others that vanish with it, in which the unknowns are
-//! more often linear: `s*sin(v) - p*cos(v)` for `v - atan2(p, s)`, `p - v^2` for `v - sqrt(p)`, `p - v*(1 + p)` for `v
-//! - p/(1 + p)`. The steps are taken as they come; the caller proves their result.
+//! more often linear: `s*sin(v) - p*cos(v)` for `v - atan2(p, s)`, `p - v^2` for `v - sqrt(p)`, `p - v*(1 + p)` for
+//! `v - p/(1 + p)`. The steps are taken as they come; the caller proves their result.
 
 use std::collections::BTreeSet;
 

@@ -83,8 +83,8 @@ impl Field<'_> {
         self.arena.multiply(&Rational::from(content), self.factors(&rest, 1))
     }
 
-    /// The fraction as a sum over the denominators that remain when each term of the numerator cancels on its own: `(a
-    /// + b)/L - G*c/C` rather than everything over `L*C`.
+    /// The fraction as a sum over the denominators that remain when each term of the numerator cancels on its own:
+    /// `(a + b)/L - G*c/C` rather than everything over `L*C`.
     pub fn show_apart(&self, fraction: &Fraction) -> Expr {
         self.show_apart_over(fraction, &Monomial::one())
     }

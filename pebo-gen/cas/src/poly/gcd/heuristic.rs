@@ -1,10 +1,10 @@
 //! Divisors of dense polynomials in one variable by those of integers (Char, Geddes and Gonnet 1989).
 //!
-//! In: two primitive polynomials a and b. Out: their greatest common divisor, or none if the attempt fails. With `c =
-//! gcd(a(xi), b(xi))` written in digits of at most `xi/2` in absolute value, c = G(xi); g is G without its content, and
-//! if g divides both it is the divisor: else that is `g*q`, and q(xi) divides the content, which is at most `xi/2`. But
-//! q divides a, whose roots are less than 1 + |a| in absolute value (Cauchy), so with `xi >= 2|a| + 2` any q that is no
-//! number has `|q(xi)| > xi/2`.
+//! In: two primitive polynomials a and b. Out: their greatest common divisor, or none if the attempt fails. With
+//! `c = gcd(a(xi), b(xi))` written in digits of at most `xi/2` in absolute value, c = G(xi); g is G without its
+//! content, and if g divides both it is the divisor: else that is `g*q`, and q(xi) divides the content, which is at
+//! most `xi/2`. But q divides a, whose roots are less than 1 + |a| in absolute value (Cauchy), so with `xi >= 2|a| + 2`
+//! any q that is no number has `|q(xi)| > xi/2`.
 
 use super::super::work::{TooLarge, Work};
 use super::super::{Monomial, Poly, packed};

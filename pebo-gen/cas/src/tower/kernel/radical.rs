@@ -111,8 +111,8 @@ impl Field<'_> {
         Ok(Fraction::polynomial(Poly::variable(kernel)))
     }
 
-    /// A square root as a product of one or two earlier ones over absolute values: all of them have values, so `sqrt(a
-    /// b) = sqrt(a c) sqrt(b c) / |c|`.
+    /// A square root as a product of one or two earlier ones over absolute values: all of them have values, so
+    /// `sqrt(a b) = sqrt(a c) sqrt(b c) / |c|`.
     fn over_earlier_roots(
         &self,
         negative: bool,

@@ -98,8 +98,8 @@ impl Signs<'_, '_> {
         Ok(())
     }
 
-    /// As a positive combination of facts plus a non-negative polynomial, or the negation of that; also after `cos^2 =
-    /// 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
+    /// As a positive combination of facts plus a non-negative polynomial, or the negation of that; also after
+    /// `cos^2 = 1 - sin^2`, which turns `c - b^2 cos^2` into `c - b^2 + b^2 sin^2`.
     pub(in crate::tower) fn by_facts(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         let facts = self.facts_about(poly);
         let mut found = None;
