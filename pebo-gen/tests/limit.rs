@@ -120,7 +120,7 @@ fn a_budget_never_makes_a_true_claim_false() {
 fn a_watch_ends_it_too() {
     let looks = std::rc::Rc::new(Cell::new(0));
     let count = looks.clone();
-    let budget = Budget::watched(1e6, move || {
+    let budget = Budget::with_watch(1e6, move || {
         count.set(count.get() + 1);
         count.get() > 20
     });

@@ -1,10 +1,11 @@
-//! What one question after another may take together: steps of work, and what its owner watches.
+//! The budget of a sequence of problems: steps of work, and a watch on time or memory.
 //!
-//! In: a number of steps, and perhaps a watch, which says that the owner's time or memory is used up. Out: whether
-//! there is something left. Once there is not, that stays so: whatever asks next is answered at once.
+//! In: a number of steps, and perhaps a watch, which reports that the owner's time or memory is used up. Out: true
+//! while something is left. An exhausted budget remains exhausted, and refuses every later request at once.
 //!
-//! Steps come first. They are the same on every machine, so that no verdict depends on its speed; the watch is for
-//! what they misjudge. A library has no clock of its own (WebAssembly has none): whoever has one passes the watch.
+//! Steps come first. They are the same on every machine, so that no verdict depends on its speed; the watch covers
+//! their misjudgements. A library has no clock of its own (WebAssembly has none): a caller that has one passes the
+//! watch.
 
 use std::cell::Cell;
 use std::fmt;
@@ -14,28 +15,28 @@ use std::rc::Rc;
 /// before its clock does.
 const STEPS_PER_SECOND: f64 = 100_000_000.0;
 
-/// Questions that a budget is enough for if each takes as much as one may.
-const QUESTIONS: u64 = 20;
+/// Problems that a budget suffices for if each takes its limit.
+const PROBLEMS: u64 = 20;
 
 /// Steps between two looks at the watch: some milliseconds.
 const BETWEEN_LOOKS: u64 = 1 << 18;
 
-/// Says that what may be taken is used up, of time or memory.
+/// Reports that the available time or memory is used up.
 type Watch = dyn Fn() -> bool;
 
 /// The steps that are left. Clones draw from the same steps.
 #[derive(Clone)]
-pub struct Budget(Rc<Shared>);
+pub struct Budget(Rc<Account>);
 
-struct Shared {
+struct Account {
     left: Cell<u64>,
-    of_one_question: u64,
+    of_one_problem: u64,
     stopped: Cell<bool>,
     watch: Option<Box<Watch>>,
 }
 
 impl Budget {
-    /// What a command may take unless it says otherwise.
+    /// The default budget of a command, in seconds.
     pub const SECONDS: f64 = 10.0;
 
     /// Without end, for a single small question.
@@ -43,30 +44,30 @@ impl Budget {
         Self::of(u64::MAX, None)
     }
 
-    /// As many steps as are done in so many seconds, whatever they take here.
+    /// The steps done in so many seconds on a reference machine.
     pub fn of_seconds(seconds: f64) -> Self {
         Self::of(steps_of(seconds), None)
     }
 
-    /// The same, and it ends too when the watch says so, which is asked every few milliseconds.
-    pub fn watched(seconds: f64, watch: impl Fn() -> bool + 'static) -> Self {
+    /// As [`Self::of_seconds`], with a watch that is polled every few milliseconds and may end the budget too.
+    pub fn with_watch(seconds: f64, watch: impl Fn() -> bool + 'static) -> Self {
         Self::of(steps_of(seconds), Some(Box::new(watch)))
     }
 
     fn of(left: u64, watch: Option<Box<Watch>>) -> Self {
-        // Of a budget without end, and of a short one, what a question has of the usual one.
+        // Unlimited and short budgets give a problem its share of the usual budget.
         let usual = steps_of(Self::SECONDS);
         let whole = if left == u64::MAX { usual } else { left.max(usual) };
-        let of_one_question = whole / QUESTIONS;
-        Self(Rc::new(Shared { left: Cell::new(left), of_one_question, stopped: Cell::new(false), watch }))
+        let of_one_problem = whole / PROBLEMS;
+        Self(Rc::new(Account { left: Cell::new(left), of_one_problem, stopped: Cell::new(false), watch }))
     }
 
     /// The steps that a single normal form may take, so that others can follow where it is given up.
-    pub(super) fn of_one_question(&self) -> u64 {
-        self.0.of_one_question
+    pub(super) fn of_one_problem(&self) -> u64 {
+        self.0.of_one_problem
     }
 
-    /// Whether nothing is left.
+    /// True if nothing is left.
     pub fn is_exhausted(&self) -> bool {
         self.0.stopped.get() || self.0.left.get() == 0
     }
@@ -82,8 +83,8 @@ impl Budget {
         !self.is_exhausted()
     }
 
-    /// Does something with at most one part in so many of what is left. If that is used up, the others remain: what
-    /// is good to know does not use up what must be known.
+    /// Runs a closure with at most one part in so many of the steps that are left, so that optional knowledge does not
+    /// use up the budget of necessary knowledge.
     pub fn share<T>(&self, parts: u64, run: impl FnOnce() -> T) -> T {
         let before = self.0.left.get();
         let granted = before / parts;
@@ -120,7 +121,7 @@ mod tests {
     use crate::number::interval::Precision;
     use crate::{Arena, Expr, Function};
 
-    /// What something takes of the arena's budget.
+    /// The steps that a closure takes of the arena's budget.
     fn steps(arena: &Arena, run: impl FnOnce()) -> u64 {
         let before = arena.budget().0.left.get();
         run();
@@ -135,7 +136,7 @@ mod tests {
         [arena.product(sines.iter().copied()), arena.sum(sines)]
     }
 
-    /// Steps stand for time: what makes or evaluates few long expressions takes as many as what does so with many short ones.
+    /// Steps stand for time: making or evaluating few long expressions takes as many steps as many short ones do.
     #[test]
     fn long_expressions_take_steps_for_each_operand() {
         let arena = Arena::new();
@@ -154,10 +155,10 @@ mod tests {
     }
 
     #[test]
-    fn a_question_has_a_part_of_the_whole_that_grows_with_it() {
-        let usual = Budget::default().of_one_question();
-        assert_eq!(Budget::unlimited().of_one_question(), usual);
-        assert_eq!(Budget::of_seconds(1.0).of_one_question(), usual);
-        assert_eq!(Budget::of_seconds(6.0 * Budget::SECONDS).of_one_question(), 6 * usual);
+    fn a_problem_has_a_share_that_grows_with_the_whole() {
+        let usual = Budget::default().of_one_problem();
+        assert_eq!(Budget::unlimited().of_one_problem(), usual);
+        assert_eq!(Budget::of_seconds(1.0).of_one_problem(), usual);
+        assert_eq!(Budget::of_seconds(6.0 * Budget::SECONDS).of_one_problem(), 6 * usual);
     }
 }

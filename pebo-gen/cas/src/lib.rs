@@ -1,4 +1,4 @@
-//! Exact algebra: expressions, their normal form, and the questions asked of them.
+//! Exact algebra: expressions, their normal form, and decisions about them.
 //!
 //! Knows neither plants nor spans. An [`Arena`] owns expressions; [`Expr`] is a copyable handle.
 

@@ -173,7 +173,7 @@ impl Ask {
     /// The budget of the proofs, which begin now.
     pub(super) fn budget(&self) -> Budget {
         match self.watch.clone() {
-            Some(watch) => Budget::watched(self.seconds, move || watch(Stage::Proof).is_break()),
+            Some(watch) => Budget::with_watch(self.seconds, move || watch(Stage::Proof).is_break()),
             None => Budget::of_seconds(self.seconds),
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::report::notes;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::{Class, Regression, RegressionKind, Verdict};
 use pebo_design::plant::Plant;
@@ -113,7 +113,9 @@ fn equation(
 fn in_z(plant: &Plant, regression: &Regression, row: usize) -> Option<Expr> {
     let arena = &plant.arena;
     // Functions of theta that have no value at zero, or not at every theta, cannot be read there.
-    if regression.kind == RegressionKind::Implicit || !arena.asks(&regression.eta, Want::Value).is_empty() {
+    if regression.kind == RegressionKind::Implicit
+        || !arena.domain_conditions(&regression.eta, Regularity::Defined).is_empty()
+    {
         return None;
     }
     let zeros: BTreeMap<Symbol, Expr> = plant.theta.iter().map(|theta| (*theta, arena.zero())).collect();

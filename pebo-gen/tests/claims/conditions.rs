@@ -1,7 +1,7 @@
 //! Where the claims hold: conditions that are listed, discharged, or met.
 
 use pebo_cas::Relation;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_gen::analysis::{Equilibrium, Outcome, Verdict};
 use pebo_gen::derive;
 use pebo_gen::source::{Code, Source};
@@ -233,7 +233,7 @@ fn conditions_are_those_of_every_formula() {
         if let (Outcome::Accepted, Some(regression)) = (outcome, &found.derivation.regression.result) {
             let rows = regression.phi_1.iter().flatten().chain(&regression.phi_0).copied();
             let rows: Vec<_> = rows.collect();
-            for (part, _) in arena.asks(&rows, Want::Value) {
+            for (part, _) in arena.domain_conditions(&rows, Regularity::Defined) {
                 let used = arena.symbols_of(&[part]);
                 assert!(!used.iter().any(|s| found.plant.is_of_extension(*s)), "{what}: {}", arena.print(part));
             }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use pebo_cas::graph::function::{Asks, Function, Row};
+use pebo_cas::graph::function::{Conditions, Function, FunctionRow};
 use pebo_cas::{Arena, Expr};
 use pebo_gen::model::{Estimator, json_schema};
 use pebo_gen::source::Code;
@@ -125,7 +125,7 @@ fn functions() -> String {
             names.join(", "),
             list(row.aliases),
             row.rust,
-            everywhere(&arena, (row.asks)(&arena, &arguments)),
+            everywhere(&arena, (row.conditions)(&arena, &arguments)),
             with_smooth(row, &arena, &arguments, &derivative.join(", ")),
         )
         .expect("a string");
@@ -134,17 +134,17 @@ fn functions() -> String {
 }
 
 /// What is asked for a value, or that nothing is.
-fn everywhere(arena: &Arena, asks: Asks) -> String {
+fn everywhere(arena: &Arena, asks: Conditions) -> String {
     if asks.is_empty() { "everywhere".to_owned() } else { conditions(arena, asks) }
 }
 
-fn conditions(arena: &Arena, asks: Asks) -> String {
+fn conditions(arena: &Arena, asks: Conditions) -> String {
     let each = asks.into_iter().map(|(expr, relation)| format!("`{} {}`", arena.print(expr), relation.sign()));
     each.collect::<Vec<_>>().join(", ")
 }
 
 /// The derivative, with what it asks beyond the value.
-fn with_smooth(row: &Row, arena: &Arena, arguments: &[Expr], derivative: &str) -> String {
+fn with_smooth(row: &FunctionRow, arena: &Arena, arguments: &[Expr], derivative: &str) -> String {
     match row.smooth {
         Some(smooth) => format!("{derivative} where {}", conditions(arena, smooth(arena, arguments))),
         None => derivative.to_owned(),

@@ -1,8 +1,8 @@
 //! Signs over a box of values, by interval arithmetic with subdivision.
 //!
-//! In: an expression, and a domain that bounds each of its symbols from both sides. Out: its sign, if
-//! one holds throughout the box; the box contains the domain. The enclosures are rigorous, so is the
-//! answer; where the expression comes close to zero, there is none.
+//! In: an expression, and a domain that bounds each of its symbols from both sides. Out: its sign, if one holds
+//! throughout the box; the box contains the domain. The enclosures and the answer are rigorous; there is no answer
+//! where the expression comes close to zero.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::number::interval::{Interval, Precision};
 use crate::number::rational::half;
 use crate::{Domain, Rational};
 
-/// How many boxes a question of the normal form may take.
+/// The greatest number of boxes for one sign of the normal form.
 const MOST_BOXES: usize = 256;
 
 /// Bits of the enclosures: the width of a box matters more.
@@ -22,7 +22,7 @@ const PRECISION: Precision = Precision::new(64);
 pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 impl Domain {
-    /// Whether the expression is positive (true) or negative (false) throughout the domain.
+    /// The sign of the expression throughout the domain: positive (true) or negative (false).
     pub fn sign_over_box(&self, arena: &Arena, expr: Expr) -> Option<bool> {
         let symbols = arena.symbols_of(&[expr]);
         if symbols.is_empty() {
@@ -34,10 +34,10 @@ impl Domain {
     }
 }
 
-/// Whether the expression is positive (true) or negative (false) on the whole box, seen by dividing it
-/// into no more than so many boxes.
+/// The sign of the expression on the whole box: positive (true) or negative (false), by division into at most so many
+/// boxes.
 pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
-    // Most expressions that have no sign show it at a corner, where they are zero or have another one.
+    // Most expressions without a sign show it at a corner, where they are zero or have another sign.
     let mut corners = corners(&whole).into_iter().map(|corner| sign(arena, expr, &corner));
     let first = corners.next()??;
     if !corners.all(|other| other == Some(first)) {
@@ -56,7 +56,7 @@ pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Opt
     None
 }
 
-/// The sign that one enclosure shows.
+/// The sign that one enclosure proves.
 fn sign(arena: &Arena, expr: Expr, part: &Ranges) -> Option<bool> {
     let mut values = BTreeMap::new();
     for (symbol, (low, high)) in part {
@@ -83,7 +83,7 @@ fn corners(whole: &Ranges) -> Vec<Ranges> {
     (0..1_u32 << sides.len()).map(|corner| at(&|symbol| corner >> side(symbol) & 1 == 1)).collect()
 }
 
-/// The box cut in two across its widest side; none of a point.
+/// The box cut in two across its widest side; none if it is a point.
 fn halves(part: Ranges) -> Option<[Ranges; 2]> {
     let widest = part.iter().max_by_key(|(_, (low, high))| high - low)?;
     let (symbol, (low, high)) = (*widest.0, widest.1.clone());
@@ -103,7 +103,7 @@ mod tests {
     use crate::Relation;
     use crate::graph::function::Function;
 
-    /// The domain `low < x < high`, with an end at an irrational number where that is asked for.
+    /// The domain `low < x < high`, with an irrational end if needed.
     fn between(arena: &Arena, low: Expr, high: Expr) -> Domain {
         let x = arena.variable("x");
         let mut domain = Domain::default();

@@ -1,30 +1,30 @@
-//! The parts of a domain on each of which formulas are analytic.
+//! The cells of a domain on which formulas are analytic.
 //!
-//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse sines.
-//! Out: the domain divided by the signs of what stands under these. What is seen at a point of a part holds almost
-//! everywhere in that part, and need not in another: `q + |q|` is no zero, and vanishes wherever q is negative.
+//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse
+//! sines. Out: the domain divided by the signs of their arguments. A property proved at a point of a cell holds almost
+//! everywhere in that cell, but not in others: `q + |q|` is not the zero function, and vanishes wherever q is negative.
 //!
-//! An angle that is taken back from its functions, as `asin(sin(q))`, is another straight line on each of infinitely many
-//! intervals. Where the normal form does not know on which, this is an obstacle.
+//! An angle recovered from its functions, as `asin(sin(q))`, is a different straight line on each of infinitely many
+//! intervals. This is an obstacle where the normal form cannot decide the interval.
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Facts, Rational, Relation};
 
-/// Parts that are looked at one by one.
-const MOST_PARTS: usize = 16;
+/// The greatest number of cells that are examined one by one.
+const MOST_CELLS: usize = 16;
 
-/// A part of a domain.
+/// A cell of a domain.
 #[derive(Clone, Debug)]
-pub struct Part {
-    /// The points of the part.
+pub struct Cell {
+    /// The points of the cell.
     pub domain: Domain,
-    /// What divides it from the others, and whether that is positive or negative in this part.
+    /// The expressions that divide it from other cells, with their signs in this cell.
     pub sides: Vec<(Expr, Side)>,
 }
 
-/// The sign of what divides.
+/// The sign of a dividing expression.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Side {
     /// `> 0`
@@ -44,54 +44,54 @@ impl Side {
 }
 
 impl Domain {
-    /// The parts on which the formulas are analytic in what varies; one, if they are so everywhere. An obstacle, where there
-    /// are too many or it is open whether one of them has points.
-    pub fn parts(&self, arena: &Arena, exprs: &[Expr], varies: impl Fn(Expr) -> bool) -> Result<Vec<Part>, Obstacle> {
-        let mut parts = Vec::new();
-        let mut open = vec![Part { domain: self.clone(), sides: Vec::new() }];
-        while let Some(part) = open.pop() {
+    /// The cells on which the formulas are analytic in the varying symbols; one cell if they are analytic everywhere.
+    /// An obstacle if there are too many, or if it is open that one of them has points.
+    pub fn cells(&self, arena: &Arena, exprs: &[Expr], varies: impl Fn(Expr) -> bool) -> Result<Vec<Cell>, Obstacle> {
+        let mut cells = Vec::new();
+        let mut open = vec![Cell { domain: self.clone(), sides: Vec::new() }];
+        while let Some(cell) = open.pop() {
             // Of `sqrt((|q| - 1)^2)` each side of q = 0 has a border of its own.
-            let mut dividers = part.domain.dividers(arena, exprs)?.into_iter().filter(|divider| varies(*divider));
-            let finer = dividers.find_map(|divider| match part.divided(arena, divider) {
+            let mut dividers = cell.domain.dividers(arena, exprs)?.into_iter().filter(|divider| varies(*divider));
+            let finer = dividers.find_map(|divider| match cell.divide(arena, divider) {
                 Ok(finer) => (finer.len() > 1).then_some(Ok(finer)),
                 Err(obstacle) => Some(Err(obstacle)),
             });
             match finer {
                 Some(finer) => open.extend(finer?.into_iter().rev()),
-                None => parts.push(part),
+                None => cells.push(cell),
             }
-            if parts.len() + open.len() > MOST_PARTS {
+            if cells.len() + open.len() > MOST_CELLS {
                 return Err(Obstacle::TooLarge);
             }
         }
-        for part in &parts {
-            part.domain.tell_angles_apart(arena, exprs, &varies)?;
+        for cell in &cells {
+            cell.domain.check_angles(arena, exprs, &varies)?;
         }
-        Ok(parts)
+        Ok(cells)
     }
 
-    /// The factors of what stands under absolute values, also where these are written as roots of squares or as other
+    /// The factors of the arguments of absolute values, also where these are written as roots of squares or as other
     /// functions: `exp(log(q^2)/2)` is `|q|`.
     pub(crate) fn dividers(&self, arena: &Arena, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
         let mut under = arena.dividers(exprs);
-        let mut magnitudes: Vec<Expr> =
-            arena.magnitudes(exprs).into_iter().filter(|root| !arena.symbols_of(&[*root]).is_empty()).collect();
-        magnitudes.extend(arena.branched(exprs));
-        let field = Field::on(arena, &self.but_for_radicands(arena, &magnitudes), &magnitudes)?;
-        for magnitude in &magnitudes {
-            field.fraction(*magnitude)?;
+        let mut absolute_values: Vec<Expr> =
+            arena.absolute_values(exprs).into_iter().filter(|root| !arena.symbols_of(&[*root]).is_empty()).collect();
+        absolute_values.extend(arena.branched(exprs));
+        let field = Field::on(arena, &self.without_radicand_facts(arena, &absolute_values), &absolute_values)?;
+        for value in &absolute_values {
+            field.fraction(*value)?;
         }
-        let of_magnitude = |kernel: Expr| match arena.node(kernel) {
+        let argument_of = |kernel: Expr| match arena.node(kernel) {
             Node::Call(Function::Abs, argument) => Some(argument[0]),
             _ => None,
         };
-        under.extend(field.kernels().into_iter().filter_map(of_magnitude));
+        under.extend(field.kernels().into_iter().filter_map(argument_of));
         let field = Field::on(arena, self, &under)?;
         let mut found = Vec::new();
         for divider in under {
             let fraction = field.fraction(divider)?;
-            for part in [fraction.numerator(), fraction.denominator()] {
-                for (factor, _) in part.factored(field.limit())?.factors {
+            for poly in [fraction.numerator(), fraction.denominator()] {
+                for (factor, _) in poly.factored(field.limit())?.factors {
                     let factor = field.show(&field.of_polynomial(&factor)?);
                     if !found.contains(&factor) {
                         found.push(factor);
@@ -102,9 +102,10 @@ impl Domain {
         Ok(found)
     }
 
-    /// The domain without what is assumed of radicands as they are written, which would be kept for it: that a root has a
-    /// value says nothing of where it bends.
-    pub fn but_for_radicands(&self, arena: &Arena, exprs: &[Expr]) -> Self {
+    /// The domain without the assumptions that radicands are non-negative: that a root has a value says nothing of its
+    /// non-smooth points.
+    #[must_use]
+    pub fn without_radicand_facts(&self, arena: &Arena, exprs: &[Expr]) -> Self {
         let is_root = |(base, power): &(Expr, Rational)| (!power.is_integer()).then_some(*base);
         let radicands: Vec<Expr> = arena
             .postorder(exprs)
@@ -123,10 +124,10 @@ impl Domain {
         Self { facts, ..self.clone() }
     }
 
-    /// An obstacle where an inverse circular function that stays in the normal form moves as a multiple of its arguments,
-    /// or as another one: what it differs by is then another number on each of many intervals. Equations of the domain are
-    /// left out: one that gives an output as an angle makes that no other function of its arguments.
-    fn tell_angles_apart(&self, arena: &Arena, exprs: &[Expr], varies: &impl Fn(Expr) -> bool) -> Result<(), Obstacle> {
+    /// An obstacle if an inverse circular function that remains in the normal form varies as a multiple of its
+    /// arguments or of another one: their difference is then a different number on each of many intervals. Equations of
+    /// the domain are ignored: an output given as an angle is no other function of its arguments.
+    fn check_angles(&self, arena: &Arena, exprs: &[Expr], varies: &impl Fn(Expr) -> bool) -> Result<(), Obstacle> {
         let is_angle = |e: &Expr| {
             let inverse = [Function::Asin, Function::Acos, Function::Atan, Function::Atan2];
             matches!(arena.node(*e), Node::Call(function, _) if inverse.contains(&function)) && varies(*e)
@@ -169,27 +170,27 @@ impl Domain {
     }
 }
 
-impl Part {
-    /// What of the part is on either side.
-    fn divided(&self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
+impl Cell {
+    /// The two cells of this one on either side of a divisor, if they have points.
+    fn divide(&self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
         let sides = [(Side::Positive, divisor), (Side::Negative, arena.neg(divisor))];
         if sides.iter().any(|(_, positive)| self.domain.implies(arena, *positive, Relation::NonNegative)) {
             return Ok(vec![self.clone()]);
         }
         let one = |(side, positive): (Side, Expr)| {
-            let mut part = self.clone();
-            part.domain.facts.assume(positive, Relation::Positive);
-            part.sides.push((divisor, side));
-            let met = part.domain.points(arena, &[divisor]).next().is_some();
-            if met { Ok(part) } else { Err(Obstacle::NoPoint) }
+            let mut cell = self.clone();
+            cell.domain.facts.assume(positive, Relation::Positive);
+            cell.sides.push((divisor, side));
+            let met = cell.domain.points(arena, &[divisor]).next().is_some();
+            if met { Ok(cell) } else { Err(Obstacle::NoPoint) }
         };
         sides.into_iter().map(one).collect()
     }
 }
 
 impl Arena {
-    /// What stands under absolute values, also where these are written as other functions: where it passes zero, formulas
-    /// bend or jump.
+    /// The arguments of absolute values, also where these are written as other functions: formulas are non-smooth or
+    /// jump at their zeros.
     pub fn dividers(&self, exprs: &[Expr]) -> Vec<Expr> {
         let mut found = Vec::new();
         let mut open = exprs.to_vec();
@@ -207,7 +208,7 @@ impl Arena {
         found
     }
 
-    /// The expressions that hold roots or logarithms: what these make together may be a magnitude.
+    /// The expressions that hold roots or logarithms: their combination may be an absolute value.
     pub fn branched(&self, exprs: &[Expr]) -> Vec<Expr> {
         let is_one = |expr: Expr| match self.node(expr) {
             Node::Product(product) => product.factors.iter().any(|(_, power)| !power.is_integer()),
@@ -219,8 +220,8 @@ impl Arena {
         exprs.iter().copied().filter(holds).collect()
     }
 
-    /// What may be the magnitude of something: even roots, and the cosines of inverse sines and cosines.
-    fn magnitudes(&self, exprs: &[Expr]) -> Vec<Expr> {
+    /// Candidates for absolute values: even roots, and the cosines of inverse sines and cosines.
+    fn absolute_values(&self, exprs: &[Expr]) -> Vec<Expr> {
         let mut found = Vec::new();
         for node in self.postorder(exprs) {
             match self.node(node) {
@@ -244,47 +245,47 @@ impl Arena {
 mod tests {
     use super::*;
 
-    fn parts(assumed: &[fn(&Arena, Expr) -> Expr], formula: fn(&Arena, [Expr; 2]) -> Expr) -> Vec<String> {
+    fn cells(assumed: &[fn(&Arena, Expr) -> Expr], formula: fn(&Arena, [Expr; 2]) -> Expr) -> Vec<String> {
         let arena = Arena::new();
         let [a, b] = ["a", "b"].map(|name| arena.variable(name));
         let mut domain = Domain::default();
         for fact in assumed {
             domain.facts.assume(fact(&arena, b), Relation::Positive);
         }
-        let shown = |part: Part| {
-            let sides = part.sides.iter().map(|(divisor, side)| format!("{} {}", arena.print(*divisor), side.sign()));
+        let shown = |cell: Cell| {
+            let sides = cell.sides.iter().map(|(divisor, side)| format!("{} {}", arena.print(*divisor), side.sign()));
             sides.collect::<Vec<_>>().join(", ")
         };
-        domain.parts(&arena, &[formula(&arena, [a, b])], |_| true).unwrap().into_iter().map(shown).collect()
+        domain.cells(&arena, &[formula(&arena, [a, b])], |_| true).unwrap().into_iter().map(shown).collect()
     }
 
     #[test]
-    fn a_domain_is_divided_where_formulas_bend_and_has_points_on_both_sides() {
+    fn a_domain_is_divided_at_non_smooth_points_and_has_points_on_both_sides() {
         let size = |arena: &Arena, [a, b]: [Expr; 2]| arena.add(a, arena.call(Function::Abs, &[b]));
-        assert_eq!(parts(&[], |arena, [a, b]| arena.mul(a, arena.call(Function::Sin, &[b]))), [""]);
-        assert_eq!(parts(&[], size), ["b > 0", "b < 0"]);
-        assert_eq!(parts(&[|arena, b| arena.sub(b, arena.one())], size), [""]);
+        assert_eq!(cells(&[], |arena, [a, b]| arena.mul(a, arena.call(Function::Sin, &[b]))), [""]);
+        assert_eq!(cells(&[], size), ["b > 0", "b < 0"]);
+        assert_eq!(cells(&[|arena, b| arena.sub(b, arena.one())], size), [""]);
         let both = |arena: &Arena, [a, b]: [Expr; 2]| {
             arena.mul(arena.call(Function::Sign, &[a]), arena.call(Function::Max, &[a, b]))
         };
-        assert_eq!(parts(&[], both).len(), 4);
+        assert_eq!(cells(&[], both).len(), 4);
         // Three of four: a > 1 and a < -1 exclude each other.
-        assert_eq!(parts(&[], |arena, [a, _]| arena.call(Function::Sat, &[a])).len(), 3);
+        assert_eq!(cells(&[], |arena, [a, _]| arena.call(Function::Sat, &[a])).len(), 3);
     }
 
     #[test]
-    fn magnitudes_are_seen_however_they_are_written() {
+    fn absolute_values_are_found_in_any_form() {
         let by_logarithm = |arena: &Arena, [a, _]: [Expr; 2]| {
             let log = arena.call(Function::Log, &[arena.mul(a, a)]);
             arena.call(Function::Exp, &[arena.scale(log, &Rational::new(1, 2).unwrap())])
         };
-        assert_eq!(parts(&[], by_logarithm), ["a > 0", "a < 0"]);
+        assert_eq!(cells(&[], by_logarithm), ["a > 0", "a < 0"]);
         // sqrt((|a| - 1)^2)
         let within = |arena: &Arena, [a, _]: [Expr; 2]| {
             let square = arena.mul(a, a);
             let root = arena.sqrt(square);
             arena.sqrt(arena.sum([square, arena.one(), arena.scale(root, &Rational::from(-2))]))
         };
-        assert_eq!(parts(&[], within).len(), 4, "{:?}", parts(&[], within));
+        assert_eq!(cells(&[], within).len(), 4, "{:?}", cells(&[], within));
     }
 }

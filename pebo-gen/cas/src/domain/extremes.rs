@@ -1,19 +1,19 @@
-//! What inequalities with magnitudes, greatest and least values say without these.
+//! Consequences of inequalities with absolute values, maxima and minima, written without these.
 //!
-//! In: an expression that is positive, or not negative. Out: expressions that are at least as large wherever it has a value,
-//! in which `|a|` under a minus is `a` and `-a`, and so is each argument of a greatest or least value: `1 - |q|` is at most
-//! `1 - q` and `1 + q`. Together they say the same, and of each it is easier to see what it implies.
+//! In: an expression that is positive, or not negative. Out: expressions that are at least as large wherever it has a
+//! value, in which `|a|` under a minus is `a` and `-a`, and so is each argument of a greatest or least value: `1 - |q|`
+//! is at most `1 - q` and `1 + q`. Combined they are equivalent, and the implications of each are easier to find.
 
 use crate::Rational;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 
-/// Magnitudes, greatest and least values of one inequality that are taken apart.
+/// The greatest number of absolute values, maxima and minima of one inequality that are expanded.
 const MOST_EXTREMES: usize = 3;
 
 impl Arena {
-    /// The expressions without extremes that are nowhere less than this one; none where it has no such term.
+    /// The expressions without extremes that are nowhere less than this one; none if it has no such term.
     pub fn above_extremes(&self, expr: Expr) -> Vec<Expr> {
         let mut above = vec![expr];
         for _ in 0..MOST_EXTREMES {
@@ -23,7 +23,7 @@ impl Arena {
         above
     }
 
-    /// The same for the first such term; the expression itself where it has none.
+    /// The same for the first such term; the expression itself if it has none.
     fn above_an_extreme(&self, expr: Expr) -> Vec<Expr> {
         let summands = match self.node(expr) {
             Node::Sum(sum) => sum.terms.clone(),
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_bounds_an_extreme_is_bounded_apart() {
+    fn bounds_of_an_extreme_are_bounds_of_its_arguments() {
         let arena = Arena::new();
         let [q, u] = ["q", "u"].map(|name| arena.variable(name));
         let call = |function, arguments: &[Expr]| arena.call(function, arguments);
@@ -67,7 +67,7 @@ mod tests {
                 arena.sum([one, arena.neg(call(Function::Abs, &[q])), arena.neg(call(Function::Abs, &[u]))]),
                 vec!["1 - q - u", "1 - q + u", "q - u + 1", "q + u + 1"],
             ),
-            // Where it is large, nothing follows of what is in it.
+            // A large absolute value implies nothing of its argument.
             (arena.sub(call(Function::Abs, &[q]), one), vec![]),
             (arena.neg(call(Function::Min, &[q, u])), vec![]),
             (arena.mul(u, call(Function::Abs, &[q])), vec![]),

@@ -1,44 +1,44 @@
-//! Whether the assumptions tell how an expression compares with zero.
+//! Proves signs of expressions from the assumptions of a domain.
 //!
-//! In: a domain and an expression. Out: yes, where a fact, algebra over the facts and the equations, or an enclosure over
-//! the box that they state shows it; what cannot be decided is not shown.
+//! In: a domain and an expression. Out: yes, if a fact, algebra over the facts and the equations, or an enclosure over
+//! the box that they state proves it; an undecided sign is not proved.
 
 use crate::graph::arena::Arena;
 use crate::graph::expr::Expr;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Domain, Relation};
 
-/// How many places where an expression bends are looked at, each from both sides.
+/// The greatest number of non-smooth points of an expression that are examined, each from both sides.
 const MOST_BORDERS: usize = 2;
 
-/// Signs that a value has somewhere.
+/// The signs that a value has at some points.
 #[derive(Default)]
-struct Signs {
+struct SampledSigns {
     positive: bool,
     negative: bool,
 }
 
 impl Domain {
-    /// Whether what a formula asks is granted: of numbers it holds, or the facts show it.
-    pub fn grants(&self, arena: &Arena, ask: (Expr, Relation)) -> bool {
-        arena.holds_of_number(ask) || self.implies(arena, ask.0, ask.1)
+    /// True if a domain condition of a formula is granted: it holds of numbers, or the facts prove it.
+    pub fn grants(&self, arena: &Arena, condition: (Expr, Relation)) -> bool {
+        arena.holds_of_number(condition) || self.implies(arena, condition.0, condition.1)
     }
 
-    /// Whether the facts show that the expression compares so with zero, wherever it has a value.
+    /// True if the facts prove that the expression compares so with zero, wherever it has a value.
     pub fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
         self.implies_across(arena, expr, relation, MOST_BORDERS)
     }
 
-    /// The same with a look at either side of so many places where the expression bends.
+    /// The same with an examination of both sides of so many non-smooth points of the expression.
     fn implies_across(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
         if self.facts.iter().any(|fact| fact == (expr, relation)) {
             return true;
         }
-        // A proof of a sign takes algebra; that there is none, often one point tells.
-        let seen = self.signs_seen(arena, expr);
+        // A proof of a sign takes algebra; one point often refutes it.
+        let sampled = self.sampled_signs(arena, expr);
         let signed = match relation {
-            Relation::Positive | Relation::NonNegative => !seen.negative,
-            Relation::NonZero => !(seen.negative && seen.positive),
+            Relation::Positive | Relation::NonNegative => !sampled.negative,
+            Relation::NonZero => !(sampled.negative && sampled.positive),
         };
         let shown = |field: Result<Field<'_>, Obstacle>| {
             let field = field?;
@@ -46,8 +46,8 @@ impl Domain {
             match relation {
                 Relation::Positive => field.signs().is_positive(&fraction),
                 Relation::NonNegative => field.signs().is_not_negative(&fraction),
-                Relation::NonZero => Ok((!seen.negative && field.signs().is_positive(&fraction)?)
-                    || (!seen.positive && field.signs().is_positive(&fraction.opposite())?)),
+                Relation::NonZero => Ok((!sampled.negative && field.signs().is_positive(&fraction)?)
+                    || (!sampled.positive && field.signs().is_positive(&fraction.opposite())?)),
             }
         };
         let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
@@ -58,8 +58,8 @@ impl Domain {
             || (signed && borders > 0 && self.implies_on_both_sides(arena, expr, relation, borders - 1))
     }
 
-    /// Whether the expression compares so on either side of a place where it bends: there it has no magnitude of what
-    /// passes zero. `max(q, 1)` is q where that is at least 1, and 1 elsewhere.
+    /// True if the expression compares so on either side of a non-smooth point: there it has no absolute value of a
+    /// term that changes sign. `max(q, 1)` is q where that is at least 1, and 1 elsewhere.
     fn implies_on_both_sides(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
         let sides = |divider: Expr| [divider, arena.neg(divider)];
         let is_open = |divider: &Expr| {
@@ -74,19 +74,19 @@ impl Domain {
     }
 
     /// The signs that the expression provably has at some points of the domain.
-    fn signs_seen(&self, arena: &Arena, expr: Expr) -> Signs {
-        let mut seen = Signs::default();
+    fn sampled_signs(&self, arena: &Arena, expr: Expr) -> SampledSigns {
+        let mut sampled = SampledSigns::default();
         for value in self.glimpses(arena, &[expr]).filter_map(|point| arena.separated_from_zero(expr, &point)) {
-            *(if value.is_positive() { &mut seen.positive } else { &mut seen.negative }) = true;
-            if seen.positive && seen.negative {
+            *(if value.is_positive() { &mut sampled.positive } else { &mut sampled.negative }) = true;
+            if sampled.positive && sampled.negative {
                 break;
             }
         }
-        seen
+        sampled
     }
 
-    /// Whether the expression vanishes only where something does that is assumed not to: its factors are among those
-    /// of the facts, as `d - 1` is of `L*(1 - d) != 0`, or among those of their squares, as `cos(q)^2 - 1` is of
+    /// True if the expression vanishes only where an expression assumed non-zero does: its factors are among those of
+    /// the facts, as `d - 1` is of `L*(1 - d) != 0`, or among those of their squares, as `cos(q)^2 - 1` is of
     /// `sin(q) != 0`.
     fn divides(&self, arena: &Arena, expr: Expr) -> Result<bool, Obstacle> {
         let symbols = arena.symbols_of(&[expr]);
@@ -112,7 +112,7 @@ impl Domain {
         let mut known = Vec::new();
         for fact in facts {
             let fact = field.fraction(fact)?;
-            // Where the denominator of the normal form vanishes the fact may hold and its numerator be zero all the same.
+            // At zeros of the normal form's denominator the fact may hold although its numerator is zero.
             if is_signed(&field.of_polynomial(fact.denominator())?)? {
                 known.extend(square(&field, &fact)?);
                 known.push(fact);
@@ -138,7 +138,7 @@ impl Domain {
     }
 }
 
-/// The square of a short fraction, where that is more than a product: `sin(q)` has `1 - cos(q)^2`.
+/// The square of a short fraction, if that is more than a product: `sin(q)` has `1 - cos(q)^2`.
 fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Obstacle> {
     const MOST_TERMS: usize = 16;
     let is_worth_it = fraction.weight() <= MOST_TERMS && field.has_relations(fraction);
@@ -152,7 +152,7 @@ mod tests {
     use crate::Rational;
 
     #[test]
-    fn what_vanishes_with_a_fact_does_not_vanish() {
+    fn divisors_of_a_fact_do_not_vanish() {
         let arena = Arena::new();
         let [q, k] = ["q", "k"].map(|name| arena.variable(name));
         let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_looked_for_on_both_sides_of_a_bend() {
+    fn signs_are_proved_on_both_sides_of_a_non_smooth_point() {
         use Relation::{NonNegative, NonZero, Positive};
 
         let arena = Arena::new();

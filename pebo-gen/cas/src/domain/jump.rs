@@ -1,25 +1,25 @@
-//! Whether a function jumps where formulas bend.
+//! Jumps of a function at its non-smooth points.
 //!
-//! In: a domain and a function with absolute values, signs, least and greatest values. Out: the borders at which its value
-//! on one side is not shown to go over into that on the other, each with the difference: `q*sign(q - 1)` jumps by 2 at
-//! q = 1, and `abs(q - 1)` nowhere. A border that no symbol stands in by itself is looked at in normal forms.
+//! In: a domain and a function with absolute values, signs, least and greatest values. Out: the borders at which the
+//! function is not proved continuous, each with the difference of its one-sided values: `q*sign(q - 1)` jumps by 2 at q
+//! = 1, and `abs(q - 1)` nowhere. A border in which no symbol is affine is examined in normal forms.
 
 use super::zero::decide;
 use crate::graph::expr::Expr;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Relation};
 
-/// A border, and by how much a function is larger where that is positive.
+/// A border, and the jump of a function across it.
 #[derive(Clone, Copy, Debug)]
 pub struct Jump {
-    /// What is zero at the border.
+    /// The expression that is zero at the border.
     pub border: Expr,
     /// The difference of the values on both sides, at the border.
     pub by: Expr,
 }
 
 impl Domain {
-    /// The jumps of a function that are not ruled out, at borders that vary.
+    /// The jumps of a function that are not excluded, at borders that vary.
     pub fn jumps(&self, arena: &Arena, expr: Expr, varies: impl Fn(Expr) -> bool) -> Result<Vec<Jump>, Obstacle> {
         let mut jumps = Vec::new();
         for border in self.dividers(arena, &[expr])?.into_iter().filter(|border| varies(*border)) {
@@ -42,7 +42,7 @@ impl Domain {
         Ok(jumps)
     }
 
-    /// The function where something is positive, in its normal form.
+    /// The function where an expression is positive, in its normal form.
     fn on_side(&self, arena: &Arena, expr: Expr, positive: Expr) -> Result<Expr, Obstacle> {
         let mut domain = self.clone();
         domain.facts.assume(positive, Relation::Positive);
@@ -50,7 +50,7 @@ impl Domain {
         Ok(field.show(&field.fraction(expr)?))
     }
 
-    /// Whether a function has a border for a factor of its numerator.
+    /// True if a function has a border for a factor of its numerator.
     fn vanishes_with(&self, arena: &Arena, expr: Expr, border: Expr) -> Result<bool, Obstacle> {
         let field = Field::over(arena, &self.facts, &[expr, border])?;
         let (fraction, border) = (field.fraction(expr)?, field.fraction(border)?);
@@ -58,7 +58,7 @@ impl Domain {
     }
 }
 
-/// The value of a symbol at which a border is that is affine in it.
+/// The symbol in which a border is affine, and its value there.
 fn crossing(arena: &Arena, border: Expr) -> Option<(crate::Symbol, Expr)> {
     arena.symbols_of(&[border]).into_iter().find_map(|symbol| {
         let slope = arena.derivative(border, symbol);
@@ -76,7 +76,7 @@ mod tests {
     use crate::Function;
 
     #[test]
-    fn what_bends_does_not_jump() {
+    fn continuous_non_smooth_functions_have_no_jump() {
         let arena = Arena::new();
         let [p, q, c] = ["p", "q", "c"].map(|name| arena.variable(name));
         let call = |function, argument| arena.call(function, &[argument]);
@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(shown(sign), "2");
         assert_eq!(shown(arena.mul(q, sign)), "2*c");
         assert_eq!(shown(arena.add(p, arena.mul(p, sign))), "2*p");
-        // No symbol stands by itself.
+        // No symbol is affine.
         let wave = call(Function::Cos, q);
         assert_eq!(shown(call(Function::Abs, wave)), "");
         assert!(!shown(arena.mul(call(Function::Sin, q), call(Function::Sign, wave))).is_empty());

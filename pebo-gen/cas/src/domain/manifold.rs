@@ -1,16 +1,16 @@
 //! The equations that hold on a domain, solved for some of their symbols.
 //!
 //! In: expressions that are zero, and symbols in groups, in the order in which they are solved for. Out: steps, each
-//! for one symbol s that the later ones do without,
+//! for one symbol s that the later ones do not contain,
 //!
 //! ```text
-//! s = middle                              where s stands to the first power
-//! s = middle +- radicand^(1/degree)       where it stands to the second, or in one power alone
+//! s = middle                              if s has degree one
+//! s = middle +- radicand^(1/degree)       if s has degree two, or occurs in one power alone
 //! ```
 //!
-//! There are two readers. The normal form takes *exact* steps: what they divide by is zero nowhere, so they lose no
-//! solution. Points are completed by any steps: a point at which something is divided by zero is not taken. An equation
-//! that no step solves is *open*: it holds all the same, but nothing is concluded from it.
+//! There are two readers. The normal form takes *exact* steps: their divisors vanish nowhere, so they lose no solution.
+//! Points are completed by any steps: a point at which a divisor vanishes is not taken. An equation that no step solves
+//! is *open*: it holds, but nothing is concluded from it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,29 +22,29 @@ use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Facts, Rational};
 
 /// A kernel, and the coefficients of its powers.
-type Powers = (u32, BTreeMap<u32, Fraction>);
+type KernelCoefficients = (u32, BTreeMap<u32, Fraction>);
 
-/// A power of a symbol beyond which no root is taken.
+/// The greatest power of a symbol for which a root is taken.
 const MOST_DEGREE: u32 = 12;
 
-/// Equations, and which symbols they are solved for.
+/// Equations, and the symbols they are solved for.
 #[derive(Clone, Debug, Default)]
 pub struct Manifold {
     equations: Vec<Expr>,
-    /// The first group is what results must not depend on: an equation that holds one of it is solved exactly for no
-    /// other. The last are constants: they are solved for to find points, never in the normal form.
+    /// The first group must not occur in results: an equation that holds one of it is solved exactly for no other. The
+    /// last are constants: they are solved for to find points, never in the normal form.
     groups: Vec<BTreeSet<Symbol>>,
     exact: Solution,
 }
 
-/// Steps, and the equations that are left.
+/// Steps, and the equations that remain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solution {
     pub steps: Vec<Step>,
     pub open: Vec<Expr>,
 }
 
-/// What a symbol is on the manifold.
+/// The value of a symbol on the manifold.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
     pub symbol: Symbol,
@@ -67,12 +67,11 @@ struct Partner {
     coefficients: [Expr; 3],
 }
 
-/// What a trial chooses: a rational number, and a sign.
+/// The choice of a trial: a rational number, and a sign.
 pub(crate) type Choice = (Rational, bool);
 
 impl Manifold {
-    /// The manifold of these equations. The first of the groups is what results must not depend on, the last are
-    /// constants.
+    /// The manifold of these equations. The first of the groups must not occur in results, the last are constants.
     pub fn new(arena: &Arena, facts: &Facts, equations: Vec<Expr>, groups: Vec<BTreeSet<Symbol>>) -> Self {
         let solver = Solver { arena, facts, groups: &groups, exact: true };
         let exact =
@@ -80,7 +79,7 @@ impl Manifold {
         Self { equations, groups, exact }
     }
 
-    /// Whether there is no equation.
+    /// True if there is no equation.
     pub fn is_empty(&self) -> bool {
         self.equations.is_empty()
     }
@@ -90,22 +89,22 @@ impl Manifold {
         &self.equations
     }
 
-    /// What the normal form does not know of: an equation that no exact step solves.
+    /// An equation that no exact step solves, so that the normal form does not use it.
     pub fn open(&self) -> Option<Expr> {
         self.exact.open.first().copied()
     }
 
-    /// All of them.
-    pub(crate) fn left_open(&self) -> &[Expr] {
+    /// All equations that no exact step solves.
+    pub(crate) fn open_equations(&self) -> &[Expr] {
         &self.exact.open
     }
 
-    /// The exact step for a symbol.
+    /// The exact steps.
     pub(crate) fn steps(&self) -> &[Step] {
         &self.exact.steps
     }
 
-    /// Whether every equation that concerns the point's symbols holds there exactly.
+    /// True if every equation that concerns the point's symbols holds there exactly.
     pub(crate) fn contains(&self, arena: &Arena, point: &Point) -> bool {
         let concerned = |e: &&Expr| arena.symbols_of(&[**e]).iter().any(|symbol| point.contains_key(symbol));
         self.equations.iter().filter(concerned).all(|equation| {
@@ -130,18 +129,18 @@ fn vanishes(arena: &Arena, constant: Expr) -> bool {
             .is_ok_and(|fraction| fraction.is_zero())
 }
 
-/// How equations are solved.
+/// Solves equations for symbols.
 struct Solver<'a> {
     arena: &'a Arena,
     facts: &'a Facts,
     groups: &'a [BTreeSet<Symbol>],
-    /// Whether every solution has to be kept.
+    /// True if every solution has to be kept.
     exact: bool,
 }
 
-/// A way to solve an equation; the least is taken.
-struct Way {
-    /// Whether what is divided by is no number; the symbol's group; terms of the equation.
+/// A candidate for a step; the one with the least cost is taken.
+struct Candidate {
+    /// True if the divisor is no number; the symbol's group; terms of the equation.
     cost: (bool, usize, usize),
     equation: usize,
     step: Step,
@@ -153,7 +152,7 @@ impl Solver<'_> {
         let mut open = equations;
         let mut steps: Vec<Step> = Vec::new();
         loop {
-            let ways = self.ways(&mut open, &|degree| degree == 1)?;
+            let ways = self.candidates(&mut open, &|degree| degree == 1)?;
             let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { break };
             open.remove(way.equation);
             let value = BTreeMap::from([(way.step.symbol, way.step.middle)]);
@@ -163,10 +162,10 @@ impl Solver<'_> {
             }
             steps.push(way.step);
         }
-        // A root is not put into the others: each takes symbols that the roots before it do without.
+        // Roots are not substituted into one another: each takes symbols that the roots before it do not contain.
         let mut held: BTreeSet<Symbol> = BTreeSet::new();
         loop {
-            let mut ways = self.ways(&mut open, &|degree| degree > 1)?;
+            let mut ways = self.candidates(&mut open, &|degree| degree > 1)?;
             ways.retain(|way| !held.contains(&way.step.symbol));
             let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { break };
             held.extend(arena.symbols_of(&[open.remove(way.equation)]));
@@ -177,7 +176,7 @@ impl Solver<'_> {
     }
 
     /// The ways to solve the equations; those that hold everywhere are dropped.
-    fn ways(&self, open: &mut Vec<Expr>, wanted: &dyn Fn(u32) -> bool) -> Result<Vec<Way>, Obstacle> {
+    fn candidates(&self, open: &mut Vec<Expr>, wanted: &dyn Fn(u32) -> bool) -> Result<Vec<Candidate>, Obstacle> {
         let field = Field::over(self.arena, self.facts, open)?;
         let mut numerators = Vec::new();
         let mut left = Vec::new();
@@ -199,14 +198,14 @@ impl Solver<'_> {
                 }
                 if let Some((step, divided)) = self.step(&field, numerator, symbol, wanted)? {
                     let cost = (!divided, place, numerator.term_count());
-                    ways.push(Way { cost, equation, step });
+                    ways.push(Candidate { cost, equation, step });
                 }
             }
         }
         Ok(ways)
     }
 
-    /// Whether an equation with these symbols may be solved for those of a group.
+    /// True if an equation with these symbols may be solved for those of a group.
     fn admits(&self, place: usize, occurring: &BTreeSet<Symbol>) -> bool {
         if !self.exact {
             return true;
@@ -215,7 +214,7 @@ impl Solver<'_> {
         place + 1 < self.groups.len() && (place == 0 || !hidden)
     }
 
-    /// The step for a symbol, where it stands in one kernel, its own; and whether it is divided by a number.
+    /// The step for a symbol that occurs in no kernel but its own, and true if its divisor is a number.
     fn step(
         &self,
         field: &Field<'_>,
@@ -253,8 +252,13 @@ impl Solver<'_> {
         Ok(Some((Step { symbol, middle: field.show(&middle), root }, number)))
     }
 
-    /// The coefficients of the powers of a symbol, if it stands in no kernel but its own.
-    fn powers_of(&self, field: &Field<'_>, poly: &Poly, symbol: Symbol) -> Result<Option<Powers>, Obstacle> {
+    /// The coefficients of the powers of a symbol, if it occurs in no kernel but its own.
+    fn powers_of(
+        &self,
+        field: &Field<'_>,
+        poly: &Poly,
+        symbol: Symbol,
+    ) -> Result<Option<KernelCoefficients>, Obstacle> {
         let kernels = field.kernels_of(&BTreeSet::from([symbol]));
         let mut kernels = poly.variables().iter().copied().filter(|kernel| kernels.contains(kernel));
         let (Some(kernel), None) = (kernels.next(), kernels.next()) else { return Ok(None) };
@@ -266,7 +270,7 @@ impl Solver<'_> {
         Ok(Some((kernel, powers.collect::<Result<_, Obstacle>>()?)))
     }
 
-    /// Gives square roots a symbol that no other step needs and in which the radicand is quadratic.
+    /// Gives each square root a symbol that no other step needs and in which the radicand is quadratic.
     fn join_partners(&self, steps: &mut [Step]) -> Result<(), Obstacle> {
         let arena = self.arena;
         if self.exact {
@@ -280,8 +284,8 @@ impl Solver<'_> {
             let field = Field::over(arena, self.facts, &[radicand])?;
             let fraction = field.fraction(radicand)?;
             for symbol in arena.symbols_of(&[radicand]) {
-                let below = field.kernels_of(&BTreeSet::from([symbol]));
-                let divides = fraction.denominator().variables().iter().any(|kernel| below.contains(kernel));
+                let kernels = field.kernels_of(&BTreeSet::from([symbol]));
+                let divides = fraction.denominator().variables().iter().any(|kernel| kernels.contains(kernel));
                 if divides || taken.contains(&symbol) || own.contains(&symbol) {
                     continue;
                 }
@@ -289,9 +293,9 @@ impl Solver<'_> {
                 if fraction.numerator().degree(kernel) != 2 {
                     continue;
                 }
-                let below = field.of_polynomial(fraction.denominator())?;
+                let denominator = field.of_polynomial(fraction.denominator())?;
                 let shown = |power: u32| match powers.get(&power) {
-                    Some(coefficient) => field.div(coefficient, &below).map(|quotient| field.show(&quotient)),
+                    Some(coefficient) => field.div(coefficient, &denominator).map(|quotient| field.show(&quotient)),
                     None => Ok(arena.zero()),
                 };
                 let coefficients = [shown(0)?, shown(1)?, shown(2)?];
@@ -311,7 +315,7 @@ impl Step {
         arena.symbols_of(&[Some(self.middle), radicand].into_iter().flatten().collect::<Vec<_>>())
     }
 
-    /// The symbol's value where the point has those of all others; none where there is none.
+    /// The symbol's value, if the point has those of all others; none if there is no value.
     fn take(&self, arena: &Arena, point: &mut Point, (share, negative): Choice) -> Option<()> {
         let offset = match &self.root {
             None => arena.zero(),
@@ -324,7 +328,7 @@ impl Step {
 }
 
 impl Root {
-    /// The root, apart from zero: there the manifold is a graph over the other symbols.
+    /// The root, if not zero: there the manifold is a graph over the other symbols.
     fn at(&self, arena: &Arena, point: &mut Point, share: &Rational, negative: bool) -> Option<Expr> {
         if let Some(offset) = self.partner.as_ref().and_then(|partner| partner.turn(arena, point, share)) {
             return Some(if negative { arena.neg(offset) } else { offset });
@@ -342,8 +346,8 @@ impl Root {
 }
 
 impl Partner {
-    /// Where the radicand is `height - slope (t - top)^2` with both positive, t and the root run over an ellipse, whose
-    /// points are rational functions of one number q:
+    /// Parametrizes a radicand `height - slope (t - top)^2` with both positive: t and the root run over an ellipse,
+    /// whose points are rational functions of one number q:
     ///
     /// ```text
     /// t = top + sqrt(height/slope) 2 q/(1 + q^2)      root = sqrt(height) (1 - q^2)/(1 + q^2)
@@ -361,9 +365,9 @@ impl Partner {
             return None;
         }
         let squared = share * share;
-        let below = (&Rational::ONE + &squared).recip()?;
-        let sine = &(share * &Rational::from(2)) * &below;
-        let cosine = &(&Rational::ONE - &squared) * &below;
+        let scale = (&Rational::ONE + &squared).recip()?;
+        let sine = &(share * &Rational::from(2)) * &scale;
+        let cosine = &(&Rational::ONE - &squared) * &scale;
         let across = arena.scale(arena.sqrt(arena.div(height, slope)), &sine);
         point.insert(self.symbol, arena.add(top, across));
         Some(arena.scale(arena.sqrt(height), &cosine))
@@ -376,7 +380,7 @@ impl Solution {
         self.steps.iter().map(|step| step.symbol).collect()
     }
 
-    /// Completes a point that has the values of all other symbols; none where a step has no value there.
+    /// Completes a point that has the values of all other symbols; none if a step has no value there.
     pub(crate) fn complete(&self, arena: &Arena, point: &mut Point, mut choose: impl FnMut() -> Choice) -> Option<()> {
         let mut waiting: Vec<&Step> = self.steps.iter().collect();
         while !waiting.is_empty() {
@@ -395,7 +399,7 @@ mod tests {
     use crate::Relation;
     use crate::domain::zero::{Answer, decide};
 
-    /// The domain of equations in a, b, c, with p as what must not remain.
+    /// The domain of equations in a, b, c; p must not occur in results.
     fn domain(arena: &Arena, equations: &[Expr]) -> Domain {
         let group = |names: &[&str]| names.iter().map(|name| arena.symbol(name)).collect();
         let groups = vec![group(&["p"]), group(&["a", "b", "c"]), group(&["r"])];
@@ -413,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn what_vanishes_on_a_circle_is_zero_and_what_differs_there_has_a_point_on_it() {
+    fn expressions_on_a_circle_are_zero_or_have_a_witness_on_it() {
         let arena = Arena::new();
         let [a, b, c, p] = symbols(&arena);
         // A circle with rational points, one without.
@@ -469,7 +473,7 @@ mod tests {
         let domain = domain(&arena, &[arena.sub(arena.sub(a, b), p)]);
         assert_eq!(domain.manifold.steps()[0].symbol, arena.symbol("p"));
         assert!(domain.manifold.open().is_none());
-        // Of y = exp(p) nothing is known of p in the normal form, but points there are.
+        // For y = exp(p) the normal form has no p, but points exist.
         let curve = self::domain(&arena, &[arena.sub(a, arena.call(crate::Function::Exp, &[p]))]);
         assert!(curve.manifold.open().is_some());
         assert!(curve.points(&arena, &[a]).next().is_some());

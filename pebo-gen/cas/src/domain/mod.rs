@@ -23,22 +23,22 @@ use crate::number::interval::Precision;
 use crate::{Facts, Rational, Relation};
 use manifold::{Choice, Manifold};
 
-/// How many points are looked at before a search gives up.
+/// The greatest number of points that a search examines.
 const MOST_TRIALS: u64 = 400;
 
-/// How many are looked at where a point is good to have and no more.
+/// The same for a search whose result is optional.
 const FEW_TRIALS: u64 = 4;
 
 /// Trials with small integers and random signs.
 const PLAIN_TRIALS: u64 = 8;
 
-/// How often a value is made smaller for a fact that does not hold of it: down to some 1e-10 of what is drawn.
+/// The greatest number of times a value is shrunk to satisfy a fact: down to some 1e-10 of the drawn value.
 const MOST_SHRINKS: usize = 8;
 
 /// Steps that drawing a value takes.
 const STEPS_OF_A_VALUE: u64 = 50;
 
-/// The assumed domain of a question: inequalities, equations, and symbols whose values are given.
+/// The assumed domain of a problem: inequalities, equations, and symbols whose values are given.
 #[derive(Clone, Debug, Default)]
 pub struct Domain {
     /// Inequalities that hold.
@@ -47,13 +47,13 @@ pub struct Domain {
     pub fixed: Point,
     /// Equations that hold.
     pub manifold: Manifold,
-    /// Calls and roots that the author writes: results may be shown with them.
+    /// Calls and roots that the author writes: results may be printed with them.
     pub written: Rc<BTreeSet<Expr>>,
 }
 
 /// Bounds of one symbol that the facts state directly.
 #[derive(Clone, Debug, Default)]
-struct Range {
+struct Bounds {
     low: Option<Rational>,
     high: Option<Rational>,
 }
@@ -64,7 +64,7 @@ impl Domain {
         self.points_within(arena, exprs, MOST_TRIALS)
     }
 
-    /// As [`Self::points`], those that come up in a few trials: to learn something cheaply, or nothing.
+    /// As [`Self::points`], limited to a few trials: cheap, and possibly empty.
     pub(super) fn glimpses<'a>(&'a self, arena: &'a Arena, exprs: &[Expr]) -> impl Iterator<Item = Point> + 'a {
         self.points_within(arena, exprs, FEW_TRIALS)
     }
@@ -84,10 +84,10 @@ impl Domain {
             .enumerate()
             .filter(|(_, symbol)| !solved.contains(symbol) && !self.fixed.contains_key(symbol))
             .collect();
-        let confined = Confined::new(arena, &facts, free.iter().map(|(_, symbol)| *symbol));
+        let confined = Confinement::new(arena, &facts, free.iter().map(|(_, symbol)| *symbol));
         (0..trials).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
             arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
-            let mut draw = Draw::new(trial);
+            let mut draw = RationalGenerator::new(trial);
             let given = |symbol: &Symbol| Some((*symbol, *self.fixed.get(symbol)?));
             let mut point: Point = symbols.iter().filter(|symbol| !solved.contains(symbol)).filter_map(given).collect();
             for (index, symbol) in &free {
@@ -101,11 +101,11 @@ impl Domain {
 
     /// The same without its equations.
     #[must_use]
-    pub fn everywhere(&self) -> Self {
+    pub fn without_equations(&self) -> Self {
         Self { manifold: Manifold::default(), ..self.clone() }
     }
 
-    /// Whether every fact and equation that concerns the point's symbols provably holds there.
+    /// True if every fact and equation that concerns the point's symbols provably holds there.
     pub fn contains(&self, arena: &Arena, point: &Point) -> bool {
         let concerned = |expr: Expr| arena.symbols_of(&[expr]).iter().any(|symbol| point.contains_key(symbol));
         let given = |(symbol, value): (&Symbol, &Expr)| self.fixed.get(symbol).is_none_or(|fixed| fixed == value);
@@ -114,7 +114,7 @@ impl Domain {
             && self.manifold.contains(arena, point)
     }
 
-    /// What of the domain agrees with a point in all but the symbols that are free.
+    /// The part of the domain that agrees with a point in all but the free symbols.
     #[must_use]
     pub fn beside(&self, point: &Point, free: &BTreeSet<Symbol>) -> Self {
         let mut fixed = self.fixed.clone();
@@ -122,15 +122,15 @@ impl Domain {
         Self { fixed, ..self.clone() }
     }
 
-    /// What the facts say directly of the least and greatest values of symbols, rounded outward.
+    /// The bounds of symbols that the facts state directly, rounded outward.
     pub(super) fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> BTreeMap<Symbol, (Rational, Rational)> {
         let facts: Vec<_> = self.facts.iter().collect();
         let ranges = ranges(arena, &facts);
-        let both = |(symbol, range): (Symbol, Range)| Some((symbol, (range.low?, range.high?)));
+        let both = |(symbol, range): (Symbol, Bounds)| Some((symbol, (range.low?, range.high?)));
         ranges.into_iter().filter(|(symbol, _)| symbols.contains(symbol)).filter_map(both).collect()
     }
 
-    /// The domain of the symbols that stay free; none unless some point of it is found.
+    /// The domain of the symbols that remain free; none unless a point of it is found.
     pub fn restricted(&self, arena: &Arena, values: &BTreeMap<Symbol, Expr>) -> Option<Self> {
         let mut there = Self { fixed: self.fixed.clone(), written: Rc::clone(&self.written), ..Self::default() };
         let mut constant = Vec::new();
@@ -155,7 +155,7 @@ impl Domain {
         (constant.iter().all(holds) && there.points(arena, &all).any(|point| exists(&point))).then_some(there)
     }
 
-    /// The facts and equations that share a symbol with the question, directly or through others.
+    /// The facts and equations that share a symbol with the given ones, directly or through others.
     fn relevant(&self, arena: &Arena, symbols: &mut BTreeSet<Symbol>) -> (Vec<(Expr, Relation)>, Vec<Expr>) {
         let (mut facts, mut equations) = (Vec::new(), Vec::new());
         // An equation is a fact without a relation.
@@ -179,7 +179,7 @@ impl Domain {
     }
 }
 
-/// Whether the fact provably holds at the point.
+/// True if the fact provably holds at the point.
 fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bool {
     match arena.separated_from_zero(expr, point) {
         Some(value) => relation == Relation::NonZero || value.is_positive(),
@@ -187,22 +187,22 @@ fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bo
     }
 }
 
-/// What each symbol is confined to by facts in it and in symbols that are drawn before it.
-struct Confined {
+/// Bounds of each symbol by facts in it and in symbols that are drawn before it.
+struct Confinement {
     /// By facts in the symbol alone.
-    ranges: BTreeMap<Symbol, Range>,
+    ranges: BTreeMap<Symbol, Bounds>,
     /// Facts in others as well, and those that are not affine in the symbol.
     others: BTreeMap<Symbol, Vec<(Expr, Relation)>>,
 }
 
-impl Confined {
+impl Confinement {
     /// For symbols that are drawn in this order.
     fn new(arena: &Arena, facts: &[(Expr, Relation)], order: impl Iterator<Item = Symbol>) -> Self {
         let place: BTreeMap<Symbol, usize> = order.enumerate().map(|(place, symbol)| (symbol, place)).collect();
         let mut others: BTreeMap<Symbol, Vec<(Expr, Relation)>> = BTreeMap::new();
         for fact in facts.iter().filter(|(fact, _)| affine(arena, *fact).is_none()) {
             let symbols = arena.symbols_of(&[fact.0]);
-            // One that holds a symbol that an equation gives is looked at when the point is complete.
+            // A fact with a symbol that an equation gives is checked when the point is complete.
             if !symbols.iter().all(|symbol| place.contains_key(symbol)) {
                 continue;
             }
@@ -213,14 +213,14 @@ impl Confined {
         Self { ranges: ranges(arena, facts), others }
     }
 
-    /// A value of the symbol beside those that are drawn: within what the facts say of it there, as far as they are affine
-    /// in it, and as small as it takes for the others, as `i^2 < 1e-6`.
+    /// A value of the symbol, given those already drawn: within the bounds of facts that are affine in it, and shrunk
+    /// until the others hold, as `i^2 < 1e-6`.
     fn draw(
         &self,
         arena: &Arena,
         symbol: Symbol,
         point: &Point,
-        mut value: impl FnMut(Option<&Range>) -> Rational,
+        mut value: impl FnMut(Option<&Bounds>) -> Rational,
     ) -> Expr {
         let mut range = self.ranges.get(&symbol).cloned();
         let mut bent = Vec::new();
@@ -251,8 +251,8 @@ impl Confined {
     }
 }
 
-impl Range {
-    /// What is within both.
+impl Bounds {
+    /// Intersects with another range.
     fn narrow(&mut self, other: Self) {
         if let Some(low) = other.low {
             self.low = Some(self.low.take().map_or(low.clone(), |known| known.max(low)));
@@ -268,26 +268,26 @@ impl Range {
 }
 
 /// The bounds that facts of the form `c*s + d > 0` state.
-fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Range> {
-    let mut ranges: BTreeMap<Symbol, Range> = BTreeMap::new();
+fn ranges(arena: &Arena, facts: &[(Expr, Relation)]) -> BTreeMap<Symbol, Bounds> {
+    let mut ranges: BTreeMap<Symbol, Bounds> = BTreeMap::new();
     for (expr, relation) in facts {
         if *relation == Relation::NonZero {
             continue;
         }
         let Some((symbol, slope, constant)) = affine(arena, *expr) else { continue };
-        // Of an irrational constant the greater end, which only widens the range.
+        // An irrational constant gives its greater end, which only widens the range.
         let Some(bound) = (-&constant).checked_div(&slope) else { continue };
         let bounds = if slope.is_negative() {
-            Range { low: None, high: Some(bound) }
+            Bounds { low: None, high: Some(bound) }
         } else {
-            Range { low: Some(bound), high: None }
+            Bounds { low: Some(bound), high: None }
         };
         ranges.entry(symbol).or_default().narrow(bounds);
     }
     ranges
 }
 
-/// `slope * symbol + constant`, if the expression is at most that, by no more than rounding.
+/// `slope * symbol + constant`, if the expression is at most that, up to rounding.
 fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
     let unit = |e: Expr| arena.as_symbol(e);
     match arena.node(expr) {
@@ -318,12 +318,12 @@ fn affine(arena: &Arena, expr: Expr) -> Option<(Symbol, Rational, Rational)> {
 }
 
 /// A reproducible sequence of simple rationals (`SplitMix64`, Steele, Lea and Flood 2014).
-struct Draw {
+struct RationalGenerator {
     trial: u64,
     state: u64,
 }
 
-impl Draw {
+impl RationalGenerator {
     fn new(trial: u64) -> Self {
         Self { trial, state: trial.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1 }
     }
@@ -342,7 +342,7 @@ impl Draw {
         low + i64::try_from(self.next() % span).unwrap_or(0)
     }
 
-    /// What a step of the manifold is left to choose.
+    /// The free choice of a manifold's step.
     fn choice(&mut self) -> Choice {
         let ratio = Rational::new(self.integer(1, 7), self.integer(2, 8)).unwrap_or(Rational::ONE);
         let share = if self.integer(0, 1) == 0 { -&ratio } else { ratio };
@@ -351,9 +351,9 @@ impl Draw {
 
     /// A value within the range; small integers in the first trials, fractions later.
     ///
-    /// After the first trials, the signs of five symbols go through all patterns: what differs from zero
-    /// only where several of them are negative would be rare among random signs.
-    fn value(&mut self, range: Option<&Range>, index: usize) -> Rational {
+    /// After the first trials, the signs of five symbols go through all patterns: an expression that is non-zero only
+    /// if several of them are negative would be rarely so among random signs.
+    fn value(&mut self, range: Option<&Bounds>, index: usize) -> Rational {
         let (low, high) = range.map_or((None, None), |range| (range.low.as_ref(), range.high.as_ref()));
         let size = 3 + i64::try_from(self.trial / 8).unwrap_or(0);
         let parts = if self.trial < PLAIN_TRIALS { 1 } else { 1 + i64::try_from(self.trial % 7).unwrap_or(0) };

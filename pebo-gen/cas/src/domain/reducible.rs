@@ -1,8 +1,8 @@
-//! Equations that hold in several ways: `a^2 - b^2 = 0` on two lines, of which a plant may stay on one.
+//! Reducible equations: `a^2 - b^2 = 0` on two lines, on one of which a plant may remain.
 //!
-//! In: a domain with equations. Out: one that is a product of factors each of which may be zero, as far as linear factors
-//! and squares under roots tell. Holds after: where one comes out, what is seen at a point of the domain need not hold at
-//! almost every other.
+//! In: a domain with equations. Out: an equation that is a product of factors each of which may be zero, found by
+//! linear factors and squares under roots. Holds after: if there is one, a property proved at a point of the domain
+//! need not hold at almost every other.
 
 use super::manifold::Step;
 use crate::graph::arena::Arena;
@@ -11,20 +11,20 @@ use crate::poly::Poly;
 use crate::tower::{Field, Obstacle};
 use crate::{Domain, Relation};
 
-/// An equation of the domain with several factors that may be zero, as the expression that is zero; of those that concern
-/// what is asked.
+/// An equation of the domain, among those of concern, with several factors that may be zero, as the expression that is
+/// zero.
 pub fn reducible(arena: &Arena, domain: &Domain, concerns: impl Fn(Expr) -> bool) -> Option<Expr> {
-    // Of the assumptions alone: where the equations hold, each factor is zero or not by the part.
-    let assumed = domain.everywhere();
+    // By the inequalities alone: where the equations hold, each factor is zero or not by the branch.
+    let assumed = domain.without_equations();
     let roots = domain.manifold.steps().iter().filter_map(|step| squared(arena, step));
-    let equations = roots.chain(domain.manifold.left_open().iter().copied());
+    let equations = roots.chain(domain.manifold.open_equations().iter().copied());
     equations.filter(|equation| concerns(*equation)).find(|equation| {
-        // What could not be worked out is not known to hold in one way.
+        // A failed computation does not prove irreducibility.
         holds_in_several_ways(arena, &assumed, *equation).unwrap_or(true)
     })
 }
 
-/// What is zero where a root was taken: `(symbol - middle)^degree - radicand`.
+/// The zero expression of a root: `(symbol - middle)^degree - radicand`.
 fn squared(arena: &Arena, step: &Step) -> Option<Expr> {
     let root = step.root.as_ref()?;
     let distance = arena.sub(arena.of_symbol(step.symbol), step.middle);
@@ -42,14 +42,14 @@ fn holds_in_several_ways(arena: &Arena, domain: &Domain, equation: Expr) -> Resu
         if !may_vanish(&factor)? {
             continue;
         }
-        // A polynomial in one symbol may have as many roots as its degree; two of them are looked at below.
+        // A polynomial in one symbol may have as many roots as its degree; two of them are examined below.
         let mut ways_of_factor = match factor.variables() {
             [variable] if factor.degree(*variable) > 2 => 2,
             _ => 1,
         };
         for &variable in factor.variables() {
             if let Some([above, below]) = two_roots(&field, &factor, variable)? {
-                // Each of the two, where the domain does not exclude it.
+                // Each of the two, if the domain does not exclude it.
                 let open = |root: &Expr| !domain.implies(arena, *root, Relation::NonZero);
                 ways_of_factor = [above, below].iter().filter(|root| open(root)).count().max(1);
                 break;
@@ -60,8 +60,8 @@ fn holds_in_several_ways(arena: &Arena, domain: &Domain, equation: Expr) -> Resu
     Ok(ways > 1)
 }
 
-/// Two expressions of which one is zero where the polynomial is, linear in a variable in which it is quadratic: there are
-/// such where the discriminant is a positive number times a square.
+/// The two linear factors of a polynomial that is quadratic in a variable, as expressions: they exist if the
+/// discriminant is a positive number times a square.
 fn two_roots(field: &Field<'_>, factor: &Poly, variable: u32) -> Result<Option<[Expr; 2]>, Obstacle> {
     if factor.degree(variable) != 2 {
         return Ok(None);

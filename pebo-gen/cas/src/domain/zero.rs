@@ -5,24 +5,24 @@
 //! the value excludes zero. Neither relies on floating point or on the kernels being independent.
 
 use crate::Domain;
-use crate::forms::shared::vanishes_over_shared_sums;
+use crate::forms::shared_sums::vanishes_over_shared_sums;
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::Expr;
 use crate::number::interval::{Interval, Precision};
 use crate::tower::{Field, Obstacle};
 
-/// Points of the domain that a search looks at: an analytic expression that vanishes at so many, or has
-/// no value there, is not one that more of them would help with.
+/// The greatest number of domain points that a search examines: if an analytic expression vanishes or has no value at
+/// so many, more of them would not help.
 pub const MOST_POINTS: usize = 64;
 
-/// Points at which the least precision is tried before the normal form.
+/// Points that are evaluated at the least precision before the normal form.
 const GLIMPSES: usize = 3;
 
 /// Subexpressions of a short formula.
 const SHORT: usize = 50;
 
-/// The answer to whether an expression is zero.
+/// The answer of the zero test.
 #[derive(Clone, Debug)]
 pub enum Answer {
     /// It is zero wherever it has a value.
@@ -43,7 +43,7 @@ pub struct Witness {
 }
 
 impl Answer {
-    /// Whether the expression was proved to be zero.
+    /// True if the expression was proved to be zero.
     pub fn is_zero(&self) -> bool {
         matches!(self, Self::Zero)
     }
@@ -54,8 +54,8 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     if arena.is_zero(expr) {
         return Answer::Zero;
     }
-    // A cheap look first: what plainly differs from zero needs no normal form.
-    // Of a short formula the normal form costs no more than another look.
+    // A cheap trial first: a plainly non-zero expression needs no normal form. For a short formula the normal form
+    // costs no more than another trial.
     let glimpses = if arena.postorder(&[expr]).len() < SHORT { 1 } else { GLIMPSES };
     let mut exists = false;
     for point in domain.points(arena, &[expr]).take(glimpses) {
@@ -75,7 +75,7 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     } else {
         vanishes(Field::of_long_sums(arena, &domain.facts, &[expr]))
     };
-    // What vanishes everywhere does so on the manifold; the converse is false.
+    // An expression that vanishes everywhere does so on the manifold; the converse is false.
     if normal.is_err() && !domain.manifold.is_empty() {
         let unsolved = domain.manifold.open().map(|equation| Obstacle::Unsolved(arena.print(equation)));
         normal = vanishes(Field::on(arena, domain, &[expr])).map_err(|obstacle| unsolved.unwrap_or(obstacle));
@@ -87,8 +87,8 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     }
 }
 
-/// Whether all of the expressions are proved to be zero, over the kernels of all at once: what they share is brought to
-/// normal form once. If not, nothing is said of any.
+/// True if all of the expressions are proved to be zero, over the kernels of all at once: shared terms are brought to
+/// normal form once. False says nothing of any.
 pub fn all_zero(arena: &Arena, exprs: &[Expr], domain: &Domain) -> bool {
     let values = |point: Point| arena.enclose_all(exprs, &point, Precision::new(64));
     let Some(values) = domain.points(arena, exprs).take(GLIMPSES).find_map(values) else { return false };
@@ -97,7 +97,7 @@ pub fn all_zero(arena: &Arena, exprs: &[Expr], domain: &Domain) -> bool {
             .is_ok_and(|field| exprs.iter().all(|e| field.fraction(*e).is_ok_and(|fraction| fraction.is_zero())))
 }
 
-/// Looks for a point of the domain at which the expression provably is not zero.
+/// Searches for a point of the domain at which the expression provably is not zero.
 pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
     domain.points(arena, &[expr]).take(MOST_POINTS).find_map(|point| {
         let value = arena.separated_from_zero(expr, &point)?;
@@ -105,7 +105,7 @@ pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
     })
 }
 
-/// Looks for a point of the domain at which the expression provably has a value.
+/// Searches for a point of the domain at which the expression provably has a value.
 pub fn point_of(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Point> {
     domain.points(arena, &[expr]).take(MOST_POINTS).find(|point| arena.exists_at(expr, point))
 }

@@ -1,7 +1,7 @@
-//! Quotients of a magnitude and what it is of, as signs: `abs(q)*sqrt(abs(q))/q` is `sign(q)*sqrt(abs(q))`.
+//! Quotients of an absolute value and its argument, as signs: `abs(q)*sqrt(abs(q))/q` is `sign(q)*sqrt(abs(q))`.
 //!
-//! In: an expression, as a normal form writes it: there a sign is a quotient. Out: an expression with the same values that
-//! divides by nothing for the sake of a sign. Code computes the sign of 0 as 0, and 0/0 not at all.
+//! In: an expression as the normal form writes it, with signs as quotients. Out: an expression with the same values and
+//! no division for the sake of a sign. Code computes the sign of 0 as 0, and 0/0 not at all.
 
 use rustc_hash::FxHashMap;
 
@@ -11,8 +11,8 @@ use crate::{Arena, Expr, Node, Product, Rational};
 /// The expression with signs in place of such quotients.
 pub(crate) fn as_sign(arena: &Arena, expr: Expr) -> Expr {
     let nodes = arena.postorder(&[expr]);
-    let is_magnitude = |e: &Expr| matches!(arena.node(*e), Node::Call(Function::Abs, _));
-    if !nodes.iter().any(is_magnitude) {
+    let is_absolute_value = |e: &Expr| matches!(arena.node(*e), Node::Call(Function::Abs, _));
+    if !nodes.iter().any(is_absolute_value) {
         return expr;
     }
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
@@ -27,23 +27,23 @@ pub(crate) fn as_sign(arena: &Arena, expr: Expr) -> Expr {
     known[&expr]
 }
 
-/// A product in which a magnitude cancels with what it is of, if there is such a pair.
+/// A product in which an absolute value cancels with its argument, if there is such a pair.
 fn cancelled(arena: &Arena, product: &Product) -> Option<Expr> {
     let pair = |(place, (base, power)): (usize, &(Expr, Rational))| {
         let Node::Call(Function::Abs, arguments) = arena.node(*base) else { return None };
         let inside = arguments[0];
         let (other, (_, own)) = product.factors.iter().enumerate().find(|(_, (base, _))| *base == inside)?;
         let sum = power + own;
-        // Of `|a|^m a^n` one of the powers divides; what is left does not.
+        // One of the powers in `|a|^m a^n` divides; the quotient does not.
         let divides = own.is_negative() != power.is_negative() && !sum.is_negative();
         let whole = own.is_integer() && (power.is_integer() || own.is_negative());
         (divides && whole).then_some((place, other, inside, sum))
     };
     let (place, other, inside, sum) = product.factors.iter().enumerate().find_map(pair)?;
-    let (magnitude, power) = &product.factors[place];
+    let (absolute, power) = &product.factors[place];
     let own = &product.factors[other].1;
-    // The one that divides becomes a sign and a power of the one that is left.
-    let (left, turned) = if own.is_negative() { (*magnitude, own) } else { (inside, power) };
+    // The dividing one becomes a sign and a power of the other.
+    let (left, turned) = if own.is_negative() { (*absolute, own) } else { (inside, power) };
     let is_odd = turned.numerator().trailing_zeros() == 0;
     let sign = is_odd.then(|| (arena.call(Function::Sign, &[inside]), Rational::ONE));
     let others = product.factors.iter().enumerate().filter(|(index, _)| ![place, other].contains(index));
@@ -67,7 +67,7 @@ mod tests {
             (arena.div(power(size, 3, 2), q), "sign(q)*sqrt(abs(q))"),
             (arena.div(power(q, 3, 1), size), "q^2*sign(q)"),
             (arena.div(power(size, 3, 1), power(q, 2, 1)), "abs(q)"),
-            // Here something is divided by in any case.
+            // This divides in any case.
             (arena.div(size, power(q, 2, 1)), "abs(q)/q^2"),
             (arena.mul(size, q), "q*abs(q)"),
         ];

@@ -1,8 +1,8 @@
 //! `cosh(u)^2 - sinh(u)^2 = 1` in formulas that keep these functions.
 //!
-//! In: an expression. Out: the same value without such a difference, and with `cosh(u)^2` for `1 + sinh(u)^2`, also where
-//! all of it is multiplied by the same. The difference has no digits left where u is large, and the square has all.
-//! The normal form knows this of exponentials; formulas in which the functions stay do not pass through it.
+//! In: an expression. Out: the same value without such a difference, and with `cosh(u)^2` for `1 + sinh(u)^2`, also
+//! with a common factor. The difference has no digits left for large u, and the square has all. The normal form has
+//! this relation by exponentials; formulas that keep the functions do not pass through it.
 
 use std::collections::BTreeSet;
 
@@ -35,7 +35,7 @@ pub(crate) fn without_differences(arena: &Arena, expr: Expr) -> Option<Expr> {
     (form != expr).then_some(form)
 }
 
-/// The sum with two of its terms taken together, as often as there are such.
+/// The sum with two of its terms combined, as often as there are such.
 fn gathered(arena: &Arena, sum: &Sum, arguments: &BTreeSet<Expr>) -> Option<Expr> {
     let mut terms: Vec<(Expr, Rational)> = sum.terms.clone();
     terms.push((arena.one(), sum.constant.clone()));
@@ -57,7 +57,8 @@ fn gathered(arena: &Arena, sum: &Sum, arguments: &BTreeSet<Expr>) -> Option<Expr
     changed.then(|| arena.sum(terms.into_iter().map(|(term, coefficient)| arena.scale(term, &coefficient))))
 }
 
-/// The places of a term that holds the first factor, and of the same term with the second in its place and this sign.
+/// The positions of a term that holds the first factor, and of the same term with the second in its place and this
+/// sign.
 fn pair(arena: &Arena, terms: &[(Expr, Rational)], (of, with, sign): (Expr, Expr, i64)) -> Option<(usize, usize)> {
     let has = |term: Expr| match (arena.node(term), arena.node(of)) {
         (Node::Product(product), Node::Product(wanted)) => wanted
@@ -79,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn squares_of_hyperbolic_functions_come_together() {
+    fn squares_of_hyperbolic_functions_combine() {
         let arena = Arena::new();
         let [m, q] = ["m", "q"].map(|name| arena.variable(name));
         let square = |function| arena.power(arena.call(function, &[q]), &Rational::from(2));

@@ -6,5 +6,5 @@ mod near_zero;
 pub mod opaque;
 pub mod oriented;
 pub mod scaled;
-pub(crate) mod shared;
+pub(crate) mod shared_sums;
 pub mod tidy;

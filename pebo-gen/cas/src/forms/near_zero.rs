@@ -1,7 +1,7 @@
 //! Functions less their value at 0, written so that the difference keeps its digits where the argument is small.
 //!
 //! In: an expression. Out: the same value, with `2*sin(x/2)^2` in place of `1 - cos(x)`, `2*sinh(x/2)^2` in place of
-//! `cosh(x) - 1`, and `r/(sqrt(k^2 + r) + k)` in place of `sqrt(k^2 + r) - k`, also where both are multiplied by the same.
+//! `cosh(x) - 1`, and `r/(sqrt(k^2 + r) + k)` in place of `sqrt(k^2 + r) - k`, also with a common factor.
 //! Holds after: the form has a value wherever the expression has.
 
 use rustc_hash::FxHashMap;
@@ -24,13 +24,13 @@ pub(crate) fn near_zero(arena: &Arena, expr: Expr) -> Option<Expr> {
     (form != expr).then_some(form)
 }
 
-/// What a function is at 0, and the function less that.
+/// The value of a function at 0, and the function less that.
 struct Difference {
     at_zero: Rational,
     form: Expr,
 }
 
-/// The sum with each term that holds such a function taken together with the one that it cancels against.
+/// The sum with each term that holds such a function combined with the term it cancels against.
 fn paired(arena: &Arena, sum: &Sum) -> Expr {
     let mut terms: Vec<(Expr, Rational)> = sum.terms.clone();
     terms.push((arena.one(), sum.constant.clone()));
@@ -38,7 +38,7 @@ fn paired(arena: &Arena, sum: &Sum) -> Expr {
         let (term, coefficient) = terms[index].clone();
         for (rest, difference) in differences(arena, term) {
             let there = &coefficient * &difference.at_zero;
-            // The other sign, and at least as much of it: what is left over keeps its sign.
+            // The other sign, and at least as large: the remainder keeps its sign.
             let partner = terms.iter().position(|(other, of_other)| {
                 *other == rest && of_other.is_negative() != there.is_negative() && of_other.abs() >= there.abs()
             });
@@ -70,7 +70,7 @@ fn differences(arena: &Arena, term: Expr) -> Vec<(Expr, Difference)> {
     }
 }
 
-/// A power less its value where the argument of its function, or what is beside the constant below its root, is 0.
+/// A power less its value at zero: of its function's argument, or of the terms beside the constant in its radicand.
 fn difference(arena: &Arena, base: Expr, exponent: &Rational) -> Option<Difference> {
     let two = Rational::from(2);
     let half = Rational::new(1, 2)?;
@@ -115,7 +115,7 @@ mod tests {
             shown(|arena, [_, _, w]| arena.sub(root(arena, w, 4), arena.number(2))).unwrap(),
             "w^2/(sqrt(w^2 + 4) + 2)"
         );
-        // With factors, beside other terms, and with more of the constant than one takes.
+        // With factors, beside other terms, and with a larger constant than needed.
         assert_eq!(
             shown(|arena, [a, x, w]| arena.sum([arena.mul(a, cos(arena, x)), arena.neg(a), w])).unwrap(),
             "w - 2*a*sin(x/2)^2"
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_that_do_not_cancel_at_zero_stay() {
+    fn sums_that_do_not_cancel_at_zero_are_unchanged() {
         let cos = |arena: &Arena, x| arena.call(Function::Cos, &[x]);
         assert_eq!(shown(|arena, [_, x, _]| arena.add(arena.one(), cos(arena, x))), None);
         assert_eq!(shown(|arena, [a, x, _]| arena.sub(a, cos(arena, x))), None);

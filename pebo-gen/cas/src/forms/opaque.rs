@@ -1,11 +1,11 @@
-//! Formulas some of whose functions and sums stay as they are written.
+//! Formulas in which some functions and sums are opaque.
 //!
-//! In: formulas, and the symbols that a question is about. Out: the same over fresh symbols, one for each function, each
-//! root and each factor that is a sum, if it is free of those symbols; and the way back. Or in: formulas and some of their
-//! functions, for which the symbols stand then. What is solved over them is an identity whatever they stand for, so it is
-//! one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))` and `(T - 300)^3`, which a normal form would
-//! write with exponentials, with powers of a cosine, with `q - 1` below the bar, and as a polynomial whose terms cancel to
-//! nothing near T = 300. What needs a relation among them is not seen this way.
+//! In: formulas, and the symbols of a problem. Out: the formulas over fresh symbols, one for each function, each root
+//! and each factor that is a sum, if it is free of those symbols; and the way back. Or in: formulas and some of their
+//! functions, which the fresh symbols replace. A solution over fresh symbols is an identity for any of their values, so
+//! it is one of the formulas: it keeps `tanh(100*w)`, `sin(24*q)`, `1/(1 + sqrt(q))` and `(T - 300)^3`, which a normal
+//! form would write with exponentials, with powers of a cosine, with the denominator `q - 1`, and as a polynomial whose
+//! terms cancel near T = 300. Results that need a relation among opaque terms are not found.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,54 +14,54 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::tower::Field;
 use crate::{Arena, Domain, Expr, Node, Rational, Symbol};
 
-/// The fresh symbols, with what they stand for.
-pub struct Frozen<'a> {
+/// The fresh symbols, with the terms they replace.
+pub struct OpaqueTerms<'a> {
     arena: &'a Arena,
-    which: Which<'a>,
-    /// Over the symbols: what was replaced; of sums also their multiples, by their own with leading coefficient 1.
+    selection: Selection<'a>,
+    /// The symbols of the opaque terms; of sums also their multiples, by the symbol with leading coefficient 1.
     symbols: FxHashMap<Expr, Expr>,
     values: BTreeMap<Symbol, Expr>,
 }
 
-/// What is replaced.
-enum Which<'a> {
-    /// Functions, roots and factors of what is free of these symbols.
+/// The selection of opaque terms.
+enum Selection<'a> {
+    /// Functions, roots and factors that are free of these symbols.
     FreeOf(&'a BTreeSet<Symbol>),
     /// These functions.
     Calls(&'a BTreeSet<Expr>),
 }
 
-impl<'a> Frozen<'a> {
-    /// For a question about these symbols.
+impl<'a> OpaqueTerms<'a> {
+    /// For a problem in these symbols.
     pub fn new(arena: &'a Arena, about: &'a BTreeSet<Symbol>) -> Self {
-        Self { arena, which: Which::FreeOf(about), symbols: FxHashMap::default(), values: BTreeMap::new() }
+        Self { arena, selection: Selection::FreeOf(about), symbols: FxHashMap::default(), values: BTreeMap::new() }
     }
 
-    /// For a question in which these functions are to stay.
+    /// For a problem in which these functions are opaque.
     pub(crate) fn calls(arena: &'a Arena, calls: &'a BTreeSet<Expr>) -> Self {
-        Self { arena, which: Which::Calls(calls), symbols: FxHashMap::default(), values: BTreeMap::new() }
+        Self { arena, selection: Selection::Calls(calls), symbols: FxHashMap::default(), values: BTreeMap::new() }
     }
 
     /// Formulas over the fresh symbols.
-    pub fn freeze(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+    pub fn replace(&mut self, exprs: &[Expr]) -> Vec<Expr> {
         let arena = self.arena;
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
         let parts = arena.postorder(exprs);
         let whole = whole_sums(arena, &parts);
         for expr in parts {
-            let frozen = match arena.node(expr) {
-                Node::Call(..) if self.stays(expr) => self.symbol_of(expr),
+            let opaque = match arena.node(expr) {
+                Node::Call(..) if self.is_opaque(expr) => self.symbol_of(expr),
                 Node::Product(product) => {
                     let factors: Vec<(Expr, Rational)> = product
                         .factors
                         .iter()
                         .map(|(base, exponent)| match Rational::new(1, exponent.denominator()) {
                             // A power of the root.
-                            Some(share) if !exponent.is_integer() && self.factors_stay(*base) => {
+                            Some(share) if !exponent.is_integer() && self.is_opaque_factor(*base) => {
                                 let root = self.symbol_of(arena.power(*base, &share));
                                 (root, Rational::from(exponent.numerator()))
                             }
-                            _ if whole.contains(base) && self.factors_stay(*base) => {
+                            _ if whole.contains(base) && self.is_opaque_factor(*base) => {
                                 (self.sum(*base), exponent.clone())
                             }
                             _ => (known[base], exponent.clone()),
@@ -71,38 +71,38 @@ impl<'a> Frozen<'a> {
                 }
                 _ => arena.rebuild(expr, &known),
             };
-            known.insert(expr, frozen);
+            known.insert(expr, opaque);
         }
         exprs.iter().map(|expr| known[expr]).collect()
     }
 
-    /// Whether nothing was replaced.
+    /// True if there are no opaque terms.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// A formula with what the fresh symbols stand for.
-    pub fn thaw(&self, expr: Expr) -> Expr {
+    /// A formula with the fresh symbols replaced by their terms.
+    pub fn restore(&self, expr: Expr) -> Expr {
         if self.is_empty() { expr } else { upright(self.arena, self.arena.substitute(expr, &self.values)) }
     }
 
-    /// Whether a function is replaced.
-    fn stays(&self, expr: Expr) -> bool {
-        match &self.which {
-            Which::FreeOf(about) => {
+    /// True if a function is opaque.
+    fn is_opaque(&self, expr: Expr) -> bool {
+        match &self.selection {
+            Selection::FreeOf(about) => {
                 let symbols = self.arena.symbols_of(&[expr]);
                 !symbols.is_empty() && symbols.is_disjoint(about)
             }
-            Which::Calls(calls) => calls.contains(&expr),
+            Selection::Calls(calls) => calls.contains(&expr),
         }
     }
 
-    /// Whether a root of this is replaced, and this where it is a factor.
-    fn factors_stay(&self, base: Expr) -> bool {
-        matches!(self.which, Which::FreeOf(_)) && self.stays(base)
+    /// True if roots of a base are opaque, and the base itself where it is a factor.
+    fn is_opaque_factor(&self, base: Expr) -> bool {
+        matches!(self.selection, Selection::FreeOf(_)) && self.is_opaque(base)
     }
 
-    /// The symbol of a sum, or the multiple of that of a sum in proportion: `q0 - q` after `q - q0`.
+    /// The symbol of a sum, or the multiple of that of a proportional sum: `q0 - q` after `q - q0`.
     fn sum(&mut self, expr: Expr) -> Expr {
         let arena = self.arena;
         let Node::Sum(sum) = arena.node(expr) else { return self.symbol_of(expr) };
@@ -129,17 +129,17 @@ impl<'a> Frozen<'a> {
     }
 }
 
-/// Of expressions with what they consist of, operands first, the sums without divisions but by powers, as `1 + (q/K)^10`:
-/// what others are divided by goes over their common denominator, as in `L - M^2/J`.
+/// The sums among expressions and their operands, operands first, that hold no divisions but by powers, as
+/// `1 + (q/K)^10`: others go over their common denominator, as `L - M^2/J`.
 fn whole_sums(arena: &Arena, parts: &[Expr]) -> FxHashSet<Expr> {
     let mut whole = FxHashSet::default();
     for part in parts {
         let Node::Sum(sum) = arena.node(*part) else { continue };
         let is_whole = sum.terms.iter().all(|(term, _)| match arena.node(*term) {
             Node::Product(product) => {
-                let magnitude = product.factors[0].1.abs();
-                let is_quotient = product.factors.len() > 1 && !magnitude.is_one();
-                is_quotient && product.factors.iter().all(|(_, exponent)| exponent.abs() == magnitude)
+                let size = product.factors[0].1.abs();
+                let is_quotient = product.factors.len() > 1 && !size.is_one();
+                is_quotient && product.factors.iter().all(|(_, exponent)| exponent.abs() == size)
                     || product.factors.iter().all(|(base, exponent)| {
                         !exponent.is_negative() && (!matches!(arena.node(*base), Node::Sum(_)) || whole.contains(base))
                     })
@@ -174,7 +174,8 @@ fn upright(arena: &Arena, expr: Expr) -> Expr {
             turned = true;
         }
     }
-    // A minus that this leaves goes into a difference above; below, entries of one matrix share what they divide by.
+    // The remaining minus goes into a difference in the numerator; in denominators, entries of one matrix share their
+    // divisors.
     if turned
         && coefficient.is_negative()
         && let Some((base, _)) = factors.iter_mut().find(|(base, power)| power.is_one() && balance(*base) == Some(0))
@@ -185,16 +186,16 @@ fn upright(arena: &Arena, expr: Expr) -> Expr {
     if turned { arena.multiply(&coefficient, factors) } else { expr }
 }
 
-/// The normal form of an expression over what is free of the symbols as it is written, where there is one.
+/// The normal form of an expression with opaque terms free of the symbols, if there is one.
 pub fn as_written(arena: &Arena, domain: &Domain, expr: Expr, about: &BTreeSet<Symbol>) -> Option<Expr> {
-    let mut frozen = Frozen::new(arena, about);
-    let signals = frozen.freeze(&[expr]);
-    if frozen.is_empty() {
+    let mut opaque = OpaqueTerms::new(arena, about);
+    let signals = opaque.replace(&[expr]);
+    if opaque.is_empty() {
         return None;
     }
     let field = Field::over(arena, &domain.facts, &signals).ok()?;
     let fraction = field.fraction(signals[0]).ok()?;
-    Some(frozen.thaw(field.show(&fraction)))
+    Some(opaque.restore(field.show(&fraction)))
 }
 
 #[cfg(test)]
@@ -215,25 +216,25 @@ mod tests {
             (arena.add(x, power(offset, 3)), "x + signal1^3"),
             (arena.mul(x, twice), "-2*x*signal1"),
             (arena.div(x, arena.add(arena.one(), power(arena.div(y, r), 4))), "x/signal2"),
-            // The common denominator of a fraction in a fraction goes below.
+            // The inner denominator of a nested fraction goes to the outer one.
             (arena.div(x, arena.sub(r, arena.div(power(y, 2), r))), "x/(r - y^2/r)"),
             (arena.div(x, power(offset, 8)), "x/signal1^8"),
-            // What is not a factor may cancel.
+            // A summand that is not a factor may cancel.
             (arena.add(x, offset), "x + y - r"),
             (arena.mul(y, arena.add(x, offset)), "y*(x + y - r)"),
             (arena.mul(x, arena.add(arena.one(), power(offset, 2))), "x*signal3"),
         ];
-        let mut frozen = Frozen::new(&arena, &about);
+        let mut opaque = OpaqueTerms::new(&arena, &about);
         for (written, expected) in cases {
-            let formula = frozen.freeze(&[written])[0];
+            let formula = opaque.replace(&[written])[0];
             assert_eq!(arena.print(formula), expected);
-            let difference = arena.sub(frozen.thaw(formula), written);
+            let difference = arena.sub(opaque.restore(formula), written);
             assert!(decide(&arena, difference, &Domain::default()).is_zero(), "{expected}");
         }
     }
 
     #[test]
-    fn products_stand_upright() {
+    fn products_have_few_minus_signs() {
         let arena = Arena::new();
         let [z, q, r] = ["z", "q", "r"].map(|name| arena.variable(name));
         let low = arena.sum([z, arena.neg(q), arena.number(-1)]);
@@ -266,27 +267,27 @@ mod tests {
             arena.power(arena.add(x, y), &half),
             arena.call(Function::Sin, &[arena.one()]),
         ];
-        let mut frozen = Frozen::new(&arena, &about);
-        let formulas = frozen.freeze(&written);
+        let mut opaque = OpaqueTerms::new(&arena, &about);
+        let formulas = opaque.replace(&written);
         let shown: Vec<String> = formulas.iter().map(|formula| arena.print(*formula)).collect();
         let expected =
             ["x*signal2", "x/signal4", "signal3^3", "sin(x + signal1)", "sqrt(x + y)", "sin(1)"].map(str::to_owned);
         assert_eq!(shown, expected);
-        assert!(!frozen.is_empty());
-        let back: Vec<Expr> = formulas.iter().map(|formula| frozen.thaw(*formula)).collect();
+        assert!(!opaque.is_empty());
+        let back: Vec<Expr> = formulas.iter().map(|formula| opaque.restore(*formula)).collect();
         assert_eq!(back, written);
     }
     #[test]
-    fn functions_that_stay_leave_the_others_to_the_normal_form() {
+    fn opaque_functions_leave_the_others_to_the_normal_form() {
         let arena = Arena::new();
         let x = arena.variable("x");
         let [sine, tanh] = [Function::Sin, Function::Tanh].map(|function| arena.call(function, &[x]));
         let root = arena.sqrt(arena.mul(x, x));
         let calls = BTreeSet::from([tanh]);
-        let mut frozen = Frozen::calls(&arena, &calls);
+        let mut opaque = OpaqueTerms::calls(&arena, &calls);
         let whole = arena.sum([arena.mul(sine, tanh), root, arena.call(Function::Exp, &[tanh])]);
-        let shown: Vec<Expr> = frozen.freeze(&[whole]);
+        let shown: Vec<Expr> = opaque.replace(&[whole]);
         assert_eq!(arena.print(shown[0]), "sqrt(x^2) + sin(x)*signal1 + exp(signal1)");
-        assert_eq!(frozen.thaw(shown[0]), whole);
+        assert_eq!(opaque.restore(shown[0]), whole);
     }
 }

@@ -1,8 +1,8 @@
-//! Denominators as a reader would write them: with the sign that the assumptions tell.
+//! Denominators with the sign that the assumptions determine.
 //!
-//! In: an expression and a domain. Out: the same value, with `1 - d` in place of `d - 1` below a fraction bar, or
-//! squared, where it is known that `d < 1`. Turning a factor round is exact; that it is known to be positive lets it
-//! meet its own root, as in `sqrt(r)/r`.
+//! In: an expression and a domain. Out: the same value, with `1 - d` in place of `d - 1` in denominators and squares,
+//! if `d < 1` is known. Turning a factor round is exact; a factor known to be positive combines with its own root, as
+//! in `sqrt(r)/r`.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,11 +14,11 @@ pub fn oriented(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     Orientation::new(arena, domain).of(expr)
 }
 
-/// As [`oriented`], for several expressions: what is below one bar is often below others too.
+/// As [`oriented`], for several expressions, which often share denominators.
 pub struct Orientation<'a> {
     arena: &'a Arena,
     domain: &'a Domain,
-    /// The sums that were asked about, and whether the domain shows them to be negative.
+    /// The sums examined so far; true if the domain proves them negative.
     negative: RefCell<BTreeMap<Expr, bool>>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Orientation<'a> {
         }
     }
 
-    /// Where it is asked.
+    /// The domain of the signs.
     pub(crate) fn domain(&self) -> &'a Domain {
         self.domain
     }
@@ -69,8 +69,8 @@ impl<'a> Orientation<'a> {
         let mut factors = product.factors.clone();
         let mut changed = false;
         for (base, exponent) in &mut factors {
-            let below = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
-            if !below || !matches!(arena.node(*base), Node::Sum(_)) {
+            let in_denominator = exponent.is_integer() && (exponent.is_negative() || is_even(exponent));
+            if !in_denominator || !matches!(arena.node(*base), Node::Sum(_)) {
                 continue;
             }
             if self.is_negative(*base) {
@@ -84,7 +84,7 @@ impl<'a> Orientation<'a> {
         if !changed {
             return arena.multiply(&coefficient, factors);
         }
-        // A sum above the bar takes a sign that is left.
+        // A sum in the numerator takes a remaining sign.
         if coefficient.is_negative()
             && let Some((base, _)) =
                 factors.iter_mut().find(|(base, power)| power.is_one() && matches!(arena.node(*base), Node::Sum(_)))
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_known_to_be_negative_is_turned_round() {
+    fn denominators_known_to_be_negative_are_turned_round() {
         let arena = Arena::new();
         let [a, b, d] = ["a", "b", "d"].map(|name| arena.variable(name));
         let low = arena.sub(d, arena.one());
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(shown(&domain, squared), "a/(1 - d)^2");
         assert_eq!(shown(&domain, arena.add(b, fraction)), "b + a/(1 - d)");
         assert_eq!(shown(&domain, arena.div(arena.sub(a, b), low)), "(b - a)/(1 - d)");
-        assert_eq!(shown(&domain, arena.mul(a, low)), arena.print(arena.mul(a, low)), "nothing is below a bar");
+        assert_eq!(shown(&domain, arena.mul(a, low)), arena.print(arena.mul(a, low)), "there is no denominator");
         let root = arena.sqrt(arena.sub(arena.one(), d));
         assert_eq!(shown(&domain, arena.div(root, low)), "-1/sqrt(1 - d)");
     }

@@ -1,4 +1,4 @@
-//! Numbers beside sums where the fewest stand: `(3*p - 2*b)/(2*J)` is `(1.5*p - b)/J`.
+//! The shortest numbers beside sums: `(3*p - 2*b)/(2*J)` is `(1.5*p - b)/J`.
 //!
 //! In: an expression, as a normal form over whole numbers writes it. Out: an equal one. A sum beside a number may be
 //! divided by a number that joins it. A decimal stays one: no number appears that has no exact decimal, unless the one
@@ -35,9 +35,9 @@ pub fn scaled(arena: &Arena, expr: Expr) -> Expr {
     known[&expr]
 }
 
-/// The number by which a sum beside this coefficient is to be divided, if any.
+/// The number by which a sum with this coefficient is to be divided, if any.
 fn share(sum: &Sum, coefficient: &Rational) -> Option<Rational> {
-    // The numbers that are left, if none of them is to lose its decimal or the coefficient goes.
+    // The count of numbers that remain, if none of them loses its decimal or the coefficient goes.
     let count = |share: &Rational| -> Option<usize> {
         let outer = &coefficient.abs() * share;
         let may_lose = outer.is_one();
@@ -69,7 +69,7 @@ pub fn divided(arena: &Arena, sum: &Sum, share: &Rational) -> Expr {
     arena.combine(&part(&sum.constant), sum.terms.iter().map(|(term, number)| (*term, part(number))))
 }
 
-/// Whether the number has an exact decimal: its denominator has no prime factor but 2 and 5.
+/// True if the number has an exact decimal: its denominator has no prime factor but 2 and 5.
 pub fn is_short(value: &Rational) -> bool {
     let mut denominator = value.denominator();
     for prime in [2, 5] {
@@ -98,7 +98,7 @@ mod tests {
             (over(fraction(1, 2), sum([3, -2, 0], 0)), "(3*a/2 - b)/d"),
             (over(fraction(1, 5), sum([2, 0, 0], -5)), "(2*a/5 - 1)/d"),
             (over(fraction(1, million), sum([million, -million, 1], 0)), "(a - b + 1e-6*c)/d"),
-            // Where no number goes for it, a third stays outside.
+            // If no number vanishes for it, a third remains outside.
             (over(fraction(1, 3), sum([3, -1, 0], 0)), "(a - b/3)/d"),
             (over(fraction(1, 3), sum([1, 2, 0], 0)), "(a + 2*b)/(3*d)"),
             (over(fraction(1, 2), sum([1, -1, 0], 0)), "(a - b)/(2*d)"),
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_a_finite_decimal_is_short() {
+    fn numbers_with_finite_decimals_are_short() {
         let short = |n: i64, d: i64| is_short(&Rational::new(n, d).unwrap());
         assert!(short(3, 1) && short(1, 8) && short(7, 25) && short(1, 40));
         assert!(!short(1, 3) && !short(1, 30));

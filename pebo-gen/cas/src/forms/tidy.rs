@@ -10,38 +10,38 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::as_sign::as_sign;
 use super::hyperbolic::without_differences;
 use super::near_zero::near_zero;
-use super::opaque::Frozen;
+use super::opaque::OpaqueTerms;
 use super::oriented::Orientation;
 use super::scaled::scaled;
-use super::shared::Shared;
+use super::shared_sums::SharedSums;
 use crate::domain::zero::decide;
-use crate::graph::conditions::Want;
-use crate::graph::function::{Asks, Function};
+use crate::graph::conditions::Regularity;
+use crate::graph::function::{Conditions, Function};
 use crate::tower::Field;
 use crate::{Arena, Domain, Expr, Facts, Node, Rational, Relation};
 
-/// Terms of a numerator that may be a product of sums worth looking for, as `(p - 1)*(q - 1)`.
+/// Numbers of terms for which a numerator is tested as a product of sums, as `(p - 1)*(q - 1)`.
 const PRODUCT_TERMS: std::ops::RangeInclusive<usize> = 4..=12;
 
-/// Terms of a normal form up to which it is written out in any case: what its factors have in common may save more.
+/// Terms of a normal form up to which it is always written out: common factors may shorten it.
 const LONG: usize = 500;
 
-/// The shortest of an expression and the ways to write its normal form.
+/// The shortest of an expression and the forms of its normal form.
 pub fn shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
-    shortest_turned(arena, &Orientation::new(arena, domain), expr)
+    shortest_oriented(arena, &Orientation::new(arena, domain), expr)
 }
 
-/// As [`shortest`], of one of several expressions that are turned alike.
-pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
+/// As [`shortest`], for one of several expressions with a common orientation.
+pub fn shortest_oriented(arena: &Arena, orientation: &Orientation<'_>, expr: Expr) -> Expr {
     if is_shortest(arena, expr) {
         return expr;
     }
     let expr = as_sign(arena, expr);
-    // Of a long one over what it holds several times: written out, that would make it longer.
+    // A long formula over its shared sums: written out, it would be longer.
     if operations(arena, expr) > LONG
-        && let Some(shared) = Shared::of(arena, expr)
+        && let Some(shared) = SharedSums::of(arena, expr)
     {
-        return shared.opened(arena, shortest_turned(arena, orientation, shared.expr));
+        return shared.expanded(arena, shortest_oriented(arena, orientation, shared.expr));
     }
     let domain = orientation.domain();
     let own = functions(arena, &[expr]);
@@ -59,7 +59,7 @@ pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr)
     }
     forms.extend(forms.iter().filter_map(|form| without_differences(arena, *form)).collect::<Vec<Expr>>());
     let forms = forms.into_iter().flat_map(|form: Expr| [form, orientation.of(form)]);
-    // Several ways to write it often give the same form.
+    // Several forms are often equal.
     let mut seen = FxHashSet::default();
     let forms = forms.flat_map(|form| [form, scaled(arena, form)]).map(|form| as_sign(arena, form));
     let forms = forms.filter(|form| seen.insert(*form));
@@ -71,7 +71,7 @@ pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr)
             && kept(form)
             && divides_as(arena, expr, form)
             && !cancels(form)
-            && asks_no_more(arena, domain, expr, form)
+            && adds_no_conditions(arena, domain, expr, form)
         {
             (best, fewest) = (form, taken);
         }
@@ -79,9 +79,9 @@ pub fn shortest_turned(arena: &Arena, orientation: &Orientation<'_>, expr: Expr)
     best
 }
 
-/// The other ways to write an expression with at most so many operations that have a value wherever it has, those with the
-/// fewest first. They may be in other functions than the author's and divide by other sums: that they are equal, the caller
-/// decides.
+/// The other forms of an expression with at most so many operations that have a value wherever it has, those with the
+/// fewest first. They may hold other functions than the author's and divide by other sums; the caller proves them
+/// equal.
 pub fn others(arena: &Arena, domain: &Domain, expr: Expr, most: usize) -> impl Iterator<Item = Expr> {
     let mut forms: Vec<(usize, Expr)> = Vec::new();
     for form in ways(arena, domain, expr) {
@@ -91,11 +91,11 @@ pub fn others(arena: &Arena, domain: &Domain, expr: Expr, most: usize) -> impl I
         }
     }
     forms.sort_by_key(|(taken, _)| *taken);
-    // Whether a form has a value takes long to see: of those that are not looked at it is not asked.
-    forms.into_iter().map(|(_, form)| form).filter(move |form| asks_no_more(arena, domain, expr, *form))
+    // The domain conditions of a form take long to check: only those of the forms in use are.
+    forms.into_iter().map(|(_, form)| form).filter(move |form| adds_no_conditions(arena, domain, expr, *form))
 }
 
-/// The ways to write an expression, some of them several times.
+/// The forms of an expression, some of them several times.
 fn ways(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
     let Ok(field) = Field::of_long_sums(arena, &domain.facts, &[expr]) else { return Vec::new() };
     let orientation = Orientation::new(arena, domain);
@@ -109,15 +109,15 @@ fn ways(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<Expr> {
         ways
     };
     let mut ways = in_kernels_of(&field);
-    // In absolute angles a divisor `sin(q)` is none.
+    // In absolute angles `sin(q)` is no divisor.
     ways.extend(Field::over(arena, &domain.facts, &[expr]).iter().flat_map(in_kernels_of));
     ways.extend(in_own_functions(&field, &domain.facts, expr, &own, |form| functions(arena, &[form]).is_subset(&own)));
     ways.extend([expr].iter().chain(&ways).filter_map(|form| near_zero(arena, *form)).collect::<Vec<Expr>>());
     ways.into_iter().flat_map(|form| [orientation.of(form), form]).collect()
 }
 
-/// The ways to write the normal form; none where it is long and has more terms than the expression has operations, as a
-/// determinant that is written by its minors: each term is an operation at least.
+/// The forms of the normal form; none if it is long and has more terms than the expression has operations, as a
+/// determinant that is written by its minors: each term is at least one operation.
 fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
     let Ok(fraction) = field.fraction(expr) else { return Vec::new() };
     let terms = fraction.weight();
@@ -131,8 +131,8 @@ fn written(field: &Field<'_>, expr: Expr) -> Vec<Expr> {
     forms.into_iter().flatten().collect()
 }
 
-/// The same of a normal form that leaves those functions alone which it would write with others: that `tanh(u)` would
-/// be a quotient of exponentials does not keep `sqrt(q^2) - q^2/sqrt(q^2)` beside it from cancelling.
+/// The forms of a normal form in which functions that it would replace are opaque: writing `tanh(u)` as a quotient of
+/// exponentials must not keep `sqrt(q^2) - q^2/sqrt(q^2)` beside it from cancelling.
 fn in_own_functions(
     field: &Field<'_>,
     facts: &Facts,
@@ -144,16 +144,16 @@ fn in_own_functions(
     let foreign = |call: &Expr| field.fraction(*call).is_ok_and(|fraction| !kept(field.show(&fraction)));
     let is_call = |call: &Expr| matches!(arena.node(*call), Node::Call(..));
     let calls: BTreeSet<Expr> = own.iter().copied().filter(|call| is_call(call) && foreign(call)).collect();
-    let mut frozen = Frozen::calls(arena, &calls);
-    let over = frozen.freeze(&[expr])[0];
-    if frozen.is_empty() {
+    let mut opaque = OpaqueTerms::calls(arena, &calls);
+    let over = opaque.replace(&[expr])[0];
+    if opaque.is_empty() {
         return Vec::new();
     }
     let Ok(field) = Field::of_long_sums(arena, facts, &[over]) else { return Vec::new() };
-    written(&field, over).into_iter().map(|form| frozen.thaw(form)).collect()
+    written(&field, over).into_iter().map(|form| opaque.restore(form)).collect()
 }
 
-/// Whether a call is the root of an even power: `abs(q)` is `sqrt(q^2)`.
+/// True if a call is the root of an even power: `abs(q)` is `sqrt(q^2)`.
 fn is_root_of(arena: &Arena, call: Expr, radicand: Expr) -> bool {
     let (Node::Call(Function::Abs, inside), Node::Product(product)) = (arena.node(call), arena.node(radicand)) else {
         return false;
@@ -162,8 +162,8 @@ fn is_root_of(arena: &Arena, call: Expr, radicand: Expr) -> bool {
     product.factors.iter().any(|(base, power)| *base == inside[0] && is_even(power))
 }
 
-/// Whether no way to write the normal form is shorter: of a number, of a symbol, and of a sum of symbols with numbers for
-/// factors unless one of these divides all others, so that it becomes one where it is taken out.
+/// True if no form of the normal form is shorter: for a number, a symbol, and a sum of symbols with numeric factors
+/// unless one of these divides all others, so that it becomes one where it is taken out.
 fn is_shortest(arena: &Arena, expr: Expr) -> bool {
     match arena.node(expr) {
         Node::Number(_) | Node::Symbol(_) => true,
@@ -178,8 +178,8 @@ fn is_shortest(arena: &Arena, expr: Expr) -> bool {
     }
 }
 
-/// The calls of expressions, and what their roots are taken of. A form with others is not the author's: `tanh(100*w)`
-/// as a quotient of exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
+/// The calls of expressions, and the radicands of their roots. A form with others is not the author's: `tanh(100*w)` as
+/// a quotient of exponentials overflows, and `sin(24*q)` as a polynomial in `cos(q)` loses all digits.
 pub fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
     let mut found = BTreeSet::new();
     for e in arena.postorder(exprs) {
@@ -198,8 +198,8 @@ pub fn functions(arena: &Arena, exprs: &[Expr]) -> BTreeSet<Expr> {
     found
 }
 
-/// Whether a form of expressions writes a hyperbolic function of theirs with powers of exponentials: `exp(q)^4 - 1` over
-/// `exp(q)^4 + 1` is `tanh(2*q)`, and overflows.
+/// True if a form of expressions writes one of their hyperbolic functions with powers of exponentials: `exp(q)^4 - 1`
+/// over `exp(q)^4 + 1` is `tanh(2*q)`, and overflows.
 pub fn dissolves(arena: &Arena, exprs: &[Expr], form: Expr) -> bool {
     let hyperbolic = |exprs: &[Expr]| -> BTreeSet<Expr> {
         let is_hyperbolic =
@@ -223,7 +223,7 @@ fn powers_of_exp(arena: &Arena, exprs: &[Expr]) -> BTreeSet<(Expr, Rational)> {
     found
 }
 
-/// The sums in which a square root has another sign than a term beside it: they lose digits where the two are near, as
+/// The sums in which a square root has another sign than another term: they lose digits where the two are near, as
 /// `(sqrt(4*z + 1) - 1)/2` does for small z and `2*z/(sqrt(4*z + 1) + 1)` does not. Up to their signs.
 pub fn root_differences(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
     let is_root = |term: Expr| match arena.node(term) {
@@ -244,9 +244,9 @@ pub fn root_differences(arena: &Arena, expr: Expr) -> BTreeSet<Expr> {
     found
 }
 
-/// Whether a form divides by nothing by which the expression does not divide, and by nothing more often: `cos(q)^2 - 1`
-/// in place of `sin(q)^2` has lost its digits where it is small, and what is over `sin(q)^2` and not over `sin(q)` has
-/// a numerator that cancels there.
+/// True if a form has no divisors but the expression's, and none more often: `cos(q)^2 - 1` in place of `sin(q)^2` has
+/// lost its digits where it is small, and a form over `sin(q)^2` instead of `sin(q)` has a numerator that cancels
+/// there.
 fn divides_as(arena: &Arena, expr: Expr, form: Expr) -> bool {
     let own = divisors(arena, expr);
     let within = |(base, times): (&Expr, &Rational)| {
@@ -256,8 +256,8 @@ fn divides_as(arena: &Arena, expr: Expr, form: Expr) -> bool {
     divisors(arena, form).iter().all(within)
 }
 
-/// The sums and functions by which an expression divides, and how often along one path at most. By `cos(q)^2 - 1` it
-/// divides as by `sin(q)^2`.
+/// The sums and functions by which an expression divides, with their greatest multiplicity along one path. A divisor
+/// `cos(q)^2 - 1` counts as `sin(q)^2`.
 fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
     let mut known: FxHashMap<Expr, BTreeMap<Expr, Rational>> = FxHashMap::default();
     for e in arena.postorder(&[expr]) {
@@ -265,14 +265,14 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
         match arena.node(e) {
             Node::Product(product) => {
                 for (base, exponent) in &product.factors {
-                    let magnitude = exponent.abs();
+                    let times_each = exponent.abs();
                     for (inner, times) in &known[base] {
-                        let times = times * &magnitude;
+                        let times = times * &times_each;
                         found.entry(*inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                     }
                     if exponent.is_negative() && matches!(arena.node(*base), Node::Sum(_) | Node::Call(..)) {
-                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &magnitude + &magnitude));
-                        for (inner, times) in sine.into_iter().chain([(*base, magnitude)]) {
+                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &times_each + &times_each));
+                        for (inner, times) in sine.into_iter().chain([(*base, times_each)]) {
                             found.entry(inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                         }
                     }
@@ -292,7 +292,7 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
     known.remove(&expr).unwrap_or_default()
 }
 
-/// `sin(q)`, of `cos(q)^2 - 1` or a multiple of it.
+/// `sin(q)`, from `cos(q)^2 - 1` or a multiple of it.
 fn sine_of_square(arena: &Arena, expr: Expr) -> Option<Expr> {
     let Node::Sum(sum) = arena.node(expr) else { return None };
     let [(term, slope)] = sum.terms.as_slice() else { return None };
@@ -303,23 +303,23 @@ fn sine_of_square(arena: &Arena, expr: Expr) -> Option<Expr> {
     is_square.then(|| arena.call(Function::Sin, &arguments))
 }
 
-/// Of equal forms the shortest in the functions of the author's formula; the first where none keeps to them.
-pub fn authors(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
+/// The shortest of equal forms in the functions of the author's formula; the first if none keeps to them.
+pub fn authors_form(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr> {
     let own = functions(arena, &[written]);
     let keeps = |form: &Expr| functions(arena, &[*form]).is_subset(&own) && divides_as(arena, written, *form);
     let kept = forms.iter().copied().filter(keeps);
     kept.min_by_key(|form| operations(arena, *form)).or_else(|| forms.first().copied())
 }
 
-/// Whether a form asks for nothing, to have a value, but what the expression asks too or what the domain shows.
-pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
-    let own = asks_of_code(arena, expr);
-    let mut more = asks_of_code(arena, form);
+/// True if every domain condition of a form is one of the expression or proved on the domain.
+pub(crate) fn adds_no_conditions(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
+    let own = code_conditions(arena, expr);
+    let mut more = code_conditions(arena, form);
     more.retain(|ask| !own.contains(ask));
     if more.is_empty() {
         return true;
     }
-    // That proofs leave a place out is no reason to divide by zero there: signs are known, and what is asked anyway.
+    // A point that proofs exclude may still not divide by zero: only signs, and the expression's own conditions, count.
     let mut facts = Facts::new();
     let signs = domain.facts.iter().filter(|(_, relation)| *relation != Relation::NonZero);
     for (part, relation) in signs.chain(own) {
@@ -329,14 +329,14 @@ pub(crate) fn asks_no_more(arena: &Arena, domain: &Domain, expr: Expr, form: Exp
     more.into_iter().all(|(part, relation)| there.implies(arena, part, relation))
 }
 
-/// What an expression asks to be computed: unlike a proof, code has a value for the sign of 0.
-fn asks_of_code(arena: &Arena, expr: Expr) -> Asks {
-    let mut found = Asks::new();
+/// The domain conditions of the emitted code: unlike a proof, code has a value for the sign of 0.
+fn code_conditions(arena: &Arena, expr: Expr) -> Conditions {
+    let mut found = Conditions::new();
     for part in arena.postorder(&[expr]) {
         if matches!(arena.node(part), Node::Call(Function::Sign, _)) {
             continue;
         }
-        for ask in arena.asked_by(part, Want::Value) {
+        for ask in arena.operation_conditions(part, Regularity::Defined) {
             if !found.contains(&ask) && !arena.holds_of_number(ask) {
                 found.push(ask);
             }
@@ -345,19 +345,19 @@ fn asks_of_code(arena: &Arena, expr: Expr) -> Asks {
     found
 }
 
-/// The first of the candidates that asks for less than the expression of what the domain does not show and is proved
-/// equal to it: of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
-pub fn asking_less(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
-    let unshown = |form: Expr| {
-        let asked = asks_of_code(arena, form).into_iter();
+/// The first of the candidates that has fewer unproved domain conditions than the expression and is proved equal to it:
+/// of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
+pub fn with_fewer_conditions(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
+    let unproved = |form: Expr| {
+        let asked = code_conditions(arena, form).into_iter();
         asked.filter(|(part, relation)| !domain.implies(arena, *part, *relation)).count()
     };
-    let most = unshown(expr);
+    let most = unproved(expr);
     if most == 0 {
         return expr;
     }
     let equal = |form: Expr| decide(arena, arena.sub(form, expr), domain).is_zero();
-    candidates.iter().copied().find(|form| unshown(*form) < most && equal(*form)).unwrap_or(expr)
+    candidates.iter().copied().find(|form| unproved(*form) < most && equal(*form)).unwrap_or(expr)
 }
 
 /// The shorter of an expression and its normal form, the latter only if the zero test confirms it.
@@ -366,7 +366,7 @@ pub fn proved_shortest(arena: &Arena, domain: &Domain, expr: Expr) -> Expr {
     shortest_equal(arena, domain, expr, &[candidate])
 }
 
-/// The one of two equal expressions that takes fewer operations; the first where they are level.
+/// The one of two equal expressions that takes fewer operations; the first of equally long ones.
 pub fn shorter(arena: &Arena, first: Expr, second: Expr) -> Expr {
     if operations(arena, second) < operations(arena, first) { second } else { first }
 }
@@ -376,7 +376,7 @@ pub fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[
     let mut best = expr;
     for &candidate in candidates {
         if operations(arena, candidate) < operations(arena, best)
-            && asks_no_more(arena, domain, expr, candidate)
+            && adds_no_conditions(arena, domain, expr, candidate)
             && decide(arena, arena.sub(candidate, expr), domain).is_zero()
         {
             best = candidate;
@@ -385,12 +385,12 @@ pub fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[
     best
 }
 
-/// The number of operations of an expression, shared parts once; functions weigh more.
+/// The number of operations of an expression, shared subexpressions once; functions weigh more.
 pub fn operations(arena: &Arena, expr: Expr) -> usize {
     operations_of(arena, &[expr])
 }
 
-/// As [`operations`], of several expressions together.
+/// As [`operations`], of several expressions combined.
 pub fn operations_of(arena: &Arena, exprs: &[Expr]) -> usize {
     const FUNCTION: usize = 10;
     arena
@@ -437,7 +437,7 @@ mod tests {
             // The author has no sine.
             (arena.div(k, square), "k/(2*(cos(q)^2 - 1))"),
             (arena.div(k, arena.mul(s, s)), "k/sin(q)^2"),
-            // Of one sine it has no two.
+            // One sine, not two.
             (arena.div(k, s), "k/sin(q)"),
         ];
         for (written, expected) in cases {
@@ -446,7 +446,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cancels_leaves_beside_functions_that_stay() {
+    fn terms_cancel_beside_opaque_functions() {
         let arena = Arena::new();
         let [p, q, u] = ["p", "q", "u"].map(|name| arena.variable(name));
         let call = |function, argument| arena.call(function, &[argument]);
@@ -481,9 +481,9 @@ mod tests {
         }
     }
 
-    /// The magnitude is what the root is, and no way to write another function.
+    /// The absolute value equals the root, and no form of another function.
     #[test]
-    fn a_magnitude_stands_for_the_root_of_a_square_alone() {
+    fn an_absolute_value_replaces_only_the_root_of_a_square() {
         let arena = Arena::new();
         let [p, q] = ["p", "q"].map(|name| arena.variable(name));
         let larger = arena.call(Function::Max, &[p, q]);

@@ -13,10 +13,10 @@ use super::expr::{Expr, Node, Symbol};
 use crate::number::notation::Notation;
 use crate::{Budget, Rational};
 
-/// Steps that looking at a node takes, or at one that was seen before as an operand of another.
+/// Steps that an examination of a node takes, or of one met again as an operand of another.
 const STEPS_OF_A_LOOK: u64 = 2;
 
-/// Which walk through the graph came to each node last: a set of nodes that takes no time to empty.
+/// The last walk through the graph that came to each node: a set of nodes that takes no time to empty.
 #[derive(Default, Debug)]
 struct Visits {
     last: Vec<u32>,
@@ -35,7 +35,7 @@ impl Visits {
     }
 }
 
-/// Owns the nodes of all expressions of one question.
+/// Owns the nodes of all expressions of one problem.
 ///
 /// Constructors take `&self`, so that they nest as the formula does.
 #[derive(Debug)]
@@ -53,12 +53,12 @@ pub struct Arena {
 }
 
 impl Arena {
-    /// An arena without expressions, and without a limit on what is asked of them.
+    /// An arena without expressions, and without a limit on the work.
     pub fn new() -> Self {
         Self::within(Budget::unlimited())
     }
 
-    /// An arena without expressions; all that is asked of them draws from the budget.
+    /// An arena without expressions; all work on them draws from the budget.
     pub fn within(budget: Budget) -> Self {
         Self {
             budget,
@@ -72,17 +72,17 @@ impl Arena {
         }
     }
 
-    /// What all questions about the expressions may take together.
+    /// The budget of all work on the expressions.
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
 
-    /// How the author wrote numbers.
+    /// The author's notation of numbers.
     pub fn notation(&self) -> &Notation {
         &self.notation
     }
 
-    /// What the expression is.
+    /// The node of an expression.
     pub fn node(&self, expr: Expr) -> Node {
         self.nodes.borrow()[expr.0 as usize].clone()
     }
@@ -106,7 +106,7 @@ impl Arena {
         self.entered(&self.symbols, name)
     }
 
-    /// The generator's own symbol of this name: never one that an author calls so, though both are shown alike.
+    /// The generator's own symbol of this name: never one that an author calls so, though both are printed alike.
     pub fn generated(&self, name: &str) -> Symbol {
         self.entered(&self.generated, name)
     }
@@ -122,7 +122,7 @@ impl Arena {
         symbol
     }
 
-    /// The name that a symbol is shown by.
+    /// The printed name of a symbol.
     pub fn name(&self, symbol: Symbol) -> String {
         self.names.borrow()[symbol.index()].clone()
     }
@@ -179,7 +179,7 @@ impl Arena {
         }
     }
 
-    /// Whether the expression is the number zero.
+    /// True if the expression is the number zero.
     pub fn is_zero(&self, expr: Expr) -> bool {
         matches!(&self.nodes.borrow()[expr.0 as usize], Node::Number(value) if value.is_zero())
     }
@@ -191,7 +191,7 @@ impl Arena {
         operands
     }
 
-    /// How many operands an expression has.
+    /// The number of operands of an expression.
     pub(crate) fn operand_count(&self, expr: Expr) -> u64 {
         let count = match &self.nodes.borrow()[expr.0 as usize] {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => 0,
@@ -202,7 +202,7 @@ impl Arena {
         count as u64
     }
 
-    /// Every expression that the roots consist of, operands before what uses them.
+    /// Every subexpression of the roots, operands before their users.
     pub fn postorder(&self, roots: &[Expr]) -> Vec<Expr> {
         let nodes = self.nodes.borrow();
         let mut visits = self.visits.borrow_mut();
@@ -221,7 +221,7 @@ impl Arena {
         }
         // Each is also put in order.
         self.budget.take(STEPS_OF_A_LOOK.saturating_mul(looks.saturating_add(found.len() as u64)));
-        // Operands are entered before what uses them, so ascending handles are a topological order.
+        // Operands are entered before their users, so ascending handles are a topological order.
         found.sort_unstable();
         found
     }
@@ -231,7 +231,7 @@ impl Arena {
         self.postorder(roots).into_iter().filter_map(|e| self.as_symbol(e)).collect()
     }
 
-    /// Whether the expression contains one of the symbols.
+    /// True if the expression contains one of the symbols.
     pub fn depends_on(&self, expr: Expr, symbols: &BTreeSet<Symbol>) -> bool {
         !self.symbols_of(&[expr]).is_disjoint(symbols)
     }

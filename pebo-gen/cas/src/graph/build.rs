@@ -1,8 +1,8 @@
 //! Canonical construction: sums, products, powers and calls that simplify themselves.
 //!
-//! In: operands. Out: an expression in the form that [`Sum`] and [`Product`] describe. Every rule
-//! preserves the real value wherever the operands have one; a rule may enlarge the domain
-//! (`x/x = 1`), so the conditions of a formula are read off what its author wrote, never off this form.
+//! In: operands. Out: an expression in the form that [`Sum`] and [`Product`] describe. Every rule preserves the real
+//! value wherever the operands have one; a rule may enlarge the domain (`x/x = 1`), so domain conditions are read off
+//! the author's formula, never off this form.
 
 use std::rc::Rc;
 
@@ -14,12 +14,12 @@ use super::function::{Function, Parity};
 use crate::Rational;
 use crate::number::rational::half;
 
-/// Steps that entering a node takes, and those for each of its operands: a look at it, a number, a place in order.
+/// Steps that entering a node takes, and those for each of its operands: an examination, a number, a position in order.
 const STEPS_OF_A_NODE: u64 = 60;
 const STEPS_OF_AN_OPERAND: u64 = 10;
 
 /// A rational factor and powers to multiply it with.
-type Parts = (Rational, Vec<(Expr, Rational)>);
+type ScaledFactors = (Rational, Vec<(Expr, Rational)>);
 
 impl Arena {
     /// `a + b`.
@@ -98,7 +98,7 @@ impl Arena {
 
     /// The work of `combine`, apart so that it is compiled once and not for every iterator.
     fn combine_all(&self, constant: &Rational, mut open: Vec<(Expr, Rational)>) -> Expr {
-        // Numbers as two factors, the second by its place among the scales: they are multiplied where they are added.
+        // Numbers as two factors, the second by its index among the scales: they are multiplied where they are added.
         let mut scales = vec![Rational::ONE];
         let mut constants: SmallVec<[(Rational, usize); 4]> = SmallVec::from_elem((constant.clone(), 0), 1);
         let mut flat: Vec<(Expr, Rational, usize)> = Vec::with_capacity(open.len());
@@ -202,13 +202,13 @@ impl Arena {
         }
     }
 
-    /// What a node of so many operands takes. It is made all the same: what the budget no longer has is asked of what
-    /// would make more of them.
+    /// Counts a node of so many operands. It is made all the same: an exhausted budget stops the callers that make
+    /// more.
     fn count(&self, operands: usize) {
         self.budget().take(STEPS_OF_A_NODE.saturating_add(STEPS_OF_AN_OPERAND.saturating_mul(operands as u64)));
     }
 
-    /// What numbers take that are longer than a word: products, and their common divisors.
+    /// Counts the work on numbers longer than a word: products, and their common divisors.
     fn count_words<'a>(&self, numbers: impl Iterator<Item = &'a Rational>) {
         let words = numbers.map(|number| number.bits() / 64).filter(|words| *words > 2);
         self.budget().take(words.map(|words| words.saturating_mul(words)).sum());
@@ -225,7 +225,7 @@ impl Arena {
         }
     }
 
-    /// Whether `base ^ exponent` is not yet in canonical form.
+    /// True if `base ^ exponent` is not yet in canonical form.
     fn opens(&self, base: Expr, exponent: &Rational) -> bool {
         match self.node(base) {
             Node::Number(value) => {
@@ -238,7 +238,7 @@ impl Arena {
     }
 
     /// `product ^ exponent` taken into the product, where the real value allows it.
-    fn distribute(&self, product: &Product, exponent: &Rational) -> Option<Parts> {
+    fn distribute(&self, product: &Product, exponent: &Rational) -> Option<ScaledFactors> {
         let raised = |factors: &[(Expr, Rational)]| -> Vec<(Expr, Rational)> {
             factors.iter().map(|(base, inner)| (*base, inner * exponent)).collect()
         };
@@ -247,7 +247,7 @@ impl Arena {
             return rest.is_none().then(|| (exact, raised(&product.factors)));
         }
         if product.coefficient.is_one() {
-            // A power of one base merges where the base must be non-negative anyway.
+            // A power of one base merges if the base must be non-negative anyway.
             let [(_, inner)] = product.factors.as_slice() else { return None };
             let forces_sign = !inner.is_integer() || inner.numerator().trailing_zeros() == 0;
             return forces_sign.then(|| (Rational::ONE, raised(&product.factors)));
@@ -255,7 +255,7 @@ impl Arena {
         if product.coefficient.is_negative() {
             return None;
         }
-        // A positive rational factor comes out of a root where its own root is rational.
+        // A positive rational factor comes out of a root if its own root is rational.
         let (exact, rest) = number_power(&product.coefficient, exponent);
         let bare = self.multiply(&Rational::ONE, product.factors.iter().cloned());
         rest.is_none().then(|| (exact, vec![(bare, exponent.clone())]))
@@ -297,7 +297,7 @@ impl Arena {
     }
 }
 
-/// `value ^ exponent` as an exact rational times what no rational is.
+/// `value ^ exponent` as an exact rational times an irrational power.
 fn number_power(value: &Rational, exponent: &Rational) -> (Rational, Option<(Rational, Rational)>) {
     let unevaluated = || (Rational::ONE, Some((value.clone(), exponent.clone())));
     if value.is_one() {
@@ -329,7 +329,7 @@ fn number_power(value: &Rational, exponent: &Rational) -> (Rational, Option<(Rat
     }
 }
 
-/// The power, unless its size would be out of all proportion.
+/// The power, unless it is excessively large.
 fn small_power(value: &Rational, exponent: &Rational) -> Option<Rational> {
     const MOST_BITS: u64 = 1 << 16;
     let exponent = i32::try_from(exponent.to_i64()?).ok()?;

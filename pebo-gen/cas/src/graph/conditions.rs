@@ -1,91 +1,94 @@
-//! What an expression asks of its parts to have a value, or to be differentiable.
+//! Domain conditions: the comparisons with zero under which an expression has a value, or is differentiable.
 //!
-//! In: an expression, or an operation that is about to be built. Out: comparisons with zero. The rows of the
-//! operations stand here, those of the functions in [`super::function`]; what is written, derived or emitted asks these.
+//! In: an expression, or an operation that is about to be built. Out: comparisons with zero. This module has the
+//! conditions of the operations, [`super::function`] those of the functions; parser, derivative and emitter share them.
 
 use super::arena::Arena;
 use super::enclosure::Point;
 use super::expr::{Expr, Node};
-use super::function::{Asks, Function};
+use super::function::{Conditions, Function};
 use crate::{Rational, Relation};
 
-/// What is wanted of an operation.
+/// The regularity demanded of an operation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Want {
+pub enum Regularity {
     /// A value.
-    Value,
+    Defined,
     /// A value and a derivative.
-    Slope,
+    Differentiable,
 }
 
 impl Arena {
-    /// What `base ^ exponent` asks of its base.
+    /// The domain condition of `base ^ exponent`.
     ///
-    /// A root has a slope of its own at zero only from an exponent of one on: `p^(3/2)` has, `p^(1/2)` has not.
-    pub fn asked_by_power(&self, base: Expr, exponent: &Rational, want: Want) -> Option<(Expr, Relation)> {
+    /// A root is differentiable at zero only from an exponent of one on: `p^(3/2)` is, `p^(1/2)` is not.
+    pub fn power_condition(&self, base: Expr, exponent: &Rational, regularity: Regularity) -> Option<(Expr, Relation)> {
         let relation = match (exponent.is_integer(), exponent.is_negative()) {
             (true, false) => return None,
             (true, true) => Relation::NonZero,
             (false, true) => Relation::Positive,
-            (false, false) if want == Want::Slope && *exponent < Rational::ONE => Relation::Positive,
+            (false, false) if regularity == Regularity::Differentiable && *exponent < Rational::ONE => {
+                Relation::Positive
+            }
             (false, false) => Relation::NonNegative,
         };
         Some((base, relation))
     }
 
-    /// What `base ^ exponent` asks where the exponent is not a number: it is `exp(exponent * log(base))`.
-    pub fn asked_by_symbolic_power(&self, base: Expr) -> (Expr, Relation) {
+    /// The domain condition of `base ^ exponent` for a symbolic exponent: it is `exp(exponent * log(base))`.
+    pub fn symbolic_power_condition(&self, base: Expr) -> (Expr, Relation) {
         (base, Relation::Positive)
     }
 
-    /// What a division asks of what stands below: of a root that its radicand is not zero, which takes more to see of the
-    /// root.
-    pub fn asked_by_division(&self, below: Expr) -> Asks {
-        let Node::Product(product) = self.node(below) else { return vec![(below, Relation::NonZero)] };
+    /// The domain conditions of a division: for a root that its radicand is not zero, which is easier to prove than of
+    /// the root.
+    pub fn division_conditions(&self, denominator: Expr) -> Conditions {
+        let Node::Product(product) = self.node(denominator) else { return vec![(denominator, Relation::NonZero)] };
         let roots = product.factors.iter().filter(|(_, exponent)| !exponent.is_integer());
-        let mut asks: Asks = roots.map(|(base, _)| (*base, Relation::Positive)).collect();
-        if asks.len() < product.factors.len() {
-            asks.push((below, Relation::NonZero));
+        let mut conditions: Conditions = roots.map(|(base, _)| (*base, Relation::Positive)).collect();
+        if conditions.len() < product.factors.len() {
+            conditions.push((denominator, Relation::NonZero));
         }
-        asks
+        conditions
     }
 
-    /// What a function asks of its arguments.
-    pub fn asked_by_call(&self, function: Function, arguments: &[Expr], want: Want) -> Asks {
+    /// The domain conditions of a function.
+    pub fn call_conditions(&self, function: Function, arguments: &[Expr], regularity: Regularity) -> Conditions {
         let row = function.row();
         match row.smooth {
-            Some(smooth) if want == Want::Slope => smooth(self, arguments),
-            _ => (row.asks)(self, arguments),
+            Some(smooth) if regularity == Regularity::Differentiable => smooth(self, arguments),
+            _ => (row.conditions)(self, arguments),
         }
     }
 
-    /// What the outermost operation asks of its operands.
-    pub fn asked_by(&self, expr: Expr, want: Want) -> Asks {
+    /// The domain conditions of the outermost operation.
+    pub fn operation_conditions(&self, expr: Expr, regularity: Regularity) -> Conditions {
         match self.node(expr) {
             Node::Product(product) => product
                 .factors
                 .iter()
-                .filter_map(|(base, exponent)| self.asked_by_power(*base, exponent, want))
+                .filter_map(|(base, exponent)| self.power_condition(*base, exponent, regularity))
                 .collect(),
-            Node::Call(function, arguments) => self.asked_by_call(function, &arguments, want),
+            Node::Call(function, arguments) => self.call_conditions(function, &arguments, regularity),
             Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum(_) => Vec::new(),
         }
     }
 
-    /// What the expressions and their parts ask, each once, operands first; not what holds of numbers anyway.
-    pub fn asks(&self, exprs: &[Expr], want: Want) -> Asks {
-        let mut found = Asks::new();
-        for part in self.postorder(exprs) {
-            for ask in self.asked_by(part, want) {
-                if !found.contains(&ask) && !self.holds_of_number(ask) {
-                    found.push(ask);
+    /// The domain conditions of the expressions and their subexpressions, each once, operands first; without those that
+    /// hold of numbers.
+    pub fn domain_conditions(&self, exprs: &[Expr], regularity: Regularity) -> Conditions {
+        let mut found = Conditions::new();
+        for operand in self.postorder(exprs) {
+            for condition in self.operation_conditions(operand, regularity) {
+                if !found.contains(&condition) && !self.holds_of_number(condition) {
+                    found.push(condition);
                 }
             }
         }
         found
     }
 
-    /// Whether this is a comparison of a number with zero that provably holds.
+    /// True if this is a comparison of a number with zero that provably holds.
     pub fn holds_of_number(&self, (expr, relation): (Expr, Relation)) -> bool {
         if !self.symbols_of(&[expr]).is_empty() {
             return false;
@@ -97,7 +100,7 @@ impl Arena {
         value.is_some_and(|value| relation == Relation::NonZero || value.is_positive())
     }
 
-    /// Whether this is a comparison of a number with zero that provably fails.
+    /// True if this is a comparison of a number with zero that provably fails.
     pub fn fails_of_number(&self, (expr, relation): (Expr, Relation)) -> bool {
         if !self.symbols_of(&[expr]).is_empty() {
             return false;
@@ -114,15 +117,15 @@ impl Arena {
 mod tests {
     use super::*;
 
-    /// Asks as `part relation`.
-    type Shown = &'static [&'static str];
+    /// Conditions as `expression relation`.
+    type Expected = &'static [&'static str];
 
-    /// The asks as `part relation`, for a formula in a and b.
-    fn asked(build: impl Fn(&Arena, Expr, Expr) -> Expr, want: Want) -> Vec<String> {
+    /// The conditions as `expression relation`, for a formula in a and b.
+    fn conditions(build: impl Fn(&Arena, Expr, Expr) -> Expr, regularity: Regularity) -> Vec<String> {
         let arena = Arena::new();
         let expr = build(&arena, arena.variable("a"), arena.variable("b"));
-        let shown = |(part, relation): &(Expr, Relation)| format!("{} {}", arena.print(*part), relation.sign());
-        arena.asks(&[expr], want).iter().map(shown).collect()
+        let shown = |(operand, relation): &(Expr, Relation)| format!("{} {}", arena.print(*operand), relation.sign());
+        arena.domain_conditions(&[expr], regularity).iter().map(shown).collect()
     }
 
     fn power(numerator: i64, denominator: i64) -> impl Fn(&Arena, Expr, Expr) -> Expr {
@@ -137,8 +140,8 @@ mod tests {
     }
 
     #[test]
-    fn powers_ask_of_their_base() {
-        let cases: [((i64, i64), Shown, Shown); 6] = [
+    fn powers_have_conditions_on_their_base() {
+        let cases: [((i64, i64), Expected, Expected); 6] = [
             ((3, 1), &[], &[]),
             ((-1, 1), &["a != 0"], &["a != 0"]),
             ((1, 2), &["a >= 0"], &["a > 0"]),
@@ -147,33 +150,34 @@ mod tests {
             ((1, 3), &["a >= 0"], &["a > 0"]),
         ];
         for ((n, d), value, slope) in cases {
-            assert_eq!(asked(power(n, d), Want::Value), value, "{n}/{d}");
-            assert_eq!(asked(power(n, d), Want::Slope), slope, "{n}/{d}");
+            assert_eq!(conditions(power(n, d), Regularity::Defined), value, "{n}/{d}");
+            assert_eq!(conditions(power(n, d), Regularity::Differentiable), slope, "{n}/{d}");
         }
-        assert_eq!(asked(|arena, a, b| arena.div(b, a), Want::Value), ["a != 0"]);
-        assert_eq!(asked(Arena::raise, Want::Value), ["a > 0"]);
+        assert_eq!(conditions(|arena, a, b| arena.div(b, a), Regularity::Defined), ["a != 0"]);
+        assert_eq!(conditions(Arena::raise, Regularity::Defined), ["a > 0"]);
     }
 
     #[test]
-    fn a_division_by_a_root_asks_of_the_radicand() {
+    fn a_division_by_a_root_has_a_condition_on_the_radicand() {
         let arena = Arena::new();
         let [a, b] = ["a", "b"].map(|name| arena.variable(name));
-        let cases: [(Expr, Shown); 4] = [
+        let cases: [(Expr, Expected); 4] = [
             (a, &["a != 0"]),
             (arena.mul(a, b), &["a*b != 0"]),
             (arena.sqrt(a), &["a > 0"]),
             (arena.mul(arena.sqrt(a), b), &["a > 0", "sqrt(a)*b != 0"]),
         ];
-        for (below, expected) in cases {
-            let asks = arena.asked_by_division(below);
-            let shown = asks.iter().map(|(part, relation)| format!("{} {}", arena.print(*part), relation.sign()));
+        for (denominator, expected) in cases {
+            let conditions = arena.division_conditions(denominator);
+            let shown =
+                conditions.iter().map(|(operand, relation)| format!("{} {}", arena.print(*operand), relation.sign()));
             assert_eq!(shown.collect::<Vec<_>>(), expected);
         }
     }
 
     #[test]
-    fn functions_ask_of_their_arguments() {
-        let cases: [(Function, Shown, Shown); 16] = [
+    fn functions_have_conditions_on_their_arguments() {
+        let cases: [(Function, Expected, Expected); 16] = [
             (Function::Sin, &[], &[]),
             (Function::Tanh, &[], &[]),
             (Function::Asinh, &[], &[]),
@@ -192,20 +196,20 @@ mod tests {
             (
                 Function::Atan2,
                 &["a^2 + b^2 != 0"],
-                // The root of the radius is a part of the second ask, not of the formula.
+                // The root of the radius occurs in the second condition, not in the formula.
                 &["b + sqrt(a^2 + b^2) > 0"],
             ),
         ];
         for (function, value, slope) in cases {
-            assert_eq!(asked(call(function), Want::Value), value, "{function:?}");
-            assert_eq!(asked(call(function), Want::Slope), slope, "{function:?}");
+            assert_eq!(conditions(call(function), Regularity::Defined), value, "{function:?}");
+            assert_eq!(conditions(call(function), Regularity::Differentiable), slope, "{function:?}");
         }
     }
 
     #[test]
     fn numbers_answer_for_themselves() {
         let arena = Arena::new();
-        let ask = |value: Expr, relation: Relation| {
+        let condition = |value: Expr, relation: Relation| {
             (arena.holds_of_number((value, relation)), arena.fails_of_number((value, relation)))
         };
         let number = |n: i64| arena.number(n);
@@ -221,12 +225,12 @@ mod tests {
             (arena.variable("a"), Relation::Positive, (false, false)),
         ];
         for (value, relation, expected) in cases {
-            assert_eq!(ask(value, relation), expected, "{} {relation:?}", arena.print(value));
+            assert_eq!(condition(value, relation), expected, "{} {relation:?}", arena.print(value));
         }
     }
 
     #[test]
-    fn what_a_row_asks_is_where_its_enclosure_exists() {
+    fn conditions_of_a_row_hold_where_its_enclosure_exists() {
         let arena = Arena::new();
         let (a, b) = (arena.variable("a"), arena.variable("b"));
         let symbols = [a, b].map(|e| arena.as_symbol(e).expect("a symbol"));
@@ -237,7 +241,7 @@ mod tests {
             for (u, v) in values.iter().flat_map(|u| values.iter().map(move |v| (u, v))) {
                 let point: Point = symbols.into_iter().zip([u, v].map(|value| arena.number(value.clone()))).collect();
                 let at = &point;
-                let asked = arena.asked_by_call(row.function, &arguments, Want::Value);
+                let asked = arena.call_conditions(row.function, &arguments, Regularity::Defined);
                 let held = asked.iter().all(|(e, r)| arena.holds_of_number((arena.substitute(*e, at), *r)));
                 assert_eq!(arena.exists_at(expr, &point), held, "{} at {u:?}, {v:?}", row.name);
             }

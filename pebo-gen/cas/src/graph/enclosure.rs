@@ -1,8 +1,8 @@
 //! Rigorous values of expressions at exact points.
 //!
 //! In: an expression and a constant for each of its symbols, as a rule a rational one. Out: an interval that contains
-//! the exact real value, or nothing where the value does not exist or could not be separated from a place where it
-//! does not.
+//! the exact real value, or nothing if the value does not exist or could not be separated from a point where it does
+//! not.
 
 use std::collections::BTreeMap;
 
@@ -22,18 +22,18 @@ const PRECISIONS: [u32; 4] = [64, 128, 256, 512];
 /// A rational value with more bits than this is enclosed instead.
 const MOST_BITS: u64 = 1 << 14;
 
-/// What rational arithmetic says of a value.
-enum Exact {
-    /// It is this number.
+/// The result of rational arithmetic.
+enum RationalValue {
+    /// The value is this number.
     Value(Rational),
-    /// It does not exist: something is divided by zero.
+    /// The value does not exist: a divisor is zero.
     Undefined,
-    /// It takes more than rational arithmetic.
+    /// Rational arithmetic does not suffice.
     Irrational,
 }
 
 impl Arena {
-    /// Encloses several expressions at a point, none where one of them has no value there.
+    /// Encloses several expressions at a point; none if one of them has no value there.
     pub fn enclose_all(&self, exprs: &[Expr], point: &Point, precision: Precision) -> Option<Vec<Interval>> {
         let mut values = BTreeMap::new();
         for symbol in self.symbols_of(exprs) {
@@ -70,8 +70,8 @@ impl Arena {
         self.enclose_all(&[expr], point, precision)?.pop()
     }
 
-    /// The value at a point, where it takes nothing but rational arithmetic: much cheaper than an enclosure.
-    fn rational_at(&self, expr: Expr, point: &Point) -> Exact {
+    /// The value at a point, if rational arithmetic suffices: much cheaper than an enclosure.
+    fn rational_at(&self, expr: Expr, point: &Point) -> RationalValue {
         let mut known: FxHashMap<Expr, Rational> = FxHashMap::default();
         for e in self.postorder(&[expr]) {
             let value = match self.node(e) {
@@ -84,50 +84,50 @@ impl Arena {
                     let mut total = product.coefficient.clone();
                     for (base, exponent) in &product.factors {
                         let Some(exponent) = exponent.to_i64().and_then(|e| i32::try_from(e).ok()) else {
-                            return Exact::Irrational;
+                            return RationalValue::Irrational;
                         };
                         if exponent < 0 && known[base].is_zero() {
-                            return Exact::Undefined;
+                            return RationalValue::Undefined;
                         }
                         let bits = known[base].bits().saturating_mul(exponent.unsigned_abs().into());
                         if bits > MOST_BITS {
-                            return Exact::Irrational;
+                            return RationalValue::Irrational;
                         }
-                        let Some(power) = known[base].pow(exponent) else { return Exact::Irrational };
+                        let Some(power) = known[base].pow(exponent) else { return RationalValue::Irrational };
                         total = &total * &power;
                     }
                     Some(total)
                 }
                 Node::Pi | Node::Call(..) => None,
             };
-            let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return Exact::Irrational };
-            // What it was made of is of that length too, and has no common factor left.
+            let Some(value) = value.filter(|value| value.bits() <= MOST_BITS) else { return RationalValue::Irrational };
+            // Its operands are of that length too, and it has no common factor left.
             let words = value.bits().div_ceil(64);
             self.budget().take(words * words * (1 + self.operand_count(e)));
             known.insert(e, value);
         }
-        known.remove(&expr).map_or(Exact::Irrational, Exact::Value)
+        known.remove(&expr).map_or(RationalValue::Irrational, RationalValue::Value)
     }
 
-    /// The enclosure that excludes zero, at the least precision that shows it.
+    /// The enclosure that excludes zero, at the least sufficient precision.
     pub fn separated_from_zero(&self, expr: Expr, point: &Point) -> Option<Interval> {
         match self.rational_at(expr, point) {
-            Exact::Value(value) if value.is_zero() => return None,
-            Exact::Value(value) => return Interval::from_rational(&value, Precision::new(PRECISIONS[0])),
-            Exact::Undefined => return None,
-            Exact::Irrational => {}
+            RationalValue::Value(value) if value.is_zero() => return None,
+            RationalValue::Value(value) => return Interval::from_rational(&value, Precision::new(PRECISIONS[0])),
+            RationalValue::Undefined => return None,
+            RationalValue::Irrational => {}
         }
         PRECISIONS
             .iter()
             .find_map(|&bits| self.enclose(expr, point, Precision::new(bits)).filter(|value| !value.contains_zero()))
     }
 
-    /// Whether the expression provably has a value at the point.
+    /// True if the expression provably has a value at the point.
     pub fn exists_at(&self, expr: Expr, point: &Point) -> bool {
         match self.rational_at(expr, point) {
-            Exact::Value(_) => return true,
-            Exact::Undefined => return false,
-            Exact::Irrational => {}
+            RationalValue::Value(_) => return true,
+            RationalValue::Undefined => return false,
+            RationalValue::Irrational => {}
         }
         PRECISIONS.iter().any(|&bits| self.enclose(expr, point, Precision::new(bits)).is_some())
     }

@@ -13,7 +13,7 @@ use crate::Rational;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Expr(pub(crate) u32);
 
-/// A symbol: a variable or an unnamed constant. Its name is how it is shown, not what it is.
+/// A symbol: a variable or an unnamed constant. Its name serves printing, not identity.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Symbol(pub(crate) u32);
 
@@ -24,7 +24,7 @@ impl Symbol {
     }
 }
 
-/// What an expression is. Cloning is cheap: the operand lists are shared.
+/// A node of the graph. Cloning is cheap: the operand lists are shared.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Node {
     /// An exact rational number.

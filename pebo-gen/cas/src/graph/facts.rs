@@ -1,8 +1,8 @@
-//! What is assumed of real values: inequalities with zero.
+//! Assumptions on real values: inequalities with zero.
 
 use super::expr::Expr;
 
-/// How an assumed expression compares with zero.
+/// The comparison of an assumed expression with zero.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Relation {
     /// Greater than zero.
@@ -14,7 +14,7 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// As a formula writes it.
+    /// The relation as a formula writes it.
     pub fn sign(self) -> &'static str {
         match self {
             Self::Positive => "> 0",

@@ -1,8 +1,8 @@
 //! Square systems by Cramer's rule.
 //!
-//! In: rows `[matrix | right sides]` with polynomials for a matrix. Out: the solution for each right side. Cofactors are made
-//! by minors, row by row and without a division, so that nothing swells before it cancels: elimination over fractions makes
-//! the same entries with a greatest common divisor at every step.
+//! In: rows `[matrix | right sides]` with polynomials for a matrix. Out: the solution for each right side. Cofactors
+//! are made by minors, row by row and without a division, so that nothing swells before it cancels: elimination over
+//! fractions makes the same entries with a greatest common divisor at every step.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::tower::{Field, Fraction, Obstacle};
 /// Sizes of matrices for which this pays: below, elimination is as short; above, a determinant has too many terms.
 const SIZES: std::ops::RangeInclusive<usize> = 3..=7;
 
-/// The solutions, one for each right side; none where the matrix is not of this kind or its determinant is zero.
+/// The solutions, one for each right side; none if the matrix is not of this kind or its determinant is zero.
 pub(crate) fn solutions(
     field: &Field<'_>,
     rows: &[Vec<Fraction>],
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_singular_or_not_square_is_left_to_elimination() {
+    fn singular_and_rectangular_systems_are_left_to_elimination() {
         let arena = Arena::new();
         let [a, b] = ["a", "b"].map(|name| arena.variable(name));
         let field = Field::over(&arena, &Facts::new(), &[a, b]).unwrap();

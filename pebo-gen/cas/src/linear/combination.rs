@@ -1,21 +1,21 @@
-//! The one question behind the claims: an expression as a combination of given functions of x, with
-//! coefficients that are free of x.
+//! The central problem of all claims: an expression as a combination of given functions of x, with coefficients that
+//! are free of x.
 //!
 //! ```text
 //! target, basis, x -> coefficients c with target = sum of c_k * basis_k, each c_k free of x
 //! ```
 //!
-//! Over a common denominator, target and basis are polynomials in the kernels that depend on x, with
-//! coefficients in all others. Comparing them monomial by monomial gives a linear system over the
-//! field of functions of the other symbols. If the kernels are independent, a missing solution means
-//! that there is none; what is found is an identity in any case.
+//! Over a common denominator, target and basis are polynomials in the kernels that depend on x, with coefficients in
+//! all others. Comparing them monomial by monomial gives a linear system over the field of functions of the other
+//! symbols. If the kernels are independent and the system has no solution, there is no combination; a solution is an
+//! identity in any case.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Echelon, solve};
 use crate::Domain;
-use crate::forms::opaque::Frozen;
-use crate::forms::tidy::{asking_less, shorter, shortest};
+use crate::forms::opaque::OpaqueTerms;
+use crate::forms::tidy::{shorter, shortest, with_fewer_conditions};
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::graph::function::Function;
@@ -81,8 +81,8 @@ pub fn relations(field: &Field<'_>, exprs: &[Expr], x: &BTreeSet<Symbol>) -> Res
     Ok(echelon.null_space())
 }
 
-/// The equations that say of coefficients free of the symbols that the combination of each row of expressions vanishes, an
-/// expression for each coefficient.
+/// The equations for coefficients free of the symbols under which the combination of each row of expressions vanishes,
+/// an expression for each coefficient.
 ///
 /// If the kernels are independent it vanishes nowhere else.
 pub fn equations(
@@ -107,7 +107,7 @@ pub fn equations(
     Ok(matrix)
 }
 
-/// As [`combine`], of the domain: coefficients as expressions, with which the combination holds everywhere, else on the
+/// As [`combine`], on the domain: coefficients as expressions, with which the combination holds everywhere, else on the
 /// manifold of the domain.
 pub fn combine_on(
     arena: &Arena,
@@ -117,21 +117,21 @@ pub fn combine_on(
     x: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Expr>>, Obstacle> {
     let roots = [basis, &[target]].concat();
-    // In the author's own functions and sums of what is known, where that is enough.
-    let mut frozen = Frozen::new(arena, x);
-    let signals = frozen.freeze(&roots);
-    if !frozen.is_empty()
+    // In the author's own functions and sums of known terms, if that is enough.
+    let mut opaque = OpaqueTerms::new(arena, x);
+    let signals = opaque.replace(&roots);
+    if !opaque.is_empty()
         && let Some((target, basis)) = signals.split_last()
         && let Ok(field) = Field::over(arena, &domain.facts, &signals)
         && let Ok(Some(coefficients)) = combine(&field, *target, basis, x)
     {
-        let shown = Shown::new(&field, domain, &signals, x);
-        return Ok(Some(coefficients.iter().map(|c| shown.form(c, |form| frozen.thaw(form))).collect()));
+        let shown = CoefficientForms::new(&field, domain, &signals, x);
+        return Ok(Some(coefficients.iter().map(|c| shown.form(c, |form| opaque.restore(form))).collect()));
     }
     let combined = |field: Result<Field<'_>, Obstacle>| {
         let field = field?;
         let coefficients = combine(&field, target, basis, x)?;
-        let shown = Shown::new(&field, domain, &roots, x);
+        let shown = CoefficientForms::new(&field, domain, &roots, x);
         Ok(coefficients.map(|all| all.iter().map(|c| shown.form(c, |form| form)).collect()))
     };
     match combined(Field::over(arena, &domain.facts, &roots)) {
@@ -140,18 +140,18 @@ pub fn combine_on(
     }
 }
 
-/// Divisors that are tried.
+/// The greatest number of divisors that are tried.
 const MOST_DIVISORS: usize = 8;
 
-/// What coefficients are shown with.
-struct Shown<'f, 'a> {
+/// The context in which coefficients are written.
+struct CoefficientForms<'f, 'a> {
     field: &'f Field<'a>,
     domain: &'f Domain,
-    /// Sums with roots or magnitudes, free of x, that the formulas or equations hold: by these they may divide.
+    /// Sums with roots or absolute values, free of x, that the formulas or equations hold: allowed divisors.
     divisors: Vec<Expr>,
 }
 
-impl<'f, 'a> Shown<'f, 'a> {
+impl<'f, 'a> CoefficientForms<'f, 'a> {
     fn new(field: &'f Field<'a>, domain: &'f Domain, formulas: &[Expr], x: &BTreeSet<Symbol>) -> Self {
         let arena = field.arena();
         let is_folded = |part: Expr| match arena.node(part) {
@@ -169,22 +169,22 @@ impl<'f, 'a> Shown<'f, 'a> {
         Self { field, domain, divisors }
     }
 
-    /// A coefficient as the shortest of its forms; over sums of the formulas where it asks for less so: the normal
-    /// form has `(1 - abs(q))/(1 - q^2)` for `1/(1 + abs(q))`.
-    fn form(&self, coefficient: &Fraction, thaw: impl Fn(Expr) -> Expr) -> Expr {
+    /// A coefficient as the shortest of its forms; over sums of the formulas if that has fewer domain conditions: the
+    /// normal form has `(1 - abs(q))/(1 - q^2)` for `1/(1 + abs(q))`.
+    fn form(&self, coefficient: &Fraction, restore: impl Fn(Expr) -> Expr) -> Expr {
         let arena = self.field.arena();
-        let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&thaw);
+        let forms = |fraction: &Fraction| [self.field.show(fraction), self.field.show_apart(fraction)].map(&restore);
         let [whole, apart] = forms(coefficient);
         let shown = shortest(arena, self.domain, shorter(arena, whole, apart));
-        let Some((rest, below)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
-        let [whole, apart] = forms(&rest).map(|form| arena.div(form, thaw(below)));
-        asking_less(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
+        let Some((rest, divisor)) = self.over_divisors(coefficient).ok().flatten() else { return shown };
+        let [whole, apart] = forms(&rest).map(|form| arena.div(form, restore(divisor)));
+        with_fewer_conditions(arena, self.domain, shown, &[shortest(arena, self.domain, shorter(arena, whole, apart))])
     }
 
-    /// A coefficient as what is left of it over such sums, if some make its denominator shorter.
+    /// A coefficient as a quotient by such sums, if some make its denominator shorter.
     fn over_divisors(&self, coefficient: &Fraction) -> Result<Option<(Fraction, Expr)>, Obstacle> {
         let mut rest = coefficient.clone();
-        let mut below = Vec::new();
+        let mut divisors = Vec::new();
         for divisor in &self.divisors {
             let factor = self.field.fraction(*divisor)?;
             while !rest.denominator().is_constant() {
@@ -193,10 +193,10 @@ impl<'f, 'a> Shown<'f, 'a> {
                     break;
                 }
                 rest = next;
-                below.push(*divisor);
+                divisors.push(*divisor);
             }
         }
-        Ok((!below.is_empty()).then(|| (rest, self.field.arena().product(below))))
+        Ok((!divisors.is_empty()).then(|| (rest, self.field.arena().product(divisors))))
     }
 }
 

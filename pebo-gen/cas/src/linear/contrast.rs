@@ -1,10 +1,9 @@
-//! Points that agree in all but some symbols, and show that an expression is no combination of others.
+//! Points that agree in all but some symbols, and prove that an expression is no combination of others.
 //!
 //! In: a target, a basis, and the symbols x that the coefficients must not hold. Out: rational points of the domain
 //! with the same values of all other symbols, at which the vectors `[basis, target]` are linearly independent, one
 //! more than the basis has. No coefficients free of x can then give the target from the basis. With the basis {1} these
-//! are two points at which the target differs. Nothing outside the domain is looked at, and nothing rests on the
-//! normal form.
+//! are two points at which the target differs. No point outside the domain is used, and no normal form.
 
 use std::collections::BTreeSet;
 
@@ -15,13 +14,13 @@ use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Symbol};
 use crate::number::interval::{Interval, Precision};
 
-/// Values of the other symbols that are tried.
+/// The greatest number of values of the other symbols that are tried.
 const MOST_PLACES: usize = 24;
 
-/// Points beside each that are drawn, more than the vectors that are needed.
+/// Points drawn beside each value, beyond the number of vectors needed.
 const SPARE: usize = 6;
 
-/// Working precisions that are tried in turn, in bits: the second where the first leaves a pivot open.
+/// Working precisions that are tried in turn, in bits: the second if the first leaves a pivot open.
 const PRECISIONS: [u32; 2] = [64, 256];
 
 /// Points that agree in all but x, with the target's value at each.
@@ -33,7 +32,8 @@ pub struct Contrast {
     pub values: Vec<Interval>,
 }
 
-/// Looks for points of the domain which show that the target is no combination of the basis with coefficients free of x.
+/// Searches for points of the domain which prove that the target is no combination of the basis with coefficients free
+/// of x.
 pub fn contrast(
     arena: &Arena,
     target: Expr,
@@ -48,7 +48,7 @@ pub fn contrast(
         return None;
     }
     domain.points(arena, &exprs).take(MOST_PLACES).find_map(|first| {
-        // Simple values of x before any that are drawn: these are what a reader sees.
+        // Simple values of x before any drawn ones: the reader sees these.
         let simple = [0, 1, 2].into_iter().filter_map(|value| {
             let mut point = first.clone();
             point.extend(hidden.iter().map(|symbol| (*symbol, arena.number(value))));
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn points_outside_the_domain_show_nothing() {
+    fn points_outside_the_domain_prove_nothing() {
         let arena = Arena::new();
         let (domain, p, x) = above_three(&arena);
         let cube = arena.power(p, &Rational::from(3));
@@ -124,7 +124,7 @@ mod tests {
         let found = contrast(&arena, arena.mul(p, arena.of_symbol(u)), &[arena.one()], &x, &domain).unwrap();
         assert_eq!(found.points[0][&u], found.points[1][&u]);
         assert!(!found.values[0].sub(&found.values[1], Precision::new(64)).unwrap().contains_zero());
-        // What is free of x needs no points.
+        // A target free of x needs no points.
         assert!(contrast(&arena, arena.of_symbol(u), &[arena.one()], &x, &domain).is_none());
     }
 }

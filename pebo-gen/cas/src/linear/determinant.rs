@@ -1,8 +1,8 @@
 //! Determinants over the field of fractions.
 //!
-//! In: a square matrix. Out: its determinant. Rows over a common denominator have polynomials for entries; of these the
-//! minors of the first rows are computed once each, row by row, without a division: fractions of fractions, which
-//! elimination makes, would swell long before they cancel. Where there are too many minors, elimination is left.
+//! In: a square matrix. Out: its determinant. Rows over a common denominator have polynomials for entries; their minors
+//! of the first rows are computed once each, row by row, without a division: fractions of fractions, which elimination
+//! makes, would swell long before they cancel. Elimination takes over if there are too many minors.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::{numbers_of, rational_matrix, subtract};
 use crate::poly::Poly;
 use crate::tower::{Field, Fraction, Obstacle};
 
-/// Minors of one size, past which elimination takes over: those of ten dense rows are no more.
+/// The greatest number of minors of one size before elimination takes over: those of ten dense rows are no more.
 const MOST_MINORS: usize = 256;
 
 /// The determinant of a square matrix.
@@ -25,13 +25,13 @@ pub fn determinant(field: &Field<'_>, rows: Vec<Vec<Fraction>>) -> Result<Fracti
     }
 }
 
-/// By minors; none where there are too many.
+/// By minors; none if there are too many.
 fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fraction>, Obstacle> {
     if rows.len() >= u64::BITS as usize {
         return Ok(None);
     }
     let work = field.limit();
-    let mut below = Fraction::one();
+    let mut denominator = Fraction::one();
     // By the set of its columns, a bit each.
     let mut minors = BTreeMap::from([(0_u64, Poly::one())]);
     for row in rows {
@@ -39,7 +39,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
         for entry in row {
             common = common.lcm(entry.denominator(), work)?;
         }
-        below = field.mul(&below, &field.of_polynomial(&common)?)?;
+        denominator = field.mul(&denominator, &field.of_polynomial(&common)?)?;
         let entries = row.iter().map(|entry| field.over_denominator(entry, &common)).collect::<Result<Vec<_>, _>>()?;
         let larger = larger_minors(&minors, &entries.iter().collect::<Vec<_>>(), work)?;
         if larger.len() > MOST_MINORS {
@@ -54,10 +54,10 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
         }
     }
     let total = minors.into_values().next().unwrap_or_default();
-    Ok(Some(field.div(&field.of_polynomial(&total)?, &below)?))
+    Ok(Some(field.div(&field.of_polynomial(&total)?, &denominator)?))
 }
 
-/// By elimination: where most entries are zero or one and the others long, as in the matrix of Hurwitz.
+/// By elimination: for matrices whose entries are mostly zero or one and the others long, as that of Hurwitz.
 pub fn by_elimination(field: &Field<'_>, mut rows: Vec<Vec<Fraction>>) -> Result<Fraction, Obstacle> {
     let mut total = Fraction::one();
     for column in 0..rows.len() {

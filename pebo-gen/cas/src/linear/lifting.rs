@@ -4,12 +4,12 @@
 //! A x = b: x modulo p from the inverse modulo p, (b - A x) / p, and again -> x modulo p^n -> quotients of integers
 //! ```
 //!
-//! In: an invertible matrix, and right sides. Out: a solution for each, as numerators over one denominator; nothing if the
-//! matrix has no inverse modulo the prime, which then divides its determinant. Holds after: a solution that comes out
-//! satisfies its equations, since both sides of `A above = b below` agree modulo a number that neither reaches. What it
-//! takes grows with the digits of the solution, where elimination takes those digits in every step.
+//! In: an invertible matrix, and right sides. Out: a solution for each, as numerators over one denominator; nothing if
+//! the matrix has no inverse modulo the prime, which then divides its determinant. Holds after: a solution satisfies
+//! its equations, since both sides of `A numerators = denominator b` agree modulo a number that neither reaches. The
+//! work grows with the digits of the solution, while elimination takes those digits in every step.
 
-use super::residues::Rows;
+use super::residues::ResidueRows;
 use crate::Integer;
 use crate::poly::{PrimeField, Residue, TooLarge, Work, steps};
 
@@ -19,18 +19,18 @@ const BITS_OF_PRIME: u32 = 50;
 /// Bits of the parts into which the entries of the matrix are split.
 const BITS_OF_PART: u32 = 60;
 
-/// Bits that the modulus has beyond those of a quotient: others are as short by chance once in so many.
+/// Bits of the modulus beyond those of a quotient: a wrong quotient is as short only by chance.
 const SPARE_BITS: u64 = 32;
 
-/// `above / below`.
+/// `numerators / denominator`.
 #[derive(Debug)]
-pub(crate) struct Solution {
-    pub(crate) above: Vec<Integer>,
+pub(crate) struct QuotientVector {
+    pub(crate) numerators: Vec<Integer>,
     /// Positive.
-    pub(crate) below: Integer,
+    pub(crate) denominator: Integer,
 }
 
-/// A matrix with what is needed to solve for any right side.
+/// A matrix prepared for solutions with any right side.
 #[derive(Debug)]
 pub(crate) struct Lifting {
     prime: PrimeField,
@@ -48,7 +48,7 @@ pub(crate) fn prime() -> Option<PrimeField> {
 }
 
 impl Lifting {
-    /// Inverts the matrix modulo the prime, if that can be.
+    /// Inverts the matrix modulo the prime, if possible.
     pub(crate) fn of(prime: PrimeField, matrix: &[Vec<Integer>], work: &Work) -> Result<Option<Self>, TooLarge> {
         let size = steps(matrix.len());
         work.spend(size.saturating_mul(size).saturating_mul(size) / 4)?;
@@ -62,8 +62,8 @@ impl Lifting {
             let split = |row: &mut Vec<(usize, Integer)>| {
                 row.retain(|(_, entry)| !entry.is_zero());
                 let part = |(column, entry): &mut (usize, Integer)| {
-                    let (above, low) = entry.div_rem(&unit)?;
-                    *entry = above;
+                    let (numerators, low) = entry.div_rem(&unit)?;
+                    *entry = numerators;
                     Some((*column, low.to_i64()?))
                 };
                 row.iter_mut().map(part).collect::<Option<Vec<_>>>()
@@ -75,7 +75,7 @@ impl Lifting {
     }
 
     /// The solution for a right side.
-    pub(crate) fn solve(&self, right: &[Integer], work: &Work) -> Result<Solution, TooLarge> {
+    pub(crate) fn solve(&self, right: &[Integer], work: &Work) -> Result<QuotientVector, TooLarge> {
         let prime = Integer::from(self.prime.prime());
         let (mut residual, mut digits) = (right.to_vec(), Vec::new());
         let (mut modulus, mut wanted) = (Integer::ONE, 2);
@@ -92,7 +92,7 @@ impl Lifting {
         }
     }
 
-    /// The next digit of the solution; the residual becomes what is left of the right side.
+    /// The next digit of the solution; the residual becomes the remaining right side.
     fn digit(&self, residual: &mut [Integer], prime: &Integer, work: &Work) -> Result<Vec<u64>, TooLarge> {
         let field = &self.prime;
         let size = residual.len();
@@ -113,39 +113,45 @@ impl Lifting {
     }
 
     /// The solution that these digits determine, if there are enough.
-    fn solution(&self, digits: &[Vec<u64>], prime: &Integer, modulus: &Integer, right: &[Integer]) -> Option<Solution> {
-        let mut above: Vec<Integer> = Vec::with_capacity(right.len());
-        let mut below = Integer::ONE;
+    fn solution(
+        &self,
+        digits: &[Vec<u64>],
+        prime: &Integer,
+        modulus: &Integer,
+        right: &[Integer],
+    ) -> Option<QuotientVector> {
+        let mut numerators: Vec<Integer> = Vec::with_capacity(right.len());
+        let mut denominator = Integer::ONE;
         for index in 0..right.len() {
             let add = |sum: Integer, digit: &Vec<u64>| &(&sum * prime) + &Integer::from(digit[index]);
             let value = digits.iter().rev().fold(Integer::ZERO, add);
-            let value = centred(&(&below * &value), modulus)?;
-            if value.bits() + below.bits() + SPARE_BITS < modulus.bits() {
-                above.push(value);
+            let value = centred(&(&denominator * &value), modulus)?;
+            if value.bits() + denominator.bits() + SPARE_BITS < modulus.bits() {
+                numerators.push(value);
                 continue;
             }
-            let (numerator, denominator) = ratio(&value, modulus)?;
-            for known in &mut above {
-                *known = &*known * &denominator;
+            let (numerator, factor) = ratio(&value, modulus)?;
+            for known in &mut numerators {
+                *known = &*known * &factor;
             }
-            below = &below * &denominator;
-            above.push(numerator);
+            denominator = &denominator * &factor;
+            numerators.push(numerator);
         }
         // Neither side of the equations reaches half of the modulus.
         let most = |entries: &[Integer]| entries.iter().map(Integer::bits).max().unwrap_or(0);
         let size = Integer::from(i64::try_from(right.len()).ok()?).bits();
-        let left = self.bits + most(&above) + size;
-        (left.max(most(right) + below.bits()) + 1 < modulus.bits()).then(|| {
-            if below.is_negative() {
-                above = above.iter().map(|entry| -entry).collect();
-                below = -&below;
+        let left = self.bits + most(&numerators) + size;
+        (left.max(most(right) + denominator.bits()) + 1 < modulus.bits()).then(|| {
+            if denominator.is_negative() {
+                numerators = numerators.iter().map(|entry| -entry).collect();
+                denominator = -&denominator;
             }
-            Solution { above, below }
+            QuotientVector { numerators, denominator }
         })
     }
 }
 
-/// The representative of least magnitude.
+/// The representative of least absolute value.
 fn centred(value: &Integer, modulus: &Integer) -> Option<Integer> {
     let (_, mut rest) = value.div_rem(modulus)?;
     if rest.is_negative() {
@@ -155,7 +161,7 @@ fn centred(value: &Integer, modulus: &Integer) -> Option<Integer> {
     Some(if other.abs() < rest { other } else { rest })
 }
 
-/// The quotient of short integers that a residue stands for, by Euclid's algorithm (Wang 1981); none if there is none.
+/// The quotient of short integers that a residue represents, by Euclid's algorithm (Wang 1981); none if there is none.
 fn ratio(value: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
     let (mut before, mut rest) = (modulus.clone(), value.clone());
     let (mut earlier, mut factor) = (Integer::ZERO, Integer::ONE);
@@ -172,13 +178,13 @@ fn ratio(value: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
 /// The inverse of a matrix modulo a prime.
 fn inverse(prime: &PrimeField, matrix: Vec<Vec<Residue>>) -> Option<Vec<Vec<Residue>>> {
     let size = matrix.len();
-    let mut rows = Rows::new(prime, 2 * size);
+    let mut rows = ResidueRows::new(prime, 2 * size);
     for (index, mut row) in matrix.into_iter().enumerate() {
         row.resize(2 * size, Residue::ZERO);
         row[size + index] = prime.one();
         rows.insert(row);
     }
-    // As many rows as columns: where each of these has a pivot, none is beyond.
+    // As many rows as columns: if each of these has a pivot, none is beyond.
     let is_regular = rows.pivots().eq(0..size);
     is_regular.then(|| rows.reduced().into_iter().map(|(_, mut row)| row.split_off(size)).collect())
 }
@@ -210,17 +216,17 @@ mod tests {
             matrix.iter_mut().enumerate().for_each(|(index, row)| row[index] += &Integer::from(100_003_i64));
             let right: Vec<Integer> = (0..size).map(|_| entry()).collect();
             let lifting = Lifting::of(prime().unwrap(), &matrix, &work).unwrap().expect("an inverse");
-            let Solution { above, below } = lifting.solve(&right, &work).unwrap();
-            assert!(!below.is_zero() && !below.is_negative());
+            let QuotientVector { numerators, denominator } = lifting.solve(&right, &work).unwrap();
+            assert!(!denominator.is_zero() && !denominator.is_negative());
             for (row, right) in matrix.iter().zip(&right) {
-                let sum = row.iter().zip(&above).fold(Integer::ZERO, |sum, (a, b)| &sum + &(a * b));
-                assert_eq!(sum, right * &below, "{size}");
+                let sum = row.iter().zip(&numerators).fold(Integer::ZERO, |sum, (a, b)| &sum + &(a * b));
+                assert_eq!(sum, right * &denominator, "{size}");
             }
         }
     }
 
     #[test]
-    fn what_has_no_inverse_has_no_lifting() {
+    fn singular_matrices_have_no_lifting() {
         let matrix = [integers(&[1, 2]), integers(&[2, 4])];
         assert!(Lifting::of(prime().unwrap(), &matrix, &Work::new(1000)).unwrap().is_none());
     }

@@ -1,13 +1,13 @@
 //! Minors of polynomials, row by row: each is computed once, and nothing is divided.
 //!
-//! In: the minors of some rows, and one more row. Out: the minors of all of these; too large, where they take more memory
-//! than one question of many may have, however little time they take.
+//! In: the minors of some rows, and one more row. Out: the minors of all of these; too large, if they take more memory
+//! than one problem of many may have, for any time they take.
 
 use std::collections::BTreeMap;
 
 use crate::poly::{Poly, TooLarge, Work};
 
-/// What all minors of one size may take in memory.
+/// The memory limit of all minors of one size.
 const MOST_BYTES: usize = 1 << 26;
 
 /// The minors of one more row than these, each named by the set of its columns, a bit each.

@@ -1,8 +1,8 @@
 //! Exact linear algebra over the field of fractions.
 //!
-//! Elimination picks the lightest pivot, so that entries stay short; what is free is set to zero. A matrix of numbers is
+//! Elimination picks the lightest pivot, so that entries remain short; free unknowns are zero. A matrix of numbers is
 //! left to `rational_matrix`, which has no use for weights and divides exactly; `determinant` takes the same steps
-//! without clearing what is above a pivot.
+//! without clearing the entries above a pivot.
 
 mod cofactors;
 pub mod combination;
@@ -18,9 +18,9 @@ pub mod residues;
 use super::poly::Work;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Budget, Rational};
-use rational_matrix::Reduced;
+use rational_matrix::ReducedMatrix;
 
-/// What elimination leaves: pivot columns and reduced rows.
+/// The result of elimination: pivot columns and reduced rows.
 #[derive(Debug)]
 pub struct Echelon {
     /// Rows in reduced form, each with its pivot column, where it is one.
@@ -39,7 +39,7 @@ impl Echelon {
         columns: usize,
     ) -> Result<(Self, Vec<Vec<Fraction>>), Obstacle> {
         if let Some(numbers) = numbers_of(&rows) {
-            let Reduced { rows, rest } = rational_matrix::reduced(&numbers, columns, field.limit())?;
+            let ReducedMatrix { rows, rest } = rational_matrix::reduced(&numbers, columns, field.limit())?;
             let fractions = |row: Vec<Rational>| row.iter().map(Fraction::constant).collect::<Vec<_>>();
             let rows = rows.into_iter().map(|(column, row)| (column, fractions(row))).collect();
             return Ok((Self { rows, columns }, rest.into_iter().map(fractions).collect()));
@@ -72,7 +72,7 @@ impl Echelon {
         Ok((Self { rows: done, columns }, rest))
     }
 
-    /// Eliminates on the first columns, and on the others what they leave.
+    /// Eliminates on the first columns, then the remaining rows on the others.
     pub fn in_order(
         field: &Field<'_>,
         rows: Vec<Vec<Fraction>>,
@@ -119,9 +119,9 @@ impl Echelon {
     }
 }
 
-/// A basis of the vectors that rows of numbers annihilate; none if that takes more than the budget has.
+/// A basis of the vectors that rows of numbers annihilate; none if that exceeds the budget.
 pub fn null_space_of_numbers(rows: &[Vec<Rational>], columns: usize, budget: &Budget) -> Option<Vec<Vec<Rational>>> {
-    let Reduced { rows, .. } = rational_matrix::reduced(rows, columns, &Work::within(u64::MAX, budget)).ok()?;
+    let ReducedMatrix { rows, .. } = rational_matrix::reduced(rows, columns, &Work::within(u64::MAX, budget)).ok()?;
     let is_pivot = |column: &usize| rows.iter().any(|(pivot, _)| pivot == column);
     let vector = |free: usize| {
         let mut vector = vec![Rational::ZERO; columns];
@@ -155,8 +155,8 @@ pub(super) fn numbers_of(rows: &[Vec<Fraction>]) -> Option<Vec<Vec<Rational>>> {
     rows.iter().map(|row| row.iter().map(Fraction::to_constant).collect()).collect()
 }
 
-/// Solves `matrix * unknowns = right` for rows `[matrix | right]` with the right side in the last
-/// column; none where there is no solution, zero for unknowns that are free.
+/// Solves `matrix * unknowns = right` for rows `[matrix | right]` with the right side in the last column; none if there
+/// is no solution, zero for free unknowns.
 pub fn solve(field: &Field<'_>, rows: Vec<Vec<Fraction>>, unknowns: usize) -> Result<Option<Vec<Fraction>>, Obstacle> {
     Ok(solve_each(field, rows, unknowns)?.into_iter().next().flatten())
 }

@@ -1,12 +1,12 @@
-//! Ranks that enclosures prove: elimination whose pivots exclude zero.
+//! Lower bounds of ranks by enclosures: elimination whose pivots exclude zero.
 //!
-//! Apart from exact elimination, since nothing is ever known to be zero here: an entry that may be is passed over, the largest
-//! is the pivot because its quotients widen least, and each step may fail.
+//! Separate from exact elimination, since no entry is ever known to be zero here: one that may be is passed over, the
+//! largest is the pivot because its quotients widen least, and each step may fail.
 
 use crate::Budget;
 use crate::number::interval::{Interval, Precision};
 
-/// Rows that are provably independent, as many as the elimination finds, in the order of their columns; none where an
+/// Pivots of provably independent rows, as many as the elimination finds, in the order of their columns; none if an
 /// entry is too large to be represented, or the budget ends.
 ///
 /// A row more or less than these proves nothing: an enclosure that contains zero may enclose another number.
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(chosen(&[&[1, 2, 3], &[2, 4, 6], &[0, 0, 0]]).len(), 1);
         assert_eq!(chosen(&[&[1, 2, 3], &[2, 4, 7], &[3, 6, 10]]).len(), 2);
         assert_eq!(chosen(&[&[1, 2, 3], &[2, 4, 7], &[3, 5, 10]]).len(), 3);
-        // The largest entry of the first column, then what is left of the others.
+        // The largest entry of the first column, then of the reduced others.
         assert_eq!(chosen(&[&[0, 1, 0], &[5, 0, 0], &[1, 0, 0]]), [1, 0]);
     }
 }

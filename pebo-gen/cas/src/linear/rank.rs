@@ -1,7 +1,8 @@
-//! The rank of matrices over a domain, and what their rows annihilate.
+//! Ranks and null vectors of matrices over a domain.
 //!
-//! In: rows of formulas. Out: a rank that is seen at exact points of the domain by a rigorous elimination, hence the least
-//! that there is almost everywhere, if the formulas are analytic there (`analytic`); and by exact algebra the vectors that every row provably annihilates.
+//! In: rows of formulas. Out: a rank proved at exact points of the domain by a rigorous elimination, hence a lower
+//! bound almost everywhere if the formulas are analytic there; and by exact algebra the vectors that every row provably
+//! annihilates.
 
 use super::Echelon;
 use super::pivots::pivots;
@@ -14,14 +15,14 @@ use crate::{Arena, Domain, Expr};
 /// Points that are tried before a rank counts as deficient.
 const MOST_POINTS: usize = 6;
 
-/// Whether the matrix provably has full column rank at a point of the domain, hence almost everywhere in the part of it on
-/// which the entries are analytic and that the point is of.
+/// True if the matrix provably has full column rank at a point of the domain, hence almost everywhere in the point's
+/// cell, on which the entries are analytic.
 pub fn full_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> bool {
-    rows.len() >= columns && rank_seen(arena, domain, rows, columns) == columns
+    rows.len() >= columns && proved_rank(arena, domain, rows, columns) == columns
 }
 
 /// The largest rank that the matrix provably has at a point of the domain; almost everywhere it is no smaller.
-pub fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
+pub fn proved_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> usize {
     let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
     let mut most = 0;
     for point in domain.points(arena, &entries).take(MOST_POINTS) {
@@ -33,7 +34,7 @@ pub fn rank_seen(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: us
     most
 }
 
-/// Whether a matrix, whose entries are given row by row, provably has full column rank at a point.
+/// True if a matrix, whose entries are given row by row, provably has full column rank at a point.
 pub fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> bool {
     rank_at(arena, entries, columns, point) == columns
 }

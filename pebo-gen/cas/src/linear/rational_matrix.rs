@@ -1,22 +1,22 @@
 //! Elimination of matrices of numbers.
 //!
-//! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every entry
-//! is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is looked for
-//! and numbers grow no longer than the answer. Over fractions of polynomials (`linear`) those determinants would be the
-//! longest entries there are, so that the two share no step. Of a large matrix, rows and pivots are found modulo a prime,
-//! and the rest is solved for by `lifting`; rows that this does not explain, of which that prime was a bad choice, are
-//! left to elimination.
+//! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every
+//! entry is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is
+//! computed and numbers grow no longer than the answer. Over fractions of polynomials (`linear`) those determinants
+//! would be the longest entries, so that the two share no step. Rows and pivots of a large matrix are found modulo a
+//! prime, and the rest is solved for by `lifting`; rows that this does not explain, for which that prime was a bad
+//! choice, are left to elimination.
 
 use super::lifting::{self, Lifting};
-use super::residues::Rows;
+use super::residues::ResidueRows;
 use crate::poly::{TooLarge, Work, steps};
 use crate::{Integer, Rational};
 
 /// Rows and columns from which on lifting is quicker than elimination.
 const LARGE: usize = 16;
 
-/// What elimination leaves of a matrix.
-pub(crate) struct Reduced {
+/// The result of elimination on a matrix.
+pub(crate) struct ReducedMatrix {
     /// Rows with their pivot columns, ascending; each is one in its pivot column, and all others are zero there.
     pub(crate) rows: Vec<(usize, Vec<Rational>)>,
     /// A multiple of each of the rows that are zero on the columns of the matrix, and may not be beyond.
@@ -24,7 +24,7 @@ pub(crate) struct Reduced {
 }
 
 /// Eliminates on the first `columns` columns; a row may have more, which are carried along.
-pub(crate) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Result<Reduced, TooLarge> {
+pub(crate) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Result<ReducedMatrix, TooLarge> {
     let rows: Vec<Vec<Integer>> = rows.iter().map(|row| integers(row).0).collect();
     if rows.len().min(columns) >= LARGE
         && let Some(reduced) = lifted(&rows, columns, work)?
@@ -34,13 +34,13 @@ pub(crate) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Re
     eliminated(rows, columns, work)
 }
 
-/// A solution of rows `[matrix | right side]`, with zero for unknowns that stay free; none where there is none.
+/// A solution of rows `[matrix | right side]`, with zero for free unknowns; none if there is none.
 pub(crate) fn solution(
     rows: &[Vec<Rational>],
     unknowns: usize,
     work: &Work,
 ) -> Result<Option<Vec<Rational>>, TooLarge> {
-    let Reduced { rows, rest } = reduced(rows, unknowns, work)?;
+    let ReducedMatrix { rows, rest } = reduced(rows, unknowns, work)?;
     if rest.iter().any(|row| !row[unknowns].is_zero()) {
         return Ok(None);
     }
@@ -51,7 +51,7 @@ pub(crate) fn solution(
     Ok(Some(solution))
 }
 
-fn eliminated(mut rest: Vec<Vec<Integer>>, columns: usize, work: &Work) -> Result<Reduced, TooLarge> {
+fn eliminated(mut rest: Vec<Vec<Integer>>, columns: usize, work: &Work) -> Result<ReducedMatrix, TooLarge> {
     let mut done: Vec<(usize, Vec<Integer>)> = Vec::new();
     let mut last = Integer::ONE;
     for column in 0..columns {
@@ -66,13 +66,13 @@ fn eliminated(mut rest: Vec<Vec<Integer>>, columns: usize, work: &Work) -> Resul
     let number = |n: &Integer| Rational::from(n.clone());
     let over = |n: &Integer, pivot: &Integer| Rational::new(n.clone(), pivot.clone()).unwrap_or(Rational::ZERO);
     let rows = done.iter().map(|(column, row)| (*column, row.iter().map(|n| over(n, &row[*column])).collect()));
-    Ok(Reduced { rows: rows.collect(), rest: rest.iter().map(|row| row.iter().map(number).collect()).collect() })
+    Ok(ReducedMatrix { rows: rows.collect(), rest: rest.iter().map(|row| row.iter().map(number).collect()).collect() })
 }
 
 /// The same by lifting; none if pivots modulo the prime are not the pivots.
-fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<Reduced>, TooLarge> {
+fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<ReducedMatrix>, TooLarge> {
     let Some(prime) = lifting::prime() else { return Ok(None) };
-    let mut echelon = Rows::new(&prime, columns);
+    let mut echelon = ResidueRows::new(&prime, columns);
     let (mut chosen, mut others) = (Vec::new(), Vec::new());
     for row in rows {
         work.spend(steps(columns * (echelon.rank() + 1)) / 4)?;
@@ -94,16 +94,16 @@ fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<R
     for column in free {
         let right: Vec<Integer> = chosen.iter().map(|row| row[column].clone()).collect();
         let solution = lifting.solve(&right, work)?;
-        let over = |above: &Integer| Rational::new(above.clone(), solution.below.clone()).ok_or(TooLarge);
-        for ((_, row), above) in reduced.iter_mut().zip(&solution.above) {
+        let over = |numerator: &Integer| Rational::new(numerator.clone(), solution.denominator.clone()).ok_or(TooLarge);
+        for ((_, row), above) in reduced.iter_mut().zip(&solution.numerators) {
             row[column] = over(above)?;
         }
-        // What the chosen rows do not explain of another one.
-        let words = solution.below.bits().div_ceil(64) + 1;
+        // The part of another row that the chosen rows do not explain.
+        let words = solution.denominator.bits().div_ceil(64) + 1;
         for (other, left) in others.iter().zip(&mut rest) {
             work.spend(words.saturating_mul(steps(pivots.len())))?;
-            let mut value = &solution.below * &other[column];
-            for (pivot, above) in pivots.iter().zip(&solution.above) {
+            let mut value = &solution.denominator * &other[column];
+            for (pivot, above) in pivots.iter().zip(&solution.numerators) {
                 if !other[*pivot].is_zero() {
                     value.sub_product(&other[*pivot], above);
                 }
@@ -114,7 +114,7 @@ fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<R
             left[column] = over(&value)?;
         }
     }
-    Ok(Some(Reduced { rows: reduced, rest }))
+    Ok(Some(ReducedMatrix { rows: reduced, rest }))
 }
 
 /// The determinant of a square matrix.
@@ -123,7 +123,7 @@ pub(crate) fn determinant(rows: &[Vec<Rational>], work: &Work) -> Result<Rationa
     let mut last = Integer::ONE;
     for column in 0..rows.len() {
         let Some(index) = rest.iter().position(|row| !row[column].is_zero()) else { return Ok(Rational::ZERO) };
-        // A row that comes first past an odd number of others turns the sign.
+        // A row that passes an odd number of others turns the sign.
         let mut row = rest.remove(index);
         if index % 2 == 1 {
             for entry in &mut row {
@@ -135,8 +135,8 @@ pub(crate) fn determinant(rows: &[Vec<Rational>], work: &Work) -> Result<Rationa
         }
         last = row[column].clone();
     }
-    let below = scales.iter().fold(Integer::ONE, |product, scale| &product * scale);
-    Rational::new(last, below).ok_or(TooLarge)
+    let denominator = scales.iter().fold(Integer::ONE, |product, scale| &product * scale);
+    Rational::new(last, denominator).ok_or(TooLarge)
 }
 
 /// `(pivot * other - factor * row) / last`, which is zero in the column of the pivot.
@@ -167,15 +167,15 @@ fn integers(row: &[Rational]) -> (Vec<Integer>, Integer) {
 mod tests {
     use super::*;
 
-    fn matrix(rows: &[&[i64]], below: i64) -> Vec<Vec<Rational>> {
-        let entry = |n: &i64| Rational::new(*n, below).unwrap();
+    fn matrix(rows: &[&[i64]], denominator: i64) -> Vec<Vec<Rational>> {
+        let entry = |n: &i64| Rational::new(*n, denominator).unwrap();
         rows.iter().map(|row| row.iter().map(entry).collect()).collect()
     }
 
     #[test]
-    fn rows_are_reduced_and_the_rest_tells_contradictions() {
+    fn rows_are_reduced_and_the_rest_has_the_contradictions() {
         let rows = matrix(&[&[0, 2, 4, 1], &[1, 1, 1, 0], &[1, 3, 5, 2], &[2, 4, 6, 1]], 10);
-        let Reduced { rows, rest } = reduced(&rows, 3, &Work::new(1_000_000)).unwrap();
+        let ReducedMatrix { rows, rest } = reduced(&rows, 3, &Work::new(1_000_000)).unwrap();
         let pivots: Vec<usize> = rows.iter().map(|(column, _)| *column).collect();
         assert_eq!(pivots, [0, 1]);
         let ratio = |n: i64, d: i64| Rational::new(n, d).unwrap();
@@ -212,7 +212,7 @@ mod tests {
             rows.iter().map(|(pivot, row)| (*pivot, row[..columns].to_vec())).collect::<Vec<_>>()
         };
         assert_eq!(before(&by_lifting.rows), before(&by_elimination.rows));
-        // What is carried along is determined but for the rows that are left, which span the same.
+        // The carried columns are determined up to the remaining rows, which span the same.
         let rest = [&by_lifting, &by_elimination].map(|found| {
             assert!(found.rest.iter().all(|row| row[..columns].iter().all(Rational::is_zero)));
             found.rest.iter().map(|row| row[columns..].to_vec()).collect::<Vec<_>>()
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn determinants_have_their_sign_and_scale() {
         let work = Work::new(1_000_000);
-        let value = |rows: &[&[i64]], below| determinant(&matrix(rows, below), &work).unwrap();
+        let value = |rows: &[&[i64]], denominator| determinant(&matrix(rows, denominator), &work).unwrap();
         assert_eq!(value(&[&[0, 1], &[1, 0]], 1), Rational::from(-1));
         assert_eq!(value(&[&[0, 0, 1], &[1, 0, 0], &[0, 1, 0]], 1), Rational::ONE);
         assert_eq!(value(&[&[0, 0, 1], &[0, 1, 0], &[1, 0, 0]], 1), Rational::from(-1));

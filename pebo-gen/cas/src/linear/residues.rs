@@ -1,26 +1,26 @@
-//! Vectors of residues: which combinations of columns vanish.
+//! Linear relations among columns of residues.
 //!
-//! In: rows over a prime field, as many as one likes. Out: how many of them are independent, and the vectors that all
-//! of them annihilate.
+//! In: any number of rows over a prime field. Out: the number of independent rows, and the vectors that all of them
+//! annihilate.
 
 use crate::poly::{PrimeField, Residue};
 
 /// Rows in echelon form.
 #[derive(Clone, Debug)]
-pub struct Rows<'a> {
+pub struct ResidueRows<'a> {
     prime: &'a PrimeField,
     columns: usize,
     /// Each with its pivot, the first column in which it is not zero; there it is one.
     echelon: Vec<(usize, Vec<Residue>)>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> ResidueRows<'a> {
     /// No rows yet, of so many columns.
     pub fn new(prime: &'a PrimeField, columns: usize) -> Self {
         Self { prime, columns, echelon: Vec::new() }
     }
 
-    /// How many of the rows are independent.
+    /// The number of independent rows.
     pub fn rank(&self) -> usize {
         self.echelon.len()
     }
@@ -30,7 +30,7 @@ impl<'a> Rows<'a> {
         self.echelon.iter().map(|(pivot, _)| *pivot)
     }
 
-    /// Adds a row; whether it is independent of those before.
+    /// Adds a row; true if it is independent of those before.
     pub fn insert(&mut self, mut row: Vec<Residue>) -> bool {
         let prime = self.prime;
         for (pivot, known) in &self.echelon {
@@ -98,7 +98,7 @@ mod tests {
     fn vectors_end_in_the_first_column_that_depends_on_those_before() {
         let prime = PrimeField::new(65_537).expect("prime");
         let of = |n: i64| prime.from_u64(u64::try_from(n.rem_euclid(65_537)).expect("not negative"));
-        let mut rows = Rows::new(&prime, 4);
+        let mut rows = ResidueRows::new(&prime, 4);
         let inserted: Vec<bool> = [[0, 1, 2, 3], [1, 1, 1, 1], [2, 3, 4, 5], [0, 0, 0, 0]]
             .map(|row: [i64; 4]| rows.insert(row.map(of).to_vec()))
             .to_vec();

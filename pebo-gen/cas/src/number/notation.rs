@@ -1,8 +1,8 @@
-//! How numbers are written: as the author wrote them, or as an engineer would.
+//! Notation of numbers: the author's, or else an engineer's.
 //!
-//! In: the decimals of the model's formulas as they stand there, and exact numbers. Out: `8.875` where the author wrote that and not
-//! `71/8`, `22.9e-6` and not `2.29e-5`; of numbers that only a derivation has, small denominators stay fractions (`x/2`),
-//! and others are decimals where these are exact (`9.81*m`).
+//! In: the decimals of the model's formulas as they are written, and exact numbers. Out: `8.875` if the author wrote
+//! that and not `71/8`, `22.9e-6` and not `2.29e-5`; numbers that only a derivation has remain fractions if their
+//! denominators are small (`x/2`), and others are decimals if these are exact (`9.81*m`).
 
 use std::cell::RefCell;
 
@@ -10,13 +10,13 @@ use rustc_hash::FxHashMap;
 
 use crate::Rational;
 
-/// A longer text is no notation that an author would want to see again.
+/// The length of the longest notation that is kept.
 const LONGEST: usize = 24;
 
 /// The decimals of a model's formulas.
 #[derive(Default, Debug)]
 pub struct Notation {
-    /// The author's text of a magnitude that is no whole number, the first where there are several.
+    /// The author's text of an absolute value that is no integer, the first if there are several.
     written: RefCell<FxHashMap<Rational, String>>,
 }
 
@@ -24,7 +24,7 @@ impl Notation {
     /// Keeps a decimal of a formula as it is written there.
     pub fn keep(&self, value: &Rational, text: &str) {
         let mut text = text.strip_prefix('-').unwrap_or(text).to_ascii_lowercase();
-        // In Rust and on paper a digit stands on either side of the point.
+        // In Rust and on paper there is a digit on either side of the point.
         if text.starts_with('.') {
             text.insert(0, '0');
         }
@@ -35,22 +35,22 @@ impl Notation {
         }
     }
 
-    /// Whether a magnitude reads better as a fraction than as a decimal.
-    pub(crate) fn as_fraction(&self, magnitude: &Rational) -> bool {
+    /// True if an absolute value reads better as a fraction than as a decimal.
+    pub(crate) fn as_fraction(&self, absolute: &Rational) -> bool {
         const LARGEST_DENOMINATOR: i64 = 12;
         let written = self.written.borrow();
-        if written.contains_key(magnitude) {
+        if written.contains_key(absolute) {
             return false;
         }
-        // Whoever writes decimals has tenths and no fifths.
-        let in_tenths = || !written.is_empty() && magnitude.denominator().div_exact(&5.into()).is_some();
-        let is_small = magnitude.denominator().to_i64().is_some_and(|d| d <= LARGEST_DENOMINATOR);
-        (is_small && !in_tenths()) || short_decimal(magnitude).is_none()
+        // An author of decimals has tenths and no fifths.
+        let in_tenths = || !written.is_empty() && absolute.denominator().div_exact(&5.into()).is_some();
+        let is_small = absolute.denominator().to_i64().is_some_and(|d| d <= LARGEST_DENOMINATOR);
+        (is_small && !in_tenths()) || short_decimal(absolute).is_none()
     }
 
-    /// The decimal of a magnitude: the author's, or the exact one if it is short.
-    pub(crate) fn decimal(&self, magnitude: &Rational) -> Option<String> {
-        self.written.borrow().get(magnitude).cloned().or_else(|| short_decimal(magnitude))
+    /// The decimal of an absolute value: the author's, or the exact one if it is short.
+    pub(crate) fn decimal(&self, absolute: &Rational) -> Option<String> {
+        self.written.borrow().get(absolute).cloned().or_else(|| short_decimal(absolute))
     }
 }
 
@@ -60,7 +60,7 @@ fn short_decimal(value: &Rational) -> Option<String> {
     const FEW_PLACES: u32 = 12;
     const MOST_PLACES: u32 = 60;
     const MOST_DIGITS: usize = 17;
-    // What divides 10^60 has no more bits.
+    // A divisor of 10^60 has no more bits.
     const MOST_BITS: u64 = 200;
     if value.denominator().bits() > MOST_BITS {
         return None;
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn decimals_stay_as_the_author_wrote_them() {
+    fn decimals_are_printed_as_the_author_wrote_them() {
         let notation = Notation::default();
         let fractions = [(71, 8), (1, 2), (3, 10), (1, 3), (1, 5)];
         for (n, d) in fractions {
@@ -130,7 +130,7 @@ mod tests {
         assert_eq!(shown(&notation, 3, 2000), "1.50e-3");
         assert_eq!(shown(&notation, 1, 4), "0.25");
         assert_eq!(shown(&notation, 1, 2), "0.5");
-        // None that the author wrote, but tenths are decimals to him.
+        // The author wrote neither, but his decimals include tenths.
         assert_eq!(shown(&notation, 3, 4), "3/4");
         assert_eq!(shown(&notation, 3, 10), "0.3");
         assert_eq!(shown(&notation, 1, 3), "1/3");

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use super::division::{Outcome, Rest};
+use super::division::{Outcome, RemainderSum};
 use super::layout::{Exponents, Layout};
-use super::multiply::{Factor, Sum, Terms};
+use super::multiply::{CoefficientSum, PackedFactor, PackedTerms};
 use crate::Integer;
 
-/// Boxes larger than this do not stay in the cache: a hash table or a heap is then no slower.
+/// Larger boxes exceed the cache: a hash table or a heap is then no slower.
 const MAX_CELLS: usize = 1 << 21;
 
-/// Sums that are added to in turn are that near to each other, if they can be.
+/// The size of a block of sums, which are added to in turn.
 const MOST_BYTES_OF_BLOCK: usize = 1 << 15;
 
 /// The monomials up to some degrees, numbered: the exponents are digits, the last variable's the
@@ -32,7 +32,11 @@ impl<'a> ExponentBox<'a> {
     }
 
     /// The product of factors whose degrees add up to those of the box.
-    pub(super) fn product<S: Sum>(&self, left: &Factor<'_, S::Factor>, right: &Factor<'_, S::Factor>) -> Terms {
+    pub(super) fn product<S: CoefficientSum>(
+        &self,
+        left: &PackedFactor<'_, S::Factor>,
+        right: &PackedFactor<'_, S::Factor>,
+    ) -> PackedTerms {
         let mut sums = vec![S::default(); self.cells];
         let block = self.block(size_of::<S>());
         let (left_places, right_places) = (self.places(left.keys), self.places(right.keys));
@@ -52,7 +56,7 @@ impl<'a> ExponentBox<'a> {
 
     /// The terms with these coefficients, one for every cell. A block's keys are those of the first block with the
     /// exponents of the block's first monomial added.
-    fn terms<S: Sum>(&self, sums: Vec<S>, block: usize) -> Terms {
+    fn terms<S: CoefficientSum>(&self, sums: Vec<S>, block: usize) -> PackedTerms {
         let words = self.layout.words();
         let count = sums.iter().filter(|sum| !sum.vanishes()).count();
         let (mut keys, mut coefficients) = (Vec::with_capacity(count * words), Vec::with_capacity(count));
@@ -73,10 +77,10 @@ impl<'a> ExponentBox<'a> {
 
     /// The quotient of a dividend within the box, with degrees up to the given ones; `spend` is
     /// called for every term of it.
-    pub(super) fn quotient<S: Rest, E>(
+    pub(super) fn quotient<S: RemainderSum, E>(
         &self,
-        dividend: &Factor<'_, Integer>,
-        divisor: &Factor<'_, S::Factor>,
+        dividend: &PackedFactor<'_, Integer>,
+        divisor: &PackedFactor<'_, S::Factor>,
         degrees: &[u32],
         spend: impl Fn() -> Result<(), E>,
     ) -> Result<Outcome<S::Factor>, E> {
@@ -128,7 +132,8 @@ impl<'a> ExponentBox<'a> {
         Ok(Outcome::Quotient(keys, coefficients))
     }
 
-    /// How many cells, the monomials in the last variables, stay in the nearest cache while terms are added to them.
+    /// The number of cells, the monomials in the last variables, that remain in the nearest cache while terms are added
+    /// to them.
     fn block(&self, bytes: usize) -> usize {
         let mut block = 1;
         for degree in self.degrees.iter().rev() {

@@ -1,4 +1,4 @@
-//! Looking at a polynomial as one in some of its variables: contents and coefficients.
+//! Contents and coefficients of a polynomial in some of its variables.
 
 use std::cmp::Ordering;
 
@@ -24,8 +24,8 @@ impl Poly {
     /// The integer and the polynomial whose product this is, the latter with coefficients without a
     /// common divisor and a positive leading one. Both are zero of zero.
     pub fn primitive(&self) -> (Integer, Self) {
-        let magnitude = self.content();
-        let content = if self.leading_coefficient().is_negative() { -magnitude } else { magnitude };
+        let absolute = self.content();
+        let content = if self.leading_coefficient().is_negative() { -absolute } else { absolute };
         let part = if content.is_one() { None } else { self.div_integer(&content) };
         (content, part.unwrap_or_else(|| self.clone()))
     }

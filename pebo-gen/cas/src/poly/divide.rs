@@ -1,4 +1,4 @@
-//! Exact quotients: what is cheap to rule out, and the choice of the division.
+//! Exact quotients: cheap exclusions, and the choice of the division.
 
 use super::Poly;
 use super::division::{Division, Outcome};

@@ -1,36 +1,36 @@
 //! Long division of sparse polynomials.
 //!
-//! The sums that the remainder consists of are in an array where the box of exponents is well
-//! filled, and else in a hash table. They are visited in descending order, so that a sum is complete
-//! when its turn comes; it ends at the first that the divisor's leading term does not divide.
+//! The sums that the remainder consists of are in an array if the box of exponents is well filled, and else in a hash
+//! table. They are visited in descending order, so that a sum is complete when its turn comes; the division ends at the
+//! first that the divisor's leading term does not divide.
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
-use super::multiply::{Factor, Sum};
+use super::multiply::{CoefficientSum, PackedFactor};
 use super::work::{TooLarge, Work, steps};
 use crate::Integer;
 
-/// What came of a division.
+/// The outcome of a division.
 pub(super) enum Outcome<C> {
-    /// It goes without remainder: descending keys, and their coefficients.
+    /// Exact: descending keys, and their coefficients.
     Quotient(Vec<u64>, Vec<C>),
-    /// It does not.
+    /// Not exact.
     Remainder,
     /// A coefficient of the quotient, if there is one, does not fit the number type.
     Overflow,
 }
 
 /// A coefficient of the remainder while it is summed up.
-pub(super) trait Rest: Sum {
+pub(super) trait RemainderSum: CoefficientSum {
     /// The sum that begins with a coefficient of the dividend, if it fits.
     fn begin(value: &Integer) -> Option<Self>;
     /// The negative of a coefficient: sums add products.
     fn negative(value: &Self::Factor) -> Self::Factor;
-    /// The quotient, or why there is none.
+    /// The quotient, or the reason why there is none.
     fn over(&self, divisor: &Self::Factor) -> Result<Self::Factor, Outcome<Self::Factor>>;
 }
 
-impl Rest for i128 {
+impl RemainderSum for i128 {
     fn begin(value: &Integer) -> Option<Self> {
         // Half of the range is for the products.
         value.to_i128().filter(|value| value.unsigned_abs() < 1 << 126)
@@ -51,7 +51,7 @@ impl Rest for i128 {
     }
 }
 
-impl Rest for Integer {
+impl RemainderSum for Integer {
     fn begin(value: &Integer) -> Option<Self> {
         Some(value.clone())
     }
@@ -76,7 +76,7 @@ pub(super) struct Division<'a> {
 }
 
 impl Division<'_> {
-    pub(super) fn run<S: Rest>(
+    pub(super) fn run<S: RemainderSum>(
         &self,
         dividend: &[Integer],
         divisor: &[S::Factor],
@@ -85,8 +85,8 @@ impl Division<'_> {
         // A cell costs about a nanosecond, an access to the table ten.
         let degrees = self.layout.degrees(self.dividend);
         if let Some(cells) = ExponentBox::new(self.layout, &degrees, 8 * dividend.len()) {
-            let dividend = Factor { keys: self.dividend, coefficients: dividend };
-            let divisor = Factor { keys: self.divisor, coefficients: divisor };
+            let dividend = PackedFactor { keys: self.dividend, coefficients: dividend };
+            let divisor = PackedFactor { keys: self.divisor, coefficients: divisor };
             return cells.quotient::<S, _>(&dividend, &divisor, self.degrees, || self.work.spend(cost));
         }
         match self.layout.words() {

@@ -9,12 +9,12 @@ use crate::Rational;
 const TABLE: u32 = 1 << 10;
 
 /// The powers of one coordinate, as far as a table is worth it.
-struct Powers<T> {
+struct PowerTable<T> {
     table: Vec<T>,
     base: T,
 }
 
-impl<T: Clone> Powers<T> {
+impl<T: Clone> PowerTable<T> {
     fn new(one: T, base: T, degree: u32, mul: impl Fn(&T, &T) -> T) -> Self {
         let next = |power: &T| Some(mul(power, &base));
         let powers = std::iter::successors(Some(one), next);
@@ -40,7 +40,7 @@ impl Poly {
             .variables()
             .iter()
             .zip(self.degrees())
-            .map(|(v, degree)| Powers::new(field.one(), point(*v), degree, |a, b| field.mul(*a, *b)))
+            .map(|(v, degree)| PowerTable::new(field.one(), point(*v), degree, |a, b| field.mul(*a, *b)))
             .collect();
         let mut sum = Residue::ZERO;
         for (key, coefficient) in self.keys().zip(&self.coefficients) {
@@ -67,7 +67,7 @@ impl Poly {
             let coordinate = point(*variable);
             let bits = coordinate.bits().saturating_mul(u64::from(degree.min(TABLE)));
             work.spend(bits / 64 * u64::from(degree.min(TABLE)) / 2)?;
-            powers.push(Powers::new(Rational::ONE, coordinate, degree, |a, b| a * b));
+            powers.push(PowerTable::new(Rational::ONE, coordinate, degree, |a, b| a * b));
         }
         let mut sum = Rational::ZERO;
         for (key, coefficient) in self.keys().zip(&self.coefficients) {

@@ -1,7 +1,7 @@
 //! Factors for a reader: multiplicities, contents, and factors that are linear in a variable.
 //!
-//! In: a polynomial. Out: a product of powers. Each factor that is of degree one in some variable is irreducible;
-//! of the others, only factors that are linear in a variable are looked for, so one may be a product still.
+//! In: a polynomial. Out: a product of powers. Each factor of degree one in some variable is irreducible; in the
+//! others, only factors that are linear in a variable are searched for, so one may still be a product.
 
 use super::Poly;
 use super::evaluate::coordinate;
@@ -13,12 +13,12 @@ use crate::Integer;
 /// Divisors of a coefficient that are tried as parts of a linear factor.
 const MOST_DIVISORS: usize = 24;
 
-/// Terms of a polynomial whose linear factors are looked for: what is longer is not read as a product either.
+/// Terms of a polynomial up to which linear factors are searched for: nobody reads a longer one as a product either.
 const MOST_TERMS: usize = 400;
 
 impl Poly {
-    /// The polynomial as a product, with factors as small as contents, multiplicities and linear factors tell them
-    /// apart: coprime, not constant, primitive with positive leading coefficients, ascending.
+    /// The polynomial as a product, with factors as small as contents, multiplicities and linear factors yield:
+    /// coprime, not constant, primitive with positive leading coefficients, ascending.
     pub fn factored(&self, work: &Work) -> Result<SquareFree, TooLarge> {
         let SquareFree { content, factors } = self.square_free(work)?;
         let mut found = Vec::new();
@@ -42,7 +42,7 @@ fn split(poly: Poly, work: &Work, found: &mut Vec<Poly>) -> Result<(), TooLarge>
             split(lower, work, found)?;
         }
     }
-    // What is left is primitive in each of its variables: of degree one in any, it has no factors.
+    // The rest is primitive in each of its variables: of degree one in any, it has no factors.
     while let Some(linear) = linear_factor(&rest, work)? {
         rest = rest.over(&linear, work)?;
         found.push(linear);
@@ -68,7 +68,7 @@ fn linear_factor(poly: &Poly, work: &Work) -> Result<Option<Poly>, TooLarge> {
     Ok(None)
 }
 
-/// A linear factor of what is quadratic in a variable: there is one if the discriminant is a square.
+/// A linear factor of a polynomial that is quadratic in a variable: there is one if the discriminant is a square.
 fn root_of_two(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarge> {
     let [square, slope, rest] = quadratic(poly, variable);
     let product = square.mul(&rest, work)?.scale(&Integer::from(4));
@@ -92,17 +92,17 @@ fn quadratic(poly: &Poly, variable: u32) -> [Poly; 3] {
 fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarge> {
     let coefficients = poly.coefficients_in(variable);
     let (Some((_, first)), Some((0, last))) = (coefficients.first(), coefficients.last()) else { return Ok(None) };
-    let image = Image::of(&coefficients);
-    let belows: Vec<(Residue, Poly)> = divisors(last, work)?.into_iter().map(|e| (image.value(&e), e)).collect();
-    for above in divisors(first, work)? {
-        let value = image.value(&above);
-        let above = above.mul(&Poly::variable(variable), work)?;
-        for (other, below) in &belows {
+    let image = FactorImage::of(&coefficients);
+    let lasts: Vec<(Residue, Poly)> = divisors(last, work)?.into_iter().map(|e| (image.value(&e), e)).collect();
+    for leading in divisors(first, work)? {
+        let value = image.value(&leading);
+        let leading = leading.mul(&Poly::variable(variable), work)?;
+        for (other, constant) in &lasts {
             for (opposite, sign) in [(*other, -1), (image.field.neg(*other), 1)] {
                 if !image.may_have_root(value, opposite) {
                     continue;
                 }
-                let candidate = if sign < 0 { &above - below } else { &above + below };
+                let candidate = if sign < 0 { &leading - constant } else { &leading + constant };
                 if poly.div_exact(&candidate, work)?.is_some() {
                     return Ok(Some(candidate));
                 }
@@ -112,15 +112,15 @@ fn root(poly: &Poly, variable: u32, work: &Work) -> Result<Option<Poly>, TooLarg
     Ok(None)
 }
 
-/// What is left of a polynomial in one variable where the others have values modulo a prime: most candidates for a
-/// factor are no factors there.
-struct Image {
+/// The image of a polynomial in one variable, the others having values modulo a prime: it excludes most candidates for
+/// a factor.
+struct FactorImage {
     field: PrimeField,
     /// The powers of the variable, highest first, with their coefficients.
     coefficients: Vec<(u32, Residue)>,
 }
 
-impl Image {
+impl FactorImage {
     fn of(coefficients: &[(u32, Poly)]) -> Self {
         let field = PrimeField::MERSENNE;
         let mut image = Self { field, coefficients: Vec::new() };
@@ -132,11 +132,12 @@ impl Image {
         poly.evaluate_mod(&self.field, |variable| coordinate(&self.field, variable, 1))
     }
 
-    /// Whether `below / above` is a root, as it has to be if `above v - below` divides the polynomial.
-    fn may_have_root(&self, above: Residue, below: Residue) -> bool {
+    /// True if `constant / leading` is a root, as it must be if `leading v - constant` divides the polynomial.
+    fn may_have_root(&self, leading: Residue, constant: Residue) -> bool {
         let (field, degree) = (&self.field, self.coefficients.first().map_or(0, |(power, _)| *power));
         let sum = self.coefficients.iter().fold(Residue::ZERO, |sum, (power, coefficient)| {
-            let powers = field.mul(field.pow(below, u64::from(*power)), field.pow(above, u64::from(degree - power)));
+            let powers =
+                field.mul(field.pow(constant, u64::from(*power)), field.pow(leading, u64::from(degree - power)));
             field.add(sum, field.mul(*coefficient, powers))
         });
         sum.is_zero()

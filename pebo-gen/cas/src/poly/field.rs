@@ -24,7 +24,7 @@ impl Residue {
     /// The neutral element of addition, of any field.
     pub const ZERO: Self = Self(0);
 
-    /// Whether this is zero.
+    /// True if this is zero.
     pub fn is_zero(self) -> bool {
         self.0 == 0
     }
@@ -72,7 +72,7 @@ impl PrimeField {
         Self { prime: modulus, negative_inverse, one: Residue(one), square }
     }
 
-    /// Whether the modulus is prime: Miller's test with the bases that decide below 2^64
+    /// True if the modulus is prime: Miller's test with the bases that decide below 2^64
     /// (Sorenson and Webster, 2015).
     fn is_field(&self) -> bool {
         let minus_one = self.neg(self.one);
@@ -126,7 +126,7 @@ impl PrimeField {
         Some(self.mul(numerator, self.inv(self.from_integer(&value.denominator()))?))
     }
 
-    /// The number from 0 to the prime less one that a residue stands for.
+    /// The number of a residue, from 0 to the prime less one.
     pub fn value(&self, a: Residue) -> u64 {
         self.mul(a, Residue(1)).0
     }
@@ -179,7 +179,7 @@ impl PrimeField {
         (!a.is_zero()).then(|| self.pow(a, self.prime - 2))
     }
 
-    /// Whether this is the square of an element (Euler's criterion).
+    /// True if this is the square of an element (Euler's criterion).
     pub fn is_square(&self, a: Residue) -> bool {
         a.is_zero() || self.pow(a, self.prime >> 1) == self.one
     }

@@ -3,18 +3,18 @@
 use std::collections::BinaryHeap;
 
 use super::divide::key_quotient;
-use super::division::{Division, Outcome, Rest};
+use super::division::{Division, Outcome, RemainderSum};
 use super::layout::MAX_WORDS;
-use super::multiply::{Factor, Sum, Terms};
+use super::multiply::{CoefficientSum, PackedFactor, PackedTerms};
 use super::work::{TooLarge, steps};
 use crate::Integer;
 
 /// The product of two polynomials with keys of the given number of words.
-pub(super) fn product<S: Sum>(
+pub(super) fn product<S: CoefficientSum>(
     words: usize,
-    left: &Factor<'_, S::Factor>,
-    right: &Factor<'_, S::Factor>,
-) -> Result<Terms, TooLarge> {
+    left: &PackedFactor<'_, S::Factor>,
+    right: &PackedFactor<'_, S::Factor>,
+) -> Result<PackedTerms, TooLarge> {
     match words {
         1 => of_length::<1, S>(left, right),
         2 => of_length::<2, S>(left, right),
@@ -26,10 +26,10 @@ pub(super) fn product<S: Sum>(
     }
 }
 
-fn of_length<const N: usize, S: Sum>(
-    left: &Factor<'_, S::Factor>,
-    right: &Factor<'_, S::Factor>,
-) -> Result<Terms, TooLarge> {
+fn of_length<const N: usize, S: CoefficientSum>(
+    left: &PackedFactor<'_, S::Factor>,
+    right: &PackedFactor<'_, S::Factor>,
+) -> Result<PackedTerms, TooLarge> {
     let mut table = Table::<N, S>::new(left.coefficients.len() + right.coefficients.len());
     for (x, a) in left.keys.as_chunks::<N>().0.iter().zip(left.coefficients) {
         table.reserve(right.coefficients.len())?;
@@ -53,7 +53,7 @@ fn monomial_product<const N: usize>(a: &[u64; N], b: &[u64; N]) -> [u64; N] {
 impl Division<'_> {
     /// The quotient, with the remainder in a table. The dividend's terms are there from the start
     /// and in order; only the terms that come in between have to be queued.
-    pub(super) fn in_table<const N: usize, S: Rest>(
+    pub(super) fn in_table<const N: usize, S: RemainderSum>(
         &self,
         dividend: &[Integer],
         divisor: &[S::Factor],
@@ -140,7 +140,7 @@ struct Table<const N: usize, S> {
     entries: Vec<([u64; N], S)>,
 }
 
-impl<const N: usize, S: Sum> Table<N, S> {
+impl<const N: usize, S: CoefficientSum> Table<N, S> {
     fn new(expected: usize) -> Self {
         Self { slots: vec![0; (expected * 2).next_power_of_two().max(16)], entries: Vec::with_capacity(expected) }
     }
@@ -198,7 +198,7 @@ impl<const N: usize, S: Sum> Table<N, S> {
         }
     }
 
-    fn into_terms(mut self) -> Terms {
+    fn into_terms(mut self) -> PackedTerms {
         self.entries.sort_unstable_by_key(|entry| std::cmp::Reverse(entry.0));
         let mut keys = Vec::with_capacity(self.entries.len() * N);
         let mut coefficients = Vec::with_capacity(self.entries.len());
@@ -213,7 +213,7 @@ impl<const N: usize, S: Sum> Table<N, S> {
 }
 
 /// The slot where the search for a key begins, among so many, which are a power of two and at least two. Hosts whose
-/// addresses have 32 bits get what those of 64 get.
+/// addresses have 32 bits get the same slots as those of 64.
 #[inline]
 fn first_slot(key: &[u64], slots: u64) -> u64 {
     let mixed = key.iter().fold(0_u64, |hash, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15));

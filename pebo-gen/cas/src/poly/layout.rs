@@ -1,4 +1,4 @@
-//! How exponents are packed into words.
+//! The packing of exponents into words.
 //!
 //! A key is the exponents of one term side by side, the variable of the smallest index in the
 //! highest bits of the first word: comparing keys as numbers is the lexicographic order, adding
@@ -116,8 +116,8 @@ impl Layout {
         (0..self.variables.len()).map(|index| self.get(key, index)).collect()
     }
 
-    /// The exponents of a key that are not zero, each with the index of its variable, ascending: of many variables a term
-    /// has few.
+    /// The exponents of a key that are not zero, each with the index of its variable, ascending: of many variables a
+    /// term has few.
     pub(super) fn powers<'a>(&'a self, key: &'a [u64]) -> impl Iterator<Item = (usize, u32)> + 'a {
         key.iter().enumerate().flat_map(move |(word, &bits)| {
             let mut rest = bits;
@@ -149,8 +149,8 @@ impl Layout {
         self.folded(keys, |least, other, left| other & left | least & !left)
     }
 
-    /// The exponents of all keys joined into one, all fields of a word at a time: the third word has all bits of the fields
-    /// in which the first is at least as large as the second.
+    /// The exponents of all keys joined into one, all fields of a word at a time: the third word has all bits of the
+    /// fields in which the first is at least as large as the second.
     fn folded(&self, keys: &[u64], join: impl Fn(u64, u64, u64) -> u64) -> Exponents {
         let guard = self.guard();
         let join = |joined: u64, other: u64| {
@@ -167,7 +167,7 @@ impl Layout {
         if self == to {
             return keys.to_vec();
         }
-        // Where the field of a variable goes; one without a place has only zeros.
+        // The new field of each variable; a variable without one has only zeros.
         let places: SmallVec<[_; 8]> =
             self.variables.iter().map(|v| to.position(*v).map(|index| to.place(index))).collect();
         let mut converted = vec![0; keys.len() / self.words * to.words];
@@ -181,7 +181,7 @@ impl Layout {
         converted
     }
 
-    /// The descending keys that tell the largest exponents: in one variable the first.
+    /// The descending keys that hold the largest exponents: in one variable the first.
     fn largest<'k>(&self, keys: &'k [u64]) -> &'k [u64] {
         if self.variables.len() == 1 { &keys[..keys.len().min(self.words)] } else { keys }
     }

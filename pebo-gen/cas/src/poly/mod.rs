@@ -28,7 +28,7 @@ mod field;
 mod gcd;
 mod hashed;
 mod layout;
-mod linear;
+mod linear_combination;
 mod monomial;
 mod multiply;
 mod packed;
@@ -165,17 +165,17 @@ impl Poly {
         self.coefficients.len()
     }
 
-    /// Whether this is zero.
+    /// True if this is zero.
     pub fn is_zero(&self) -> bool {
         self.coefficients.is_empty()
     }
 
-    /// Whether this is the polynomial 1.
+    /// True if this is the polynomial 1.
     pub fn is_one(&self) -> bool {
         self.to_constant().is_some_and(|value| value.is_one())
     }
 
-    /// Whether no variable occurs.
+    /// True if no variable occurs.
     pub fn is_constant(&self) -> bool {
         self.layout.variables().is_empty()
     }
@@ -226,7 +226,7 @@ impl Poly {
         self.layout.degrees(&self.keys)
     }
 
-    /// What its terms take in memory, but for coefficients beyond a word.
+    /// The memory of its terms, except for coefficients beyond a word.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.keys.as_slice()) + size_of_val(self.coefficients.as_slice())
     }
@@ -269,11 +269,11 @@ impl fmt::Display for Poly {
                 (false, 0) => "",
                 (false, _) => " + ",
             };
-            let magnitude = coefficient.abs();
+            let absolute = coefficient.abs();
             f.write_str(sign)?;
             let mut separator = "";
-            if monomial.is_one() || !magnitude.is_one() {
-                write!(f, "{magnitude}")?;
+            if monomial.is_one() || !absolute.is_one() {
+                write!(f, "{absolute}")?;
                 separator = "*";
             }
             for (variable, exponent) in monomial.powers() {

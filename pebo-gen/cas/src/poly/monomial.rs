@@ -31,7 +31,7 @@ impl Monomial {
         &self.0
     }
 
-    /// Whether this is the empty product.
+    /// True if this is the empty product.
     pub fn is_one(&self) -> bool {
         self.0.is_empty()
     }

@@ -1,14 +1,12 @@
 //! Products.
 //!
-//! Every product of two terms is computed once and added to a sum per monomial. What differs is
-//! where the sums are: in an array indexed by the exponents where the box of exponents is not much
-//! larger than the number of products, else in a hash table, whose keys are sorted at the end. And
-//! what they are: a word, a double word, or an integer of any size, by the sizes of the
-//! coefficients.
+//! Every product of two terms is computed once and added to a sum per monomial. The sums are in an array indexed by the
+//! exponents if the box of exponents is not much larger than the number of products, else in a hash table, whose keys
+//! are sorted at the end. They are words, double words, or integers of any size, by the sizes of the coefficients.
 //!
-//! One thing with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table or
-//! one long integer, for products and quotients alike, and each sends to the others what is too sparse or too dense
-//! for it.
+//! One unit with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table
+//! or one long integer, for products and quotients alike, and each delegates polynomials that are too sparse or too
+//! dense for it.
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
@@ -17,19 +15,19 @@ use super::{Poly, hashed, packed};
 use crate::Integer;
 
 /// A sum of products of coefficients.
-pub(super) trait Sum: Clone + Default {
+pub(super) trait CoefficientSum: Clone + Default {
     /// The coefficients that are multiplied.
     type Factor;
     /// Adds `a * b`.
     fn add_product(&mut self, a: &Self::Factor, b: &Self::Factor);
-    /// Whether nothing remains.
+    /// True if nothing remains.
     fn vanishes(&self) -> bool;
     /// The value.
     fn into_integer(self) -> Integer;
 }
 
-/// Only where the sum is known to fit.
-impl Sum for i64 {
+/// Only if the sum is known to fit.
+impl CoefficientSum for i64 {
     type Factor = i64;
     #[inline]
     fn add_product(&mut self, a: &i64, b: &i64) {
@@ -43,8 +41,8 @@ impl Sum for i64 {
     }
 }
 
-/// Only where the sum is known to fit.
-impl Sum for i128 {
+/// Only if the sum is known to fit.
+impl CoefficientSum for i128 {
     type Factor = i64;
     #[inline]
     fn add_product(&mut self, a: &i64, b: &i64) {
@@ -58,7 +56,7 @@ impl Sum for i128 {
     }
 }
 
-impl Sum for Integer {
+impl CoefficientSum for Integer {
     type Factor = Integer;
     #[inline]
     fn add_product(&mut self, a: &Integer, b: &Integer) {
@@ -73,13 +71,13 @@ impl Sum for Integer {
 }
 
 /// Keys and coefficients of a factor, in the layout of the product.
-pub(super) struct Factor<'a, C> {
+pub(super) struct PackedFactor<'a, C> {
     pub(super) keys: &'a [u64],
     pub(super) coefficients: &'a [C],
 }
 
 /// Descending keys, and their coefficients.
-pub(super) type Terms = (Vec<u64>, Vec<Integer>);
+pub(super) type PackedTerms = (Vec<u64>, Vec<Integer>);
 
 impl Poly {
     /// The product.
@@ -119,15 +117,15 @@ impl Poly {
         Ok(Self::from_sorted(layout, keys, coefficients))
     }
 
-    /// The power, by repeated multiplication: of a sparse polynomial that is less work than by
-    /// repeated squaring (Fateman, 1974). Of a dense one in one variable it is that of an integer.
+    /// The power, by repeated multiplication: for a sparse polynomial that is less work than by repeated squaring
+    /// (Fateman, 1974). For a dense one in one variable it is that of an integer.
     pub fn pow(&self, exponent: u32, work: &Work) -> Result<Self, TooLarge> {
         if self.term_count() <= 1 {
             return self.power_of_term(exponent, work);
         }
         let degree = self.degrees().first().copied().unwrap_or(0);
         let layout = self.layout.widened(u64::from(degree) * u64::from(exponent))?;
-        // As products would take: their number of terms, and the words of each.
+        // As for products: the number of terms, and the words of each.
         let terms = u64::from(degree).saturating_mul(u64::from(exponent));
         let words = self.bits().saturating_mul(u64::from(exponent)) / 64 + 1;
         if layout.variables().len() == 1 && exponent > 1 {
@@ -179,24 +177,24 @@ impl Poly {
     }
 }
 
-fn factor<'a, C>(keys: &'a [u64], coefficients: &'a [C]) -> Factor<'a, C> {
-    Factor { keys, coefficients }
+fn factor<'a, C>(keys: &'a [u64], coefficients: &'a [C]) -> PackedFactor<'a, C> {
+    PackedFactor { keys, coefficients }
 }
 
-/// The product where one factor, or both, is a single term: nothing coincides, the order stays.
-fn single(left: &[u64], right: &[u64], a: &[Integer], b: &[Integer]) -> Terms {
+/// The product if one factor, or both, is a single term: nothing coincides, the order is kept.
+fn single(left: &[u64], right: &[u64], a: &[Integer], b: &[Integer]) -> PackedTerms {
     let (one, many, term, rest) = if a.len() == 1 { (left, right, &a[0], b) } else { (right, left, &b[0], a) };
     let keys = many.chunks_exact(one.len()).flat_map(|key| key.iter().zip(one).map(|(x, y)| x + y));
     (keys.collect(), rest.iter().map(|coefficient| coefficient * term).collect())
 }
 
 /// The terms of a product, where its layout and degrees are known.
-fn product<S: Sum>(
+fn product<S: CoefficientSum>(
     layout: &Layout,
     degrees: &[u32],
-    left: &Factor<'_, S::Factor>,
-    right: &Factor<'_, S::Factor>,
-) -> Result<Terms, TooLarge> {
+    left: &PackedFactor<'_, S::Factor>,
+    right: &PackedFactor<'_, S::Factor>,
+) -> Result<PackedTerms, TooLarge> {
     let pairs = left.coefficients.len().saturating_mul(right.coefficients.len());
     match ExponentBox::new(layout, degrees, pairs.saturating_mul(2)) {
         Some(cells) => Ok(cells.product::<S>(left, right)),

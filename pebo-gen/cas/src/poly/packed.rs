@@ -2,37 +2,37 @@
 
 use super::Poly;
 use super::layout::Layout;
-use super::multiply::Terms;
+use super::multiply::PackedTerms;
 use super::work::TooLarge;
 use crate::Integer;
 
-/// Terms from which on packing pays, by whether sums of products fit words.
+/// Terms from which on packing pays, if sums of products fit words and if not.
 const TERMS_OF_WORDS: usize = 40;
 const TERMS_OF_INTEGERS: usize = 8;
 
-/// A power of a polynomial of fewer terms is as soon found by products.
+/// Powers of polynomials of fewer terms are found by products as quickly.
 const TERMS_OF_POWERS: usize = 2;
 
 /// The coefficients of a product with at most so many bits, if its factors are dense and long enough.
-pub(super) fn product(layout: &Layout, a: &Poly, b: &Poly, bits: u64) -> Option<Terms> {
+pub(super) fn product(layout: &Layout, a: &Poly, b: &Poly, bits: u64) -> Option<PackedTerms> {
     let least = if bits <= 127 { TERMS_OF_WORDS } else { TERMS_OF_INTEGERS };
     if a.term_count().min(b.term_count()) < least || layout.variables().len() != 1 {
         return None;
     }
     let (left, right) = (dense(a)?, dense(b)?);
-    // The magnitude and a sign.
+    // The absolute value and a sign.
     let slot = usize::try_from(bits / 8 + 1).ok()?;
     let whole = &pack(a, slot, left) * &pack(b, slot, right);
     Some(terms(layout, whole.unpacked(slot, left + right - 1)))
 }
 
 /// The power of a dense polynomial.
-pub(super) fn power(layout: &Layout, a: &Poly, exponent: u32) -> Result<Option<Terms>, TooLarge> {
+pub(super) fn power(layout: &Layout, a: &Poly, exponent: u32) -> Result<Option<PackedTerms>, TooLarge> {
     if exponent < 2 || a.term_count() < TERMS_OF_POWERS || layout.variables().len() != 1 {
         return Ok(None);
     }
     let Some(places) = dense(a) else { return Ok(None) };
-    // A coefficient is at most the power of the sum of all magnitudes.
+    // A coefficient is at most the power of the sum of all absolute values.
     let bits = (a.bits() + u64::from(usize::BITS - a.term_count().leading_zeros())) * u64::from(exponent);
     let slot = usize::try_from(bits / 8 + 1).map_err(|_| TooLarge)?;
     let whole = pack(a, slot, places).pow(exponent);
@@ -52,7 +52,7 @@ pub(super) fn pack(poly: &Poly, slot: usize, places: usize) -> Integer {
 }
 
 /// The terms with these coefficients by ascending powers, in a layout of one variable that has room for them.
-fn terms(layout: &Layout, coefficients: Vec<Integer>) -> Terms {
+fn terms(layout: &Layout, coefficients: Vec<Integer>) -> PackedTerms {
     let (_, shift) = layout.place(0);
     let mut keys = Vec::with_capacity(coefficients.len());
     let mut kept = Vec::with_capacity(coefficients.len());

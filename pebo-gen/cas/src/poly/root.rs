@@ -41,13 +41,13 @@ impl Poly {
         Ok(doubled.div_integer(&Integer::from(2)))
     }
 
-    /// Whether twice the degrees of this are degrees of `square`.
+    /// True if twice the degrees of this are degrees of `square`.
     fn degrees_within(&self, square: &Self) -> bool {
         let doubles = self.variables().iter().zip(self.degrees());
         doubles.into_iter().all(|(v, degree)| u64::from(square.degree(*v)) >= 2 * u64::from(degree))
     }
 
-    /// Whether values at some points are squares: of a square all are, of others one in two.
+    /// True if values at some points are squares: all those of a square are, half of others'.
     fn may_be_square(&self) -> bool {
         let field = PrimeField::MERSENNE;
         (1..=6_u64)

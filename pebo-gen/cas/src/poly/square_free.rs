@@ -36,8 +36,8 @@ impl Poly {
         Ok(SquareFree { content, factors })
     }
 
-    /// Factors that hold some of the variables, once each, as far as contents and multiplicities tell them apart: the
-    /// polynomial vanishes where one of them does, or a polynomial in the other variables.
+    /// Factors that hold some of the variables, once each, separated by contents and multiplicities: the polynomial
+    /// vanishes where one of them does, or a polynomial in the other variables.
     pub fn factors_in(&self, variables: &[u32], work: &Work) -> Result<Vec<Self>, TooLarge> {
         let monomial = self.monomial_content();
         let mut rest = self.over_monomial(&monomial);
@@ -45,7 +45,7 @@ impl Poly {
         let mut factors: Vec<Self> = alone.filter(|v| variables.contains(v)).map(Self::variable).collect();
         for variable in variables {
             if rest.variables().contains(variable) {
-                // All that is not in the content holds the variable.
+                // Every factor outside the content holds the variable.
                 let lower = rest.content_in(&[*variable], work)?;
                 let held = rest.over(&lower, work)?.square_free(work)?.factors;
                 factors.extend(held.into_iter().map(|(factor, _)| factor));
@@ -55,7 +55,7 @@ impl Poly {
         Ok(factors)
     }
 
-    /// All its factors without constants, once each, as far as contents and multiplicities tell them apart.
+    /// All its factors without constants, once each, separated by contents and multiplicities.
     pub fn distinct_factors(&self, work: &Work) -> Result<Vec<Self>, TooLarge> {
         let mut found: Vec<Self> = Vec::new();
         let mut open = self.factors_in(self.variables(), work)?;

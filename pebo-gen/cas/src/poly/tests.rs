@@ -248,7 +248,8 @@ proptest! {
         }
     }
 
-    /// Without what is free of the variables, and with every multiplicity, the product of the factors is the polynomial's.
+    /// Without the factors free of the variables, and with every multiplicity, the product of the factors is the
+    /// polynomial's.
     #[test]
     fn factors_in_variables(a in poly(4, 2), b in poly(4, 2), c in poly(3, 2)) {
         let inner = [0, 1];

@@ -8,7 +8,7 @@ use std::fmt;
 
 use crate::Budget;
 
-/// Steps that an operation takes whatever its operands are.
+/// Steps that an operation takes for any operands.
 const STEPS_OF_AN_OPERATION: u64 = 32;
 
 /// Steps that are left to spend.
@@ -19,12 +19,12 @@ pub struct Work {
 }
 
 impl Work {
-    /// So many steps.
+    /// A limit of so many steps.
     pub fn new(steps: u64) -> Self {
         Self::within(steps, &Budget::unlimited())
     }
 
-    /// So many steps of one question, which are steps of the whole too.
+    /// A limit of so many steps for one problem, which draw from the whole budget too.
     pub fn within(steps: u64, whole: &Budget) -> Self {
         Self { left: Cell::new(steps), whole: whole.clone() }
     }
@@ -34,8 +34,8 @@ impl Work {
         self.left.get()
     }
 
-    /// Draws from the whole alone what an operation takes besides its products: memory, and a look at each term of its
-    /// operands. A question's own steps bound what is multiplied.
+    /// Draws the work of an operation besides its products from the whole budget alone: memory, and a pass over the
+    /// terms of its operands. A problem's own steps bound the multiplications.
     pub fn begin(&self, terms: u64) -> Result<(), TooLarge> {
         if self.whole.take(terms.saturating_add(STEPS_OF_AN_OPERATION)) { Ok(()) } else { Err(TooLarge) }
     }

@@ -1,6 +1,6 @@
 //! Names as mathematics sets them: a letter, Greek if the name spells one, and an index below it.
 
-/// A name's letter and its index: what follows an underscore, or digits at the end.
+/// A name's letter and its index: the text after an underscore, or digits at the end.
 pub fn parts(name: &str) -> (&str, &str) {
     if let Some((base, index)) = name.split_once('_')
         && !base.is_empty()

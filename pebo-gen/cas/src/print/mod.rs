@@ -1,6 +1,6 @@
-//! Expressions as text and as MathML.
+//! Expressions as text and as `MathML`.
 
-mod arranged;
+mod arrangement;
 pub mod letter;
 pub mod mathml;
 mod text;

@@ -1,19 +1,19 @@
-//! Expressions as text in the model file's grammar: what is printed parses back to the same value.
+//! Expressions as text in the model file's grammar: the text parses back to the same value.
 //!
 //! Numbers are written as [`notation`](crate::number::notation) has them.
 
 use rustc_hash::FxHashMap;
 
-use super::arranged::{Factor, Summand, is_root, quotient, summands};
+use super::arrangement::{Factor, Summand, is_root, quotient, summands};
 use crate::Rational;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum};
 use crate::number::notation::whole;
 
-/// The length up to which a formula is printed, with all of its parts.
+/// The length up to which a formula is printed, all repetitions included.
 const MOST_CHARACTERS: usize = 10_000_000;
 
-/// How tightly the outermost operation of a text binds.
+/// The binding of a text's outermost operation.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
     Sum,
@@ -44,8 +44,8 @@ impl Text {
 impl Arena {
     /// The expression in the model file's grammar.
     ///
-    /// What is shared is printed wherever it is used, so that a short model can have a result that no page holds: of
-    /// that, the text says no more than how long it is.
+    /// Shared subexpressions are printed at every use, so that a short model can have a result longer than any page:
+    /// then the text only gives its length.
     ///
     /// ```
     /// use pebo_cas::Arena;
@@ -102,12 +102,12 @@ impl Arena {
             Factor::Number(value) => self.print_number(&value).text,
             Factor::Power(base, exponent) => power(&known[&base], &exponent.abs()),
         };
-        let (above, below) = quotient(self, product);
-        let above: Vec<String> = above.into_iter().map(factor).collect();
-        let below: Vec<String> = below.into_iter().map(factor).collect();
-        let single = above.len() + below.len() == 1 && below.is_empty();
-        let mut text = if above.is_empty() { "1".to_owned() } else { above.join("*") };
-        match below.as_slice() {
+        let (numerator, denominator) = quotient(self, product);
+        let numerator: Vec<String> = numerator.into_iter().map(factor).collect();
+        let denominator: Vec<String> = denominator.into_iter().map(factor).collect();
+        let single = numerator.len() + denominator.len() == 1 && denominator.is_empty();
+        let mut text = if numerator.is_empty() { "1".to_owned() } else { numerator.join("*") };
+        match denominator.as_slice() {
             [] => {}
             [one] => text = format!("{text}/{one}"),
             several => text = format!("{text}/({})", several.join("*")),

@@ -1,20 +1,20 @@
-//! An equation without what stands around its unknowns: inverse functions, roots and denominators.
+//! Equations cleared of inverse functions, roots and denominators around their unknowns.
 //!
-//! In: a difference that vanishes, and the unknowns in it. Out: others that vanish with it, in which the unknowns are more
-//! often linear: `s*sin(v) - p*cos(v)` for `v - atan2(p, s)`, `p - v^2` for `v - sqrt(p)`, `p - v*(1 + p)` for
-//! `v - p/(1 + p)`. The steps are taken as they come; who asks proves what comes out.
+//! In: a difference that vanishes, and the unknowns in it. Out: others that vanish with it, in which the unknowns are
+//! more often linear: `s*sin(v) - p*cos(v)` for `v - atan2(p, s)`, `p - v^2` for `v - sqrt(p)`, `p - v*(1 + p)` for
+//! `v - p/(1 + p)`. The steps are taken as they come; the caller proves their result.
 
 use std::collections::BTreeSet;
 
 use super::equation::Equation;
 use super::quadratic::without_roots;
 use super::turned_once;
-use crate::forms::opaque::Frozen;
+use crate::forms::opaque::OpaqueTerms;
 use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Expr, Node, Symbol};
 
-/// The forms of `difference = 0`, those with less taken away first.
+/// The forms of `difference = 0`, those with fewer steps first.
 pub fn cleared(arena: &Arena, domain: &Domain, difference: Expr, unknown: &BTreeSet<Symbol>) -> Vec<Expr> {
     let mut equation = Equation { formula: difference, value: arena.zero() };
     let mut forms = vec![difference];
@@ -34,7 +34,7 @@ pub fn cleared(arena: &Arena, domain: &Domain, difference: Expr, unknown: &BTree
     found
 }
 
-/// An angle or a tangent that is known, as a relation of its sides.
+/// A known angle or tangent, as a relation of its sides.
 fn without_angle(arena: &Arena, Equation { formula, value }: Equation) -> Option<Expr> {
     let Node::Call(function, arguments) = arena.node(formula) else { return None };
     let of = |function, angle| arena.call(function, &[angle]);
@@ -53,13 +53,13 @@ fn above_the_line(
     form: Expr,
     unknown: &BTreeSet<Symbol>,
 ) -> Result<Vec<Expr>, Obstacle> {
-    // What is known stays as it is written: an exponential of a sum that comes apart overflows where the sum is small.
-    let mut frozen = Frozen::new(arena, unknown);
-    let form = frozen.freeze(&[form])[0];
+    // Known terms are opaque: an exponential of a sum that is split overflows where the sum is small.
+    let mut opaque = OpaqueTerms::new(arena, unknown);
+    let form = opaque.replace(&[form])[0];
     let field = Field::over(arena, &domain.facts, &[form])?;
     let above = field.fraction(form)?.numerator().clone();
     let rational = without_roots(&field, above.clone(), unknown)?;
-    [above, rational].iter().map(|poly| Ok(frozen.thaw(field.show(&field.of_polynomial(poly)?)))).collect()
+    [above, rational].iter().map(|poly| Ok(opaque.restore(field.show(&field.of_polynomial(poly)?)))).collect()
 }
 
 #[cfg(test)]
@@ -69,7 +69,7 @@ mod tests {
     use crate::Relation;
 
     #[test]
-    fn what_stands_around_unknowns_is_taken_away() {
+    fn equations_are_cleared_around_unknowns() {
         let arena = Arena::new();
         let [p, s, v, k] = ["p", "s", "v", "k"].map(|name| arena.variable(name));
         let unknown = arena.symbols_of(&[p, s]);
@@ -88,7 +88,7 @@ mod tests {
             (arena.call(Function::Atan2, &[p, s]), "s*sin(v) - p*cos(v)"),
             (call(Function::Tan, p), "v*cos(p) - sin(p)"),
             (call(Function::Atan, arena.div(p, k)), "p - k*tan(v)"),
-            // The exponential of a sum stays one.
+            // The exponential of a sum is not split.
             (arena.add(k, call(Function::Log, share)), "p*(1 - exp(v - k)) - exp(v - k)"),
             (arena.power(arena.add(k, p), &Rational::new(1, 3).unwrap()), "p + k - v^3"),
         ];

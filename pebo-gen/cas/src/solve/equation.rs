@@ -7,9 +7,9 @@ use crate::{Arena, Domain, Expr, Rational};
 /// `formula = value`.
 #[derive(Clone, Copy, Debug)]
 pub struct Equation {
-    /// What depends on the unknowns.
+    /// The side that depends on the unknowns.
     pub formula: Expr,
-    /// What it equals.
+    /// The other side.
     pub value: Expr,
 }
 

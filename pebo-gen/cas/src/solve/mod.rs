@@ -1,13 +1,13 @@
 //! Solving equations for unknown symbols, where elimination and inverse functions suffice.
 //!
-//! In: equations `formula(unknowns) = value`. Out: candidates for the unknowns in the values. Nothing
-//! is claimed of a candidate; who asks proves it.
+//! In: equations `formula(unknowns) = value`. Out: candidates for the unknowns in the values. Nothing is claimed of a
+//! candidate; the caller proves it.
 //!
-//! An equation in which the unknown stands in one place is turned inside out. Where none is left, the
-//! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and
-//! eliminated; the kernels that come out are inverted: a sine and a cosine of one angle give `atan2`, and products come
-//! apart ([`monomials`]). What is left of one unknown may be quadratic ([`quadratic`]). What is known is left as it is
-//! written ([`crate::forms::opaque`]), and only then taken apart, for what needs a relation within it.
+//! An equation with a single occurrence of the unknown is inverted operation by operation. If none is left, the
+//! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and eliminated; the
+//! resulting kernels are inverted: a sine and a cosine of one angle give `atan2`, and products are separated
+//! ([`monomials`]). The remaining equation in one unknown may be quadratic ([`quadratic`]). Known terms are opaque at
+//! first ([`crate::forms::opaque`]), and only then expanded, for results that need a relation within them.
 
 pub mod elimination;
 
@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::linear::Echelon;
 use super::poly::Monomial;
 use super::{Arena, Expr, Node, Symbol};
-use crate::forms::opaque::Frozen;
+use crate::forms::opaque::OpaqueTerms;
 use crate::forms::tidy::shorter;
 use crate::graph::function::Function;
 use crate::number::interval::Precision;
@@ -50,8 +50,8 @@ pub fn solve(
         }
     }
     let mut candidates: BTreeMap<Symbol, Vec<Expr>> = BTreeMap::new();
-    // All equations together know branches that one alone does not: cosine and sine, but not cosine.
-    // What an equation gives as it stands loses no digits.
+    // All equations combined determine branches that a single one does not: cosine and sine, but not cosine. A value
+    // that an equation gives directly loses no digits.
     let given = |equation: &Equation| Some((arena.as_symbol(equation.formula)?, equation.value));
     let given = equations.iter().rev().filter_map(given).filter(|(symbol, _)| unknowns.contains(symbol)).collect();
     let starts = [given, alone];
@@ -64,7 +64,7 @@ pub fn solve(
         }
     };
     for start in &starts {
-        // What needs a relation among what is known may be out of reach as it is written.
+        // Results that need a relation among known terms may be out of reach while these are opaque.
         if let Ok(found) = eliminated(arena, domain, equations, unknowns, start.clone(), Reading::Written) {
             add(found);
         }
@@ -72,7 +72,7 @@ pub fn solve(
     for start in &starts {
         add(eliminated(arena, domain, equations, unknowns, start.clone(), Reading::Normal)?);
     }
-    // Inside out as far as they go: `p/(1 - p) = exp(z)` for `log(p/(1 - p)) = z`.
+    // Inverted as far as possible: `p/(1 - p) = exp(z)` for `log(p/(1 - p)) = z`.
     let [given, _] = starts;
     if unknowns.iter().any(|unknown| !candidates.contains_key(unknown)) {
         for (symbol, value) in eliminated(arena, domain, &turned, unknowns, given, Reading::Normal).unwrap_or_default()
@@ -87,7 +87,7 @@ pub fn solve(
     Ok(candidates)
 }
 
-/// The unknowns that equations in one unknown give by a quadratic equation, and what follows from them.
+/// The unknowns that equations in one unknown give by a quadratic equation, and further unknowns by these.
 fn by_roots(
     arena: &Arena,
     domain: &Domain,
@@ -126,7 +126,7 @@ fn by_roots(
     found
 }
 
-/// Of two differences in two unknowns, one of which stands alone in a sum: the other difference without it.
+/// One of two differences in two unknowns, after elimination of an unknown that is a summand of the other.
 fn without_one(arena: &Arena, differences: &[Expr], open: &BTreeSet<Symbol>) -> Vec<Expr> {
     let mut found = Vec::new();
     for difference in differences {
@@ -144,7 +144,7 @@ fn without_one(arena: &Arena, differences: &[Expr], open: &BTreeSet<Symbol>) -> 
     found
 }
 
-/// Whether a value may be that of the unknown: at points of the domain it is not another.
+/// True if a value may be that of the unknown: at points of the domain it is not another.
 fn fits(arena: &Arena, domain: &Domain, equations: &[Equation], unknown: Symbol, value: Expr) -> bool {
     const POINTS: usize = 3;
     let meaning = equations.iter().filter_map(|e| Some((arena.as_symbol(e.value)?, e.formula))).collect();
@@ -154,16 +154,16 @@ fn fits(arena: &Arena, domain: &Domain, equations: &[Equation], unknown: Symbol,
     !values.is_empty() && values.iter().all(|value| value[0].contains_zero())
 }
 
-/// How elimination reads what is free of the unknowns.
+/// The treatment of terms free of the unknowns in elimination.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Reading {
-    /// As it is written.
+    /// Opaque.
     Written,
     /// In the normal form.
     Normal,
 }
 
-/// Eliminates and inverts until no unknown comes out any more.
+/// Eliminates and inverts until no further unknown results.
 fn eliminated(
     arena: &Arena,
     domain: &Domain,
@@ -174,7 +174,7 @@ fn eliminated(
 ) -> Result<BTreeMap<Symbol, Expr>, Obstacle> {
     let mut differences: Vec<Expr> = equations.iter().map(|e| arena.sub(e.formula, e.value)).collect();
     differences = arena.substitute_all(&differences, &found);
-    // Every pass that goes on finds an unknown or replaces a kernel by its argument.
+    // Every continued pass finds an unknown or replaces a kernel by its argument.
     for _ in 0..(2 * unknowns.len() + 2) {
         let open: BTreeSet<Symbol> = unknowns.iter().copied().filter(|s| !found.contains_key(s)).collect();
         differences.retain(|d| arena.depends_on(*d, &open));
@@ -207,8 +207,7 @@ fn eliminated(
     Ok(found)
 }
 
-/// The equation turned inside out as far as the unknowns stand in one place: where there is one unknown in one place,
-/// to the unknown itself.
+/// The equation inverted as far as the unknowns occur once: with one unknown in one place, to the unknown itself.
 fn turned_out(arena: &Arena, domain: &Domain, mut equation: Equation, unknowns: &[Symbol]) -> Equation {
     let open: BTreeSet<Symbol> = unknowns.iter().copied().collect();
     while let Some(inner) = turned_once(arena, domain, equation, &open) {
@@ -217,7 +216,7 @@ fn turned_out(arena: &Arena, domain: &Domain, mut equation: Equation, unknowns: 
     equation
 }
 
-/// Without the outermost operation around the one place where unknowns stand.
+/// Removes the outermost operation around the single occurrence of unknowns.
 fn turned_once(arena: &Arena, domain: &Domain, equation: Equation, open: &BTreeSet<Symbol>) -> Option<Equation> {
     let Equation { formula, value } = equation;
     let alone = |e: &Expr| arena.depends_on(*e, open);
@@ -250,9 +249,9 @@ fn eliminate(
     open: &BTreeSet<Symbol>,
     reading: Reading,
 ) -> Result<Vec<Equation>, Obstacle> {
-    let mut frozen = Frozen::new(arena, open);
+    let mut opaque = OpaqueTerms::new(arena, open);
     let differences = match reading {
-        Reading::Written => frozen.freeze(differences),
+        Reading::Written => opaque.replace(differences),
         Reading::Normal => differences.to_vec(),
     };
     let field = Field::over(arena, &domain.facts, &differences)?;
@@ -269,7 +268,7 @@ fn eliminate(
         }
         rows.push(row);
     }
-    // Heavier monomials first, so that lighter ones stay when there are fewer equations.
+    // Heavier monomials first, so that lighter ones remain when there are fewer equations.
     let mut columns: Vec<Monomial> = columns.into_iter().collect();
     columns.sort_by_key(|monomial| std::cmp::Reverse(monomial.degree()));
     let matrix = rows
@@ -288,14 +287,15 @@ fn eliminate(
         if alone {
             let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
             let formula = arena.multiply(&Rational::ONE, factors);
-            let value = frozen.thaw(field.show(&row[columns.len()]));
-            known.push(Equation { formula: frozen.thaw(formula), value });
+            let value = opaque.restore(field.show(&row[columns.len()]));
+            known.push(Equation { formula: opaque.restore(formula), value });
         }
     }
     Ok(known)
 }
 
-/// Inverts the outermost function of what is known, first what is known without: `a` rather than the root of `a^2`.
+/// Inverts the outermost function of known kernels; values known without inversion come first: `a` rather than the root
+/// of `a^2`.
 fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
     let (mut inverted, others): (Vec<Equation>, Vec<Equation>) =
         known.iter().copied().partition(|equation| arena.as_symbol(equation.formula).is_some());
@@ -327,7 +327,7 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
     inverted
 }
 
-/// The value that is known for another function of the same argument.
+/// The known value of another function of the same argument.
 fn beside(arena: &Arena, known: &[Equation], function: Function, inside: Expr) -> Option<Expr> {
     let wanted = arena.call(function, &[inside]);
     known.iter().find(|e| e.formula == wanted).map(|e| e.value)
@@ -338,7 +338,7 @@ mod tests {
     use super::*;
     use crate::Relation;
 
-    /// What the equations give for the first unknown, the likeliest.
+    /// The likeliest value for the first unknown.
     fn solved(arena: &Arena, domain: &Domain, formulas: &[Expr], unknown: Expr) -> String {
         let name = |index: usize| arena.variable(&format!("z{}", index + 1));
         let equation = |(index, formula): (usize, &Expr)| Equation { formula: *formula, value: name(index) };
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_stays_as_it_is_written() {
+    fn known_terms_are_opaque() {
         let arena = Arena::new();
         let [_, p, q, r, k] = ["z1", "p", "q", "r", "k"].map(|name| arena.variable(name));
         let mut domain = Domain::default();
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn products_come_apart() {
+    fn products_are_separated() {
         let arena = Arena::new();
         let [p, s] = ["p", "s"].map(|name| arena.variable(name));
         let mut domain = Domain::default();
@@ -413,7 +413,7 @@ mod tests {
             ([arena.add(p, s), product], "(z1 + sqrt(z1^2 - 4*z2))/2", "2*z2/(z1 + sqrt(z1^2 - 4*z2))"),
         ];
         for (formulas, first, second) in cases {
-            // Of two numbers with a sum and a product the first is the larger.
+            // The first of two numbers with given sum and product is the larger.
             let mut domain = domain.clone();
             domain.facts.assume(arena.sub(p, s), Relation::Positive);
             let equation = |(formula, z): (&Expr, &str)| Equation { formula: *formula, value: arena.variable(z) };
@@ -425,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_that_stands_alone_is_not_taken_from_a_power() {
+    fn an_unknown_by_itself_is_not_taken_from_a_power() {
         let arena = Arena::new();
         let p = arena.variable("p");
         let mut domain = Domain::default();

@@ -1,7 +1,7 @@
 //! Products of unknowns: as polar coordinates, and by their exponents.
 //!
-//! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle and
-//! the magnitude, from `p*s` and `p*s^2` the quotient of the two.
+//! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle
+//! and the amplitude, from `p*s` and `p*s^2` the quotient of the two.
 
 use super::equation::{Equation, angle_of, unpower};
 use crate::graph::expr::Expr;
@@ -9,21 +9,22 @@ use crate::graph::function::Function;
 use crate::tower::Field;
 use crate::{Arena, Domain, Node, Rational};
 
-/// What products give for the kernels in them.
+/// The kernels that products determine.
 pub(super) fn apart(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
-    let products: Vec<Product> = known.iter().filter_map(|equation| Product::of(arena, *equation)).collect();
+    let products: Vec<KernelProduct> =
+        known.iter().filter_map(|equation| KernelProduct::of(arena, *equation)).collect();
     let mut found = polar(arena, domain, &products);
     found.extend(by_exponents(arena, domain, &products));
     found
 }
 
 /// A product of kernels with its value.
-struct Product {
+struct KernelProduct {
     factors: Vec<(Expr, Rational)>,
     value: Expr,
 }
 
-impl Product {
+impl KernelProduct {
     fn of(arena: &Arena, Equation { formula, value }: Equation) -> Option<Self> {
         match arena.node(formula) {
             Node::Product(product) => Some(Self { factors: product.factors.clone(), value }),
@@ -33,10 +34,10 @@ impl Product {
     }
 }
 
-/// Magnitude and angle where both `m*sin(a)` and `m*cos(a)` are known and the sign of m is.
-fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
+/// Amplitude and angle, if both `m*sin(a)` and `m*cos(a)` and the sign of m are known.
+fn polar(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equation> {
     let mut found = Vec::new();
-    for Product { factors, value: across } in products {
+    for KernelProduct { factors, value: across } in products {
         for (at, (factor, exponent)) in factors.iter().enumerate() {
             let Node::Call(Function::Sin, argument) = arena.node(*factor) else { continue };
             let mut others = factors.clone();
@@ -44,21 +45,21 @@ fn polar(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> 
             if !exponent.is_one() || others.is_empty() {
                 continue;
             }
-            let magnitude = arena.multiply(&Rational::ONE, others);
-            let wanted = arena.mul(magnitude, arena.call(Function::Cos, &argument));
+            let amplitude = arena.multiply(&Rational::ONE, others);
+            let wanted = arena.mul(amplitude, arena.call(Function::Cos, &argument));
             let along = products.iter().find(|p| arena.multiply(&Rational::ONE, p.factors.iter().cloned()) == wanted);
-            let (Some(along), Some(positive)) = (along, sign(arena, domain, magnitude)) else { continue };
+            let (Some(along), Some(positive)) = (along, sign(arena, domain, amplitude)) else { continue };
             let turned = |value| if positive { value } else { arena.neg(value) };
             let [across, along] = [*across, along.value].map(turned);
             found.push(Equation { formula: argument[0], value: angle_of(arena, domain, across, along) });
             let length = arena.sqrt(arena.add(arena.mul(across, across), arena.mul(along, along)));
-            found.extend(single(arena, domain, magnitude, turned(length)));
+            found.extend(single(arena, domain, amplitude, turned(length)));
         }
     }
     found
 }
 
-/// Whether what is not zero is positive or negative throughout the domain, if it is either.
+/// The sign of a non-zero expression throughout the domain: positive (true) or negative (false).
 fn sign(arena: &Arena, domain: &Domain, expr: Expr) -> Option<bool> {
     let field = Field::over(arena, &domain.facts, &[expr]).ok()?;
     let fraction = field.fraction(expr).ok()?;
@@ -67,7 +68,7 @@ fn sign(arena: &Arena, domain: &Domain, expr: Expr) -> Option<bool> {
     signs.find_map(|(part, positive)| field.signs().is_positive(part).ok()?.then_some(positive))
 }
 
-/// A power of a kernel turned into the kernel; a product of several stays as it is.
+/// A power of a kernel turned into the kernel; a product of several is unchanged.
 fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<Equation> {
     match arena.node(formula) {
         Node::Product(product) => match product.factors.as_slice() {
@@ -78,12 +79,12 @@ fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<
     }
 }
 
-/// Kernels as products of powers of the values, where the exponents determine them.
-fn by_exponents(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equation> {
+/// Kernels as products of powers of the values, if the exponents determine them.
+fn by_exponents(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equation> {
     let mut kernels: Vec<Expr> = products.iter().flat_map(|p| p.factors.iter().map(|(base, _)| *base)).collect();
     kernels.sort_unstable();
     kernels.dedup();
-    // A row of exponents beside the powers of the values that have them.
+    // Rows of exponents, each beside powers of the values.
     let mut rows: Vec<(Vec<Rational>, Vec<Rational>)> = Vec::new();
     for (index, product) in products.iter().enumerate() {
         let of = |kernel: &Expr| {
@@ -122,7 +123,7 @@ fn by_exponents(arena: &Arena, domain: &Domain, products: &[Product]) -> Vec<Equ
         if exponents.iter().filter(|exponent| !exponent.is_zero()).count() > 1 {
             return None;
         }
-        // Whole exponents on both sides: only then is a root a matter of signs.
+        // Integer exponents on both sides: only then is a root a matter of signs.
         let whole = powers.iter().chain([&exponents[*column]]).try_fold(Rational::ONE, |whole, power| {
             let denominator = Rational::new((power * &whole).denominator(), 1)?;
             Some(&whole * &denominator)

@@ -1,7 +1,7 @@
-//! Equations that are quadratic in a power of one kernel of one unknown, also once a square root is taken away.
+//! Equations that are quadratic in a power of one kernel of one unknown, also after removal of a square root.
 //!
-//! In: a difference that vanishes, in which one unknown stands. Out: the equations `kernel = root`, a root each; which of
-//! them is the unknown's is for who asks to tell.
+//! In: a difference that vanishes, with one unknown. Out: the equations `kernel = root`, a root each; the caller
+//! selects the unknown's.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,10 @@ use crate::poly::Poly;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Arena, Domain, Expr, Integer, Rational, Symbol};
 
-/// How many square roots are taken away: each doubles the degree.
+/// The number of square roots that are removed: each doubles the degree.
 const MOST_ROOTS: usize = 2;
 
-/// The roots of a difference in the kernel that holds the unknown; none where it is of another form.
+/// The roots of a difference in the kernel that holds the unknown; none for any other form.
 pub(super) fn roots(
     arena: &Arena,
     domain: &Domain,
@@ -48,7 +48,7 @@ pub(super) fn roots(
     Ok(powers.into_iter().filter_map(|value| unpower(arena, domain, base, &step, value)).collect())
 }
 
-/// A polynomial that vanishes with this one, some square roots over unknowns taken away.
+/// A polynomial that vanishes with this one, with some square roots over unknowns removed.
 pub(super) fn without_roots(field: &Field<'_>, mut poly: Poly, unknown: &BTreeSet<Symbol>) -> Result<Poly, Obstacle> {
     for _ in 0..MOST_ROOTS {
         let hidden = field.kernels_of(unknown);
@@ -73,8 +73,8 @@ pub(super) fn without_roots(field: &Field<'_>, mut poly: Poly, unknown: &BTreeSe
     Ok(poly)
 }
 
-/// The values of `v` in `a v^2 + b v + c = 0`, each as a quotient by a sum and as a sum: of the two the one in which nothing
-/// cancels keeps its digits.
+/// The values of `v` in `a v^2 + b v + c = 0`, each as a quotient by a sum and as a sum: the one without cancellation
+/// keeps its digits.
 fn both(arena: &Arena, field: &Field<'_>, a: &Poly, b: &Poly, c: &Poly) -> Result<Vec<Expr>, Obstacle> {
     let four = a.mul(c, field.limit())?.scale(&Integer::from(4));
     let discriminant = &b.mul(b, field.limit())? - &four;
@@ -96,7 +96,7 @@ fn both(arena: &Arena, field: &Field<'_>, a: &Poly, b: &Poly, c: &Poly) -> Resul
     ])
 }
 
-/// A number that divides the first, and its square the second, as far as small primes go: others only make the formula
+/// A number that divides the first, and its square the second, by small primes only: others would only make the formula
 /// longer.
 fn common_root(first: &Integer, second: &Integer) -> i64 {
     let mut common = 1;
@@ -110,7 +110,7 @@ fn common_root(first: &Integer, second: &Integer) -> i64 {
     common
 }
 
-/// The two values of `v` in `a v^2 + c = 0`, or the one in `a v + c = 0`, with what is a square outside of the root:
+/// The two values of `v` in `a v^2 + c = 0`, or the one in `a v + c = 0`, with square factors outside of the root:
 /// `z/sqrt(1 - z^2)`, whose sign is that of `z`, for the root of `z^2/(1 - z^2)`.
 fn square_roots(arena: &Arena, field: &Field<'_>, a: &Poly, c: &Poly, degree: u32) -> Result<Vec<Expr>, Obstacle> {
     if degree % 2 == 1 {
@@ -121,7 +121,7 @@ fn square_roots(arena: &Arena, field: &Field<'_>, a: &Poly, c: &Poly, degree: u3
     Ok(vec![value, arena.neg(value)])
 }
 
-/// A root of the fraction, with what is a square outside: of either sign.
+/// A root of the fraction, with square factors outside: of either sign.
 fn square_root(arena: &Arena, field: &Field<'_>, fraction: &Fraction) -> Result<Expr, Obstacle> {
     let (mut outside, mut inside) = (Vec::new(), Vec::new());
     let mut coefficient = Rational::ONE;

@@ -59,8 +59,8 @@ impl Field<'_> {
         }
     }
 
-    /// A sum: what has a number for a denominator over the common one first, all at once, and so what has the same
-    /// denominator, so that a long sum is not brought to lowest terms at each step.
+    /// A sum: summands with numeric denominators first, all at once, then those of equal denominators, so that a long
+    /// sum is not brought to lowest terms at each step.
     fn of_sum(&self, sum: &Sum) -> Result<Fraction, Obstacle> {
         let mut common = sum.constant.denominator();
         let mut parts = Vec::with_capacity(sum.terms.len() + 1);
@@ -68,30 +68,30 @@ impl Field<'_> {
         let mut others: Vec<(Poly, Vec<Poly>)> = Vec::new();
         for (term, coefficient) in &sum.terms {
             let term = self.get(*term)?;
-            if let Some(below) = term.den.to_constant() {
-                let below = &below * &coefficient.denominator();
-                common = common.lcm(&below);
-                parts.push((term.num, coefficient.numerator(), below));
+            if let Some(denominator) = term.den.to_constant() {
+                let denominator = &denominator * &coefficient.denominator();
+                common = common.lcm(&denominator);
+                parts.push((term.num, coefficient.numerator(), denominator));
             } else {
-                let below = coefficient.denominator();
-                let below = if below.is_one() { term.den } else { term.den.scale(&below) };
-                let above = term.num.scale(&coefficient.numerator());
-                match others.iter_mut().find(|(known, _)| *known == below) {
-                    Some((_, above_it)) => above_it.push(above),
-                    None => others.push((below, vec![above])),
+                let denominator = coefficient.denominator();
+                let denominator = if denominator.is_one() { term.den } else { term.den.scale(&denominator) };
+                let numerator = term.num.scale(&coefficient.numerator());
+                match others.iter_mut().find(|(known, _)| *known == denominator) {
+                    Some((_, numerators)) => numerators.push(numerator),
+                    None => others.push((denominator, vec![numerator])),
                 }
             }
         }
         parts.push((Poly::one(), sum.constant.numerator(), sum.constant.denominator()));
-        let over = |(poly, above, below): &(Poly, Integer, Integer)| {
-            let missing = common.div_exact(below).unwrap_or_default();
-            poly.scale(&(above * &missing))
+        let over = |(poly, numerator, denominator): &(Poly, Integer, Integer)| {
+            let missing = common.div_exact(denominator).unwrap_or_default();
+            poly.scale(&(numerator * &missing))
         };
         let num = total(parts.iter().map(over).collect());
         self.work().spend(steps(num.term_count()))?;
         let mut result = self.fraction_of(&num, &Poly::constant(common))?;
-        for (below, above) in others {
-            result = self.add(&result, &self.fraction_of(&total(above), &below)?)?;
+        for (denominator, numerators) in others {
+            result = self.add(&result, &self.fraction_of(&total(numerators), &denominator)?)?;
         }
         Ok(result)
     }
@@ -127,7 +127,7 @@ impl Field<'_> {
             Function::Asin | Function::Acos | Function::Atan | Function::Atan2 => self.inverse_function(expr),
             _ => match (function.row().in_terms, self.arena.node(expr)) {
                 (Some(in_terms), Node::Call(_, arguments)) => self.fraction(in_terms(self.arena, &arguments)),
-                // What no rule relates to other functions is a kernel of its own.
+                // A function without rules that relate it to others is a kernel of its own.
                 _ => Ok(self.entered(self.tidy_call(expr)?, None, false)),
             },
         }

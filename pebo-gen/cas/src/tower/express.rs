@@ -11,7 +11,7 @@ use crate::{Integer, Rational};
 use super::Field;
 use super::fraction::{Fraction, primitive};
 
-/// The numbers of terms from which on a polynomial may be a power, and up to which it is worth looking.
+/// The numbers of terms for which a polynomial is tested as a power.
 const TERMS_OF_POWERS: std::ops::RangeInclusive<usize> = 3..=200;
 
 /// Terms of a polynomial, to be grouped.
@@ -21,12 +21,12 @@ impl Field<'_> {
     /// The fraction as an expression.
     pub fn show(&self, fraction: &Fraction) -> Expr {
         self.count(fraction);
-        let (above, num) = primitive(&fraction.num);
-        let (below, den) = primitive(&fraction.den);
+        let (numerator, num) = primitive(&fraction.num);
+        let (denominator, den) = primitive(&fraction.den);
         let (num, mut sines) = self.sines(num, 1);
         let (den, below_sines) = self.sines(den, -1);
         sines.extend(below_sines);
-        let coefficient = Rational::new(above, below).unwrap_or(Rational::ZERO);
+        let coefficient = Rational::new(numerator, denominator).unwrap_or(Rational::ZERO);
         let powers =
             |poly: &Poly, exponent| self.powers(poly, exponent).unwrap_or_else(|| self.factors(poly, exponent));
         let mut factors = powers(&num, 1);
@@ -35,7 +35,7 @@ impl Field<'_> {
         self.arena.multiply(&coefficient, factors)
     }
 
-    /// The fraction as a product of the factors that are found: `(1 - a)*(1 - b)` rather than its terms.
+    /// The fraction as a product of the factors found: `(1 - a)*(1 - b)` rather than its terms.
     pub fn show_factored(&self, fraction: &Fraction) -> Expr {
         let product = || -> Result<Expr, TooLarge> {
             let mut coefficient = Rational::ONE;
@@ -57,8 +57,9 @@ impl Field<'_> {
         product().unwrap_or_else(|_| self.show(fraction))
     }
 
-    /// The fraction with a difference of its numerator that holds a root below the bar, as a sum: `1/(sqrt(1 + x) + 1)`
-    /// rather than `(sqrt(1 + x) - 1)/x`, which loses digits where `x` is small. None if there is no such difference.
+    /// The fraction as a sum, with the denominator rationalised from a difference in its numerator that holds a root:
+    /// `1/(sqrt(1 + x) + 1)` rather than `(sqrt(1 + x) - 1)/x`, which loses digits where `x` is small. None if there is
+    /// no such difference.
     pub fn show_rationalised(&self, fraction: &Fraction) -> Option<Expr> {
         let conjugate = self.conjugate(&fraction.num).ok()??;
         if conjugate.term_count() < 2 {
@@ -70,7 +71,7 @@ impl Field<'_> {
         Some(self.arena.div(self.show(&rest), self.show_polynomial(&conjugate)))
     }
 
-    /// What showing takes: each term is looked at once for each of its kernels that is taken out.
+    /// Counts the work: each term is examined once for each of its kernels that is taken out.
     fn count(&self, fraction: &Fraction) {
         const STEPS_OF_A_TERM: u64 = 16;
         self.arena.budget().take(STEPS_OF_A_TERM * steps(fraction.weight() * (1 + fraction.variables().count())));
@@ -82,8 +83,8 @@ impl Field<'_> {
         self.arena.multiply(&Rational::from(content), self.factors(&rest, 1))
     }
 
-    /// The fraction as a sum over the denominators that are left when each term of the numerator cancels
-    /// on its own: `(a + b)/L - G*c/C` rather than everything over `L*C`.
+    /// The fraction as a sum over the denominators that remain when each term of the numerator cancels on its own:
+    /// `(a + b)/L - G*c/C` rather than everything over `L*C`.
     pub fn show_apart(&self, fraction: &Fraction) -> Expr {
         self.show_apart_over(fraction, &Monomial::one())
     }
@@ -92,7 +93,7 @@ impl Field<'_> {
     pub(super) fn show_apart_over(&self, fraction: &Fraction, also: &Monomial) -> Expr {
         self.count(fraction);
         let Fraction { num, den } = &self.over_sines(fraction).unwrap_or_else(|_| fraction.clone());
-        let (below, den) = primitive(den);
+        let (denominator, den) = primitive(den);
         let own = den.monomial_content();
         let mut powers: BTreeMap<u32, u32> = own.powers().iter().copied().collect();
         for (variable, times) in also.powers() {
@@ -108,7 +109,7 @@ impl Field<'_> {
         }
         let rest: Terms = den.terms().map(|(m, c)| (divided(&m, &own), c.clone())).collect();
         let rest = self.grouped(rest, &|variable| self.kernel(variable));
-        let scale = Rational::new(Integer::ONE, below).unwrap_or(Rational::ONE);
+        let scale = Rational::new(Integer::ONE, denominator).unwrap_or(Rational::ONE);
         self.arena.sum(groups.into_iter().map(|(left, terms)| {
             let (above, terms) = without_content(terms);
             let mut factors: Vec<(Expr, Rational)> =
@@ -119,8 +120,8 @@ impl Field<'_> {
         }))
     }
 
-    /// A polynomial without its factors `cos(q)^2 - 1`, and these, to a common power, as what they are, `-sin(q)^2`: no
-    /// digits are lost where they are small, and of a divisor what one sine too many came from cancels.
+    /// A polynomial without its factors `cos(q)^2 - 1`, and these, to a common power, as `-sin(q)^2`: no digits are
+    /// lost where they are small, and a superfluous sine of a divisor cancels.
     fn sines(&self, mut poly: Poly, sign: i64) -> (Poly, Vec<(Expr, Rational)>) {
         let mut found = Vec::new();
         for variable in poly.variables().to_vec() {
@@ -142,8 +143,8 @@ impl Field<'_> {
         (poly, found)
     }
 
-    /// The square-free factors with their multiplicities, to a common power; none where that is no shorter, or takes
-    /// too long.
+    /// The square-free factors with their multiplicities, to a common power; none if that is no shorter, or takes too
+    /// long.
     fn powers(&self, poly: &Poly, exponent: i64) -> Option<Vec<(Expr, Rational)>> {
         if !TERMS_OF_POWERS.contains(&poly.term_count()) {
             return None;
@@ -176,7 +177,7 @@ impl Field<'_> {
 
     /// A sum with its commonest kernel taken out of the terms that have it, repeatedly; kernels by these names.
     pub(super) fn grouped(&self, terms: Terms, named: &dyn Fn(u32) -> Expr) -> Expr {
-        // How many terms have the kernel, and how many of them have something else besides.
+        // The number of terms with the kernel, and of those with another factor besides.
         let mut counts: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
         for (monomial, _) in &terms {
             for &(variable, _) in monomial.powers() {
@@ -185,7 +186,7 @@ impl Field<'_> {
                 count.1 += usize::from(monomial.degree() > 1);
             }
         }
-        // Of the commonest the one that saves most products, then the first: the same every time.
+        // Of the commonest kernels the one that saves most products, then the first: deterministic.
         let commonest = counts.iter().max_by_key(|(variable, count)| (**count, std::cmp::Reverse(**variable)));
         let Some((&variable, _)) = commonest.filter(|(_, count)| count.0 > 1) else {
             return self.arena.sum(terms.iter().map(|(monomial, coefficient)| self.term(monomial, coefficient, named)));
@@ -247,9 +248,9 @@ mod tests {
             (arena.product([square, a, arena.number(6)]), "6*a*(a + b)^2"),
             (arena.div(arena.product([square, square]), arena.add(c, c)), "(a + b)^4/(2*c)"),
             (arena.add(c, arena.product([a, sum, arena.number(-2)])), "c - 2*a*(a + b)"),
-            // Of a and b, in two terms each, b saves two products and a one.
+            // Two terms each have a and b; b saves two products and a one.
             (arena.sum([a, arena.mul(a, b), arena.mul(b, c)]), "a + b*(a + c)"),
-            // Factors of one multiplicity are not told apart.
+            // Factors of one multiplicity are not separated.
             (arena.div(c, arena.sub(arena.number(1), square)), "-c/(a*(a + 2*b) + b^2 - 1)"),
         ];
         for (expr, expected) in cases {
@@ -262,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn differences_with_roots_go_below() {
+    fn differences_with_roots_go_into_the_denominator() {
         let arena = Arena::new();
         let [a, x] = ["a", "x"].map(|name| arena.variable(name));
         let root = |number: i64| arena.sqrt(arena.add(x, arena.number(number)));

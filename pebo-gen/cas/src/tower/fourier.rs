@@ -1,8 +1,8 @@
 //! Trigonometric polynomials over sums of angles: `sin(a)*cos(b) + cos(a)*sin(b)` is `sin(a + b)`.
 //!
-//! In: a fraction whose kernels are sines and cosines of basis angles, as the addition theorems leave them. Out: the same
-//! with each product of them as a sum of sines and cosines of sums and differences (its finite Fourier series), for
-//! showing: an arm whose author writes `sin(y1 + y2)` gets that back.
+//! In: a fraction whose kernels are sines and cosines of basis angles, as the addition theorems leave them. Out: the
+//! same with each product of them as a sum of sines and cosines of sums and differences (its finite Fourier series),
+//! for printing: an arm whose author writes `sin(y1 + y2)` gets that back.
 
 use std::collections::BTreeMap;
 
@@ -18,14 +18,14 @@ use super::fraction::Fraction;
 /// A product of n sines and cosines has up to 2^(n-1) summands.
 const MOST_FACTORS: u32 = 8;
 
-/// A polynomial with more terms is not written so.
+/// The greatest number of terms of a polynomial in this form.
 const MOST_TERMS: usize = 200;
 
 /// A sine or cosine of a sum of multiples of the basis angles.
 type Wave = (Vec<i32>, Function);
 
 impl Field<'_> {
-    /// The fraction with its products of sines and cosines written as sums; none where there are none, or too many.
+    /// The fraction with its products of sines and cosines written as sums; none if there are none, or too many.
     pub fn show_by_angles(&self, fraction: &Fraction) -> Option<Expr> {
         let mut angles: Vec<Expr> = Vec::new();
         let mut factors: BTreeMap<u32, (usize, Function)> = BTreeMap::new();
@@ -44,9 +44,9 @@ impl Field<'_> {
             monomial.powers().iter().filter(|(v, _)| factors.contains_key(v)).map(|(_, exponent)| *exponent).sum()
         };
         let degrees = |poly: &Poly| poly.terms().map(|(monomial, _)| degree(&monomial)).max().unwrap_or(0);
-        let (above, below) = (degrees(&fraction.num), degrees(&fraction.den));
+        let (numerator, denominator) = (degrees(&fraction.num), degrees(&fraction.den));
         let long = fraction.num.term_count().max(fraction.den.term_count()) > MOST_TERMS;
-        if above.max(below) < 2 || above.max(below) > MOST_FACTORS || long {
+        if numerator.max(denominator) < 2 || numerator.max(denominator) > MOST_FACTORS || long {
             return None;
         }
         let series = |poly: &Poly| self.series(poly, &angles, &factors);
@@ -73,7 +73,8 @@ impl Field<'_> {
             }
         }
         terms.retain(|_, amplitude| !amplitude.is_zero());
-        // Each wave as a variable of its own, and amplitudes over one denominator: what groups terms takes integers.
+        // Each wave as a variable of its own, and amplitudes over one denominator: the grouping of terms takes
+        // integers.
         let mut waves: Vec<Wave> = terms.keys().map(|(_, wave)| wave.clone()).collect();
         waves.sort();
         waves.dedup();
@@ -185,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_is_equal() {
+    fn printed_fractions_are_equal() {
         let arena = Arena::new();
         let symbols = ["a", "b", "x"].map(|name| arena.variable(name));
         let wave = |function, n: i64| {

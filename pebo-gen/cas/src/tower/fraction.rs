@@ -11,7 +11,7 @@ use crate::{Integer, Rational};
 
 use super::{Field, Obstacle};
 
-/// Terms of a denominator that its conjugate may still multiply: what is longer grows out of proportion.
+/// The greatest number of terms of a denominator that its conjugate multiplies: longer ones grow excessively.
 const MOST_CLEARED: usize = 16;
 
 /// A quotient of polynomials, canonical with respect to one [`Field`].
@@ -42,12 +42,12 @@ impl Fraction {
         Self { num, den: Poly::one() }
     }
 
-    /// Whether this is zero.
+    /// True if this is zero.
     pub fn is_zero(&self) -> bool {
         self.num.is_zero()
     }
 
-    /// Whether this is one.
+    /// True if this is one.
     pub fn is_one(&self) -> bool {
         self.num.is_one() && self.den.is_one()
     }
@@ -182,7 +182,7 @@ impl Field<'_> {
         self.fraction_of(&num, &den)
     }
 
-    /// A number that was worked out.
+    /// The fraction of a computed number.
     fn of_number(&self, value: &Rational) -> Result<Fraction, Obstacle> {
         self.work().spend(1 + value.bits() / 64)?;
         Ok(Fraction::constant(value))
@@ -204,7 +204,7 @@ impl Field<'_> {
         if exponent < 0 { self.fraction_of(&den, &num) } else { self.fraction_of(&num, &den) }
     }
 
-    /// A power reduced as it grows, so that relations keep it small.
+    /// A power, reduced at each step, so that relations keep it small.
     fn repeated_product(&self, base: &Poly, times: u32) -> Result<Poly, Obstacle> {
         if times == 0 || base.is_one() {
             return Ok(Poly::one());
@@ -238,13 +238,13 @@ impl Field<'_> {
         }
     }
 
-    /// Whether two polynomials may vanish together on more than what others leave of a surface: not, if their
-    /// multiples that are free of roots have no factor in common.
+    /// True unless two polynomials provably vanish together on nothing but lower-dimensional sets: their multiples that
+    /// are free of roots have no factor in common.
     pub fn may_vanish_together(&self, a: &Poly, b: &Poly) -> Result<bool, Obstacle> {
         let (a, b) = (self.cleared(a)?, self.cleared(b)?);
         let kernels = self.round.kernels.borrow();
         let algebraic = |poly: &Poly| poly.variables().iter().any(|v| kernels[*v].relation.is_some());
-        // Of roots that were not cleared, a relation may hide what is common.
+        // A relation of roots that were not cleared may hide a common factor.
         let hidden = !a.is_constant() && !b.is_constant() && (algebraic(&a) || algebraic(&b));
         Ok(hidden || !a.gcd(&b, self.work())?.is_constant())
     }
@@ -254,7 +254,7 @@ impl Field<'_> {
         Ok(self.fraction_of(&Poly::one(), poly)?.den)
     }
 
-    /// What clears the last quadratic kernel from a denominator.
+    /// The factor that clears the last quadratic kernel from a denominator.
     pub(in crate::tower) fn conjugate(&self, den: &Poly) -> Result<Option<Poly>, Obstacle> {
         let kernels = self.round.kernels.borrow();
         let algebraic = den
@@ -264,7 +264,7 @@ impl Field<'_> {
             .copied()
             .find(|&variable| kernels[variable].relation.as_ref().is_some_and(|relation| relation.degree == 2));
         let Some(variable) = algebraic else { return Ok(None) };
-        // Reduced, it holds the kernel once at most: den = a + b v, conjugate a - b v.
+        // A reduced denominator holds the kernel once at most: den = a + b v, conjugate a - b v.
         let flipped = den.terms().map(|(monomial, coefficient)| {
             let has = monomial.exponent(variable) > 0;
             (monomial, if has { -coefficient } else { coefficient.clone() })

@@ -4,30 +4,29 @@
 //! expressions, facts -> kernels (symbols, sin, cos, exp, log, roots) -> fractions -> expressions
 //! ```
 //!
-//! A kernel is what a polynomial may take as a variable. Angles are first split into an integer basis
-//! (so that `sin(2*q + p)` becomes a polynomial in the sines and cosines of q and p), exponents
-//! likewise, roots into roots of coprime parts. What relates kernels (`sin^2 = 1 - cos^2`, `r^2 = a`)
-//! is reduced away, and so is what relates symbols on a manifold.
+//! A kernel is a variable of polynomials. Angles are first split into an integer basis (so that `sin(2*q + p)` becomes
+//! a polynomial in the sines and cosines of q and p), exponents likewise, roots into roots of coprime parts. Relations
+//! among kernels (`sin^2 = 1 - cos^2`, `r^2 = a`) are reduced away, and so are relations among symbols on a manifold.
 //!
-//! Holds after: every rewriting is an identity wherever the expressions have values, up to points in
-//! whose neighbourhood they have values too, so a fraction that is zero proves that the expression is
-//! zero. The converse needs the kernels to be independent. They are, and the answer is complete, for
-//! what is built of
+//! Holds after: every rewriting is an identity wherever the expressions have values, up to points in whose
+//! neighbourhood they have values too, so a fraction that is zero proves that the expression is zero. The converse
+//! needs the kernels to be independent. They are, and the answer is complete, for
 //!
 //! - rational functions of symbols,
 //! - sines, cosines and exponentials of rational functions, split into arguments that are linearly
 //!   independent over the rationals modulo constants (Ax 1971, theorem 3),
 //! - logarithms of coprime polynomials (the same theorem, for the inverse functions),
-//! - roots of coprime square-free polynomials, and magnitudes of polynomials that have both signs
+//! - roots of coprime square-free polynomials, and absolute values of polynomials that have both signs
 //!   (Kummer theory; Besicovitch 1940 for roots of primes),
 //! - cosines of rational multiples of pi and square roots of rationals (Gauss 1811).
 //!
-//! It is not known to be for relations among constants (e, pi, sin(1): Schanuel's conjecture), roots of
-//! sums of roots that do not denest, and inverse trigonometric functions beyond sums of three. Nothing
-//! here relies on independence for a verdict: what refutes is an enclosure (see [`crate::domain::zero`]).
+//! Independence is not known for relations among constants (e, pi, sin(1): Schanuel's conjecture), roots of sums of
+//! roots that do not denest, and inverse trigonometric functions beyond sums of three. No verdict relies on
+//! independence: an enclosure refutes (see [`crate::domain::zero`]).
 //!
-//! One thing with `domain`, `manifold` and all files of this room: a kernel has arguments in normal form, a normal form
-//! consists of kernels, and which kernels are equal depends on their signs on the domain, which normal forms decide.
+//! One unit with `domain`, `manifold` and all files of this folder: a kernel has arguments in normal form, a normal
+//! form consists of kernels, and the equality of kernels depends on their signs on the domain, which normal forms
+//! decide.
 
 mod convert;
 mod coprime;
@@ -39,7 +38,7 @@ mod obstacle;
 pub mod residue;
 mod sign;
 mod sines;
-pub mod straight;
+pub mod straight_line;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
@@ -58,17 +57,17 @@ pub use sign::Signs;
 
 use coprime::CoprimeBase;
 use kernel::Kernels;
-use kernel::absolute::absolute_angles;
+use kernel::absolute_angles::absolute_angles;
 use kernel::argument::{Atoms, Units};
 use kernel::inverse::{InverseAngle, domain_of};
 use kernel::radical::ProductRoot;
 use kernel::trigonometric::Pair;
 use sign::SignMemory;
 
-/// How often the bases of angles and exponents may be refined before the field is given up.
+/// The greatest number of refinements of the bases of angles and exponents before the field is given up.
 const MOST_ROUNDS: usize = 12;
 
-/// Which argument a basis serves.
+/// The arguments that a basis serves.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Family {
     /// Arguments of sine and cosine.
@@ -79,29 +78,29 @@ enum Family {
     Root,
 }
 
-/// The kernels of one question, and the arithmetic over them.
+/// The kernels of one problem, and the arithmetic over them.
 #[derive(Debug)]
 pub struct Field<'a> {
     arena: &'a Arena,
     work: Work,
-    /// What is assumed.
+    /// The assumptions.
     domain: Domain,
-    /// What symbols are on the manifold.
+    /// The steps that replace symbols on the manifold.
     steps: BTreeMap<Symbol, Step>,
-    /// What the kernels are made for.
+    /// The expressions that the kernels are made for.
     roots: Vec<Expr>,
-    /// The step of which all multiples of an atom are integer multiples.
+    /// For each atom the unit whose integer multiples are all of its multiples.
     units: RefCell<Units>,
-    /// The m of `cos(pi/m)`, of which all other multiples of pi are multiples.
+    /// The m of `cos(pi/m)`, whose multiples are all other multiples of pi.
     finest: Cell<Option<u32>>,
-    /// What roots, logarithms and magnitudes are taken of.
+    /// The factors of the arguments of roots, logarithms and absolute values.
     base: RefCell<CoprimeBase>,
-    /// What [`Signs`] keeps.
+    /// The memory of [`Signs`].
     sign_memory: SignMemory,
     round: Round,
 }
 
-/// What is forgotten where the kernels turn out to be too coarse, and is made anew.
+/// The state that is discarded and made anew if the kernels turn out to be too coarse.
 #[derive(Default, Debug)]
 struct Round {
     kernels: RefCell<Kernels>,
@@ -114,27 +113,28 @@ struct Round {
     angles: RefCell<Vec<(Fraction, Pair)>>,
     /// Roots of products.
     products: RefCell<Vec<ProductRoot>>,
-    /// Whether something became finer that kernels were made of.
+    /// True if a basis became finer that kernels were made of.
     finer: Cell<bool>,
 }
 
 impl<'a> Field<'a> {
-    /// The field that holds all the roots; afterwards [`Self::fraction`] answers for each of them and
-    /// for whatever is built of the same kernels. An angle that is a sum of symbols is split into these, so that what is
-    /// measured and what is not come apart.
+    /// The field that holds all the roots; afterwards [`Self::fraction`] answers for each of them and for any
+    /// expression built of the same kernels. An angle that is a sum of symbols is split into these, so that measured
+    /// and unmeasured symbols are separated.
     pub fn over(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
         Self::of(arena, facts, &[], &[], roots)
     }
 
-    /// The field of the roots on the domain's manifold: a symbol for which an equation is solved is what it is there.
+    /// The field of the roots on the domain's manifold: a symbol for which an equation is solved has its value there.
     ///
-    /// Holds after: every rewriting is an identity where the equations hold. What an equation that was not solved
-    /// would make zero is not seen to be zero.
+    /// Holds after: every rewriting is an identity where the equations hold. Expressions that are zero only by an
+    /// unsolved equation are not found to be zero.
     pub fn on(arena: &'a Arena, domain: &Domain, roots: &[Expr]) -> Result<Self, Obstacle> {
         Self::of(arena, &domain.facts, domain.manifold.steps(), &[], roots)
     }
 
-    /// As [`Self::over`], for what does not ask which symbols a kernel holds: long sums of angles may be kernels as they are.
+    /// As [`Self::over`], for problems that do not need the symbols of a kernel: long sums of angles may be kernels as
+    /// they are.
     pub fn of_long_sums(arena: &'a Arena, facts: &Facts, roots: &[Expr]) -> Result<Self, Obstacle> {
         Self::of(arena, facts, &[], &absolute_angles(arena, roots), roots)
     }
@@ -148,7 +148,7 @@ impl<'a> Field<'a> {
     ) -> Result<Self, Obstacle> {
         let mut field = Self {
             arena,
-            work: Work::within(arena.budget().of_one_question(), arena.budget()),
+            work: Work::within(arena.budget().of_one_problem(), arena.budget()),
             domain: domain_of(facts),
             steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
             roots: roots.to_vec(),
@@ -193,18 +193,18 @@ impl<'a> Field<'a> {
         kernels.iter().filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
     }
 
-    /// What all kernels stand for.
+    /// The expressions of all kernels.
     pub fn kernels(&self) -> Vec<Expr> {
         self.round.kernels.borrow().iter().map(|(_, kernel)| kernel.expr).collect()
     }
 
-    /// What a kernel stands for.
+    /// The expression of a kernel.
     pub fn kernel(&self, number: u32) -> Expr {
         self.round.kernels.borrow()[number].expr
     }
 
-    /// Why a fraction that is not zero may stand for zero all the same: its last two kernels that are
-    /// not symbols, which no rule has shown to be independent.
+    /// The reason for doubt that a fraction which is not zero stands for a non-zero expression: its last two kernels
+    /// that are not symbols, which no rule has proved independent.
     pub fn doubt(&self, fraction: &Fraction) -> Obstacle {
         let exprs: BTreeSet<u32> = fraction.numerator().variables().iter().copied().collect();
         let made = |number: &u32| self.arena.as_symbol(self.kernel(*number)).is_none();

@@ -1,29 +1,29 @@
-//! Why a question of the normal form stays open.
+//! Reasons for open decisions of the normal form.
 
 use std::fmt;
 
 use crate::poly::TooLarge;
 
-/// Why a question stays open.
+/// The reason for an open decision.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Obstacle {
     /// The polynomials grow past the work limit.
     TooLarge,
-    /// The budget of all questions together is used up.
+    /// The budget of all problems combined is used up.
     OutOfBudget,
     /// A denominator vanishes identically.
     DivisionByZero,
-    /// Two kernels that could not be shown independent, or one that has no rules here.
+    /// Two kernels that were not proved independent, or one that has no rules here.
     Kernel(String),
     /// Roots that have no values together modulo any prime that was tried.
     NoResidue,
     /// No point of the assumed domain was found at which the expression has a value.
     NoPoint,
-    /// An equation of the domain that the normal form does not know of.
+    /// An equation of the domain that the normal form does not use.
     Unsolved(String),
-    /// The normal form is not zero, but no point shows it.
+    /// The normal form is not zero, but no point proves it.
     NoWitness,
-    /// The same, and it has two kernels that were not shown to be independent.
+    /// The same, and it has two kernels that were not proved independent.
     Related(String, String),
 }
 

@@ -2,13 +2,13 @@
 //!
 //! In: a field of kernels, and random words. Out: a residue for each kernel, so that `r^2 = a` holds of roots and
 //! `sin^2 + cos^2 = 1` of angles, and the residues of fractions there. An identity among the fractions holds at every
-//! such point; what holds at random ones is an identity unless the words were unlucky, which directs a search and proves
-//! nothing.
+//! such point; a relation at random ones is an identity unless the words were unlucky, which directs a search and
+//! proves nothing.
 
 use super::{Field, Fraction};
 use crate::poly::{Poly, PrimeField, Residue};
 
-/// How often the kernels are drawn anew where a root has no value.
+/// The greatest number of times that the kernels are drawn anew because a root has no value.
 const MOST_DRAWS: usize = 200;
 
 /// The largest prime p below 2^62 for which (p - 1)/2 is prime as well: every root of odd degree exists once, and every
@@ -43,8 +43,8 @@ pub fn prime_of_kernels() -> Option<PrimeField> {
 }
 
 impl Field<'_> {
-    /// The primes modulo which the kernels may have values, the largest first: the square roots of numbers exist there, as
-    /// that of 2 does modulo every other.
+    /// The primes modulo which the kernels may have values, the largest first: the square roots of numbers exist there,
+    /// as that of 2 does modulo every other.
     pub fn primes(&self) -> impl Iterator<Item = PrimeField> {
         let kernels = self.round.kernels.borrow();
         let relations = kernels.iter().filter_map(|(_, kernel)| kernel.relation.as_ref());
@@ -95,7 +95,7 @@ impl Field<'_> {
 }
 
 impl Fraction {
-    /// The residue where kernels have these values; none where the denominator vanishes, or a kernel has no value.
+    /// The residue if kernels have these values; none if the denominator vanishes, or a kernel has no value.
     pub(crate) fn residue(&self, prime: &PrimeField, values: &[Residue]) -> Option<Residue> {
         if self.variables().any(|variable| variable as usize >= values.len()) {
             return None;
@@ -138,7 +138,8 @@ mod tests {
     fn square_roots_of_numbers_have_values_modulo_one_of_the_primes() {
         let arena = Arena::new();
         let h = arena.variable("h");
-        let number = |above: i64, below: i64| arena.number(Rational::new(above, below).expect("a rational"));
+        let number =
+            |numerator: i64, denominator: i64| arena.number(Rational::new(numerator, denominator).expect("a rational"));
         let roots = [number(2, 1), number(3, 1), number(5, 7), number(981, 50), number(1, 11), number(13, 1)];
         let nested = arena.sqrt(arena.add(arena.sqrt(number(2, 1)), number(2, 1)));
         let roots: Vec<_> =

@@ -1,9 +1,9 @@
 //! Sines that numerator and denominator have in common.
 //!
-//! In: a fraction whose denominator has `sin(q)^2`, which the normal form writes as `1 - cos(q)^2`. Out: the same without
-//! the sines that its numerator has too, for showing: `(sin(p)*sin(q)^2 - cos(p)*sin(q)*cos(q))/sin(q)^2` is
-//! `-cos(p + q)/sin(q)`. With `s^2 = 1 - c^2` a polynomial is `A(c) + B(c) s`, and `s` divides it where `1 - c^2`
-//! divides `A`; the normal form sees `A + B s` and `1 - c^2` without a factor in common.
+//! In: a fraction whose denominator has `sin(q)^2`, which the normal form writes as `1 - cos(q)^2`. Out: the same
+//! without the sines that its numerator has too, for printing: `(sin(p)*sin(q)^2 - cos(p)*sin(q)*cos(q))/sin(q)^2` is
+//! `-cos(p + q)/sin(q)`. With `s^2 = 1 - c^2` a polynomial is `A(c) + B(c) s`, and `s` divides it if `1 - c^2` divides
+//! `A`; the normal form has no common factor of `A + B s` and `1 - c^2`.
 
 use crate::Rational;
 use crate::graph::expr::Expr;
@@ -14,21 +14,23 @@ use super::fraction::Fraction;
 use super::obstacle::Obstacle;
 
 impl Field<'_> {
-    /// The ways to write the fraction without common sines, the last with each term over the sines that it does not hold; none
-    /// where there are none.
+    /// The forms of the fraction without common sines, the last with each term over the sines that it does not hold;
+    /// empty if there are none.
     pub fn show_without_sines(&self, fraction: &Fraction) -> Vec<Expr> {
         let Ok(Some((rest, sines))) = self.without_sines(fraction) else { return Vec::new() };
-        let below = sines.powers().iter().map(|&(sine, times)| (self.kernel(sine), Rational::from(-i64::from(times))));
-        let below: Vec<(Expr, Rational)> = below.collect();
-        let over =
-            |shown: Expr| self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], below.clone()].concat());
+        let divisors =
+            sines.powers().iter().map(|&(sine, times)| (self.kernel(sine), Rational::from(-i64::from(times))));
+        let divisors: Vec<(Expr, Rational)> = divisors.collect();
+        let over = |shown: Expr| {
+            self.arena.multiply(&Rational::ONE, [vec![(shown, Rational::ONE)], divisors.clone()].concat())
+        };
         let whole = [Some(self.show(&rest)), self.show_by_angles(&rest)].into_iter().flatten().map(over);
         whole.chain([self.show_apart_over(&rest, &sines)]).collect()
     }
 
-    /// The fraction over powers of sines in place of those of `1 - cos(q)^2`, if the denominator has such, with what of its
-    /// numerator they divide written as their multiple: then terms cancel on their own. It is not in normal form. What they
-    /// do not divide stays, as `cos(q)^2` does: `1 - sin(q)^2` in its place has lost its digits where it is small.
+    /// The fraction over powers of sines in place of those of `1 - cos(q)^2`, if the denominator has such, with the
+    /// numerator's multiples of them written so: then terms cancel on their own. It is not in normal form. Other terms
+    /// are unchanged, as `cos(q)^2` is: `1 - sin(q)^2` in its place has lost its digits where it is small.
     pub(super) fn over_sines(&self, fraction: &Fraction) -> Result<Fraction, Obstacle> {
         let Fraction { mut num, mut den } = fraction.clone();
         for variable in den.variables().to_vec() {
@@ -55,8 +57,8 @@ impl Field<'_> {
         Ok(Fraction { num, den })
     }
 
-    /// The polynomial without its powers of `1 - cos(q)^2`, that square, and the power of the sine that they are; none if it
-    /// has none.
+    /// The polynomial without its powers of `1 - cos(q)^2`, that square, and the power of the sine that they are; none
+    /// if it has none.
     fn without_squares(&self, poly: &Poly, cosine: u32) -> Result<Option<(Poly, Poly, u32)>, Obstacle> {
         let square = &Poly::one() - &Poly::variable(cosine).pow(2, self.limit())?;
         let (mut rest, mut times) = (poly.clone(), 0);
@@ -67,13 +69,13 @@ impl Field<'_> {
         Ok((times > 0).then_some((rest, square, times)))
     }
 
-    /// The polynomial over a sine, of which the square is given, if that divides it.
+    /// The polynomial over a sine with the given square, if that divides it.
     fn over_sine(&self, poly: &Poly, sine: u32, square: &Poly) -> Result<Option<Poly>, Obstacle> {
         let turned = self.reduce(&poly.mul(&Poly::variable(sine), self.limit())?)?;
         Ok(turned.div_exact(square, self.limit())?)
     }
 
-    /// The rest of the fraction, and the powers of sines that are left below, if any cancelled.
+    /// The reduced fraction, and the powers of sines that remain in the denominator, if any cancelled.
     fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Monomial)>, Obstacle> {
         let Fraction { mut num, mut den } = fraction.clone();
         let mut left = Vec::new();
@@ -113,16 +115,16 @@ mod tests {
         let sin = |angle| arena.call(Function::Sin, &[angle]);
         let cos = |angle| arena.call(Function::Cos, &[angle]);
         let square = |expr| arena.power(expr, &Rational::from(2));
-        let below = arena.sub(arena.one(), square(cos(q)));
+        let denominator = arena.sub(arena.one(), square(cos(q)));
         let sum = arena.sub(sin(p), arena.mul(cos(q), sin(arena.add(p, q))));
         let cases = [
-            (arena.div(sum, below), Some("-cos(p + q)/sin(q)")),
-            (arena.div(arena.mul(a, sum), square(below)), Some("-a*cos(p + q)/sin(q)^3")),
-            (arena.div(arena.sub(a, cos(q)), arena.mul(below, a)), None),
+            (arena.div(sum, denominator), Some("-cos(p + q)/sin(q)")),
+            (arena.div(arena.mul(a, sum), square(denominator)), Some("-a*cos(p + q)/sin(q)^3")),
+            (arena.div(arena.sub(a, cos(q)), arena.mul(denominator, a)), None),
             (arena.div(sum, a), None),
-            // What has a sine is not divided by it.
+            // A numerator with a sine is not divided by it.
             (
-                arena.div(arena.mul(sin(q), arena.add(cos(arena.add(p, q)), arena.mul(a, cos(p)))), below),
+                arena.div(arena.mul(sin(q), arena.add(cos(arena.add(p, q)), arena.mul(a, cos(p)))), denominator),
                 Some("cos(p)*(a + cos(q))/sin(q) - sin(p)"),
             ),
         ];
@@ -148,7 +150,7 @@ mod tests {
             (arena.div(arena.add(arena.mul(a, square), arena.product([b, s, c])), square), "a + b*cos(q)/sin(q)"),
             (arena.div(arena.mul(a, s), arena.mul(b, square)), "a/(b*sin(q))"),
             (arena.div(arena.sub(a, arena.mul(b, square)), arena.mul(square, square)), "a/sin(q)^4 - b/sin(q)^2"),
-            // Where the cosine is small, `1/sin(q)^2 - 1` has no digits.
+            // For a small cosine, `1/sin(q)^2 - 1` has no digits.
             (arena.div(arena.mul(a, arena.mul(c, c)), square), "a*cos(q)^2/sin(q)^2"),
             (arena.div(arena.mul(c, c), arena.mul(square, square)), "cos(q)^2/sin(q)^4"),
             (arena.div(arena.add(a, s), arena.add(b, c)), "(a + sin(q))/(b + cos(q))"),

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::plant::Plant;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Relation, Symbol};
 
@@ -105,7 +105,7 @@ impl Conditions {
     /// Read off the formulas as they stand: what they are at the values may simplify.
     fn ask(&mut self, plant: &Plant, formulas: &[Expr], values: &BTreeMap<Symbol, Expr>) -> Option<Ask> {
         let arena = &plant.arena;
-        for (part, relation) in arena.asks(formulas, Want::Value) {
+        for (part, relation) in arena.domain_conditions(formulas, Regularity::Defined) {
             let ask = (arena.substitute(part, values), relation);
             if self.known.grants(arena, ask) {
                 continue;

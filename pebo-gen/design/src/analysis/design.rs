@@ -4,7 +4,7 @@ pub use crate::plant::CascadeClass as Class;
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
 use pebo_cas::domain::cells::Side;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::advice::remarks::Remarks;
@@ -322,7 +322,7 @@ impl Derivation {
             estimates.extend(&regression.eta_symbols);
         }
         let domain = self.domain(plant);
-        let mut asked = arena.asks(&formulas, Want::Value);
+        let mut asked = arena.domain_conditions(&formulas, Regularity::Defined);
         asked.retain(|(part, relation)| {
             let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
             free && !domain.implies(arena, *part, *relation)

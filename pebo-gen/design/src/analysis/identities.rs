@@ -16,7 +16,7 @@ use super::design::{Verdict, Witness};
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Verdict {
     let arena = &plant.arena;
     let Some(first) = plant.identities.first() else { return Verdict::Proved };
-    let everywhere = domain.everywhere();
+    let everywhere = domain.without_equations();
     let signed = |identity: &&Formula| {
         let opposite = arena.neg(identity.expr);
         [identity.expr, opposite].iter().any(|side| everywhere.implies(arena, *side, Relation::Positive))

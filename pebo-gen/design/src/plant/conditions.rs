@@ -6,7 +6,7 @@
 
 use crate::model::formula::{Formula, Operator, Term};
 use crate::source::Diagnostic;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Expr, Relation};
 
 use super::{Assumption, Scope, lower};
@@ -16,7 +16,7 @@ pub(super) fn collect(
     arena: &Arena,
     scope: &Scope,
     formula: &Formula,
-    want: Want,
+    want: Regularity,
     found: &mut Vec<Assumption>,
 ) -> Result<(), Diagnostic> {
     let mut ask = |part: &Formula, asks: Vec<(Expr, Relation)>| {
@@ -25,19 +25,19 @@ pub(super) fn collect(
     };
     match &formula.term {
         Term::Binary(Operator::Divide, _, below) => {
-            ask(below, arena.asked_by_division(lower(arena, scope, below)?));
+            ask(below, arena.division_conditions(lower(arena, scope, below)?));
         }
         Term::Binary(Operator::Power, base, exponent) => {
             let (value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);
             let asked = match arena.as_number(exponent) {
-                Some(power) => arena.asked_by_power(value, &power, want),
-                None => Some(arena.asked_by_symbolic_power(value)),
+                Some(power) => arena.power_condition(value, &power, want),
+                None => Some(arena.symbolic_power_condition(value)),
             };
             ask(base, asked.into_iter().collect());
         }
         Term::Call(function, arguments) => {
             let values = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
-            ask(&arguments[0], arena.asked_by_call(*function, &values, want));
+            ask(&arguments[0], arena.call_conditions(*function, &values, want));
         }
         _ => {}
     }

@@ -5,7 +5,7 @@
 
 use crate::model::formula::{Decimal, EXPONENT_LIMIT, Formula, Operator, PI, Term};
 use crate::source::{Code, Diagnostic, Span};
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Expr, Function, Rational};
 
 use super::Scope;
@@ -59,7 +59,7 @@ fn binary(
         Operator::Divide => Ok(arena.div(a, b)),
         Operator::Power => {
             let Some(exponent) = arena.as_number(b) else {
-                if arena.fails_of_number(arena.asked_by_symbolic_power(a)) {
+                if arena.fails_of_number(arena.symbolic_power_condition(a)) {
                     return Err(Diagnostic::error(Code::NoRealValue, left, "this power needs a base above zero")
                         .label("its exponent is not a number, so it is read as `exp(exponent*log(base))`")
                         .help("correct the base, or write the exponent as a number"));
@@ -73,7 +73,7 @@ fn binary(
                 return Err(Diagnostic::error(Code::ExponentTooLarge, right, "this exponent is out of range")
                     .help(format!("keep exponents between -{EXPONENT_LIMIT} and {EXPONENT_LIMIT}")));
             }
-            if arena.asked_by_power(a, &exponent, Want::Value).is_some_and(|ask| arena.fails_of_number(ask)) {
+            if arena.power_condition(a, &exponent, Regularity::Defined).is_some_and(|ask| arena.fails_of_number(ask)) {
                 return Err(Diagnostic::error(Code::NoRealValue, left, "a root of a negative number is not real")
                     .help("change the sign of what is under the root"));
             }
@@ -90,7 +90,7 @@ fn division_by_zero(span: Span) -> Diagnostic {
 
 /// Whether constant arguments are where the function has a real value.
 fn in_domain(arena: &Arena, function: Function, arguments: &[Expr], span: Span) -> Result<(), Diagnostic> {
-    let asked = arena.asked_by_call(function, arguments, Want::Value);
+    let asked = arena.call_conditions(function, arguments, Regularity::Defined);
     if asked.into_iter().any(|ask| arena.fails_of_number(ask)) {
         let name = function.row().name;
         let values: Vec<String> = arguments.iter().map(|argument| arena.print(*argument)).collect();

@@ -10,7 +10,7 @@ use crate::model::{CascadeClass, RelationForm};
 use crate::source::Span;
 use pebo_cas::domain::manifold::Manifold;
 use pebo_cas::forms::tidy::functions;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Domain, Expr, Rational, Relation, Symbol};
 
 use super::class::{Class, Proposal};
@@ -178,7 +178,7 @@ impl Plant {
         let Own { z, chi, theta, xi, psi } = Own::of(&self.arena, transform.len());
         let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
         let mut conditions = self.conditions.clone();
-        for (expr, relation) in self.arena.asks(transform, Want::Slope) {
+        for (expr, relation) in self.arena.domain_conditions(transform, Regularity::Differentiable) {
             if conditions.iter().all(|known| (known.expr, known.relation) != (expr, relation)) {
                 conditions.push(Assumption { expr, relation, span });
             }

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use crate::model::{self, Comparison, Entry, Model, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Budget, Expr, Rational, Relation as Compared, Symbol};
 
 use super::formula::{exact, lower};
@@ -156,7 +156,7 @@ fn names_of(arena: &Arena, model: &Model, parameters: &[Parameter], problems: &m
 /// asks already: of its formulas some are differentiated.
 fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
     let mut conditions = of_class;
-    let mut collect = |formula: &model::Formula, want: Want| {
+    let mut collect = |formula: &model::Formula, want: Regularity| {
         // What fails here was reported where the formula itself was lowered.
         let _ = super::conditions::collect(arena, scope, formula, want, &mut conditions);
     };
@@ -165,9 +165,9 @@ fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>)
     let values = model.g_y.iter().map(|entry| &entry.value);
     let smooth: Vec<&model::Formula> = model.phi.iter().chain(values).chain(of_class).collect();
     let plain = model.f_x.iter().chain(&model.f_y).map(|entry| &entry.value).chain(&model.identities);
-    plain.for_each(|formula| collect(formula, Want::Value));
+    plain.for_each(|formula| collect(formula, Regularity::Defined));
     for formula in &smooth {
-        collect(formula, Want::Slope);
+        collect(formula, Regularity::Differentiable);
     }
     // A definition that a differentiated formula uses, directly or through others, is differentiated too.
     let mut users = smooth;
@@ -180,7 +180,10 @@ fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>)
         }
     }
     for (index, definition) in model.define.iter().enumerate() {
-        collect(&definition.value, if differentiated.contains(&index) { Want::Slope } else { Want::Value });
+        collect(
+            &definition.value,
+            if differentiated.contains(&index) { Regularity::Differentiable } else { Regularity::Defined },
+        );
     }
     conditions
 }

@@ -13,7 +13,7 @@
 use pebo_cas::Expr;
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::combination::equations;
-use pebo_cas::linear::residues::Rows;
+use pebo_cas::linear::residues::ResidueRows;
 use pebo_cas::poly::{PrimeField, Residue};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
@@ -131,7 +131,7 @@ impl Ansatz {
 
 /// Weights of the points of a fibre in which 1 and the functions from that place on cancel.
 fn weights(prime: &PrimeField, fibre: &[Values], from: usize) -> Option<Values> {
-    let mut rows = Rows::new(prime, fibre.len());
+    let mut rows = ResidueRows::new(prime, fibre.len());
     rows.insert(vec![prime.one(); fibre.len()]);
     for function in from..fibre.first()?.len() {
         rows.insert(fibre.iter().map(|values| values[function]).collect());

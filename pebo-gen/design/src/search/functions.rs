@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::number::rational::half;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Function, Node, Rational, Relation, Symbol};
@@ -87,7 +87,10 @@ pub(super) fn logarithms(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
     for base in bases {
         let moves = arena.depends_on(base, &question.signals);
         let logarithm = logarithm(arena, &question.domain, base);
-        let signed = arena.asks(&[logarithm], Want::Slope).iter().all(|(_, relation)| *relation != Relation::NonZero);
+        let signed = arena
+            .domain_conditions(&[logarithm], Regularity::Differentiable)
+            .iter()
+            .all(|(_, relation)| *relation != Relation::NonZero);
         if moves && !found.contains(&logarithm) && (signed || !arena.depends_on(base, &question.hidden)) {
             found.push(logarithm);
         }

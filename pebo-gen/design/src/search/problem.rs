@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plant::Plant;
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Domain, Expr, Node, Relation, Symbol};
 
 /// A plant whose transform is looked for.
@@ -86,7 +86,7 @@ impl<'a> Question<'a> {
     /// Whether a function has values and derivatives on the whole domain, but perhaps for the zeros of some formulas,
     /// which the proof of the claims then lists.
     pub(super) fn exists(&self, expr: Expr) -> bool {
-        let asked = self.arena.asks(&[expr], Want::Slope);
+        let asked = self.arena.domain_conditions(&[expr], Regularity::Differentiable);
         asked.into_iter().all(|(part, relation)| match relation {
             Relation::NonZero => !self.arena.is_zero(part),
             Relation::NonNegative => self.domain.implies(self.arena, part, relation),

@@ -4,11 +4,11 @@
 
 use std::collections::BTreeSet;
 
-use pebo_cas::linear::residues::Rows;
+use pebo_cas::linear::residues::ResidueRows;
 use pebo_cas::poly::{PrimeField, Residue};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::tower::residue::{Words, prime_of_kernels};
-use pebo_cas::tower::straight::Straight;
+use pebo_cas::tower::straight_line::StraightLineProgram;
 use pebo_cas::{Budget, Expr};
 
 use super::problem::Question;
@@ -26,7 +26,7 @@ const IDLE: usize = 3;
 #[derive(Debug)]
 pub(super) struct Sample<'a> {
     pub(super) prime: PrimeField,
-    formulas: Straight<'a>,
+    formulas: StraightLineProgram<'a>,
     hidden: BTreeSet<u32>,
     /// The kernels of constants, with their values.
     constants: Vec<Option<Residue>>,
@@ -40,7 +40,7 @@ pub(super) type Values = Vec<Residue>;
 impl<'a> Sample<'a> {
     pub(super) fn of(question: &Question<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
         let mut words = Words::new(0x5eed);
-        let of = |prime: &PrimeField| Straight::of(question.arena, &question.domain.facts, prime, formulas);
+        let of = |prime: &PrimeField| StraightLineProgram::of(question.arena, &question.domain.facts, prime, formulas);
         let first_prime = prime_of_kernels().ok_or(Obstacle::TooLarge)?;
         let mut straight = of(&first_prime)?;
         let mut found = straight.field().draw(&first_prime, &mut words, |_| None).map(|values| (first_prime, values));
@@ -90,7 +90,7 @@ impl<'a> Sample<'a> {
         row: impl Fn(&PrimeField, &[Values]) -> Option<Values>,
     ) -> Option<Vec<(usize, Values)>> {
         let prime = self.prime.clone();
-        let mut rows = Rows::new(&prime, columns);
+        let mut rows = ResidueRows::new(&prime, columns);
         let mut idle = 0;
         while idle < IDLE && rows.rank() < columns {
             if !self.budget.take((columns * (rows.rank() + 1)) as u64) {
@@ -122,7 +122,7 @@ pub(super) fn rank_of_gradients(question: &Question<'_>, functions: &[Expr]) -> 
     let mut sample = Sample::of(question, &slopes)?;
     let fibre = sample.fibre(1).ok_or(Obstacle::NoPoint)?;
     let prime = &sample.prime;
-    let mut rows = Rows::new(prime, width);
+    let mut rows = ResidueRows::new(prime, width);
     for row in fibre[0].chunks(width) {
         rows.insert(row.to_vec());
     }
@@ -136,7 +136,7 @@ pub(super) fn is_affine_in(question: &Question<'_>, targets: &[Expr], functions:
     let mut sample = Sample::of(question, &[functions, targets].concat())?;
     let fibre = sample.fibre(count + targets.len() + 2).ok_or(Obstacle::NoPoint)?;
     let prime = &sample.prime;
-    let mut rows = Rows::new(prime, 1 + count + targets.len());
+    let mut rows = ResidueRows::new(prime, 1 + count + targets.len());
     for values in &fibre {
         rows.insert([&[prime.one()], values.as_slice()].concat());
     }

@@ -122,7 +122,7 @@ impl<'a> Moves<'a> {
         let symbols: Vec<Symbol> = (0..arguments.len()).map(|index| arena.generated(&format!("a{index}"))).collect();
         let alone: Vec<Expr> = symbols.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
         let partials = (row.derivative)(arena, &alone);
-        let limits = std::iter::once(row.asks).chain(row.smooth).flat_map(|asks| asks(arena, &alone));
+        let limits = std::iter::once(row.conditions).chain(row.smooth).flat_map(|asks| asks(arena, &alone));
         let limits: Vec<Expr> = limits.map(|(limit, _)| limit).collect();
         let place: Option<BTreeMap<Symbol, Interval>> = symbols
             .iter()

@@ -100,7 +100,7 @@ struct Inside<'a> {
 impl<'a> Inside<'a> {
     fn of(arena: &'a Arena, domain: &Domain) -> Self {
         // Values that are given are rounded, and equations hold up to rounding.
-        let domain = Domain { fixed: BTreeMap::new(), ..domain.everywhere() };
+        let domain = Domain { fixed: BTreeMap::new(), ..domain.without_equations() };
         Self { arena, domain }
     }
 

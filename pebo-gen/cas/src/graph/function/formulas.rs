@@ -1,5 +1,5 @@
-//! What rows of the table share: derivatives, conditions and forms in terms of other functions, built from the arguments,
-//! and two values that the standard library computes with fewer digits.
+//! Entries that rows of the table share: derivatives, conditions and forms in terms of other functions, built from the
+//! arguments, and two values that the standard library computes with fewer digits.
 
 use crate::graph::arena::Arena;
 use crate::graph::expr::Expr;
@@ -9,7 +9,7 @@ use crate::{Rational, Relation};
 use super::kind::Function;
 
 /// Comparisons with zero.
-pub type Asks = Vec<(Expr, Relation)>;
+pub type Conditions = Vec<(Expr, Relation)>;
 
 /// `a^2`
 pub(super) fn square(arena: &Arena, a: Expr) -> Expr {
@@ -31,13 +31,13 @@ pub(super) fn inverse_circle(arena: &Arena, a: Expr) -> Expr {
     recip(arena, arena.sqrt(beyond(arena, a)))
 }
 
-/// Near 1 the standard library's loses the digits that `a - 1` has.
+/// The inverse hyperbolic cosine; near 1 the standard library's loses the digits of `a - 1`.
 pub(super) fn acosh(a: f64) -> f64 {
     let above = a - 1.0;
     (above + (above * (a + 1.0)).sqrt()).ln_1p()
 }
 
-/// Near -1 the standard library's loses the digits that `1 + a` has.
+/// The inverse hyperbolic tangent; near -1 the standard library's loses the digits of `1 + a`.
 pub(super) fn atanh(a: f64) -> f64 {
     let size = a.abs();
     (0.5 * (2.0 * size / (1.0 - size)).ln_1p()).copysign(a)
@@ -63,23 +63,23 @@ pub(super) fn radius(arena: &Arena, a: &[Expr]) -> Expr {
     arena.add(square(arena, a[0]), square(arena, a[1]))
 }
 
-/// Of a function that has a value everywhere.
-pub(super) fn nothing(_: &Arena, _: &[Expr]) -> Asks {
+/// No condition, for a function that has a value everywhere.
+pub(super) fn nothing(_: &Arena, _: &[Expr]) -> Conditions {
     Vec::new()
 }
 
-/// Of an inverse sine or cosine: an argument within [-1, 1].
-pub(super) fn within_one(arena: &Arena, a: &[Expr]) -> Asks {
+/// For an inverse sine or cosine: an argument within [-1, 1].
+pub(super) fn within_one(arena: &Arena, a: &[Expr]) -> Conditions {
     vec![(beyond(arena, a[0]), Relation::NonNegative)]
 }
 
-/// Of their derivatives, and of an inverse hyperbolic tangent: an argument strictly within.
-pub(super) fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Asks {
+/// For their derivatives, and for an inverse hyperbolic tangent: an argument strictly within.
+pub(super) fn strictly_within_one(arena: &Arena, a: &[Expr]) -> Conditions {
     vec![(beyond(arena, a[0]), Relation::Positive)]
 }
 
-/// Of the larger and the smaller of two: that they differ.
-pub(super) fn apart(arena: &Arena, a: &[Expr]) -> Asks {
+/// For the larger and the smaller of two: that they differ.
+pub(super) fn apart(arena: &Arena, a: &[Expr]) -> Conditions {
     vec![(arena.sub(a[0], a[1]), Relation::NonZero)]
 }
 
@@ -98,7 +98,7 @@ pub(super) fn half_of(arena: &Arena, a: Expr) -> Expr {
     arena.scale(a, &half())
 }
 
-/// One for the argument that is taken and zero for the other, where the first is taken if `lead` is positive.
+/// One for the selected argument and zero for the other; the first is selected if `lead` is positive.
 pub(super) fn shares(arena: &Arena, lead: Expr) -> Vec<Expr> {
     let sign = arena.call(Function::Sign, &[lead]);
     vec![half_of(arena, arena.add(arena.one(), sign)), half_of(arena, arena.sub(arena.one(), sign))]

@@ -1,4 +1,4 @@
-//! The functions of the expression language, one by one: what a node of the graph applies.
+//! The functions of the expression language, one by one.
 
 /// A function of the expression language.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

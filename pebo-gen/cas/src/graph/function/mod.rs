@@ -1,9 +1,9 @@
-//! The one table of functions: name, value, where it has one and where it is differentiable, derivative,
-//! symmetry, inverse, Rust path and LaTeX, a row each.
+//! The one table of functions: name, value, domain conditions of value and derivative, derivative, symmetry, inverse,
+//! Rust path and LaTeX, a row each.
 //!
-//! The parser, the derivative, the enclosure, the printers, the interpreter, the conditions ([`crate::graph::conditions`], which
-//! has the rows of division and powers) and the tests all read this table; a new function is a variant, a row, and
-//! its cases in [`crate::tower`].
+//! The parser, the derivative, the enclosure, the printers, the interpreter, the conditions
+//! ([`crate::graph::conditions`], which has the rows of division and powers) and the tests all read this table; a new
+//! function is a variant, a row, and its cases in [`crate::tower`].
 
 mod formulas;
 mod kind;
@@ -18,13 +18,13 @@ use formulas::{
     recip, shares, square, strictly_within_one, within_one,
 };
 
-pub use formulas::Asks;
+pub use formulas::Conditions;
 pub use kind::Function;
 
-/// What happens to the value when the argument changes sign.
+/// The effect of the argument's sign on the value.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Parity {
-    /// The value stays.
+    /// The value is invariant.
     Even,
     /// The value changes sign.
     Odd,
@@ -33,15 +33,15 @@ pub enum Parity {
 /// Value in floating point.
 #[derive(Clone, Copy, Debug)]
 pub enum Value {
-    /// Of one argument.
+    /// One argument.
     Unary(fn(f64) -> f64),
-    /// Of two arguments.
+    /// Two arguments.
     Binary(fn(f64, f64) -> f64),
 }
 
-/// What there is to know of one function.
+/// All properties of one function.
 #[derive(Debug)]
-pub struct Row {
+pub struct FunctionRow {
     /// The function.
     pub function: Function,
     /// Its name in a formula.
@@ -53,7 +53,7 @@ pub struct Row {
     /// The value at zero, where it is rational.
     pub at_zero: Option<i64>,
     /// The value at rational arguments, of a function whose values there are rational.
-    pub rational: Option<Exact>,
+    pub rational: Option<RationalEvaluation>,
     /// Even, odd, or neither.
     pub parity: Option<Parity>,
     /// The method of the runtime's `Real`.
@@ -62,24 +62,24 @@ pub struct Row {
     pub latex: &'static str,
     /// The value.
     pub value: Value,
-    /// An enclosure of the values over the arguments, or none where it cannot be given.
+    /// An enclosure of the values over the arguments, or none if there is none.
     pub enclosure: fn(&[Interval], Precision) -> Option<Interval>,
-    /// What must hold of the arguments for the function to have a value.
-    pub asks: fn(&Arena, &[Expr]) -> Asks,
-    /// What must hold for it to be differentiable, if that is more.
-    pub smooth: Option<fn(&Arena, &[Expr]) -> Asks>,
+    /// The domain conditions of its value.
+    pub conditions: fn(&Arena, &[Expr]) -> Conditions,
+    /// The further conditions of its derivative, if there are any.
+    pub smooth: Option<fn(&Arena, &[Expr]) -> Conditions>,
     /// The partial derivatives at the arguments.
     pub derivative: fn(&Arena, &[Expr]) -> Vec<Expr>,
-    /// The same in terms of functions whose relations the normal form knows, wherever this one has a value.
+    /// The same in terms of functions with relations in the normal form, wherever this one has a value.
     pub in_terms: Option<fn(&Arena, &[Expr]) -> Expr>,
     /// The function that undoes this one on its principal branch.
     pub inverse: Option<Function>,
 }
 
 /// A value at rational arguments, where there is one.
-pub type Exact = fn(&[Rational]) -> Option<Rational>;
+pub type RationalEvaluation = fn(&[Rational]) -> Option<Rational>;
 
-impl Row {
+impl FunctionRow {
     /// The name as it is typeset, upright: that of the LaTeX command.
     pub fn typeset(&self) -> &'static str {
         let command = self.latex.trim_start_matches('\\');
@@ -89,7 +89,7 @@ impl Row {
 
 impl Function {
     /// The row of this function.
-    pub fn row(self) -> &'static Row {
+    pub fn row(self) -> &'static FunctionRow {
         &TABLE[self as usize]
     }
 
@@ -109,13 +109,13 @@ impl Function {
     }
 
     /// All rows, in the order of the enumeration.
-    pub fn table() -> &'static [Row] {
+    pub fn table() -> &'static [FunctionRow] {
         &TABLE
     }
 }
 
-static TABLE: [Row; 21] = [
-    Row {
+static TABLE: [FunctionRow; 21] = [
+    FunctionRow {
         function: Function::Sin,
         name: "sin",
         aliases: &[],
@@ -127,13 +127,13 @@ static TABLE: [Row; 21] = [
         latex: r"\sin",
         value: Value::Unary(f64::sin),
         enclosure: |a, p| a[0].sin(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Cos, a)],
         in_terms: None,
         inverse: Some(Function::Asin),
     },
-    Row {
+    FunctionRow {
         function: Function::Cos,
         name: "cos",
         aliases: &[],
@@ -145,13 +145,13 @@ static TABLE: [Row; 21] = [
         latex: r"\cos",
         value: Value::Unary(f64::cos),
         enclosure: |a, p| a[0].cos(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.neg(arena.call(Function::Sin, a))],
         in_terms: None,
         inverse: Some(Function::Acos),
     },
-    Row {
+    FunctionRow {
         function: Function::Tan,
         name: "tan",
         aliases: &[],
@@ -163,13 +163,13 @@ static TABLE: [Row; 21] = [
         latex: r"\tan",
         value: Value::Unary(f64::tan),
         enclosure: |a, p| a[0].tan(p),
-        asks: |arena, a| vec![(arena.call(Function::Cos, a), Relation::NonZero)],
+        conditions: |arena, a| vec![(arena.call(Function::Cos, a), Relation::NonZero)],
         smooth: None,
         derivative: |arena, a| vec![arena.add(arena.one(), square(arena, arena.call(Function::Tan, a)))],
         in_terms: None,
         inverse: Some(Function::Atan),
     },
-    Row {
+    FunctionRow {
         function: Function::Asin,
         name: "asin",
         aliases: &["arcsin"],
@@ -181,13 +181,13 @@ static TABLE: [Row; 21] = [
         latex: r"\arcsin",
         value: Value::Unary(f64::asin),
         enclosure: |a, p| a[0].asin(p),
-        asks: within_one,
+        conditions: within_one,
         smooth: Some(strictly_within_one),
         derivative: |arena, a| vec![inverse_circle(arena, a[0])],
         in_terms: None,
         inverse: Some(Function::Sin),
     },
-    Row {
+    FunctionRow {
         function: Function::Acos,
         name: "acos",
         aliases: &["arccos"],
@@ -199,13 +199,13 @@ static TABLE: [Row; 21] = [
         latex: r"\arccos",
         value: Value::Unary(f64::acos),
         enclosure: |a, p| a[0].acos(p),
-        asks: within_one,
+        conditions: within_one,
         smooth: Some(strictly_within_one),
         derivative: |arena, a| vec![arena.neg(inverse_circle(arena, a[0]))],
         in_terms: None,
         inverse: Some(Function::Cos),
     },
-    Row {
+    FunctionRow {
         function: Function::Atan,
         name: "atan",
         aliases: &["arctan"],
@@ -217,13 +217,13 @@ static TABLE: [Row; 21] = [
         latex: r"\arctan",
         value: Value::Unary(f64::atan),
         enclosure: |a, p| a[0].atan(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![recip(arena, arena.add(arena.one(), square(arena, a[0])))],
         in_terms: None,
         inverse: Some(Function::Tan),
     },
-    Row {
+    FunctionRow {
         function: Function::Atan2,
         name: "atan2",
         aliases: &["arctan2"],
@@ -235,7 +235,7 @@ static TABLE: [Row; 21] = [
         latex: r"\operatorname{atan2}",
         value: Value::Binary(f64::atan2),
         enclosure: |a, p| a[0].atan2(&a[1], p),
-        asks: |arena, a| vec![(radius(arena, a), Relation::NonZero)],
+        conditions: |arena, a| vec![(radius(arena, a), Relation::NonZero)],
         // Off the negative half of the axis, where the angle jumps by a turn.
         smooth: Some(|arena, a| vec![(arena.add(a[1], arena.sqrt(radius(arena, a))), Relation::Positive)]),
         derivative: |arena, a| {
@@ -245,7 +245,7 @@ static TABLE: [Row; 21] = [
         in_terms: None,
         inverse: None,
     },
-    Row {
+    FunctionRow {
         function: Function::Sinh,
         name: "sinh",
         aliases: &[],
@@ -257,13 +257,13 @@ static TABLE: [Row; 21] = [
         latex: r"\sinh",
         value: Value::Unary(f64::sinh),
         enclosure: |a, p| a[0].sinh(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Cosh, a)],
         in_terms: None,
         inverse: Some(Function::Asinh),
     },
-    Row {
+    FunctionRow {
         function: Function::Cosh,
         name: "cosh",
         aliases: &[],
@@ -275,13 +275,13 @@ static TABLE: [Row; 21] = [
         latex: r"\cosh",
         value: Value::Unary(f64::cosh),
         enclosure: |a, p| a[0].cosh(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Sinh, a)],
         in_terms: None,
         inverse: Some(Function::Acosh),
     },
-    Row {
+    FunctionRow {
         function: Function::Tanh,
         name: "tanh",
         aliases: &[],
@@ -293,13 +293,13 @@ static TABLE: [Row; 21] = [
         latex: r"\tanh",
         value: Value::Unary(f64::tanh),
         enclosure: |a, p| a[0].tanh(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.sub(arena.one(), square(arena, arena.call(Function::Tanh, a)))],
         in_terms: None,
         inverse: Some(Function::Atanh),
     },
-    Row {
+    FunctionRow {
         function: Function::Asinh,
         name: "asinh",
         aliases: &["arcsinh"],
@@ -311,13 +311,13 @@ static TABLE: [Row; 21] = [
         latex: r"\operatorname{arsinh}",
         value: Value::Unary(f64::asinh),
         enclosure: |a, p| a[0].asinh(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![recip(arena, hypotenuse(arena, a[0]))],
         in_terms: Some(|arena, a| arena.call(Function::Log, &[arena.add(a[0], hypotenuse(arena, a[0]))])),
         inverse: Some(Function::Sinh),
     },
-    Row {
+    FunctionRow {
         function: Function::Acosh,
         name: "acosh",
         aliases: &["arccosh"],
@@ -329,13 +329,13 @@ static TABLE: [Row; 21] = [
         latex: r"\operatorname{arcosh}",
         value: Value::Unary(acosh),
         enclosure: |a, p| a[0].acosh(p),
-        asks: |arena, a| vec![(above_one(arena, a[0]), Relation::NonNegative)],
+        conditions: |arena, a| vec![(above_one(arena, a[0]), Relation::NonNegative)],
         smooth: Some(|arena, a| vec![(above_one(arena, a[0]), Relation::Positive)]),
         derivative: |arena, a| vec![recip(arena, leg(arena, a[0]))],
         in_terms: Some(|arena, a| arena.call(Function::Log, &[arena.add(a[0], leg(arena, a[0]))])),
         inverse: Some(Function::Cosh),
     },
-    Row {
+    FunctionRow {
         function: Function::Atanh,
         name: "atanh",
         aliases: &["arctanh"],
@@ -347,16 +347,16 @@ static TABLE: [Row; 21] = [
         latex: r"\operatorname{artanh}",
         value: Value::Unary(atanh),
         enclosure: |a, p| a[0].atanh(p),
-        asks: strictly_within_one,
+        conditions: strictly_within_one,
         smooth: None,
         derivative: |arena, a| vec![recip(arena, beyond(arena, a[0]))],
         in_terms: Some(|arena, a| {
-            let [above, below] = [arena.add(arena.one(), a[0]), arena.sub(arena.one(), a[0])];
-            half_of(arena, arena.call(Function::Log, &[arena.div(above, below)]))
+            let [numerator, denominator] = [arena.add(arena.one(), a[0]), arena.sub(arena.one(), a[0])];
+            half_of(arena, arena.call(Function::Log, &[arena.div(numerator, denominator)]))
         }),
         inverse: Some(Function::Tanh),
     },
-    Row {
+    FunctionRow {
         function: Function::Exp,
         name: "exp",
         aliases: &[],
@@ -368,13 +368,13 @@ static TABLE: [Row; 21] = [
         latex: r"\exp",
         value: Value::Unary(f64::exp),
         enclosure: |a, p| a[0].exp(p),
-        asks: nothing,
+        conditions: nothing,
         smooth: None,
         derivative: |arena, a| vec![arena.call(Function::Exp, a)],
         in_terms: None,
         inverse: Some(Function::Log),
     },
-    Row {
+    FunctionRow {
         function: Function::Log,
         name: "log",
         aliases: &["ln"],
@@ -386,13 +386,13 @@ static TABLE: [Row; 21] = [
         latex: r"\ln",
         value: Value::Unary(f64::ln),
         enclosure: |a, p| a[0].log(p),
-        asks: |_, a| vec![(a[0], Relation::Positive)],
+        conditions: |_, a| vec![(a[0], Relation::Positive)],
         smooth: None,
         derivative: |arena, a| vec![recip(arena, a[0])],
         in_terms: None,
         inverse: Some(Function::Exp),
     },
-    Row {
+    FunctionRow {
         function: Function::Sqrt,
         name: "sqrt",
         aliases: &[],
@@ -404,13 +404,13 @@ static TABLE: [Row; 21] = [
         latex: r"\sqrt",
         value: Value::Unary(f64::sqrt),
         enclosure: |a, p| a[0].sqrt(p),
-        asks: |_, a| vec![(a[0], Relation::NonNegative)],
+        conditions: |_, a| vec![(a[0], Relation::NonNegative)],
         smooth: Some(|_, a| vec![(a[0], Relation::Positive)]),
         derivative: |arena, a| vec![recip(arena, arena.scale(arena.sqrt(a[0]), &Rational::from(2)))],
         in_terms: None,
         inverse: None,
     },
-    Row {
+    FunctionRow {
         function: Function::Abs,
         name: "abs",
         aliases: &[],
@@ -422,13 +422,13 @@ static TABLE: [Row; 21] = [
         latex: r"\operatorname{abs}",
         value: Value::Unary(f64::abs),
         enclosure: |a, _| Some(a[0].abs()),
-        asks: nothing,
+        conditions: nothing,
         smooth: Some(|_, a| vec![(a[0], Relation::NonZero)]),
         derivative: |arena, a| vec![arena.call(Function::Sign, a)],
         in_terms: None,
         inverse: None,
     },
-    Row {
+    FunctionRow {
         function: Function::Sign,
         name: "sign",
         aliases: &["sgn"],
@@ -441,13 +441,13 @@ static TABLE: [Row; 21] = [
         value: Value::Unary(|a| if a == 0.0 { a } else { a.signum() }),
         // It computes 0 at 0, and proofs leave that point out: the sign is a quotient to them.
         enclosure: |a, _| a[0].sign(),
-        asks: |_, a| vec![(a[0], Relation::NonZero)],
+        conditions: |_, a| vec![(a[0], Relation::NonZero)],
         smooth: None,
         derivative: |arena, _| vec![arena.zero()],
         in_terms: Some(|arena, a| arena.div(a[0], arena.call(Function::Abs, a))),
         inverse: None,
     },
-    Row {
+    FunctionRow {
         function: Function::Min,
         name: "min",
         aliases: &[],
@@ -459,13 +459,13 @@ static TABLE: [Row; 21] = [
         latex: r"\min",
         value: Value::Binary(f64::min),
         enclosure: |a, _| Some(a[0].min(&a[1])),
-        asks: nothing,
+        conditions: nothing,
         smooth: Some(apart),
         derivative: |arena, a| shares(arena, arena.sub(a[1], a[0])),
         in_terms: Some(|arena, a| half_of(arena, arena.sub(arena.add(a[0], a[1]), distance(arena, a)))),
         inverse: None,
     },
-    Row {
+    FunctionRow {
         function: Function::Max,
         name: "max",
         aliases: &[],
@@ -477,13 +477,13 @@ static TABLE: [Row; 21] = [
         latex: r"\max",
         value: Value::Binary(f64::max),
         enclosure: |a, _| Some(a[0].max(&a[1])),
-        asks: nothing,
+        conditions: nothing,
         smooth: Some(apart),
         derivative: |arena, a| shares(arena, arena.sub(a[0], a[1])),
         in_terms: Some(|arena, a| half_of(arena, arena.sum([a[0], a[1], distance(arena, a)]))),
         inverse: None,
     },
-    Row {
+    FunctionRow {
         function: Function::Sat,
         name: "sat",
         aliases: &[],
@@ -495,7 +495,7 @@ static TABLE: [Row; 21] = [
         latex: r"\operatorname{sat}",
         value: Value::Unary(|a| a.clamp(-1.0, 1.0)),
         enclosure: |a, _| Some(a[0].sat()),
-        asks: nothing,
+        conditions: nothing,
         smooth: Some(|arena, a| vec![(beyond(arena, a[0]), Relation::NonZero)]),
         derivative: |arena, a| {
             let [above, below] = edges(arena, a[0]).map(|edge| arena.call(Function::Sign, &[edge]));

@@ -60,17 +60,17 @@ impl Integer {
         }
     }
 
-    /// Whether this is zero.
+    /// True if this is zero.
     pub fn is_zero(&self) -> bool {
         matches!(self.0, Small(0))
     }
 
-    /// Whether this is one.
+    /// True if this is one.
     pub fn is_one(&self) -> bool {
         matches!(self.0, Small(1))
     }
 
-    /// Whether this is less than zero.
+    /// True if this is less than zero.
     pub fn is_negative(&self) -> bool {
         self.signum() < 0
     }
@@ -104,7 +104,7 @@ impl Integer {
         }
     }
 
-    /// The number of bits of the magnitude; zero has none.
+    /// The number of bits of the absolute value; zero has none.
     pub fn bits(&self) -> u64 {
         match &self.0 {
             Small(value) => u64::from(64 - value.unsigned_abs().leading_zeros()),
@@ -112,7 +112,7 @@ impl Integer {
         }
     }
 
-    /// The magnitude.
+    /// The absolute value.
     pub fn abs(&self) -> Self {
         if self.is_negative() { -self } else { self.clone() }
     }
@@ -179,8 +179,7 @@ impl Integer {
         if rest != 0 && self.is_negative() { modulus - rest } else { rest }
     }
 
-    /// The power. The size of the result is the caller's to bound: it has about
-    /// `exponent * self.bits()` bits.
+    /// The power. The caller bounds the size of the result: it has about `exponent * self.bits()` bits.
     pub fn pow(&self, exponent: u32) -> Self {
         if let Small(value) = self.0
             && let Some(power) = value.checked_pow(exponent)
@@ -190,7 +189,7 @@ impl Integer {
         Self::from_big(self.big().pow(exponent as usize))
     }
 
-    /// This times `2^shift`. The size of the result is the caller's to bound.
+    /// This times `2^shift`. The caller bounds the size of the result.
     pub fn shl(&self, shift: u32) -> Self {
         match self.0 {
             Small(value) if shift < 64 => Self::from(i128::from(value) << shift),
@@ -198,7 +197,7 @@ impl Integer {
         }
     }
 
-    /// The number of times 2 divides this; zero for zero.
+    /// The multiplicity of the factor 2; zero for zero.
     pub fn trailing_zeros(&self) -> u32 {
         match &self.0 {
             Small(0) => 0,
@@ -220,8 +219,8 @@ impl Integer {
             let negative_one = self.to_i64() == Some(-1);
             return negative_one.then(|| self.clone());
         }
-        let magnitude: UBig = self.big().into_owned().unsigned_abs();
-        let root = Self::from_big(IBig::from(magnitude.nth_root(degree as usize)));
+        let absolute: UBig = self.big().into_owned().unsigned_abs();
+        let root = Self::from_big(IBig::from(absolute.nth_root(degree as usize)));
         let root = if self.is_negative() { -&root } else { root };
         (root.pow(degree) == *self).then_some(root)
     }
@@ -229,7 +228,7 @@ impl Integer {
     /// Adds `a * b`.
     pub fn add_product(&mut self, a: &Self, b: &Self) {
         if let (Small(sum), Small(a), Small(b)) = (&self.0, &a.0, &b.0) {
-            // At most 2^126 + 2^63 in magnitude.
+            // At most 2^126 + 2^63 in absolute value.
             *self = Self::from(i128::from(*a) * i128::from(*b) + i128::from(*sum));
         } else {
             *self += &(a * b);
@@ -254,16 +253,16 @@ impl Integer {
         }
     }
 
-    /// The 64 leading bits of the magnitude with any lower bit folded into the last, and the power
-    /// of two by which they are to be multiplied. Zero gives zeros.
+    /// The 64 leading bits of the absolute value with any lower bit folded into the last, and the power of two by which
+    /// they are to be multiplied. Zero gives zeros.
     pub(crate) fn leading_bits(&self) -> (u64, u64) {
         let bits = self.bits();
         match &self.0 {
             Small(value) => (value.unsigned_abs(), 0),
             Big(value) if bits > 64 => {
                 let shift = bits - 64;
-                let magnitude = value.as_ref().unsigned_abs();
-                let (low, high) = magnitude.split_bits(usize::try_from(shift).unwrap_or(usize::MAX));
+                let absolute = value.as_ref().unsigned_abs();
+                let (low, high) = absolute.split_bits(usize::try_from(shift).unwrap_or(usize::MAX));
                 let top = u64::try_from(high).unwrap_or(u64::MAX);
                 (top | u64::from(!low.is_zero()), shift)
             }

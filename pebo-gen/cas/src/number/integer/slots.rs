@@ -1,5 +1,5 @@
-//! Many integers as the digits of one: a long product of such is one product of long integers, which the library does in
-//! less than quadratic time (Kronecker's substitution).
+//! Many integers as the digits of one: a long product of such is one product of long integers, which the library does
+//! in less than quadratic time (Kronecker's substitution).
 
 use dashu_int::ops::UnsignedAbs;
 use dashu_int::{IBig, UBig};
@@ -11,7 +11,8 @@ use super::Repr::{Big, Small};
 const WORD: usize = 8;
 
 impl Integer {
-    /// The sum of `entry * 256^(slot * place)` over entries by ascending places; the magnitude of each fits so many bytes.
+    /// The sum of `entry * 256^(slot * place)` over entries by ascending places; the absolute value of each fits so
+    /// many bytes.
     pub(crate) fn packed<'a>(entries: impl Iterator<Item = (usize, &'a Self)>, slot: usize, places: usize) -> Self {
         let length = slot * places + WORD;
         let [mut positive, mut negative] = [vec![0_u8; length], Vec::new()];
@@ -24,7 +25,7 @@ impl Integer {
             };
             let digits = &mut digits[slot * place..];
             match &entry.0 {
-                // What is beyond the slot is zero, and the next entry is written over it.
+                // Bytes beyond the slot are zero, and the next entry overwrites them.
                 Small(value) => digits[..WORD].copy_from_slice(&value.unsigned_abs().to_le_bytes()),
                 Big(value) => {
                     let bytes = value.as_ref().unsigned_abs().to_le_bytes();
@@ -51,7 +52,7 @@ impl Integer {
         let mut carry = false;
         let entry = |digits: &mut [u8]| {
             if carry {
-                // What was borrowed for the entry before.
+                // The borrow for the entry before.
                 carry = digits.iter_mut().all(|digit| {
                     *digit = digit.wrapping_add(1);
                     *digit == 0
@@ -66,9 +67,9 @@ impl Integer {
     }
 }
 
-/// The entries of slots that are no longer than a word, with the opposite sign if asked for.
+/// The entries of slots that are no longer than a word, with the opposite sign if required.
 fn of_words(bytes: &[u8], slot: usize, places: usize, negative: bool) -> Vec<Integer> {
-    // The digits in the highest bits: a sign is where it is read, and what is beyond the slot is gone.
+    // The digits in the highest bits: the sign is in place, and bytes beyond the slot are gone.
     let shift = 64 - 8 * slot;
     let mut borrowed = 0;
     let mut entries = Vec::with_capacity(places);
@@ -106,7 +107,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_packed_comes_back(
+        fn packing_is_inverted(
             entries in prop::collection::vec(pair(), 1..12),
             more in 1_usize..9,
         ) {

@@ -13,10 +13,10 @@ use super::{Interval, Precision};
 /// Angles of 2^`LARGEST` and more are not reduced.
 const LARGEST: i64 = 1 << 14;
 
-/// Scales tried for a remainder next to zero; should the last not do, the enclosure is wider.
+/// Scales tried for a remainder next to zero; if the last fails, the enclosure is wider.
 const ATTEMPTS: usize = 4;
 
-/// What is known of an angle.
+/// Enclosures of an angle's sine, cosine and quarter turn.
 pub(super) struct Angle {
     pub(super) sin: Interval,
     pub(super) cos: Interval,

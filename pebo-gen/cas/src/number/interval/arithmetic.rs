@@ -1,4 +1,4 @@
-//! Sum, difference, product, quotient, negation and magnitude.
+//! Sum, difference, product, quotient, negation and absolute value.
 //!
 //! In: intervals. Out: the exact image, rounded outward. Holds: the image of a part of an operand
 //! lies in the image of the whole.
@@ -77,7 +77,7 @@ impl Interval {
         Self { lo: self.lo.shifted(places), hi: self.hi.shifted(places) }
     }
 
-    /// Whether there are numbers on both sides of zero.
+    /// True if there are numbers on both sides of zero.
     fn is_mixed(&self) -> bool {
         self.lo.is_negative() && self.hi.is_positive()
     }

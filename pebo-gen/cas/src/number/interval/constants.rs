@@ -1,8 +1,8 @@
 //! The constants pi and log 2 as integers.
 //!
-//! In: a scale. Out: exactly floor(c 2^scale). Holds: the answer does not depend on what was asked
-//! before, as the floor of a shifted floor is the floor; so a longer one may be kept for shorter
-//! ones. Both constants are irrational, which is why the search for an unambiguous floor ends.
+//! In: a scale. Out: exactly floor(c 2^scale). Holds: the answer does not depend on earlier calls, as the floor of a
+//! shifted floor is the floor; so a longer one may be kept for shorter ones. Both constants are irrational, which is
+//! why the search for an unambiguous floor ends.
 
 use std::sync::OnceLock;
 
@@ -68,7 +68,7 @@ fn exact_floor(scale: i64, formula: &Formula, alternating: bool) -> IBig {
 /// The sum of (+-1)^j / ((2j+1) n^(2j+1)), n >= 5, and a bound of its error in ulps.
 ///
 /// Each power is off by less than 1/n^2 of the error before it and one ulp, so less than 2; each
-/// term by less than 2; what follows a power that rounds to zero is less than 2 ulps.
+/// term by less than 2; the terms after a power that rounds to zero are less than 2 ulps.
 fn inverse_tangent(n: i64, scale: i64, alternating: bool) -> (IBig, i64) {
     let square = if alternating { -n * n } else { n * n };
     let mut power = scaled(&IBig::ONE, scale) / n;

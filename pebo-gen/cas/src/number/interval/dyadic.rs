@@ -173,7 +173,7 @@ impl Dyadic {
             };
         }
         let unit = (top - 52).max(-1074);
-        // At most 2^53 in magnitude: exact, as is the product, unless it rounds up to 2^1024.
+        // At most 2^53 in absolute value: exact, as is the product, unless it rounds up to 2^1024.
         let count = self.at_exponent(unit, side).to_f64().value();
         let unit = u64::try_from(unit + 1074).unwrap_or(0);
         count * f64::from_bits(if unit < 52 { 1 << unit } else { (unit - 51) << 52 })
@@ -191,14 +191,15 @@ impl Neg for &Dyadic {
 impl Ord for Dyadic {
     fn cmp(&self, other: &Self) -> Ordering {
         let (sign, other_sign) = (self.mantissa.signum(), other.mantissa.signum());
-        let by_magnitude = || {
+        let by_absolute_value = || {
             self.top().cmp(&other.top()).then_with(|| {
                 let exponent = self.exponent.min(other.exponent);
                 let aligned = |x: &Self| scaled(&x.mantissa, x.exponent - exponent).unsigned_abs();
                 aligned(self).cmp(&aligned(other))
             })
         };
-        sign.cmp(&other_sign).then_with(|| if self.is_negative() { by_magnitude().reverse() } else { by_magnitude() })
+        sign.cmp(&other_sign)
+            .then_with(|| if self.is_negative() { by_absolute_value().reverse() } else { by_absolute_value() })
     }
 }
 

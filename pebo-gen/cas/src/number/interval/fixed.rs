@@ -10,7 +10,7 @@ use dashu_int::ops::DivRemEuclid;
 
 use super::dyadic::{Dyadic, length, scaled};
 
-/// How often an argument is halved before a series is summed, for the least total work.
+/// The number of halvings of an argument before a series is summed, for the least total work.
 pub(super) fn halvings(bits: i64) -> i64 {
     bits.isqrt() / 2
 }

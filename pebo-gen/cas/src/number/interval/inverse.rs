@@ -107,7 +107,7 @@ fn asin_at(x: &Dyadic, p: Precision) -> Option<Interval> {
     opposite.atan2(&adjacent(x, more)?, p)
 }
 
-/// Where |x| is not small, from the same triangle; else pi/2 - asin x, without cancellation.
+/// From the same triangle if |x| is not small; else pi/2 - asin x, without cancellation.
 fn acos_at(x: &Dyadic, p: Precision) -> Option<Interval> {
     if x.top() < Some(-1) {
         let more = p.more(4);

@@ -31,7 +31,7 @@ use dashu_int::IBig;
 use crate::{Integer, Rational};
 use dyadic::{Dyadic, Side};
 
-/// Magnitudes above 2^`RANGE` are refused, those below 2^-`RANGE` widened to reach zero.
+/// Absolute values above 2^`RANGE` are refused, those below 2^-`RANGE` widened to reach zero.
 const RANGE: i64 = 1 << 40;
 
 /// The number of significant bits of an end point.
@@ -140,28 +140,28 @@ impl Interval {
         Self { lo: self.lo.clone().min(other.lo.clone()), hi: self.hi.clone().max(other.hi.clone()) }
     }
 
-    /// Whether zero is among the numbers.
+    /// True if zero is among the numbers.
     pub fn contains_zero(&self) -> bool {
         !self.is_positive() && !self.is_negative()
     }
 
-    /// Whether all numbers are greater than zero.
+    /// True if all numbers are greater than zero.
     pub fn is_positive(&self) -> bool {
         self.lo.is_positive()
     }
 
-    /// Whether all numbers are less than zero.
+    /// True if all numbers are less than zero.
     pub fn is_negative(&self) -> bool {
         self.hi.is_negative()
     }
 
-    /// Whether a rational number is not among the numbers.
+    /// True if a rational number is not among the numbers.
     pub fn excludes(&self, q: &Rational) -> bool {
         let parts = Dyadic::integer(&q.numerator()).zip(Dyadic::integer(&q.denominator()));
         parts.is_some_and(|(n, d)| self.lo.product(&d) > n || self.hi.product(&d) < n)
     }
 
-    /// A rational number that is no less than any of the multiples; none where that is out of range.
+    /// A rational number that is no less than any of the multiples; none if that is out of range.
     pub fn above_multiples(&self, factor: &Rational) -> Option<Rational> {
         let end = if factor.is_negative() { self.lo() } else { self.hi() };
         Some(&Rational::from_f64_exact(end)? * factor)

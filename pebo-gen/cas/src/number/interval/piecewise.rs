@@ -1,4 +1,4 @@
-//! Functions that are put together of straight lines: exact, as the end points are.
+//! Piecewise linear functions: exact, as the end points are.
 
 use super::Interval;
 use super::dyadic::Dyadic;

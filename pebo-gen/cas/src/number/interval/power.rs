@@ -17,10 +17,10 @@ impl Interval {
         // Every rounding is raised to the powers after it: less than 2 n units together.
         let more = p.more(n.unsigned_abs().checked_ilog2().unwrap_or(0) + 4);
         let power = if n % 2 == 0 {
-            self.abs().power_of_magnitude(n.unsigned_abs(), more)?
+            self.abs().power_of_absolute(n.unsigned_abs(), more)?
         } else {
             self.increasing(|x| {
-                let power = Self::point(x.abs()).power_of_magnitude(n.unsigned_abs(), more)?;
+                let power = Self::point(x.abs()).power_of_absolute(n.unsigned_abs(), more)?;
                 Some(if x.is_negative() { power.neg() } else { power })
             })?
         };
@@ -31,7 +31,7 @@ impl Interval {
     }
 
     /// By repeated squaring from the highest bit, for a >= 0.
-    fn power_of_magnitude(&self, n: u64, p: Precision) -> Option<Self> {
+    fn power_of_absolute(&self, n: u64, p: Precision) -> Option<Self> {
         let mut power = Self::point(Dyadic::ONE);
         for bit in (0..u64::BITS - n.leading_zeros()).rev() {
             power = power.mul(&power, p)?;
@@ -64,10 +64,10 @@ impl Interval {
             return None;
         }
         let more = p.more(4);
-        let magnitude = exponent.abs();
-        let power = match radical(&magnitude) {
+        let absolute = exponent.abs();
+        let power = match radical(&absolute) {
             Some((n, degree)) => self.powi(n, more)?.root(degree, more)?,
-            None => self.increasing(|x| power_by_logarithm(x, &magnitude, more))?,
+            None => self.increasing(|x| power_by_logarithm(x, &absolute, more))?,
         };
         if exponent.is_negative() {
             return Self::point(Dyadic::ONE).div(&power, p);

@@ -20,7 +20,7 @@ impl Interval {
         Some(self.wave(0, |angle| angle.cos, p))
     }
 
-    /// The tangent; none where a pole is in the interval, or not to be told from an end of it.
+    /// The tangent; none if a pole is in the interval, or not separable from an end of it.
     pub fn tan(&self, p: Precision) -> Option<Self> {
         let more = p.more(4);
         let at = |angle: &Angle| angle.sin.div(&angle.cos, more)?.rounded(p);

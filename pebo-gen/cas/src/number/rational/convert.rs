@@ -11,7 +11,7 @@ use crate::{Integer, Rational};
 /// gigabytes. Every finite `f64` is well inside.
 const MAX_DECIMALS: usize = 5_000;
 
-/// Why a text is not a number that can be taken.
+/// The reason why a text is not an accepted number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InvalidDecimal {
     /// Not of the form `digits.digits e exponent`.
@@ -47,8 +47,8 @@ impl Rational {
         if digits.starts_with(['+', '-']) {
             return Err(InvalidDecimal::Malformed);
         }
-        let magnitude = Integer::from_digits(&digits).ok_or(InvalidDecimal::Malformed)?;
-        let value = if mantissa.starts_with('-') { -magnitude } else { magnitude };
+        let absolute = Integer::from_digits(&digits).ok_or(InvalidDecimal::Malformed)?;
+        let value = if mantissa.starts_with('-') { -absolute } else { absolute };
         // Both are at most MAX_DECIMALS.
         let shift = exponent - i32::try_from(fraction.len()).unwrap_or(i32::MAX);
         let scale = Integer::from(10).pow(shift.unsigned_abs());
@@ -66,8 +66,8 @@ impl Rational {
         let fraction = bits & ((1 << 52) - 1);
         // Subnormal numbers have no hidden bit and the exponent of the smallest normal ones.
         let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
-        let magnitude = Integer::from(mantissa);
-        let signed = if value < 0.0 { -magnitude } else { magnitude };
+        let absolute = Integer::from(mantissa);
+        let signed = if value < 0.0 { -absolute } else { absolute };
         let biased = biased.max(1);
         if biased >= 1075 {
             Self::new(signed.shl(biased - 1075), Integer::ONE)
@@ -87,8 +87,8 @@ impl Rational {
             return *n as f64 / d.get() as f64;
         }
         let (n, d) = (self.numerator().abs(), self.denominator());
-        let magnitude = round_quotient(&n, &d);
-        if self.is_negative() { -magnitude } else { magnitude }
+        let absolute = round_quotient(&n, &d);
+        if self.is_negative() { -absolute } else { absolute }
     }
 }
 
@@ -127,8 +127,8 @@ fn round_quotient(n: &Integer, d: &Integer) -> f64 {
     scale_rounded(sticky, i64::try_from(dropped).unwrap_or(0) - shift)
 }
 
-/// `bits * 2^exponent` rounded to nearest; `bits` has its highest bit set, and its lowest says
-/// whether anything non-zero lies below.
+/// `bits * 2^exponent` rounded to nearest; `bits` has its highest bit set, and its lowest is the sticky bit of all
+/// lower ones.
 fn scale_rounded(bits: u64, exponent: i64) -> f64 {
     // A subnormal result keeps fewer bits: its last one is 2^-1074.
     let drop = (-1074 - exponent).max(11);

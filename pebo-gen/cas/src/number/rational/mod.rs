@@ -86,17 +86,17 @@ impl Rational {
         }
     }
 
-    /// Whether this is zero.
+    /// True if this is zero.
     pub fn is_zero(&self) -> bool {
         matches!(self.0, Small(0, _))
     }
 
-    /// Whether this is one.
+    /// True if this is one.
     pub fn is_one(&self) -> bool {
         matches!(self.0, Small(1, UNIT))
     }
 
-    /// Whether the denominator is one.
+    /// True if the denominator is one.
     pub fn is_integer(&self) -> bool {
         match &self.0 {
             Small(_, d) => *d == UNIT,
@@ -104,7 +104,7 @@ impl Rational {
         }
     }
 
-    /// Whether this is less than zero.
+    /// True if this is less than zero.
     pub fn is_negative(&self) -> bool {
         self.signum() < 0
     }
@@ -130,7 +130,7 @@ impl Rational {
         }
     }
 
-    /// The number of bits of numerator and denominator together, as a measure of size.
+    /// The number of bits of numerator and denominator combined, as a measure of size.
     pub fn bits(&self) -> u64 {
         match &self.0 {
             Small(n, d) => Integer::from(*n).bits() + Integer::from(d.get()).bits(),
@@ -138,7 +138,7 @@ impl Rational {
         }
     }
 
-    /// The magnitude.
+    /// The absolute value.
     pub fn abs(&self) -> Self {
         if self.is_negative() { -self } else { self.clone() }
     }
@@ -170,13 +170,13 @@ impl Rational {
     /// bits.
     pub fn pow(&self, exponent: i32) -> Option<Self> {
         let base = if exponent < 0 { self.recip()? } else { self.clone() };
-        let magnitude = exponent.unsigned_abs();
+        let absolute = exponent.unsigned_abs();
         let (n, d) = (base.numerator(), base.denominator());
         let unit = |part: &Integer| part.bits() < 2;
-        if !(unit(&n) && unit(&d)) && base.bits().saturating_mul(u64::from(magnitude)) > MAX_POWER_BITS {
+        if !(unit(&n) && unit(&d)) && base.bits().saturating_mul(u64::from(absolute)) > MAX_POWER_BITS {
             return None;
         }
-        Some(Self::from_lowest(n.pow(magnitude), d.pow(magnitude)))
+        Some(Self::from_lowest(n.pow(absolute), d.pow(absolute)))
     }
 
     /// The root of the given degree, if it is rational: the non-negative one of an even degree.
@@ -190,7 +190,7 @@ impl Rational {
         self.root_exact(2)
     }
 
-    /// The largest rational of which both are integer multiples: never negative, zero of two zeros.
+    /// The largest rational with both as integer multiples: never negative, zero of two zeros.
     pub fn gcd(&self, other: &Self) -> Self {
         // Lowest terms: a prime of the joint numerator divides neither denominator.
         Self::from_lowest(self.numerator().gcd(&other.numerator()), self.denominator().lcm(&other.denominator()))

@@ -1,8 +1,8 @@
 //! Sums of many numbers.
 //!
-//! In: pairs of numbers. Out: the sum of their products. Long ones are added over a common denominator and brought to lowest terms once: the
-//! denominators of a linear combination have nearly all factors in common, and a greatest common divisor after each
-//! addition would cost more than all else.
+//! In: pairs of numbers. Out: the sum of their products. Long ones are added over a common denominator and brought to
+//! lowest terms once: the denominators of a linear combination have nearly all factors in common, and a greatest common
+//! divisor after each addition would cost more than all else.
 
 use crate::Integer;
 
@@ -21,24 +21,24 @@ impl Rational {
             _ if pairs.clone().all(small) => return pairs.fold(Self::ZERO, |sum, (a, b)| &sum + &(a * b)),
             _ => {}
         }
-        let mut above = Integer::ZERO;
-        let mut below = Integer::ONE;
+        let mut total = Integer::ZERO;
+        let mut common_denominator = Integer::ONE;
         for (a, b) in pairs {
             let numerator = &a.numerator() * &b.numerator();
             let denominator = &a.denominator() * &b.denominator();
-            let multiple = match below.div_rem(&denominator) {
+            let multiple = match common_denominator.div_rem(&denominator) {
                 Some((quotient, rest)) if rest.is_zero() => quotient,
                 _ => {
-                    let common = below.lcm(&denominator);
-                    let more = common.div_exact(&below).unwrap_or(Integer::ONE);
-                    above = &above * &more;
-                    below = common;
-                    below.div_exact(&denominator).unwrap_or(Integer::ONE)
+                    let common = common_denominator.lcm(&denominator);
+                    let more = common.div_exact(&common_denominator).unwrap_or(Integer::ONE);
+                    total = &total * &more;
+                    common_denominator = common;
+                    common_denominator.div_exact(&denominator).unwrap_or(Integer::ONE)
                 }
             };
-            above.add_product(&numerator, &multiple);
+            total.add_product(&numerator, &multiple);
         }
-        Self::new(above, below).unwrap_or(Self::ZERO)
+        Self::new(total, common_denominator).unwrap_or(Self::ZERO)
     }
 }
 

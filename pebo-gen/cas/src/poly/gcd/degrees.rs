@@ -28,7 +28,7 @@ pub(super) fn bounds(
     let complete = |image: &[Residue]| image.last().is_some_and(|leading| !leading.is_zero());
     for ((image, other), bound) in images.into_iter().zip(others).zip(&mut bounds) {
         work.spend(steps(image.len()).saturating_mul(steps(other.len())))?;
-        // One leading coefficient that stays is enough: then that of the divisor stays too.
+        // One non-vanishing leading coefficient is enough: then that of the divisor does not vanish either.
         if complete(&image) || complete(&other) {
             let (mut image, mut other) = (image, other);
             dense::trim(&mut image);
@@ -43,7 +43,7 @@ pub(super) fn bounds(
 /// Powers of the coordinates and of their reciprocals.
 struct Tables {
     powers: Vec<Vec<Residue>>,
-    /// These take one variable out of the value of a term again.
+    /// Reciprocals, which remove one variable from the value of a term.
     reciprocals: Vec<Vec<Residue>>,
 }
 

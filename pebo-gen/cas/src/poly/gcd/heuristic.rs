@@ -1,10 +1,10 @@
 //! Divisors of dense polynomials in one variable by those of integers (Char, Geddes and Gonnet 1989).
 //!
-//! In: two primitive polynomials a and b. Out: their greatest common divisor, or none where the attempt fails. With
-//! `c = gcd(a(xi), b(xi))` written in digits of at most `xi/2` in magnitude, c = G(xi); what is left of G without its content
-//! is g, and if g divides both it is the divisor: else that is `g*q`, and q(xi) divides the content, which is at most
-//! `xi/2`. But q divides a, whose roots are less than 1 + |a| in magnitude (Cauchy), so with `xi >= 2|a| + 2` any q that is
-//! no number has `|q(xi)| > xi/2`.
+//! In: two primitive polynomials a and b. Out: their greatest common divisor, or none if the attempt fails. With
+//! `c = gcd(a(xi), b(xi))` written in digits of at most `xi/2` in absolute value, c = G(xi); g is G without its
+//! content, and if g divides both it is the divisor: else that is `g*q`, and q(xi) divides the content, which is at
+//! most `xi/2`. But q divides a, whose roots are less than 1 + |a| in absolute value (Cauchy), so with `xi >= 2|a| + 2`
+//! any q that is no number has `|q(xi)| > xi/2`.
 
 use super::super::work::{TooLarge, Work};
 use super::super::{Monomial, Poly, packed};
@@ -15,13 +15,13 @@ const MARGINS: [u64; 2] = [2, 6];
 /// Words of an evaluated polynomial from which on images modulo primes are as fast.
 const MOST_WORDS: u64 = 4000;
 
-/// The divisor, where it is found.
+/// The divisor, if it is found.
 pub(super) fn divisor(a: &Poly, b: &Poly, work: &Work) -> Result<Option<Poly>, TooLarge> {
     let (&[variable], Some(left), Some(right)) = (a.variables(), packed::dense(a), packed::dense(b)) else {
         return Ok(None);
     };
     for margin in MARGINS {
-        // At least 256 times what is needed.
+        // At least 256 times the required value.
         let bytes = a.bits().max(b.bits()) / 8 + margin;
         let words = bytes.saturating_mul(left.max(right) as u64) / 8 + 1;
         if words > MOST_WORDS {

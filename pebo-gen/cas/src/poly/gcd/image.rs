@@ -55,7 +55,7 @@ impl Image {
         self.rows().map(|row| row[column]).max().unwrap_or(0)
     }
 
-    /// The value in the last column's variable: the column goes. Terms may have become zero.
+    /// The value in the last column's variable, whose column is removed. Terms may have become zero.
     pub(super) fn at_last(&self, field: &PrimeField, value: Residue) -> Self {
         let last = self.columns - 1;
         let powers = powers(field, value, self.degree(last));
@@ -116,7 +116,7 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// The degree that an image has at most.
+    /// The greatest possible degree of an image.
     pub(super) fn degree(&self) -> usize {
         self.degrees.first().copied().unwrap_or(0) as usize
     }

@@ -5,9 +5,9 @@
 //!                                        one variable -> a divisor of integers
 //! ```
 //!
-//! Each step either ends it or leaves a smaller problem of the same kind. The interpolation is
-//! modulo primes and may err; what it proposes is a candidate that must divide both polynomials and
-//! reach a proved degree bound, so that no wrong divisor leaves this module.
+//! Each step either ends the computation or leaves a smaller problem of the same kind. The interpolation is modulo
+//! primes and may err; its result is a candidate that must divide both polynomials and reach a proved degree bound, so
+//! that no wrong divisor leaves this module.
 
 mod degrees;
 mod dense;
@@ -27,7 +27,7 @@ use points::Points;
 /// Images in one variable have a coefficient for every power: degrees above this are refused.
 const MAX_DEGREE: u32 = 1 << 20;
 
-/// Terms from which on it pays to look first whether there is a divisor at all.
+/// Terms from which on it pays to test first that there is a divisor at all.
 const LONG: usize = 16;
 
 impl Poly {
@@ -103,8 +103,8 @@ fn gcd_primitive(a: &Poly, b: &Poly, work: &Work) -> Result<Poly, TooLarge> {
     gcd_same_variables(a, b, work)
 }
 
-/// Whether two polynomials in different variables provably have no factor in common: cheap, where the coefficients with
-/// respect to what only one of them has would be many.
+/// True if two polynomials in different variables provably have no factor in common: cheap, if the coefficients with
+/// respect to the variables of only one of them would be many.
 fn are_coprime(a: &Poly, b: &Poly, work: &Work) -> Result<bool, TooLarge> {
     let layout = a.layout.union(&b.layout);
     let over = |poly: &Poly| Poly {

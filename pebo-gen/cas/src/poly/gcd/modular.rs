@@ -1,4 +1,4 @@
-//! From divisors modulo primes to the divisor over the integers.
+//! The divisor over the integers from divisors modulo primes.
 
 use super::super::Poly;
 use super::super::field::{PrimeField, Residue};
@@ -9,7 +9,7 @@ use super::points::Points;
 use super::sparse::{Failure, Interpolation, Triple};
 use crate::Integer;
 
-/// Runs before it is given up. Each has its own prime and points.
+/// Runs before the computation is given up. Each has its own prime and points.
 const RUNS: usize = 1000;
 
 /// A coefficient that is not yet known modulo enough primes looks random: the chance that it is as
@@ -21,7 +21,7 @@ struct Lift {
     skeleton: Image,
     coefficients: Vec<Integer>,
     modulus: Integer,
-    /// Whether another prime would most likely change nothing.
+    /// True if another prime would most likely change nothing.
     settled: bool,
 }
 
@@ -64,14 +64,14 @@ impl Lift {
     }
 }
 
-/// The representative of least magnitude.
+/// The representative of least absolute value.
 fn symmetric(field: &PrimeField, residue: Residue) -> Integer {
     let (value, prime) = (i128::from(field.value(residue)), i128::from(field.prime()));
     Integer::from(if value > prime / 2 { value - prime } else { value })
 }
 
-/// What is sought: the greatest common divisor of two polynomials in the same variables, primitive
-/// in the first of the given ones, with bounds of its degrees.
+/// The problem: the greatest common divisor of two polynomials in the same variables, primitive in the first of the
+/// given ones, with bounds of its degrees.
 pub(super) struct Problem<'a> {
     pub(super) a: &'a Poly,
     pub(super) b: &'a Poly,
@@ -86,7 +86,7 @@ impl Problem<'_> {
     pub(super) fn solve(&self, points: &mut Points) -> Result<Poly, TooLarge> {
         let main = self.variables[0];
         let leading = self.a.leading_coefficient_in(main).gcd(&self.b.leading_coefficient_in(main), self.work)?;
-        // How far the scaling can raise the degrees.
+        // The scaling can raise the degrees by so much.
         let bounds: Vec<u32> = self.variables[1..]
             .iter()
             .zip(&self.bounds[1..])

@@ -21,8 +21,7 @@ impl Newton {
         self.points.len()
     }
 
-    /// Adds the values at a further point; says whether they were as interpolated before. `None` if
-    /// the point is not new.
+    /// Adds the values at a further point; true if they were as interpolated before. `None` if the point is not new.
     pub(super) fn add(&mut self, field: &PrimeField, values: &[Residue], point: Residue) -> Option<bool> {
         let factors: Vec<Residue> = self.points.iter().map(|p| field.sub(point, *p)).collect();
         let product = factors.iter().fold(field.one(), |product, f| field.mul(product, *f));

@@ -1,10 +1,10 @@
 //! The greatest common divisor modulo a prime by sparse interpolation (Zippel, 1979; the scaling
 //! by the divisor of the leading coefficients is Brown's, 1971).
 //!
-//! The divisor is found with values for all variables but the first, and then one variable after
-//! the other is given back. The terms found so far are taken to be all there are (the skeleton), so
-//! that images at further values take as many points as the longest coefficient has terms, and not
-//! as many as there could be. Every assumption may fail without notice: the caller verifies.
+//! The divisor is found with values for all variables but the first, and then one variable after the other is restored.
+//! The terms found so far are taken to be all there are (the skeleton), so that images at further values take as many
+//! points as the longest coefficient has terms, and not as many as there could be. Every assumption may fail without
+//! notice: the caller verifies.
 
 use super::super::field::{PrimeField, Residue};
 use super::super::work::{TooLarge, Work, steps};
@@ -13,10 +13,10 @@ use super::image::{Image, Samples};
 use super::newton::Newton;
 use super::points::Points;
 
-/// How often new points are tried before all is begun anew.
+/// Attempts with new points before all is begun anew.
 const ATTEMPTS: usize = 8;
 
-/// Why there is no divisor from these points.
+/// The reason why these points give no divisor.
 pub(super) enum Failure {
     /// The points were special: others will do.
     Unlucky,
@@ -32,8 +32,8 @@ impl From<TooLarge> for Failure {
     }
 }
 
-/// Two polynomials modulo a prime, primitive in the variable of the first column, and the common
-/// divisor of their leading coefficients in it, with which the sought divisor is scaled.
+/// Two polynomials modulo a prime, primitive in the variable of the first column, and the common divisor of their
+/// leading coefficients in it, with which the divisor is scaled.
 #[derive(Clone)]
 pub(super) struct Triple {
     pub(super) a: Image,
@@ -107,7 +107,7 @@ impl Interpolation<'_> {
             match newton.add(self.field, &image, value) {
                 None => return Err(Failure::Unlucky),
                 Some(false) => {}
-                // Nothing new at this point: that was all, but for bad luck.
+                // Nothing new at this point: complete, but for bad luck.
                 Some(true) => break,
             }
         }
@@ -188,7 +188,7 @@ impl Interpolation<'_> {
     }
 }
 
-/// Whether the nodes within each group differ.
+/// True if the nodes within each group differ.
 fn distinct(nodes: &[Residue], groups: &[usize]) -> bool {
     let mut start = 0;
     groups.iter().all(|size| {

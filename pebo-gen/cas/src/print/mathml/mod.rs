@@ -1,27 +1,27 @@
-//! Expressions as presentation `MathML`: what [`Arena::print`] writes in a line, as a page sets it.
+//! Expressions as presentation `MathML`: the formulas of [`Arena::print`] in two dimensions.
 //!
-//! In: an expression. Out: one `math` element, or what stands in it, well-formed as XML and as HTML, without named
-//! entities, in the names of the model: `theta1` is a theta with an index, `L_1` an L. Quotients are fractions, square roots have a bar, and
-//! functions stand upright by the names of the one table. Parentheses stand where reading needs them, and no others.
+//! In: an expression. Out: one `math` element, or its content, well-formed as XML and as HTML, without named entities,
+//! in the names of the model: `theta1` is a theta with an index, `L_1` an L. Quotients are fractions, square roots have
+//! a bar, and functions are upright by the names of the one table. Parentheses are only where reading needs them.
 
 use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use super::arranged::{Factor, Summand, is_root, quotient, summands};
+use super::arrangement::{Factor, Summand, is_root, quotient, summands};
 use super::letter::{greek, parts};
 use crate::Rational;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum, Symbol};
 use crate::graph::function::Function;
 
-/// The length up to which a formula is set, with all of its parts.
+/// The length up to which a formula is set, all repetitions included.
 const MOST_CHARACTERS: usize = 10_000_000;
 
-/// A function before its arguments: no sign is seen.
+/// Invisible sign between a function and its arguments.
 const APPLY: &str = "<mo>&#x2061;</mo>";
 
-/// Between factors: no sign is seen.
+/// Invisible sign between factors.
 const TIMES: &str = "<mo>&#x2062;</mo>";
 
 /// Between factors that would read as one.
@@ -29,7 +29,7 @@ const DOT: &str = "<mo>⋅</mo>";
 
 const MINUS: &str = "<mo>−</mo>";
 
-/// How tightly the outermost operation binds, as far as the eye needs signs to see it.
+/// The binding of the outermost operation, as far as signs show it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
     Sum,
@@ -39,15 +39,15 @@ enum Binding {
     Atom,
 }
 
-/// The elements of an expression, how they may be embedded, and how they look at their two ends.
+/// The elements of an expression, its binding, and its two ends.
 #[derive(Clone, Debug)]
-struct Row {
+struct Markup {
     elements: String,
     binding: Binding,
     ends: Ends,
 }
 
-/// What stands at the ends of a row, for the sign between two factors.
+/// The kind of character at an end, for the sign between two factors.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Ends {
     /// A digit.
@@ -58,7 +58,7 @@ enum Ends {
     Plain,
 }
 
-impl Row {
+impl Markup {
     fn new(elements: impl Into<String>, binding: Binding, ends: Ends) -> Self {
         Self { elements: elements.into(), binding, ends }
     }
@@ -81,8 +81,8 @@ impl Row {
 impl Arena {
     /// The expression as a `math` element.
     ///
-    /// What is shared is set wherever it is used; of a formula that no page holds, the element says no more than how
-    /// long it is.
+    /// Shared subexpressions are set at every use; for a formula longer than any page, the element only gives its
+    /// length.
     ///
     /// ```
     /// use pebo_cas::Arena;
@@ -96,10 +96,10 @@ impl Arena {
         format!("<math>{}</math>", self.mathml_elements(expr, &BTreeMap::new()))
     }
 
-    /// What stands in the `math` element, for a larger formula; a symbol of `shown` is set as the formula beside it, in
-    /// parentheses where reading needs them, so that a substitution is seen before anything is made of it.
+    /// The content of the `math` element, for a larger formula; a symbol of `shown` is set as the formula beside it, in
+    /// parentheses where reading needs them: a substitution before any simplification.
     pub fn mathml_elements(&self, expr: Expr, shown: &BTreeMap<Symbol, Expr>) -> String {
-        let mut known: FxHashMap<Expr, Row> = FxHashMap::default();
+        let mut known: FxHashMap<Expr, Markup> = FxHashMap::default();
         let mut written = 0;
         let replaced: Vec<Expr> = shown.values().copied().collect();
         for e in self.postorder(&replaced) {
@@ -109,7 +109,7 @@ impl Arena {
                 return too_long();
             }
         }
-        let replaced: BTreeMap<Symbol, Row> = shown.iter().map(|(symbol, e)| (*symbol, known[e].clone())).collect();
+        let replaced: BTreeMap<Symbol, Markup> = shown.iter().map(|(symbol, e)| (*symbol, known[e].clone())).collect();
         known.clear();
         for e in self.postorder(&[expr]) {
             let row = match self.as_symbol(e).and_then(|symbol| replaced.get(&symbol)) {
@@ -128,7 +128,7 @@ impl Arena {
     /// The rate of a signal, as a point over its letter.
     pub fn mathml_rate(&self, symbol: Symbol) -> String {
         let rate = |letter: String| {
-            // The point takes the place of a letter's own.
+            // The dot replaces that of the letter.
             let letter = match letter.as_str() {
                 "<mi>i</mi>" => "<mi>ı</mi>",
                 "<mi>j</mi>" => "<mi>ȷ</mi>",
@@ -144,11 +144,11 @@ impl Arena {
         self.typeset_number_in(value, false).elements
     }
 
-    /// An expression of whose parts these are set.
-    fn typeset(&self, expr: Expr, known: &FxHashMap<Expr, Row>) -> Row {
+    /// The elements of an expression from those of its operands.
+    fn typeset(&self, expr: Expr, known: &FxHashMap<Expr, Markup>) -> Markup {
         match self.node(expr) {
             Node::Number(value) => self.typeset_number(&value),
-            Node::Pi => Row::atom("<mi>π</mi>"),
+            Node::Pi => Markup::atom("<mi>π</mi>"),
             Node::Symbol(symbol) => named(&self.name(symbol), |letter| letter),
             Node::Sum(sum) => self.typeset_sum(&sum, known),
             Node::Product(product) => self.typeset_product(&product, known),
@@ -159,7 +159,7 @@ impl Arena {
         }
     }
 
-    fn typeset_sum(&self, sum: &Sum, known: &FxHashMap<Expr, Row>) -> Row {
+    fn typeset_sum(&self, sum: &Sum, known: &FxHashMap<Expr, Markup>) -> Markup {
         let mut elements = String::new();
         for (index, (negative, summand)) in summands(self, sum).into_iter().enumerate() {
             elements.push_str(match (index, negative) {
@@ -174,60 +174,66 @@ impl Arena {
             };
             elements.push_str(&summand.within(Binding::Product).elements);
         }
-        Row::new(elements, Binding::Sum, Ends::Plain)
+        Markup::new(elements, Binding::Sum, Ends::Plain)
     }
 
-    fn typeset_product(&self, product: &Product, known: &FxHashMap<Expr, Row>) -> Row {
+    fn typeset_product(&self, product: &Product, known: &FxHashMap<Expr, Markup>) -> Markup {
         let factor = |factor: &Factor<'_>| match factor {
             Factor::Number(value) => self.typeset_number(value),
             Factor::Power(base, exponent) => power(&known[base], &exponent.abs()),
         };
-        let (above, below) = quotient(self, product);
-        let [above, below] = [above, below].map(|side| side.iter().map(factor).collect::<Vec<Row>>());
-        let row = if below.is_empty() {
-            side(&above, Binding::Factor)
+        let (numerator, denominator) = quotient(self, product);
+        let [numerator, denominator] =
+            [numerator, denominator].map(|side| side.iter().map(factor).collect::<Vec<Markup>>());
+        let row = if denominator.is_empty() {
+            side(&numerator, Binding::Factor)
         } else {
-            let [above, below] = [above, below].map(|factors| side(&factors, Binding::Sum).element());
-            let fraction = format!("<mfrac>{above}{below}</mfrac>");
-            Row::new(fraction, Binding::Factor, Ends::Plain)
+            let [numerator, denominator] =
+                [numerator, denominator].map(|factors| side(&factors, Binding::Sum).element());
+            let fraction = format!("<mfrac>{numerator}{denominator}</mfrac>");
+            Markup::new(fraction, Binding::Factor, Ends::Plain)
         };
         if product.coefficient.is_negative() {
             // A minus before a factor binds as a sum does: (−a)b and (−a)² keep their parentheses.
-            Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends)
+            Markup::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends)
         } else {
             row
         }
     }
 
-    fn typeset_number(&self, value: &Rational) -> Row {
+    fn typeset_number(&self, value: &Rational) -> Markup {
         self.typeset_number_in(value, self.notation().as_fraction(&value.abs()))
     }
 
     /// A number as a fraction, or as a decimal if it has a short one.
-    fn typeset_number_in(&self, value: &Rational, fraction: bool) -> Row {
-        let magnitude = value.abs();
-        let row = match self.notation().decimal(&magnitude) {
-            _ if magnitude.is_integer() => Row::new(format!("<mn>{magnitude}</mn>"), Binding::Atom, Ends::Digit),
+    fn typeset_number_in(&self, value: &Rational, fraction: bool) -> Markup {
+        let absolute = value.abs();
+        let row = match self.notation().decimal(&absolute) {
+            _ if absolute.is_integer() => Markup::new(format!("<mn>{absolute}</mn>"), Binding::Atom, Ends::Digit),
             Some(text) if !fraction => match text.split_once("e-") {
                 Some((digits, exponent)) => {
                     let ten = format!("<msup><mn>10</mn><mrow>{MINUS}<mn>{exponent}</mn></mrow></msup>");
-                    Row::new(format!("<mn>{digits}</mn>{DOT}{ten}"), Binding::Factor, Ends::Digit)
+                    Markup::new(format!("<mn>{digits}</mn>{DOT}{ten}"), Binding::Factor, Ends::Digit)
                 }
-                None => Row::new(format!("<mn>{text}</mn>"), Binding::Atom, Ends::Digit),
+                None => Markup::new(format!("<mn>{text}</mn>"), Binding::Atom, Ends::Digit),
             },
             _ => {
-                let (above, below) = (magnitude.numerator(), magnitude.denominator());
-                Row::new(format!("<mfrac><mn>{above}</mn><mn>{below}</mn></mfrac>"), Binding::Factor, Ends::Plain)
+                let (numerator, denominator) = (absolute.numerator(), absolute.denominator());
+                Markup::new(
+                    format!("<mfrac><mn>{numerator}</mn><mn>{denominator}</mn></mfrac>"),
+                    Binding::Factor,
+                    Ends::Plain,
+                )
             }
         };
-        if value.is_negative() { Row::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends) } else { row }
+        if value.is_negative() { Markup::new(format!("{MINUS}{}", row.elements), Binding::Sum, row.ends) } else { row }
     }
 }
 
 /// Factors beside one another; a single one binds at least as tightly as `least`.
-fn side(factors: &[Row], least: Binding) -> Row {
+fn side(factors: &[Markup], least: Binding) -> Markup {
     match factors {
-        [] => Row::new("<mn>1</mn>", Binding::Atom, Ends::Digit),
+        [] => Markup::new("<mn>1</mn>", Binding::Atom, Ends::Digit),
         [alone] => alone.within(least),
         [first, rest @ ..] => {
             let first = first.within(Binding::Factor);
@@ -238,36 +244,36 @@ fn side(factors: &[Row], least: Binding) -> Row {
                 elements.push_str(&factor.elements);
                 before = factor.ends;
             }
-            Row::new(elements, Binding::Product, Ends::Plain)
+            Markup::new(elements, Binding::Product, Ends::Plain)
         }
     }
 }
 
 /// `base ^ exponent` for a positive exponent.
-fn power(base: &Row, exponent: &Rational) -> Row {
+fn power(base: &Markup, exponent: &Rational) -> Markup {
     if exponent.is_one() {
         return base.clone();
     }
     if is_root(exponent) {
-        return Row::atom(format!("<msqrt>{}</msqrt>", base.elements));
+        return Markup::atom(format!("<msqrt>{}</msqrt>", base.elements));
     }
     let base = base.within(Binding::Atom);
-    let above = if exponent.is_integer() {
+    let superscript = if exponent.is_integer() {
         format!("<mn>{exponent}</mn>")
     } else {
         format!("<mrow><mn>{}</mn><mo>/</mo><mn>{}</mn></mrow>", exponent.numerator(), exponent.denominator())
     };
-    Row::new(format!("<msup>{}{above}</msup>", base.element()), Binding::Factor, base.ends)
+    Markup::new(format!("<msup>{}{superscript}</msup>", base.element()), Binding::Factor, base.ends)
 }
 
-fn call(function: Function, arguments: &str) -> Row {
+fn call(function: Function, arguments: &str) -> Markup {
     match function {
-        Function::Abs => Row::atom(format!("<mrow><mo>|</mo>{arguments}<mo>|</mo></mrow>")),
-        Function::Sqrt => Row::atom(format!("<msqrt>{arguments}</msqrt>")),
+        Function::Abs => Markup::atom(format!("<mrow><mo>|</mo>{arguments}<mo>|</mo></mrow>")),
+        Function::Sqrt => Markup::atom(format!("<msqrt>{arguments}</msqrt>")),
         _ => {
             let name = function.row().typeset();
             let call = format!("<mrow><mi>{name}</mi>{APPLY}{}</mrow>", parenthesised(arguments));
-            Row::new(call, Binding::Atom, Ends::Word)
+            Markup::new(call, Binding::Atom, Ends::Word)
         }
     }
 }
@@ -276,13 +282,13 @@ fn parenthesised(elements: &str) -> String {
     format!("<mrow><mo>(</mo>{elements}<mo>)</mo></mrow>")
 }
 
-/// What stands for a formula that no page holds.
+/// A substitute for a formula longer than any page.
 fn too_long() -> String {
     format!("<mtext>(a formula of more than {MOST_CHARACTERS} characters)</mtext>")
 }
 
-/// A name: its letter with what is put on it, its index below; several indices with commas between them.
-fn named(name: &str, put: impl Fn(String) -> String) -> Row {
+/// A name: its letter with an accent, its index below; several indices with commas between them.
+fn named(name: &str, put: impl Fn(String) -> String) -> Markup {
     let (base, index) = parts(name);
     let letter = put(identifier(base));
     let ends = if greek(base).is_some() || base.chars().count() == 1 { Ends::Plain } else { Ends::Word };
@@ -292,7 +298,7 @@ fn named(name: &str, put: impl Fn(String) -> String) -> Row {
         [one] => format!("<msub>{letter}{one}</msub>"),
         several => format!("<msub>{letter}<mrow>{}</mrow></msub>", several.join("<mo>,</mo>")),
     };
-    Row::new(elements, Binding::Atom, ends)
+    Markup::new(elements, Binding::Atom, ends)
 }
 
 fn subscript(index: &str) -> String {
@@ -310,7 +316,7 @@ fn identifier(name: &str) -> String {
     }
 }
 
-/// A text as XML and HTML hold it; what they cannot hold in any form is shown as replaced.
+/// A text as XML and HTML encode it; characters that they cannot encode are replaced.
 pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use crate::{Arena, Expr, Function, Rational};
 
-/// The expression without the elements that group, and with the signs that are not seen.
+/// The expression without grouping elements, and with visible signs.
 fn set(arena: &Arena, expr: Expr) -> String {
     let text = arena.mathml(expr);
     assert_well_formed(&text);
@@ -60,7 +60,7 @@ fn any_name_gives_well_formed_elements() {
     assert_eq!(set(&arena, arena.of_symbol(arena.symbol("a<&b"))), "<mi>a&lt;&amp;b</mi>");
 }
 
-/// The numbers, powers, fractions, functions, and where parentheses stand.
+/// Numbers, powers, fractions, functions, and the positions of parentheses.
 #[test]
 fn formulas_are_set_as_they_are_read() {
     let arena = Arena::new();
@@ -120,7 +120,7 @@ fn every_function_of_the_table_is_set() {
     }
 }
 
-/// Shared parts are set wherever they are used: what no page holds is not set.
+/// Shared subexpressions are set at every use: a formula longer than any page is not set.
 #[test]
 fn a_formula_that_no_page_holds_is_not_set() {
     let arena = Arena::new();
@@ -131,7 +131,7 @@ fn a_formula_that_no_page_holds_is_not_set() {
     assert!(set(&arena, expr).starts_with("<mtext>(a formula of more than"));
 }
 
-/// What is put in place of a symbol is seen as it was put there, in parentheses where it needs them.
+/// A substituted formula is set as it was given, in parentheses where needed.
 #[test]
 fn a_substitution_is_shown_before_anything_is_made_of_it() {
     let arena = Arena::new();

@@ -1,8 +1,8 @@
 //! The linear part of a system of equations, as one linear system.
 //!
-//! In: formulas that are to vanish, and the symbols to determine. Out: values of those symbols that the equations which
-//! are linear in all of them together determine, whatever the other equations say; none where these contradict one
-//! another. A value divides by a determinant, and as elsewhere in elimination a solution where it vanishes may be lost.
+//! In: formulas that are to vanish, and the symbols to determine. Out: values of those symbols by the equations that
+//! are linear in all of them combined, for any form of the other equations; none if these are inconsistent. A value
+//! divides by a determinant, and as elsewhere in elimination a solution may be lost at its zeros.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,11 +13,11 @@ use crate::{Arena, Expr, Integer, Rational, Symbol};
 
 use super::values::Values;
 
-/// Monomials on the right sides for every unknown, past which elimination with a column for each is not tried.
+/// The greatest number of monomials on the right sides for every unknown, for elimination with a column for each.
 const MOST_COLUMNS_EACH: usize = 4;
 
-/// An equation: coefficients of unknowns, and what their sum is.
-struct Row {
+/// An equation: coefficients of unknowns, and the value of their sum.
+struct LinearEquation {
     coefficients: BTreeMap<u32, Poly>,
     right: Poly,
 }
@@ -27,11 +27,11 @@ struct System<'a> {
     field: &'a Field<'a>,
     /// The kernels that are unknowns, with their symbols.
     unknowns: Vec<(u32, Symbol)>,
-    rows: Vec<Row>,
+    rows: Vec<LinearEquation>,
 }
 
-/// The values that linear equations determine together of the symbols, whose kernels are given; coefficients are free of
-/// the barred kernels, and what holds reluctant ones is divided by last.
+/// The values that linear equations combined determine of the symbols, whose kernels are given; coefficients are free
+/// of the barred kernels, and divisors with reluctant kernels are taken last.
 pub(super) fn solved(
     arena: &Arena,
     field: &Field<'_>,
@@ -47,7 +47,7 @@ pub(super) fn solved(
     }
     let occurring: BTreeSet<u32> = system.rows.iter().flat_map(|row| row.coefficients.keys().copied()).collect();
     system.unknowns.retain(|(kernel, _)| occurring.contains(kernel));
-    // One alone is found as well without.
+    // A single one is found without this system too.
     if system.unknowns.len() < 2 || system.rows.len() < 2 {
         return Ok(Values::new());
     }
@@ -55,10 +55,10 @@ pub(super) fn solved(
 }
 
 impl System<'_> {
-    /// The row of an equation, if it is linear in the unknowns and they stand in it.
-    fn row(&self, equation: &Poly, kernels: &BTreeSet<u32>, barred: &BTreeSet<u32>) -> Option<Row> {
+    /// The row of an equation, if it is linear in the unknowns and holds any.
+    fn row(&self, equation: &Poly, kernels: &BTreeSet<u32>, barred: &BTreeSet<u32>) -> Option<LinearEquation> {
         let kernels: Vec<u32> = kernels.iter().copied().collect();
-        let mut row = Row { coefficients: BTreeMap::new(), right: Poly::zero() };
+        let mut row = LinearEquation { coefficients: BTreeMap::new(), right: Poly::zero() };
         for (monomial, coefficient) in equation.collect(&kernels) {
             match monomial.powers() {
                 [] => row.right = -&coefficient,
@@ -74,9 +74,9 @@ impl System<'_> {
         (!row.coefficients.is_empty()).then_some(row)
     }
 
-    /// Of numbers, by elimination; of other coefficients, what one equation after another gives, where each has one
-    /// unknown that those before do not. That comes as products of what stands in the equations: in the normal form of
-    /// elimination their factors would be multiplied out.
+    /// Over numbers, by elimination; over other coefficients, by one equation after another, if each has one unknown
+    /// that those before do not. That gives products of terms of the equations: the normal form of elimination would
+    /// expand their factors.
     fn solve(&self, arena: &Arena, reluctant: &BTreeSet<u32>) -> Result<Values, Obstacle> {
         match self.rights() {
             Some(monomials) => self.eliminated(arena, &monomials),
@@ -88,7 +88,7 @@ impl System<'_> {
     fn one_by_one(&self, arena: &Arena, reluctant: &BTreeSet<u32>) -> Result<Values, Obstacle> {
         let field = self.field;
         let mut known: BTreeMap<u32, Expr> = BTreeMap::new();
-        let mut open: Vec<&Row> = self.rows.iter().collect();
+        let mut open: Vec<&LinearEquation> = self.rows.iter().collect();
         loop {
             let candidates = open.iter().enumerate().filter_map(|(index, row)| {
                 let mut unknowns = row.coefficients.iter().filter(|(kernel, _)| !known.contains_key(kernel));
@@ -115,7 +115,7 @@ impl System<'_> {
     fn eliminated(&self, arena: &Arena, monomials: &BTreeSet<Monomial>) -> Result<Values, Obstacle> {
         let width = self.unknowns.len();
         let number = |n: Option<&Integer>| Fraction::constant(&Rational::from(n.cloned().unwrap_or_default()));
-        let row = |row: &Row| {
+        let row = |row: &LinearEquation| {
             let left = self.unknowns.iter().map(|(kernel, _)| number(row.coefficients.get(kernel).and_then(constant)));
             left.chain(monomials.iter().map(|monomial| number(row.right.coefficient(monomial)))).collect()
         };
@@ -139,9 +139,9 @@ impl System<'_> {
     }
 
     /// The monomials of all right sides, if every coefficient is a number and they are not too many: with a column for
-    /// each, elimination stays among numbers.
+    /// each, elimination remains among numbers.
     fn rights(&self) -> Option<BTreeSet<Monomial>> {
-        let numbers = |row: &Row| row.coefficients.values().all(Poly::is_constant);
+        let numbers = |row: &LinearEquation| row.coefficients.values().all(Poly::is_constant);
         if !self.rows.iter().all(numbers) {
             return None;
         }
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_stay_numbers_beside_any_right_side() {
+    fn numbers_remain_numbers_beside_any_right_side() {
         let plane = of(|arena, [x, y, z], [a, b]| {
             vec![arena.sum([x, y, arena.neg(a)]), arena.sum([x, arena.neg(y), arena.neg(b)]), arena.sub(z, x)]
         });
@@ -200,8 +200,8 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_free_or_contradicts_is_left() {
-        // x and y are not told apart, z is; and an equation of the second degree says nothing here.
+    fn free_unknowns_and_contradictions_remain() {
+        // x and y are not identifiable, z is; and an equation of the second degree says nothing here.
         let open = of(|arena, [x, y, z], [a, _]| {
             vec![arena.sum([x, y, z]), arena.sum([x, y, arena.neg(z), a]), arena.sub(arena.mul(x, x), y)]
         });

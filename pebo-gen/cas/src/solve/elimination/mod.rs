@@ -1,12 +1,12 @@
-//! Symbols at which equations hold: one equation at a time, for one symbol at a time.
+//! Symbols that solve equations: one equation at a time, for one symbol at a time.
 //!
-//! In: formulas that are to vanish, states and inputs to determine, and a check of what comes out. Out: the first values
-//! that the check accepts, in symbols that stay free, or a formula that no rule makes vanish.
+//! In: formulas that are to vanish, states and inputs to determine, and a check of the result. Out: the first values
+//! that the check accepts, in symbols that remain free, or a formula that no rule makes vanish.
 //!
-//! What is linear is solved together first ([`joint`]). Then an equation is taken for a symbol in which one of its factors
-//! is linear, which is replaced in all others; where none is, a factor may be quadratic, or inverse functions may help.
-//! Division by what vanishes somewhere can lose solutions, never add one, and where a product vanishes, each factor in
-//! turn is tried. So this is a search, and no elimination of a matrix: what a pivot would be may vanish.
+//! Linear equations are solved combined first ([`joint`]). Then an equation is taken for a symbol in which one of its
+//! factors is linear, which is replaced in all others; if there is none, a factor may be quadratic, or inverse
+//! functions may help. A divisor that vanishes somewhere can lose solutions, never add one, and if a product vanishes,
+//! each factor in turn is tried. So this is a search, and no elimination of a matrix, whose pivots might vanish.
 
 mod joint;
 mod values;
@@ -21,26 +21,26 @@ use crate::{Arena, Domain, Expr, Rational, Relation, Symbol};
 use super::{Equation, solve};
 use values::Values;
 
-/// What is to be determined.
+/// The problem: symbols to determine on a domain.
 pub struct Elimination<'a> {
     /// Owns the formulas.
     pub arena: &'a Arena,
-    /// Where the symbols lie.
+    /// The domain of the symbols.
     pub domain: &'a Domain,
     /// Symbols to determine first.
     pub states: BTreeSet<Symbol>,
-    /// Symbols to determine where the states leave equations: the author would rather choose them.
+    /// Symbols to determine by equations that the states leave over: the author would rather choose them.
     pub inputs: BTreeSet<Symbol>,
 }
 
 /// A factor of an equation.
-struct Factor {
+struct EquationFactor {
     equation: usize,
     poly: Poly,
 }
 
 /// A symbol that makes a factor of an equation vanish.
-struct Step {
+struct EliminationStep {
     cost: Cost,
     equation: usize,
     symbol: Symbol,
@@ -48,38 +48,38 @@ struct Step {
     coefficients: Vec<Fraction>,
 }
 
-/// How little a step assumes; the least is taken.
+/// The assumptions of a step; the step with the least is taken.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Cost {
     /// The factor's degree in the symbol: the number of its values.
     degree: u32,
-    /// Whether the symbol's factor holds states, which may vanish.
-    bends: bool,
-    /// Whether the symbol is an input.
+    /// True if the symbol's factor holds states, which may vanish.
+    divides_by_states: bool,
+    /// True if the symbol is an input.
     input: bool,
-    /// Whether the factor holds inputs.
-    driven: bool,
+    /// True if the factor holds inputs.
+    holds_inputs: bool,
     /// Terms of factor and rest.
     terms: usize,
 }
 
-/// The partial solutions that a search visits at most from one start. One without alternatives visits as many as there
-/// are symbols to determine.
+/// The greatest number of partial solutions of a search from one start. A search without alternatives visits as many as
+/// there are symbols to determine.
 const MOST_VISITS: usize = 100;
 
-/// Parts of all equations together, past which a branch is given up: elimination makes them longer at each step, and
-/// what would come out nobody reads.
-const MOST_PARTS: usize = 600;
+/// The greatest number of subexpressions of all equations combined: elimination makes them longer at each step, and
+/// nobody reads a longer result.
+const MOST_NODES: usize = 600;
 
-/// How far the search from one start has come.
+/// The progress of the search from one start.
 struct Progress {
     visits: Cell<usize>,
-    /// Whether linear equations are solved together: until what follows from that fails.
-    together: Cell<bool>,
+    /// True while linear equations are solved combined, until a consequence of that fails.
+    combined: Cell<bool>,
 }
 
-/// The kernels of what is not determined.
-struct Unknown {
+/// The kernels of undetermined symbols.
+struct UnknownKernels {
     symbols: BTreeSet<Symbol>,
     /// Those that depend on each symbol.
     of_each: BTreeMap<Symbol, BTreeSet<u32>>,
@@ -89,7 +89,7 @@ struct Unknown {
 
 impl Elimination<'_> {
     /// The first solution that the check accepts, by the first of the starts that has one; else a formula that was not
-    /// made to vanish. A start is values to begin with.
+    /// made to vanish. A start is a set of initial values.
     pub fn run<T>(
         &self,
         equations: &[Expr],
@@ -99,7 +99,7 @@ impl Elimination<'_> {
         let mut stuck = None;
         let mut obstacle = None;
         for start in starts {
-            let progress = Progress { visits: Cell::new(0), together: Cell::new(true) };
+            let progress = Progress { visits: Cell::new(0), combined: Cell::new(true) };
             match self.search(equations, start, accept, &progress, &mut stuck) {
                 Ok(Some(found)) => return Ok(Ok(found)),
                 Ok(None) => {}
@@ -127,7 +127,7 @@ impl Elimination<'_> {
         }
         let arena = self.arena;
         let equations = arena.substitute_all(equations, values);
-        if arena.postorder(&equations).len() > MOST_PARTS {
+        if arena.postorder(&equations).len() > MOST_NODES {
             return Err(Obstacle::TooLarge);
         }
         let field = Field::over(arena, &self.domain.facts, &equations)?;
@@ -141,10 +141,10 @@ impl Elimination<'_> {
         let Some((first, _)) = open.first() else { return Ok(accept(values)) };
         let formulas: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
         let unknown = self.unknown(&field, values);
-        if progress.together.get() {
-            // What cannot be solved together may be found one at a time.
-            let found = self.states_together(&field, &open, &unknown).unwrap_or_default();
-            // No equation is left where each gave a state: the check sees whether they hold.
+        if progress.combined.get() {
+            // Symbols without a combined solution may be found one at a time.
+            let found = self.combined_states(&field, &open, &unknown).unwrap_or_default();
+            // No equation is left if each gave a state: the check decides about them.
             if found.len() > 1
                 && found.len() == open.len()
                 && let Some(accepted) = accept(&extended(arena, values, &found))
@@ -166,11 +166,11 @@ impl Elimination<'_> {
                 stuck.get_or_insert(open[equation].0);
                 return Ok(None);
             }
-            factors.extend(polys.into_iter().map(|poly| Factor { equation, poly }));
+            factors.extend(polys.into_iter().map(|poly| EquationFactor { equation, poly }));
         }
-        let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.together.get())?;
+        let alternatives = self.alternatives(&field, &open, &factors, &unknown, progress.combined.get())?;
         for found in alternatives {
-            // Where another equation has no value, or none that is understood, there may be a better one.
+            // If another equation has no value, or is not understood, there may be a better alternative.
             match self.advance(&formulas, values, &found, accept, (progress, &mut *stuck)) {
                 Ok(None) | Err(Obstacle::DivisionByZero | Obstacle::Kernel(_)) => {}
                 found => return found,
@@ -180,8 +180,8 @@ impl Elimination<'_> {
         Ok(None)
     }
 
-    /// Goes on with what was found. Where several at once lead nowhere, from then on it is one at a time, as if they had
-    /// not been tried.
+    /// Continues with the values found. If several at once fail, the search continues one at a time, as if they had not
+    /// been tried.
     fn advance<T>(
         &self,
         formulas: &[Expr],
@@ -193,7 +193,7 @@ impl Elimination<'_> {
         let (visits, before) = (progress.visits.get(), *stuck);
         let result = self.search(formulas, &extended(self.arena, values, found), accept, progress, stuck);
         if found.len() > 1 && !matches!(result, Ok(Some(_))) {
-            progress.together.set(false);
+            progress.combined.set(false);
             progress.visits.set(visits);
             *stuck = before;
             return Ok(None);
@@ -201,37 +201,37 @@ impl Elimination<'_> {
         result
     }
 
-    /// The states that linear equations determine together, with inputs in their coefficients.
-    fn states_together(
+    /// The states that linear equations combined determine, with inputs in their coefficients.
+    fn combined_states(
         &self,
         field: &Field<'_>,
         open: &[(Expr, Fraction)],
-        unknown: &Unknown,
+        unknown: &UnknownKernels,
     ) -> Result<Values, Obstacle> {
         let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
         joint::solved(self.arena, field, equations, &unknown.of_states, [&BTreeSet::new(), &unknown.of_inputs])
     }
 
-    /// The symbols that are not determined, states and inputs, and where they stand.
-    fn unknown(&self, field: &Field<'_>, values: &Values) -> Unknown {
+    /// The undetermined symbols, states and inputs, and their kernels.
+    fn unknown(&self, field: &Field<'_>, values: &Values) -> UnknownKernels {
         let open = |symbols: &BTreeSet<Symbol>| -> BTreeSet<Symbol> {
             symbols.iter().copied().filter(|s| !values.contains_key(s)).collect()
         };
         let (states, inputs) = (open(&self.states), open(&self.inputs));
         let symbols: BTreeSet<Symbol> = states.union(&inputs).copied().collect();
         let of_each = symbols.iter().map(|symbol| (*symbol, field.kernels_of(&BTreeSet::from([*symbol])))).collect();
-        Unknown { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
+        UnknownKernels { of_each, of_states: field.kernels_of(&states), of_inputs: field.kernels_of(&inputs), symbols }
     }
 
-    /// The ways to make one equation vanish, the one that assumes least first; before them several at once, if inputs are
-    /// to be found.
+    /// The alternatives to make one equation vanish, the one that assumes least first; before them several at once, if
+    /// inputs are to be found.
     fn alternatives(
         &self,
         field: &Field<'_>,
         open: &[(Expr, Fraction)],
-        factors: &[Factor],
-        unknown: &Unknown,
-        together: bool,
+        factors: &[EquationFactor],
+        unknown: &UnknownKernels,
+        combined: bool,
     ) -> Result<Vec<Values>, Obstacle> {
         let mut steps = Vec::new();
         for factor in factors {
@@ -241,7 +241,11 @@ impl Elimination<'_> {
         let chosen = steps.first().map(|step| step.equation);
         let mut found = Vec::new();
         let mut several = Values::new();
-        if together && steps.first().is_some_and(|step| step.cost.input && step.cost.degree == 1 && !step.cost.bends) {
+        if combined
+            && steps
+                .first()
+                .is_some_and(|step| step.cost.input && step.cost.degree == 1 && !step.cost.divides_by_states)
+        {
             let equations = open.iter().map(|(_, fraction)| fraction.numerator().clone());
             let solved =
                 joint::solved(self.arena, field, equations, &unknown.of_inputs, [&unknown.of_states, &BTreeSet::new()]);
@@ -251,8 +255,8 @@ impl Elimination<'_> {
             found.extend(self.values(field, step)?.into_iter().map(|value| (step.symbol, value)));
         }
         if chosen.is_none() {
-            let together: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
-            found.extend(self.inverted(&together, &unknown.symbols)?);
+            let combined: Vec<Expr> = open.iter().map(|(formula, _)| *formula).collect();
+            found.extend(self.inverted(&combined, &unknown.symbols)?);
         }
         for factor in factors.iter().filter(|factor| chosen.is_none_or(|chosen| factor.equation == chosen)) {
             let formula = field.show(&field.of_polynomial(&factor.poly)?);
@@ -266,13 +270,13 @@ impl Elimination<'_> {
         Ok(several.into_iter().chain(found.into_iter().map(|one| Values::from([one]))).collect())
     }
 
-    /// The symbols that stand to the first or second power in a factor, in no kernel but themselves.
+    /// The symbols with first or second power in a factor, in no kernel but themselves.
     fn steps(
         &self,
         field: &Field<'_>,
-        factor: &Factor,
-        unknown: &Unknown,
-        steps: &mut Vec<Step>,
+        factor: &EquationFactor,
+        unknown: &UnknownKernels,
+        steps: &mut Vec<EliminationStep>,
     ) -> Result<(), Obstacle> {
         let arena = self.arena;
         for (symbol, kernels) in &unknown.of_each {
@@ -295,23 +299,23 @@ impl Elimination<'_> {
             let holds = |kernels: &BTreeSet<u32>| slope.variables().any(|kernel| kernels.contains(&kernel));
             let cost = Cost {
                 degree,
-                bends: holds(&unknown.of_states),
+                divides_by_states: holds(&unknown.of_states),
                 input: self.inputs.contains(symbol),
-                driven: holds(&unknown.of_inputs),
+                holds_inputs: holds(&unknown.of_inputs),
                 terms: coefficients.iter().map(|c| c.numerator().term_count()).sum(),
             };
-            steps.push(Step { cost, equation: factor.equation, symbol: *symbol, coefficients });
+            steps.push(EliminationStep { cost, equation: factor.equation, symbol: *symbol, coefficients });
         }
         Ok(())
     }
 
     /// The roots of a step's polynomial.
-    fn values(&self, field: &Field<'_>, step: &Step) -> Result<Vec<Expr>, Obstacle> {
+    fn values(&self, field: &Field<'_>, step: &EliminationStep) -> Result<Vec<Expr>, Obstacle> {
         let arena = self.arena;
-        let [rest, slope, bend @ ..] = step.coefficients.as_slice() else { return Ok(Vec::new()) };
-        let [bend] = bend else { return Ok(vec![field.show(&field.div(rest, slope)?.opposite())]) };
-        let middle = field.div(slope, &field.scale(bend, &Rational::from(-2))?)?;
-        let apart = field.sub(&field.mul(&middle, &middle)?, &field.div(rest, bend)?)?;
+        let [constant, slope, curvature @ ..] = step.coefficients.as_slice() else { return Ok(Vec::new()) };
+        let [curvature] = curvature else { return Ok(vec![field.show(&field.div(constant, slope)?.opposite())]) };
+        let middle = field.div(slope, &field.scale(curvature, &Rational::from(-2))?)?;
+        let apart = field.sub(&field.mul(&middle, &middle)?, &field.div(constant, curvature)?)?;
         let (middle, apart) = (field.show(&middle), arena.sqrt(field.show(&apart)));
         Ok(vec![arena.add(middle, apart), arena.sub(middle, apart)])
     }

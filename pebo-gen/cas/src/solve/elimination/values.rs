@@ -1,4 +1,4 @@
-//! What equations make of the symbols that are solved for.
+//! Values of the symbols that are solved for.
 
 use std::collections::BTreeMap;
 

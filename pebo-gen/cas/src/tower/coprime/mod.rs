@@ -1,12 +1,12 @@
-//! Polynomials over a coprime base: products of powers of polynomials of which no two have a factor in common.
+//! A coprime base of polynomials: products of powers of polynomials without common factors.
 //!
-//! In: what a root, a logarithm or an absolute value is taken of. Out: a sign and powers of elements of the base. A
-//! field keeps one base: where a new polynomial shares a factor with an element, that one is split, and the field starts
-//! again with the finer base. Holds after: any two elements that occur are coprime, so `sqrt(a*b)` and `sqrt(a)` are seen
-//! to be related.
+//! In: the argument of a root, a logarithm or an absolute value. Out: a sign and powers of elements of the base. A
+//! field keeps one base: where a new polynomial shares a factor with an element, that one is split, and the field
+//! starts again with the finer base. Holds after: any two elements that occur are coprime, so the relation of
+//! `sqrt(a*b)` and `sqrt(a)` is found.
 //!
-//! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of
-//! sums of sines and cosines are looked for ([`square`]).
+//! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of sums of sines
+//! and cosines are searched for ([`square`]).
 
 mod square;
 
@@ -16,27 +16,27 @@ use crate::poly::{Poly, TooLarge, Work};
 
 use super::{Field, Obstacle};
 
-/// A coprime base: square-free polynomials of which no two have a factor in common.
+/// A coprime base: square-free polynomials without common factors.
 #[derive(Default, Debug)]
 pub(in crate::tower) struct CoprimeBase {
     /// The polynomials of this round.
     entered: Vec<Poly>,
-    /// What was found in earlier rounds and is yet to be entered in this one, as expressions: kernels may get other
+    /// Elements of earlier rounds that are yet to be entered in this one, as expressions: kernels may get other
     /// numbers.
     pending: Vec<Expr>,
 }
 
 /// A polynomial over a coprime base.
-struct Split {
+struct Splitting {
     /// Elements of the base, whose product it is.
     parts: Vec<Poly>,
-    /// Whether an element had to be split: what was made of it before does not go with its parts.
+    /// True if an element had to be split: kernels made of it before do not go with its parts.
     finer: bool,
 }
 
 impl CoprimeBase {
-    /// Writes a square-free polynomial over the base, which grows by what is new in it.
-    fn split(&mut self, poly: Poly, work: &Work) -> Result<Split, TooLarge> {
+    /// Writes a square-free polynomial over the base, which grows by its new factors.
+    fn split(&mut self, poly: Poly, work: &Work) -> Result<Splitting, TooLarge> {
         let (mut rest, mut parts, mut finer) = (poly, Vec::new(), false);
         let mut index = 0;
         while let Some(element) = self.entered.get(index).filter(|_| !rest.is_constant()).cloned() {
@@ -58,17 +58,17 @@ impl CoprimeBase {
             self.entered.push(rest.clone());
             parts.push(rest);
         }
-        Ok(Split { parts, finer })
+        Ok(Splitting { parts, finer })
     }
 
-    /// Enters what an earlier round has found.
+    /// Enters an element of an earlier round.
     fn enter(&mut self, poly: Poly) {
         if !poly.is_constant() && !self.entered.contains(&poly) {
             self.entered.push(poly);
         }
     }
 
-    /// Keeps what this round has found for the next one.
+    /// Keeps the elements of this round for the next one.
     fn keep(&mut self, shown: impl Fn(&Poly) -> Expr) {
         self.pending.extend(std::mem::take(&mut self.entered).iter().map(shown));
         self.pending.sort_unstable();
@@ -79,18 +79,18 @@ impl CoprimeBase {
 
 /// A sign and powers of parts.
 #[derive(Debug)]
-pub(in crate::tower) struct Product {
-    /// Whether the product of the powers must be negated.
+pub(in crate::tower) struct ElementProduct {
+    /// True if the product of the powers must be negated.
     pub negative: bool,
     /// Parts with their exponents: each primitive with a positive leading coefficient.
     pub powers: Vec<(Poly, u32)>,
-    /// What the product of the powers must be divided by.
+    /// The divisor of the product of the powers.
     pub divisor: Integer,
 }
 
 impl Field<'_> {
     /// A primitive polynomial as a product of powers of parts.
-    pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<Product, Obstacle> {
+    pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<ElementProduct, Obstacle> {
         let mut powers: Vec<(Poly, u32)> = Vec::new();
         let mut rest = poly.clone();
         for (sine, square) in self.sines_of(poly)? {
@@ -129,20 +129,20 @@ impl Field<'_> {
                 powers.push((part, times));
             }
         }
-        Ok(Product { negative: found.content.is_negative(), powers, divisor })
+        Ok(ElementProduct { negative: found.content.is_negative(), powers, divisor })
     }
 
     /// A square-free polynomial without monomial factors over the coprime base.
     fn over_base(&self, poly: Poly) -> Result<Vec<Poly>, Obstacle> {
         self.enter_pending()?;
-        let Split { parts, finer } = self.base.borrow_mut().split(poly, self.limit())?;
+        let Splitting { parts, finer } = self.base.borrow_mut().split(poly, self.limit())?;
         if finer {
             self.round.finer.set(true);
         }
         Ok(parts)
     }
 
-    /// Enters what earlier rounds have found. Reading it may itself use the base.
+    /// Enters the elements of earlier rounds. Reading them may itself use the base.
     fn enter_pending(&self) -> Result<(), Obstacle> {
         loop {
             let Some(expr) = self.base.borrow_mut().pending.pop() else { return Ok(()) };

@@ -9,10 +9,10 @@ use crate::poly::{Monomial, Poly};
 
 use crate::tower::{Field, Obstacle};
 
-/// The angles that a square is looked for in.
+/// The greatest number of angles in a square.
 const MOST_ANGLES: usize = 3;
 
-/// The terms of a polynomial that may be a square.
+/// The greatest number of terms of a polynomial that is tested as a square.
 const MOST_TERMS: usize = 60;
 
 impl Field<'_> {
@@ -43,7 +43,7 @@ impl Field<'_> {
         Ok((square == poly.scale(&multiple)).then_some((root, multiple)))
     }
 
-    /// The cosine and sine kernels of the angles of which both occur: over one alone the relation hides no square.
+    /// The cosine and sine kernels of the angles with both: over one alone the relation hides no square.
     fn angles_in(&self, poly: &Poly) -> Vec<(u32, u32)> {
         let count = self.round.kernels.borrow().count();
         let pairs = (0..count).filter_map(|cos| Some((cos, self.sine_beside(cos)?)));
@@ -57,19 +57,19 @@ impl Field<'_> {
         let half = parts.iter().map(|(m, _)| degree(m)).max().unwrap_or(0).div_ceil(2);
         let t = Poly::variable(sin);
         let square = t.mul(&t, self.limit())?;
-        let (below, above) = (&Poly::one() + &square, &Poly::one() - &square);
+        let (denominator, numerator) = (&Poly::one() + &square, &Poly::one() - &square);
         let mut total = Poly::zero();
         for (monomial, coefficient) in parts {
             let mut term = coefficient;
             term = term.mul(&t.scale(&Integer::from(2)).pow(monomial.exponent(sin), self.limit())?, self.limit())?;
-            term = term.mul(&above.pow(monomial.exponent(cos), self.limit())?, self.limit())?;
-            term = term.mul(&below.pow(2 * half - degree(&monomial), self.limit())?, self.limit())?;
+            term = term.mul(&numerator.pow(monomial.exponent(cos), self.limit())?, self.limit())?;
+            term = term.mul(&denominator.pow(2 * half - degree(&monomial), self.limit())?, self.limit())?;
             total = &total + &term;
         }
         Ok((total, half))
     }
 
-    /// What `poly(t) / (1 + t^2)^half` is in sine and cosine, up to a power of two.
+    /// The numerator of `poly(t) / (1 + t^2)^half` in sine and cosine, up to a power of two.
     fn with_sine_and_cosine(&self, poly: &Poly, cos: u32, sin: u32, half: u32) -> Result<Poly, Obstacle> {
         let (c, s) = (Poly::variable(cos), Poly::variable(sin));
         let (up, down) = (&Poly::one() + &c, &Poly::one() - &c);

@@ -1,10 +1,10 @@
-//! Absolute values: of a product, the product of the absolute values of its parts.
+//! Absolute values: for a product, the product of the absolute values of its parts.
 
 use crate::Rational;
 use crate::graph::function::Function;
 use crate::poly::Poly;
 
-use super::Relation;
+use super::AlgebraicRelation;
 use crate::tower::fraction::{Fraction, primitive};
 use crate::tower::sign::Sign;
 use crate::tower::{Field, Obstacle};
@@ -12,12 +12,12 @@ use crate::tower::{Field, Obstacle};
 impl Field<'_> {
     /// The absolute value of a fraction.
     pub(in crate::tower) fn absolute(&self, argument: &Fraction) -> Result<Fraction, Obstacle> {
-        let above = self.magnitude(argument.numerator())?;
-        self.div(&above, &self.magnitude(argument.denominator())?)
+        let numerator = self.absolute_polynomial(argument.numerator())?;
+        self.div(&numerator, &self.absolute_polynomial(argument.denominator())?)
     }
 
-    /// `|poly|`: by its sign where that is known, else part by part.
-    fn magnitude(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
+    /// `|poly|`: by its sign if that is known, else part by part.
+    fn absolute_polynomial(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
         for signed in [poly.clone(), -poly] {
             if self.signs().of_polynomial(&signed)?.is_some_and(Sign::is_positive_or_zero) {
                 return Ok(Fraction::polynomial(signed));
@@ -33,7 +33,7 @@ impl Field<'_> {
         Ok(total)
     }
 
-    /// `|part|`: by its sign where that is known, else a kernel whose square is known.
+    /// `|part|`: by its sign if that is known, else a kernel with a known square.
     pub(in crate::tower) fn size(&self, part: &Poly) -> Result<Fraction, Obstacle> {
         for signed in [part.clone(), -part] {
             if self.signs().of_part(&signed)?.is_some_and(Sign::is_positive_or_zero) {
@@ -43,6 +43,6 @@ impl Field<'_> {
         self.signs().leave_open(part);
         let kernel = self.arena.call(Function::Abs, &[self.show_polynomial(part)]);
         let value = self.reduce(&part.mul(part, self.limit())?)?;
-        Ok(self.entered(kernel, Some(Relation { degree: 2, value }), false))
+        Ok(self.entered(kernel, Some(AlgebraicRelation { degree: 2, value }), false))
     }
 }

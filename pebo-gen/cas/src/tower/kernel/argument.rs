@@ -1,10 +1,9 @@
 //! Arguments as rational combinations of atoms that are linearly independent over the rationals.
 //!
-//! In: the argument of a sine, cosine or exponential. Out: atoms with rational factors, whose sum it
-//! is. An argument is first divided by its denominator and taken apart into its monomials, so that
-//! `sin(x + u)` separates x from u; where a piece is a combination of pieces seen before, as
-//! `y^2/(1 + y^2)` is of 1 and `1/(1 + y^2)`, it is written so. Holds after: no atom of a family is a
-//! rational combination of the others.
+//! In: the argument of a sine, cosine or exponential. Out: atoms with rational factors, whose sum it is. An argument is
+//! first divided by its denominator and split into its monomials, so that `sin(x + u)` separates x from u; if a piece
+//! is a combination of earlier pieces, as `y^2/(1 + y^2)` is of 1 and `1/(1 + y^2)`, it is written so. Holds after: no
+//! atom of a family is a rational combination of the others.
 
 use std::collections::BTreeMap;
 
@@ -19,13 +18,13 @@ use crate::tower::{Family, Field, Obstacle};
 /// The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one atom.
 const MOST_SUMMANDS: usize = 8;
 
-/// Atoms that a linear dependence is looked for among.
+/// The greatest number of atoms in the search for a linear dependence.
 const MOST_ATOMS: usize = 40;
 
-/// Multiples that one unit may be taken, as in `sin(n*q)`: the polynomials have that degree.
+/// The greatest multiple of a unit, as in `sin(n*q)`: the polynomials have that degree.
 const MOST_MULTIPLES: i64 = 1 << 10;
 
-/// What arguments are combinations of, each with the expression it stands for.
+/// The atoms of arguments, each as an expression and a fraction.
 pub(in crate::tower) type Atoms = BTreeMap<Family, Vec<(Expr, Fraction)>>;
 
 /// The units of atoms: all multiples of an atom that occur are whole multiples of its unit.
@@ -37,12 +36,12 @@ pub(in crate::tower) struct Units(BTreeMap<(Family, Expr), Rational>);
 pub(in crate::tower) struct Multiple {
     pub(in crate::tower) unit: Rational,
     pub(in crate::tower) times: i64,
-    /// Whether the unit had to become finer: what was made of the one before does not go with it.
+    /// True if the unit had to become finer: kernels made of the one before do not go with it.
     pub(in crate::tower) finer: bool,
 }
 
 impl Units {
-    /// How many units of an atom a multiple is; the unit is refined where it is no whole number of them.
+    /// The number of units in a multiple of an atom; a finer unit is taken if it is no integer.
     pub(in crate::tower) fn multiple(
         &mut self,
         family: Family,
@@ -62,7 +61,7 @@ impl Units {
 }
 
 impl Field<'_> {
-    /// How many units of its atom a multiple is.
+    /// The number of an atom's units in a multiple.
     pub(in crate::tower) fn multiple(
         &self,
         family: Family,
@@ -96,7 +95,7 @@ impl Field<'_> {
         Ok(total.into_iter().filter(|(_, factor)| !factor.is_zero()).collect())
     }
 
-    /// Takes an argument for an atom as it is, before others are split into atoms; independent of those taken before.
+    /// Enters an argument as an atom, before others are split into atoms; it is independent of earlier ones.
     pub(in crate::tower) fn take_for_atom(&self, family: Family, argument: Expr) -> Result<(), Obstacle> {
         let (key, bare, _) = self.undivided(&self.fraction(argument)?)?;
         self.round.atoms.borrow_mut().entry(family).or_default().push((key, bare));
@@ -144,7 +143,7 @@ impl Field<'_> {
         Ok(pieces)
     }
 
-    /// A piece as a combination of atoms; a new one where it is none.
+    /// A piece as a combination of atoms; a new atom if there is none.
     fn over_atoms(&self, family: Family, piece: &Fraction) -> Result<Vec<(Expr, Rational)>, Obstacle> {
         let (key, bare, factor) = self.undivided(piece)?;
         let atoms = self.round.atoms.borrow().get(&family).cloned().unwrap_or_default();
@@ -165,9 +164,9 @@ impl Field<'_> {
 
     /// A fraction as a rational multiple of one that is primitive with a positive leading coefficient.
     fn undivided(&self, argument: &Fraction) -> Result<(Expr, Fraction, Rational), Obstacle> {
-        let (above, num) = primitive(&argument.num);
-        let (below, den) = primitive(&argument.den);
-        let mut factor = Rational::new(above, below).ok_or(Obstacle::DivisionByZero)?;
+        let (numerator, num) = primitive(&argument.num);
+        let (denominator, den) = primitive(&argument.den);
+        let mut factor = Rational::new(numerator, denominator).ok_or(Obstacle::DivisionByZero)?;
         let mut key = Fraction { num, den };
         if key.num.leading_coefficient().is_negative() {
             factor = -&factor;
@@ -221,11 +220,11 @@ mod tests {
 
         let arena = Arena::new();
         let y = arena.variable("y");
-        let below = arena.add(arena.scale(y, &Rational::from(3)), arena.one());
+        let denominator = arena.add(arena.scale(y, &Rational::from(3)), arena.one());
         let cases = [
             (arena.add(arena.mul(y, y), y), vec!["y^2", "y"]),
-            (arena.div(arena.mul(y, y), below), vec!["y/3", "-1/9", "1/(9*(3*y + 1))"]),
-            (arena.div(arena.one(), below), vec!["1/(3*y + 1)"]),
+            (arena.div(arena.mul(y, y), denominator), vec!["y/3", "-1/9", "1/(9*(3*y + 1))"]),
+            (arena.div(arena.one(), denominator), vec!["1/(3*y + 1)"]),
         ];
         for (argument, expected) in cases {
             let field = Field::over(&arena, &Facts::new(), &[argument]).unwrap();
@@ -236,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn units_become_as_fine_as_their_multiples_ask() {
+    fn units_become_as_fine_as_their_multiples_need() {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut units = Units::default();

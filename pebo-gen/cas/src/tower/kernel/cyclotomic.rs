@@ -1,16 +1,15 @@
 //! Sines and cosines of rational multiples of pi, and the square roots that are among them.
 //!
-//! In: a multiple of pi. Out: for multiples of pi/12, radicals of two and three; for all others,
-//! polynomials in one kernel `x = 2 cos(pi/m)`, whose minimal polynomial is known. The field of that
-//! kernel contains square roots of some primes (Gauss, 1811), which are written over it, so that
-//! `cos(pi/5)` and `sqrt(5)` are seen to be related.
+//! In: a multiple of pi. Out: for multiples of pi/12, radicals of two and three; for all others, polynomials in one
+//! kernel `x = 2 cos(pi/m)`, whose minimal polynomial is known. The field of that kernel contains square roots of some
+//! primes (Gauss, 1811), which are written over it, so that the relation of `cos(pi/5)` and `sqrt(5)` is found.
 
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
 use crate::{Integer, Rational};
 
-use super::Relation;
+use super::AlgebraicRelation;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Field, Obstacle};
 
@@ -86,11 +85,11 @@ impl Field<'_> {
         let degree = minimal.degree(number);
         let leading = Poly::variable(number).pow(degree, self.limit())?;
         let value = &leading - &minimal;
-        self.round.kernels.borrow_mut().relate(number, Relation { degree, value });
+        self.round.kernels.borrow_mut().relate(number, AlgebraicRelation { degree, value });
         Ok(number)
     }
 
-    /// The square root of a prime, where the kernel's field contains it.
+    /// The square root of a prime, if the kernel's field contains it.
     pub(in crate::tower) fn gauss_sum(&self, prime: &Integer) -> Result<Option<Poly>, Obstacle> {
         let Some(m) = self.finest.get() else { return Ok(None) };
         let Some(p) = prime.to_i64().and_then(|p| u32::try_from(p).ok()) else { return Ok(None) };
@@ -211,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_of_a_multiple_of_pi_has_its_value() {
+    fn printed_multiples_of_pi_have_their_value() {
         let arena = Arena::new();
         for (n, d) in [(1, 7), (2, 5), (3, 8), (5, 9)] {
             let angle = arena.scale(arena.pi(), &Rational::new(n, d).unwrap());

@@ -1,7 +1,7 @@
-//! What a fraction is a product of: primes, parts whose signs are known, and parts whose signs are not.
+//! The factors of a fraction: primes, parts with known signs, and parts with unknown signs.
 //!
-//! Roots and logarithms of products are products and sums of those of the elements, taken as they come: the first of
-//! which something is made has the first kernel.
+//! Roots and logarithms of products are products and sums of those of the elements, in order: the first element has the
+//! first kernel.
 
 use crate::Integer;
 use crate::poly::Poly;
@@ -10,22 +10,23 @@ use crate::tower::fraction::{Fraction, primitive};
 use crate::tower::sign::Sign;
 use crate::tower::{Field, Obstacle};
 
-/// What is left of a fraction without its elements of known sign.
-pub(in crate::tower) struct Unsigned {
-    /// Whether it must be negated.
+/// The factors of a fraction without its elements of known sign.
+pub(in crate::tower) struct UnsignedFactors {
+    /// True if the product must be negated.
     pub negative: bool,
     /// Parts of unknown sign, with their exponents.
     pub parts: Vec<(Poly, i64)>,
 }
 
 impl Field<'_> {
-    /// Hands over each positive element of a fraction that is not zero, with its exponent; what is left comes back.
+    /// Hands over each positive element of a fraction that is not zero, with its exponent, and returns the other
+    /// factors.
     pub(in crate::tower) fn elements_of(
         &self,
         fraction: &Fraction,
         each: &mut dyn FnMut(&Poly, i64) -> Result<(), Obstacle>,
-    ) -> Result<Unsigned, Obstacle> {
-        let mut left = Unsigned { negative: false, parts: Vec::new() };
+    ) -> Result<UnsignedFactors, Obstacle> {
+        let mut left = UnsignedFactors { negative: false, parts: Vec::new() };
         for (poly, direction) in [(&fraction.num, 1), (&fraction.den, -1)] {
             let mut primes = |number: &Integer, direction: i64| -> Result<(), Obstacle> {
                 let mut powers = prime_powers(number).into_iter();
@@ -52,7 +53,7 @@ impl Field<'_> {
     }
 }
 
-/// The prime factors of a positive integer, small ones by trial; what remains counts as one.
+/// The prime factors of a positive integer, small ones by trial; the cofactor counts as one.
 fn prime_powers(number: &Integer) -> Vec<(Integer, u32)> {
     const LARGEST: i64 = 1000;
     let mut rest = number.abs();

@@ -1,10 +1,9 @@
 //! Inverse trigonometric functions as kernels, and the linear relations among them.
 //!
-//! In: `asin`, `acos`, `atan` or `atan2` of arguments in normal form. Out: a combination of the angles
-//! that came before, where there is one, else a kernel. That `a = asin(t)` and `b = atan(t/sqrt(1 - t^2))`
-//! are equal is shown in two steps: the sine of a - b is 0 and its cosine is 1, so that a - b is a
-//! multiple of 2 pi; and both ranges lie within a half circle, so that it is zero. The same two steps
-//! show that `asin(sin(w)) = w` where the facts keep w on the principal branch.
+//! In: `asin`, `acos`, `atan` or `atan2` of arguments in normal form. Out: a combination of earlier angles, if there is
+//! one, else a kernel. The equality of `a = asin(t)` and `b = atan(t/sqrt(1 - t^2))` is proved in two steps: the sine
+//! of a - b is 0 and its cosine is 1, so that a - b is a multiple of 2 pi; and both ranges lie within a half circle, so
+//! that it is zero. The same two steps prove `asin(sin(w)) = w` if the facts keep w on the principal branch.
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
@@ -89,7 +88,7 @@ impl Field<'_> {
         Ok(None)
     }
 
-    /// Remembers an angle of which sine and cosine were taken.
+    /// Remembers an angle with its sine and cosine.
     pub(in crate::tower) fn remember_angle(&self, value: &Fraction, pair: &Pair) {
         let mut angles = self.round.angles.borrow_mut();
         if angles.len() < MOST_ANGLES
@@ -100,7 +99,7 @@ impl Field<'_> {
         }
     }
 
-    /// The angles that came before and whose range is known.
+    /// The earlier angles with known ranges.
     fn known_angles(&self) -> Result<Vec<InverseAngle>, Obstacle> {
         let mut known: Vec<InverseAngle> = self.round.inverses.borrow().iter().take(MOST_ANGLES).cloned().collect();
         let angles = self.round.angles.borrow().clone();
@@ -141,7 +140,7 @@ impl Field<'_> {
                     (sample[0] * f64::from(own) - sum) * 12.0 / std::f64::consts::PI
                 };
                 let (a, b) = (twelfths(first), twelfths(second));
-                // Only a guess: what it leads to is proved.
+                // Only a guess: its consequences are proved.
                 let near = |number: &i32| [a, b].iter().all(|value| (value - f64::from(*number)).abs() < 1e-9);
                 if let Some(twelfths) = (-MOST_TWELFTHS..=MOST_TWELFTHS).find(near) {
                     guesses.push(Guess { own, shares: shares.clone(), twelfths });
@@ -151,7 +150,7 @@ impl Field<'_> {
         guesses
     }
 
-    /// Whether the guess is an identity.
+    /// True if the guess is an identity.
     fn holds(&self, guess: &Guess, pair: &Pair, range: &Range, known: &[InverseAngle]) -> Result<bool, Obstacle> {
         let mut total = self.repeated(pair, u64::from(guess.own.unsigned_abs()))?;
         let mut within = range.times(i64::from(guess.own));
@@ -211,7 +210,7 @@ fn ratio(n: i32, d: i32) -> Rational {
     Rational::new(i64::from(n), i64::from(d)).unwrap_or(Rational::ZERO)
 }
 
-/// The domain that guesses are tried on.
+/// The domain on which guesses are tried.
 pub(in crate::tower) fn domain_of(facts: &Facts) -> Domain {
     Domain { facts: facts.clone(), ..Domain::default() }
 }
@@ -222,7 +221,7 @@ mod tests {
     use crate::Arena;
 
     #[test]
-    fn half_an_angle_is_told_within_a_half_turn_alone() {
+    fn half_an_angle_is_determined_only_within_a_half_turn() {
         let arena = Arena::new();
         let q = arena.variable("q");
         let [sin, cos] = [Function::Sin, Function::Cos].map(|function| arena.call(function, &[q]));

@@ -1,15 +1,14 @@
-//! Logarithms: of a product, the sum of the logarithms of the magnitudes of its parts.
+//! Logarithms: for a product, the sum of the logarithms of the absolute values of its parts.
 //!
-//! `log(a*b) = log|a| + log|b|` holds wherever the left side has a value. A part of known sign needs no
-//! magnitude; a single part of unknown sign is positive where the logarithm has a value, which is
-//! learned as a fact.
+//! `log(a*b) = log|a| + log|b|` holds wherever the left side has a value. A part of known sign needs no absolute value;
+//! a single part of unknown sign is positive wherever the logarithm has a value, which is learned as a fact.
 
 use crate::graph::expr::Node;
 use crate::graph::function::Function;
 use crate::poly::Poly;
-use crate::{Rational, Relation as Compared};
+use crate::{Rational, Relation};
 
-use super::elements::Unsigned;
+use super::elements::UnsignedFactors;
 use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
@@ -23,7 +22,7 @@ impl Field<'_> {
             self.add(total, &self.scale(&self.log_of_part(part)?, &Rational::from(times))?)
         };
         let mut total = Fraction::zero();
-        let Unsigned { negative, parts: unknown } = self.elements_of(argument, &mut |part, times| {
+        let UnsignedFactors { negative, parts: unknown } = self.elements_of(argument, &mut |part, times| {
             total = with(&total, part, times)?;
             Ok(())
         })?;
@@ -35,7 +34,7 @@ impl Field<'_> {
         for (index, (part, times)) in unknown.iter().enumerate() {
             let size = if odd == [index] {
                 let size = if negative { -part } else { part.clone() };
-                self.signs().learn_from_existence(&size, Compared::Positive)?;
+                self.signs().learn_from_existence(&size, Relation::Positive)?;
                 size
             } else {
                 self.size(part)?.num
@@ -77,9 +76,9 @@ mod tests {
     use crate::Arena;
     use crate::Facts;
 
-    /// Where x^2*y has a logarithm, y is positive, and nothing is known of x.
+    /// If x^2*y has a logarithm, y is positive, and nothing is known of x.
     #[test]
-    fn a_single_odd_part_is_positive() {
+    fn a_single_odd_factor_is_positive() {
         let arena = Arena::new();
         let [x, y, z] = ["x", "y", "z"].map(|name| arena.variable(name));
         let square = arena.mul(x, x);

@@ -1,8 +1,8 @@
-//! The table of kernels: what polynomials take as variables, with the relations among them.
+//! The table of kernels: the variables of polynomials, with the relations among them.
 
 mod absolute_value;
 
-pub(super) mod absolute;
+pub(super) mod absolute_angles;
 pub(super) mod argument;
 mod cyclotomic;
 mod elements;
@@ -26,22 +26,22 @@ use crate::poly::Poly;
 /// A variable of the polynomials.
 #[derive(Debug)]
 pub(in crate::tower) struct Kernel {
-    /// What it stands for.
+    /// Its expression.
     pub expr: Expr,
     /// Its algebraic relation to earlier kernels, if there is one.
-    pub relation: Option<Relation>,
-    /// Whether its value is positive wherever it exists.
+    pub relation: Option<AlgebraicRelation>,
+    /// True if its value is positive wherever it exists.
     pub positive: bool,
 }
 
 /// `kernel ^ degree = value`, the value in earlier kernels.
 #[derive(Clone, Debug)]
-pub(in crate::tower) struct Relation {
+pub(in crate::tower) struct AlgebraicRelation {
     pub degree: u32,
     pub value: Poly,
 }
 
-/// The kernels of a round, numbered in the order in which they were met: a relation speaks of earlier ones alone.
+/// The kernels of a round, numbered in the order of entry: a relation holds only earlier ones.
 #[derive(Default, Debug)]
 pub(in crate::tower) struct Kernels {
     entries: Vec<Kernel>,
@@ -49,12 +49,12 @@ pub(in crate::tower) struct Kernels {
 }
 
 impl Kernels {
-    /// The number of the kernel that stands for an expression.
+    /// The number of the kernel of an expression.
     pub(in crate::tower) fn number_of(&self, expr: Expr) -> Option<u32> {
         self.numbers.get(&expr).copied()
     }
 
-    /// The same, entered if it is new; one that is known stays what it is.
+    /// The same, entered if it is new; a known kernel is unchanged.
     pub(in crate::tower) fn enter(&mut self, kernel: Kernel) -> u32 {
         let next = self.count();
         let number = *self.numbers.entry(kernel.expr).or_insert(next);
@@ -64,12 +64,12 @@ impl Kernels {
         number
     }
 
-    /// Adds the relation of a kernel that could not be told before it had a number.
-    pub(in crate::tower) fn relate(&mut self, number: u32, relation: Relation) {
+    /// Adds the relation of a kernel that could not be computed before it had a number.
+    pub(in crate::tower) fn relate(&mut self, number: u32, relation: AlgebraicRelation) {
         self.entries[number as usize].relation = Some(relation);
     }
 
-    /// How many there are: the number that the next will have.
+    /// The number of kernels: the number that the next will have.
     pub(in crate::tower) fn count(&self) -> u32 {
         u32::try_from(self.entries.len()).unwrap_or(u32::MAX)
     }
@@ -89,17 +89,22 @@ impl Index<u32> for Kernels {
 }
 
 impl Field<'_> {
-    /// The number of the kernel that stands for an expression, entered if it is new.
-    pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> u32 {
+    /// The number of the kernel of an expression, entered if it is new.
+    pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<AlgebraicRelation>, positive: bool) -> u32 {
         self.round.kernels.borrow_mut().enter(Kernel { expr, relation, positive })
     }
 
     /// The kernel as a fraction.
-    pub(in crate::tower) fn entered(&self, expr: Expr, relation: Option<Relation>, positive: bool) -> Fraction {
+    pub(in crate::tower) fn entered(
+        &self,
+        expr: Expr,
+        relation: Option<AlgebraicRelation>,
+        positive: bool,
+    ) -> Fraction {
         Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
     }
 
-    /// Whether an algebraic relation says something of a kernel that occurs.
+    /// True if a kernel with an algebraic relation occurs.
     pub(crate) fn has_relations(&self, fraction: &Fraction) -> bool {
         let kernels = self.round.kernels.borrow();
         let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());

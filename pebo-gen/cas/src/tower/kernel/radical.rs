@@ -1,21 +1,21 @@
 //! Roots of fractions.
 //!
-//! In: a fraction and a rational exponent. Out: powers of kernels `r = part^(1/q)` with `r^q = part`,
-//! one for each part of known sign (see [`crate::tower::coprime`]). A power of parts of unknown signs has a
-//! kernel for the product: where that has a value, the product is not negative, which is learned as a
-//! fact. Products of such roots are written over those that came before.
+//! In: a fraction and a rational exponent. Out: powers of kernels `r = part^(1/q)` with `r^q = part`, one for each part
+//! of known sign (see [`crate::tower::coprime`]). A power of parts of unknown signs has a kernel for the product:
+//! wherever that has a value, the product is not negative, which is learned as a fact. Products of such roots are
+//! written over earlier ones.
 //!
-//! Everywhere a root stands for the real one of a number that is not negative, so that
+//! Every root is the real one of a number that is not negative, so that
 //! `(a^k b^m)^(1/q) = |a|^(k/q) |b|^(m/q)` wherever it has a value.
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
-use crate::{Integer, Rational, Relation as Compared};
+use crate::{Integer, Rational, Relation};
 
-use super::Relation;
-use super::elements::Unsigned;
+use super::AlgebraicRelation;
+use super::elements::UnsignedFactors;
 use crate::tower::fraction::Fraction;
 use crate::tower::sign::Sign;
 use crate::tower::{Family, Field, Obstacle};
@@ -30,13 +30,13 @@ pub(in crate::tower) struct ProductRoot {
 }
 
 impl Field<'_> {
-    /// `base ^ exponent` for an exponent that is not an integer; the real power of what is not negative.
+    /// `base ^ exponent` for an exponent that is not an integer; the real power of a non-negative base.
     pub(in crate::tower) fn root(&self, base: &Fraction, exponent: &Rational) -> Result<Fraction, Obstacle> {
         if base.is_zero() {
             return if exponent.is_negative() { Err(Obstacle::DivisionByZero) } else { Ok(Fraction::zero()) };
         }
         let mut total = Fraction::one();
-        let Unsigned { negative, parts: unknown } = self.elements_of(base, &mut |part, times| {
+        let UnsignedFactors { negative, parts: unknown } = self.elements_of(base, &mut |part, times| {
             total = self.mul(&total, &self.power_of(part, &(&Rational::from(times) * exponent))?)?;
             Ok(())
         })?;
@@ -51,7 +51,7 @@ impl Field<'_> {
         Obstacle::Kernel(format!("the root of {}, which is negative", self.arena.print(self.show(base))))
     }
 
-    /// A root of parts whose signs are not known, of which the whole is not negative.
+    /// A root of parts with unknown signs, whose product is not negative.
     fn root_of_unknown(
         &self,
         negative: bool,
@@ -62,7 +62,7 @@ impl Field<'_> {
         let mut total = Fraction::one();
         let mut odd = Vec::new();
         for (part, times) in parts {
-            // Full powers of even exponent come out as magnitudes; an even power has the magnitude's root.
+            // Full powers of even exponent come out as absolute values; an even power has the absolute value's root.
             let step = if degree % 2 == 0 { degree } else { 2 * degree };
             let inside = times.rem_euclid(step);
             let share = if inside % 2 == 0 { times } else { times - inside };
@@ -80,7 +80,7 @@ impl Field<'_> {
         if let [(part, times)] = odd.as_slice() {
             // The part itself has the sign that the root needs.
             let size = if negative { -part } else { part.clone() };
-            self.signs().learn_from_existence(&size, Compared::NonNegative)?;
+            self.signs().learn_from_existence(&size, Relation::NonNegative)?;
             let power = self.power_of(&size, &(&Rational::from(*times) * exponent))?;
             return self.mul(&total, &power);
         }
@@ -89,7 +89,7 @@ impl Field<'_> {
         self.mul(&total, &self.pow(&root, times)?)
     }
 
-    /// The root of a product as one kernel, or over the roots of products that came before.
+    /// The root of a product as one kernel, or over the earlier roots of products.
     fn root_of_product(&self, negative: bool, powers: Vec<(Poly, i64)>, degree: u32) -> Result<Fraction, Obstacle> {
         let mut value = if negative { Poly::constant(-1) } else { Poly::one() };
         for (part, times) in &powers {
@@ -99,20 +99,20 @@ impl Field<'_> {
         for (part, _) in &powers {
             self.signs().leave_open(part);
         }
-        self.signs().learn_from_existence(&value, Compared::NonNegative)?;
+        self.signs().learn_from_existence(&value, Relation::NonNegative)?;
         if let Some(root) = self.over_earlier_roots(negative, &powers, degree)? {
             return Ok(root);
         }
         let value = self.reduce(&value)?;
         let exponent = Rational::new(1, i64::from(degree)).ok_or(Obstacle::DivisionByZero)?;
         let shown = self.arena.power(self.show_polynomial(&value), &exponent);
-        let kernel = self.enter(shown, Some(Relation { degree, value }), false);
+        let kernel = self.enter(shown, Some(AlgebraicRelation { degree, value }), false);
         self.round.products.borrow_mut().push(ProductRoot { degree, negative, powers, kernel });
         Ok(Fraction::polynomial(Poly::variable(kernel)))
     }
 
-    /// A square root as a product of one or two earlier ones over magnitudes: all of them have values,
-    /// so `sqrt(a b) = sqrt(a c) sqrt(b c) / |c|`.
+    /// A square root as a product of one or two earlier ones over absolute values: all of them have values, so
+    /// `sqrt(a b) = sqrt(a c) sqrt(b c) / |c|`.
     fn over_earlier_roots(
         &self,
         negative: bool,
@@ -206,8 +206,9 @@ impl Field<'_> {
                 return self.mul(&outside, &self.pow(&Fraction::polynomial(value), times)?);
             }
         }
-        // A root is zero where its radicand is: positive wherever it exists is only that of a number.
-        let root = self.entered(self.arena.power(key, &unit), Some(Relation { degree, value }), part.is_constant());
+        // A root is zero where its radicand is: only that of a number is positive wherever it exists.
+        let root =
+            self.entered(self.arena.power(key, &unit), Some(AlgebraicRelation { degree, value }), part.is_constant());
         self.mul(&outside, &self.pow(&root, times)?)
     }
 
@@ -304,9 +305,9 @@ mod tests {
         }
     }
 
-    /// Not over two earlier ones that leave a part to an odd power.
+    /// Not over two earlier ones that leave a part with an odd power.
     #[test]
-    fn roots_of_products_are_told_apart_by_their_parts() {
+    fn roots_of_products_are_distinguished_by_their_parts() {
         let arena = Arena::new();
         let [w, x, y, z] = ["w", "x", "y", "z"].map(|name| arena.variable(name));
         let products = [arena.mul(x, y), arena.mul(y, z), arena.mul(x, z), arena.mul(x, w)];
@@ -324,7 +325,7 @@ mod tests {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut facts = Facts::new();
-        facts.assume(y, Compared::Positive);
+        facts.assume(y, Relation::Positive);
         let exp = arena.call(Function::Exp, &[x]);
         let next = arena.add(y, arena.one());
         let root = arena.sqrt(next);
@@ -339,9 +340,9 @@ mod tests {
         }
     }
 
-    /// Without a sign being learned of x.
+    /// The sign of x is not learned.
     #[test]
-    fn an_even_power_has_the_root_of_its_magnitude() {
+    fn an_even_power_has_the_root_of_its_absolute_value() {
         let arena = Arena::new();
         let x = arena.variable("x");
         for (power, degree, expected) in

@@ -8,7 +8,7 @@ use crate::tower::fraction::{Fraction, negated};
 use crate::tower::sign::Sign;
 use crate::tower::{Field, Obstacle};
 
-/// An interval; an end is inside or not.
+/// An interval with open or closed ends.
 #[derive(Clone, Debug)]
 pub(in crate::tower) struct Range {
     low: (Rational, bool),
@@ -16,7 +16,7 @@ pub(in crate::tower) struct Range {
 }
 
 impl Range {
-    /// From `low/2` to `high/2`, each with whether it is inside.
+    /// From `low/2` to `high/2`, each with true if it is inside.
     fn halves(low: (i64, bool), high: (i64, bool)) -> Self {
         let half = |n: i64| Rational::new(n, 2).unwrap_or(Rational::ZERO);
         Self { low: (half(low.0), low.1), high: (half(high.0), high.1) }
@@ -40,7 +40,7 @@ impl Range {
         Self { low: sum(&self.low, &other.low), high: sum(&self.high, &other.high) }
     }
 
-    /// What is in both.
+    /// The intersection.
     fn and(&self, other: &Self) -> Self {
         let later = |a: &(Rational, bool), b: &(Rational, bool)| match a.0.cmp(&b.0) {
             std::cmp::Ordering::Equal => (a.0.clone(), a.1 && b.1),
@@ -52,7 +52,7 @@ impl Range {
         Self { low: later(&self.low, &other.low), high: opposite(&high) }
     }
 
-    /// Whether no multiple of a full turn but zero itself is inside.
+    /// True if no multiple of a full turn but zero itself is inside.
     pub(in crate::tower) fn is_within_turn(&self) -> bool {
         let turn = Rational::from(2);
         let below = |end: &Rational, inside: bool| *end < turn || (*end == turn && !inside);
@@ -75,7 +75,7 @@ impl Range {
         Self::halves((-1, true), (1, true))
     }
 
-    /// Whether all values are among those of the inverse function.
+    /// True if all values are among those of the inverse function.
     pub(in crate::tower) fn is_principal(&self, function: Function) -> bool {
         let values = match function {
             Function::Acos => Self::halves((0, true), (2, true)),
@@ -89,12 +89,12 @@ impl Range {
         inside(&self.high, &values.high) && inside(&opposite(&self.low), &opposite(&values.low))
     }
 
-    /// Whether all values are between 0 and 1.
+    /// True if all values are between 0 and 1.
     pub(in crate::tower) fn is_upper_half(&self) -> bool {
         !self.low.0.is_negative() && self.high.0 <= Rational::ONE
     }
 
-    /// Whether all values are strictly between -1 and 1.
+    /// True if all values are strictly between -1 and 1.
     pub(in crate::tower) fn is_within_half_turn(&self) -> bool {
         let below = |end: &Rational, inside: bool| *end < Rational::ONE || (end.is_one() && !inside);
         below(&-&self.low.0, self.low.1) && below(&self.high.0, self.high.1)
@@ -195,7 +195,7 @@ mod tests {
         format!("{}{low}, {high}{}", if *from { '[' } else { '(' }, if *to { ']' } else { ')' })
     }
 
-    /// The range of a function of `x`, or of `x` and `y`, where these compare so with zero.
+    /// The range of a function of `x`, or of `x` and `y`, if these compare so with zero.
     fn range(function: Function, x: Option<(Relation, i64)>, y: Option<(Relation, i64)>) -> String {
         let arena = Arena::new();
         let [first, second] = ["x", "y"].map(|name| arena.variable(name));

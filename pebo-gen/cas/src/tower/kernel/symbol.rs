@@ -1,4 +1,4 @@
-//! Symbols on a manifold: what an equation was solved for is no variable of its own.
+//! Symbols on a manifold: a symbol that an equation determines is no variable of its own.
 //!
 //! ```text
 //! s = middle                       s is that expression
@@ -8,12 +8,12 @@
 use crate::graph::expr::{Expr, Symbol};
 use crate::poly::Poly;
 
-use super::Relation;
+use super::AlgebraicRelation;
 use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
 impl Field<'_> {
-    /// A symbol: a kernel, or what an exact step of the manifold says of it.
+    /// A symbol: a kernel, or its value by an exact step of the manifold.
     pub(in crate::tower) fn of_symbol(&self, expr: Expr, symbol: Symbol) -> Result<Fraction, Obstacle> {
         let Some(step) = self.steps.get(&symbol) else { return Ok(self.entered(expr, None, false)) };
         let middle = self.fraction(step.middle)?;
@@ -26,9 +26,9 @@ impl Field<'_> {
         if value.is_zero() {
             return Ok(middle);
         }
-        let below = self.show_polynomial(&radicand.den);
-        let kernel = self.arena.mul(below, self.arena.sub(expr, step.middle));
-        let relation = Relation { degree: root.degree, value };
+        let denominator = self.show_polynomial(&radicand.den);
+        let kernel = self.arena.mul(denominator, self.arena.sub(expr, step.middle));
+        let relation = AlgebraicRelation { degree: root.degree, value };
         let offset = self.fraction_of(&Poly::variable(self.enter(kernel, Some(relation), false)), &radicand.den)?;
         self.add(&middle, &offset)
     }

@@ -1,15 +1,15 @@
 //! Sine and cosine of split angles.
 //!
-//! An angle is split into integer multiples of basis angles; sines and cosines of multiples and sums
-//! follow by the addition theorems. Rational multiples of pi are exact where they have roots of two
-//! and three, and inverse functions cancel (`sin(atan2(a, b)) = a / sqrt(a^2 + b^2)`).
+//! An angle is split into integer multiples of basis angles; sines and cosines of multiples and sums follow by the
+//! addition theorems. Rational multiples of pi are exact if they have roots of two and three, and inverse functions
+//! cancel (`sin(atan2(a, b)) = a / sqrt(a^2 + b^2)`).
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::poly::Poly;
 use crate::{Integer, Rational};
 
-use super::Relation;
+use super::AlgebraicRelation;
 use super::range::Range;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Family, Field, Obstacle};
@@ -56,12 +56,12 @@ impl Field<'_> {
         let square = Poly::variable(cos);
         // sin^2 = 1 - cos^2; squaring one variable cannot exceed any limit
         let value = square.mul(&square, &self.work).map(|square| &Poly::one() - &square);
-        let relation = value.ok().map(|value| Relation { degree: 2, value });
+        let relation = value.ok().map(|value| AlgebraicRelation { degree: 2, value });
         let sin = self.entered(self.arena.call(Function::Sin, &[angle]), relation, false);
         (sin, Fraction::polynomial(Poly::variable(cos)))
     }
 
-    /// Sine and cosine of `times` as much, by repeated doubling.
+    /// Sine and cosine of `times` the angle, by repeated doubling.
     pub(in crate::tower) fn repeated(&self, basic: &Pair, times: u64) -> Result<Pair, Obstacle> {
         let mut total = (Fraction::zero(), Fraction::one());
         for bit in (0..u64::BITS - times.leading_zeros()).rev() {

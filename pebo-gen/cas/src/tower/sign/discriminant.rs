@@ -1,4 +1,4 @@
-//! Signs of what is quadratic in a power of a variable, by its discriminant.
+//! Signs of polynomials that are quadratic in a power of a variable, by the discriminant.
 
 use crate::Integer;
 use crate::poly::Poly;
@@ -7,12 +7,11 @@ use super::{Sign, Signs};
 use crate::tower::Obstacle;
 
 impl Signs<'_, '_> {
-    /// Of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written
-    /// out.
+    /// The sign of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written out.
     pub(in crate::tower) fn by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         const MOST_TERMS: usize = 40;
         const DEEPEST: u32 = 3;
-        // Each step asks for the signs of polynomials in one variable less.
+        // Each step decides the signs of polynomials in one variable less.
         let depth = self.memory.round.depth.get();
         if poly.term_count() > MOST_TERMS || depth == DEEPEST {
             return Ok(None);
@@ -45,9 +44,9 @@ impl Signs<'_, '_> {
             }
             let Some(upward) = self.of_polynomial(&a)? else { continue };
             let four = Integer::from(4);
-            let below = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
-            // 4 a poly = (2 a v^k + b)^2 + below; where a is zero, b is not unless below is zero.
-            let least = match self.of_polynomial(&below)? {
+            let minus_discriminant = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
+            // 4 a poly = (2 a v^k + b)^2 + minus_discriminant; a = 0 implies b != 0 or minus_discriminant = 0.
+            let least = match self.of_polynomial(&minus_discriminant)? {
                 Some(Sign::Positive) => Sign::Positive,
                 Some(Sign::NonNegative | Sign::Zero)
                     if matches!(upward, Sign::Positive | Sign::Negative)

@@ -10,19 +10,19 @@ use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
 impl Signs<'_, '_> {
-    /// Of `p exp(a) - q exp(b)` for numbers p, q > 0: positive where `p >= q` and `a >= b`, not both equal, and
-    /// negative where both are the other way round.
+    /// The sign of `p exp(a) - q exp(b)` for numbers p, q > 0: positive if `p >= q` and `a >= b`, not both equal, and
+    /// negative if both are the other way round.
     pub(super) fn by_exponents(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         let mut terms = poly.terms();
         let (Some(first), Some(second), None) = (terms.next(), terms.next(), terms.next()) else { return Ok(None) };
         if first.1.is_negative() == second.1.is_negative() {
             return Ok(None);
         }
-        let (above, below) = if first.1.is_negative() { (second, first) } else { (first, second) };
-        let (Some(a), Some(b)) = (self.field.exponent_of(&above.0)?, self.field.exponent_of(&below.0)?) else {
+        let (positive, negative) = if first.1.is_negative() { (second, first) } else { (first, second) };
+        let (Some(a), Some(b)) = (self.field.exponent_of(&positive.0)?, self.field.exponent_of(&negative.0)?) else {
             return Ok(None);
         };
-        let size = above.1.clone().cmp(&below.1.abs());
+        let size = positive.1.clone().cmp(&negative.1.abs());
         let ahead = self.field.sub(&a, &b)?;
         Ok(match (self.of(&ahead)?, size) {
             (Some(Sign::Zero), std::cmp::Ordering::Equal) => Some(Sign::Zero),
@@ -35,7 +35,7 @@ impl Signs<'_, '_> {
         })
     }
 
-    /// Of a logarithm: that of its argument's distance from 1.
+    /// The sign of a logarithm: that of its argument's distance from 1.
     pub(super) fn by_logarithm(&self, argument: Expr) -> Option<Sign> {
         let argument = self.field.fraction(argument).ok()?;
         self.of(&self.field.sub(&argument, &Fraction::one()).ok()?).ok()?
@@ -43,7 +43,7 @@ impl Signs<'_, '_> {
 }
 
 impl Field<'_> {
-    /// The `a` of a product of exponentials that is `exp(a)`; none where there is another factor.
+    /// The `a` of a product of exponentials that is `exp(a)`; none if there is another factor.
     fn exponent_of(&self, monomial: &Monomial) -> Result<Option<Fraction>, Obstacle> {
         let mut total = Fraction::zero();
         for &(kernel, power) in monomial.powers() {

@@ -1,10 +1,10 @@
-//! Signs of kernels: by what they are, by the ranges of their arguments, or by a fact about one alone.
+//! Signs of kernels: by their functions, by the ranges of their arguments, or by a fact about one alone.
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
-use crate::{Integer, Relation as Compared};
+use crate::{Integer, Relation};
 
 use super::{Sign, Signs};
 
@@ -17,12 +17,12 @@ impl Signs<'_, '_> {
         if let Some(sign) = self.by_function(variable) {
             return Some(sign);
         }
-        for (fact, compared) in self.memory.round.facts.borrow().iter() {
+        for (fact, comparison) in self.memory.round.facts.borrow().iter() {
             if fact.variables() != [variable] {
                 continue;
             }
-            // c v + d > 0 fixes the sign of v where the constant helps.
-            if fact.degree(variable) != 1 || *compared == Compared::NonZero {
+            // c v + d > 0 fixes the sign of v if the constant helps.
+            if fact.degree(variable) != 1 || *comparison == Relation::NonZero {
                 continue;
             }
             let constant = fact
@@ -31,7 +31,7 @@ impl Signs<'_, '_> {
                 .map_or(Integer::ZERO, |(_, coefficient)| coefficient.clone());
             let rising = !fact.leading_coefficient().is_negative();
             // v > -d/c with d <= 0: positive; v < d/|c| with d <= 0: negative.
-            let strict = *compared == Compared::Positive || !constant.is_zero();
+            let strict = *comparison == Relation::Positive || !constant.is_zero();
             match (rising, constant.is_zero() || constant.is_negative()) {
                 (true, true) if strict => return Some(Sign::Positive),
                 (true, true) => return Some(Sign::NonNegative),
@@ -42,8 +42,8 @@ impl Signs<'_, '_> {
         None
     }
 
-    /// Roots and absolute values are not negative; a root of something positive is positive. A cosine
-    /// is positive where its angle is within the right half, a sine where it is within the upper one.
+    /// Roots and absolute values are not negative; a root of a positive radicand is positive. A cosine is positive if
+    /// its angle is within the right half, a sine if it is within the upper one.
     fn by_function(&self, variable: u32) -> Option<Sign> {
         let (expr, radicand) = {
             let kernels = self.field.round.kernels.borrow();
@@ -54,7 +54,7 @@ impl Signs<'_, '_> {
         if !root && !matches!(self.field.arena.node(expr), Node::Call(..)) {
             return None;
         }
-        // A fact may have the kernel itself in it: then its form is all that is known.
+        // A fact may have the kernel itself in it: then only its form is known.
         let by_form =
             (root || matches!(self.field.arena.node(expr), Node::Call(Function::Abs, _))).then_some(Sign::NonNegative);
         let state = (variable, self.memory.round.facts.borrow().len());
@@ -89,7 +89,7 @@ impl Signs<'_, '_> {
         }
         let right = self.field.scale(&self.field.fraction(self.field.arena.pi()).ok()?, &half()).ok()?;
         let angle = self.field.fraction(angle).ok()?;
-        // From the middle of where the function is positive.
+        // From the middle of the interval on which the function is positive.
         let angle = if function == Function::Sin { self.field.sub(&angle, &right).ok()? } else { angle };
         let mut strict = true;
         for distance in [self.field.sub(&right, &angle).ok()?, self.field.add(&right, &angle).ok()?] {
@@ -102,8 +102,7 @@ impl Signs<'_, '_> {
         Some(if strict { Sign::Positive } else { Sign::NonNegative })
     }
 
-    /// Whether the polynomial is known to be zero nowhere by its kernels: exponentials,
-    /// and roots of what is positive.
+    /// True if the polynomial is known to vanish nowhere by its kernels: exponentials, and roots of positive radicands.
     pub fn never_zero(&self, poly: &Poly) -> bool {
         let never = |variable: &u32| {
             let (positive, radicand) = {
@@ -126,11 +125,11 @@ mod tests {
     use crate::{Arena, Expr};
 
     #[test]
-    fn exponentials_and_roots_of_what_is_positive_are_zero_nowhere() {
+    fn exponentials_and_roots_of_positive_radicands_vanish_nowhere() {
         let arena = Arena::new();
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let mut facts = Facts::new();
-        facts.assume(x, Compared::Positive);
+        facts.assume(x, Relation::Positive);
         let exp = arena.call(Function::Exp, &[y]);
         let never = |expr: Expr| {
             let field = Field::over(&arena, &facts, &[expr]).unwrap();

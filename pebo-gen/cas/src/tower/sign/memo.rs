@@ -1,8 +1,8 @@
-//! What is known of the signs of kernels, and which of it is for good.
+//! A memory of the signs of kernels, permanent and provisional.
 //!
-//! In: questions as they are begun and ended, one within another. Out: answers. One that was found within another question
-//! holds for that question alone, because what is being asked is not asked again within itself: asked by itself, the
-//! same kernel may show more. It is used until the outermost question ends, and then forgotten.
+//! In: queries as they begin and end, nested. Out: answers. One that was found within another query holds for that
+//! query alone, because an open query is not repeated within itself: outside of it, the same kernel may have a sharper
+//! sign. It is used until the outermost query ends, and then forgotten.
 
 use std::collections::BTreeSet;
 
@@ -10,41 +10,41 @@ use rustc_hash::FxHashMap;
 
 use super::Sign;
 
-/// A kernel, and how many facts are known: with more of them its sign may be another.
-pub(super) type State = (u32, usize);
+/// A kernel, and the number of known facts: with more of them its sign may be another.
+pub(super) type Query = (u32, usize);
 
 /// The memo.
 #[derive(Default, Debug)]
 pub(in crate::tower) struct Memo {
-    answers: FxHashMap<State, Option<Sign>>,
-    /// Kernels that are being asked for.
+    answers: FxHashMap<Query, Option<Sign>>,
+    /// Kernels with an open query.
     open: BTreeSet<u32>,
-    /// Answers that were found within another question.
-    provisional: Vec<State>,
+    /// Answers that were found within another query.
+    provisional: Vec<Query>,
 }
 
 impl Memo {
-    /// What is known.
-    pub(super) fn answer(&self, state: State) -> Option<&Option<Sign>> {
-        self.answers.get(&state)
+    /// The known sign.
+    pub(super) fn answer(&self, query: Query) -> Option<&Option<Sign>> {
+        self.answers.get(&query)
     }
 
-    /// Begins a question; false if the kernel is being asked for already.
+    /// Begins a query; false if one for the kernel is open.
     pub(super) fn begin(&mut self, kernel: u32) -> bool {
         self.open.insert(kernel)
     }
 
-    /// Ends it with an answer; `outermost` where no other kind of question is open around it.
-    pub(super) fn end(&mut self, state: State, sign: Option<Sign>, outermost: bool) {
-        self.open.remove(&state.0);
+    /// Ends it with an answer; `outermost` if no other kind of query is open around it.
+    pub(super) fn end(&mut self, query: Query, sign: Option<Sign>, outermost: bool) {
+        self.open.remove(&query.0);
         if self.open.is_empty() && outermost {
-            for state in self.provisional.drain(..) {
-                self.answers.remove(&state);
+            for query in self.provisional.drain(..) {
+                self.answers.remove(&query);
             }
         } else {
-            self.provisional.push(state);
+            self.provisional.push(query);
         }
-        self.answers.insert(state, sign);
+        self.answers.insert(query, sign);
     }
 }
 
@@ -53,25 +53,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_answer_within_another_question_ends_with_it() {
+    fn an_answer_within_another_query_ends_with_it() {
         let mut memo = Memo::default();
         assert!(memo.begin(1));
         assert!(memo.begin(2));
-        assert!(!memo.begin(1), "a question is not asked within itself");
+        assert!(!memo.begin(1), "a query is not repeated within itself");
         memo.end((2, 0), None, true);
         assert_eq!(memo.answer((2, 0)), Some(&None), "until then it is used");
         memo.end((1, 0), Some(Sign::Positive), true);
         assert_eq!(memo.answer((2, 0)), None);
         assert_eq!(memo.answer((1, 0)), Some(&Some(Sign::Positive)));
         assert_eq!(memo.answer((1, 1)), None, "another fact may change it");
-        // By itself the second may show more.
+        // By itself the second may have a sharper sign.
         assert!(memo.begin(2));
         memo.end((2, 0), Some(Sign::Negative), true);
         assert_eq!(memo.answer((2, 0)), Some(&Some(Sign::Negative)));
     }
 
     #[test]
-    fn within_another_kind_of_question_nothing_is_for_good() {
+    fn within_another_kind_of_query_answers_are_provisional() {
         let mut memo = Memo::default();
         assert!(memo.begin(1));
         memo.end((1, 0), None, false);

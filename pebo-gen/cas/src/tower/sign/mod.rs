@@ -1,11 +1,11 @@
-//! Signs of polynomials on the assumed domain: a question of its own, which has its own memory.
+//! Signs of polynomials on the assumed domain, with a memory of their own.
 //!
 //! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the kernels have
-//! values, or none. The rules are sound and simple: numbers, kernels ([`kernel`]), sums of like signs, facts ([`facts`]),
-//! factors, differences of exponentials ([`exponential`]), discriminants ([`discriminant`]), distances from bounds
-//! ([`shift`]), and last enclosures over the box that the facts state. [`Signs`] asks, with the algebra of a field;
-//! [`SignMemory`] is what is kept between questions. The field holds that, and looks into it nowhere: what a root or a
-//! logarithm becomes depends on signs, so that it asks too.
+//! values, or none. The rules are sound and simple: numbers, kernels ([`kernel`]), sums of like signs, facts
+//! ([`facts`]), factors, differences of exponentials ([`exponential`]), discriminants ([`discriminant`]), distances
+//! from bounds ([`shift`]), and last enclosures over the box that the facts state. [`Signs`] decides, with the algebra
+//! of a field; [`SignMemory`] is kept between queries. The field holds it, and never reads it: roots and logarithms
+//! depend on signs, so that the field queries too.
 
 mod discriminant;
 mod exponential;
@@ -41,39 +41,40 @@ pub(in crate::tower) enum Sign {
     Negative,
 }
 
-/// What is kept between questions.
+/// The memory between queries.
 #[derive(Default, Debug)]
 pub(in crate::tower) struct SignMemory {
-    /// What must hold for the expressions to have values.
+    /// The conditions for the expressions to have values.
     learned: RefCell<Vec<(Expr, Relation)>>,
     /// Signs of expressions over the box that the facts state.
     boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
-    round: Round,
+    round: KernelSigns,
 }
 
-/// What speaks of kernels, and is forgotten with them.
+/// The memory about kernels, discarded with them.
 #[derive(Default, Debug)]
-struct Round {
-    /// Polynomials of known signs: the facts, once they are read, and what must hold for the expressions to have values.
+struct KernelSigns {
+    /// Polynomials of known signs: the facts, once they are read, and the conditions for the expressions to have
+    /// values.
     facts: RefCell<Vec<(Poly, Relation)>>,
-    /// Whether the facts were read: most questions ask for no sign.
+    /// True if the facts were read: most problems need no sign.
     read: Cell<bool>,
-    /// Of kernels.
+    /// The signs of kernels.
     memo: RefCell<Memo>,
-    /// How deep questions by discriminants are nested.
+    /// The nesting depth of queries by discriminants.
     depth: Cell<u32>,
-    /// Factors of whose unknown signs something was made: with another sign it would be something else.
+    /// Factors of unknown signs that kernels depend on: with a known sign these would be others.
     undecided: RefCell<BTreeSet<Poly>>,
 }
 
 impl SignMemory {
-    /// Forgets what speaks of kernels: they are made anew.
+    /// Discards the memory about kernels, which are made anew.
     pub(in crate::tower) fn start_again(&mut self) {
-        self.round = Round::default();
+        self.round = KernelSigns::default();
     }
 }
 
-/// Asks for signs.
+/// Decides signs.
 #[derive(Clone, Copy)]
 pub struct Signs<'f, 'a> {
     field: &'f Field<'a>,
@@ -146,7 +147,7 @@ impl Signs<'_, '_> {
 
     /// The sign of a primitive polynomial by those of its factors.
     fn by_factors(&self, rest: &Poly) -> Result<Option<Sign>, Obstacle> {
-        // Factor by factor, where there is more than one.
+        // Factor by factor, if there is more than one.
         let monomial = rest.monomial_content();
         let square_free = rest.square_free(self.field.limit())?;
         if monomial.is_one() && square_free.factors.len() <= 1 && square_free.factors.iter().all(|f| f.1 == 1) {
@@ -196,7 +197,7 @@ impl Signs<'_, '_> {
         Ok(sign.and_then(|sign| total.times(sign)))
     }
 
-    /// Of a number that is not rational, as `pi/2 - 1`, by enclosing it.
+    /// The sign of a number that is not rational, as `pi/2 - 1`, by enclosing it.
     fn of_constant(&self, poly: &Poly) -> Option<Sign> {
         const MOST_TERMS: usize = 24;
         let numbers = |v: &u32| self.field.arena.symbols_of(&[self.field.kernel(*v)]).is_empty();
@@ -227,7 +228,7 @@ impl Signs<'_, '_> {
         Ok(positive.map(|positive| if positive { Sign::Positive } else { Sign::Negative }))
     }
 
-    /// What enclosures over the box say, once for each expression.
+    /// The sign that enclosures over the box prove, once for each expression.
     fn over_box(&self, expr: Expr) -> Option<bool> {
         if let Some(known) = self.memory.boxed.borrow().get(&expr) {
             return *known;
@@ -237,12 +238,12 @@ impl Signs<'_, '_> {
         sign
     }
 
-    /// Whether the fraction is known to be positive throughout the domain.
+    /// True if the fraction is known to be positive throughout the domain.
     pub fn is_positive(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
         Ok(self.of(fraction)? == Some(Sign::Positive) || self.over_box(self.field.show(fraction)) == Some(true))
     }
 
-    /// Whether the fraction is known to be positive or zero throughout the domain.
+    /// True if the fraction is known to be positive or zero throughout the domain.
     pub fn is_not_negative(&self, fraction: &Fraction) -> Result<bool, Obstacle> {
         Ok(self.of(fraction)?.is_some_and(Sign::is_positive_or_zero))
     }
@@ -250,7 +251,7 @@ impl Signs<'_, '_> {
 
 #[cfg(test)]
 impl Signs<'_, '_> {
-    /// How much must hold for the expressions to have values.
+    /// The number of learned conditions for the expressions to have values.
     pub(in crate::tower) fn count_learned(&self) -> usize {
         self.memory.learned.borrow().len()
     }

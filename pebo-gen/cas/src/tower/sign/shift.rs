@@ -1,5 +1,5 @@
-//! Signs of polynomials by what is above a bound: on p > 3, `p^3 - 27 = t^3 + 9 t^2 + 27 t` with t = p - 3 > 0; and
-//! between two bounds: on 0 < p < 1, `(1 + t)^2 (1 - p^2) = 1 + 2 t` with t = p/(1 - p) > 0.
+//! Signs of polynomials by the distance from a bound: on p > 3, `p^3 - 27 = t^3 + 9 t^2 + 27 t` with t = p - 3 > 0; and
+//! from two bounds: on 0 < p < 1, `(1 + t)^2 (1 - p^2) = 1 + 2 t` with t = p/(1 - p) > 0.
 //!
 //! In: a polynomial, and facts that are affine in a variable with a number as its factor. Out: the sign that all
 //! terms have after such variables are written as bound plus distance (or, from above, bound minus distance), or as
@@ -8,19 +8,19 @@
 use std::collections::BTreeMap;
 
 use crate::poly::Poly;
-use crate::{Integer, Relation as Compared};
+use crate::{Integer, Relation};
 
 use super::{Sign, Signs, sign_of_terms};
 use crate::tower::Obstacle;
 
-/// How many ways of shifting are tried.
+/// The greatest number of shifts that are tried.
 const MOST_TRIES: u32 = 24;
 
-/// Larger polynomials are left alone: shifting writes their powers out.
+/// Limits of the polynomials that are shifted: their powers are written out.
 const MOST_TERMS: usize = 24;
 const MOST_DEGREE: u64 = 12;
 
-/// Variables that stand for a distance from a bound, with the sign of that.
+/// Variables that represent a distance from a bound, with the sign of that.
 type Distances = BTreeMap<u32, Sign>;
 
 impl Signs<'_, '_> {
@@ -37,7 +37,7 @@ impl Signs<'_, '_> {
     fn shifted(
         &self,
         poly: &Poly,
-        facts: &[(Poly, Compared)],
+        facts: &[(Poly, Relation)],
         distances: &Distances,
         tries: &mut u32,
     ) -> Result<Option<Sign>, Obstacle> {
@@ -46,13 +46,13 @@ impl Signs<'_, '_> {
             if distances.contains_key(&variable) {
                 continue;
             }
-            // A fact in which a distance stands for its variable would say something else.
+            // A fact in which a distance replaces its variable would be a different statement.
             let foreign = |fact: &Poly| fact.variables().iter().any(|v| distances.contains_key(v));
-            let bounds = facts.iter().filter(|(fact, compared)| *compared != Compared::NonZero && !foreign(fact));
+            let bounds = facts.iter().filter(|(fact, comparison)| *comparison != Relation::NonZero && !foreign(fact));
             let bounds: Vec<Bound> =
-                bounds.filter_map(|(fact, compared)| Bound::of(fact, *compared, variable)).collect();
+                bounds.filter_map(|(fact, comparison)| Bound::of(fact, *comparison, variable)).collect();
             let above = bounds.iter().map(|near| (near, None));
-            // Where the far bound may be reached, t may be infinite, which is no number.
+            // If the far bound may be reached, t may be infinite, which is no number.
             let far = |near: &Bound| {
                 let (near_is_below, is_far) = (near.is_below, |far: &&Bound| far.distance == Sign::Positive);
                 bounds.iter().filter(is_far).find(|far| far.is_below != near_is_below)
@@ -72,7 +72,7 @@ impl Signs<'_, '_> {
                     sign = self.shifted(&moved, facts, &distances, tries)?;
                 }
                 match sign {
-                    // Another bound may show more.
+                    // Another bound may prove more.
                     Some(Sign::NonNegative) => found = sign,
                     Some(_) => return Ok(sign),
                     None => {}
@@ -82,8 +82,8 @@ impl Signs<'_, '_> {
         Ok(found)
     }
 
-    /// The polynomial, times something positive, with the variable written in its distance from the near bound, or in
-    /// the quotient of those from the near and the far one; it takes the variable's place.
+    /// The polynomial, times a positive factor, with the variable written in its distance from the near bound, or in
+    /// the quotient of its distances from the near and the far one, which replaces the variable.
     fn measured(&self, poly: &Poly, variable: u32, near: &Bound, far: Option<&Bound>) -> Result<Poly, Obstacle> {
         let t = Poly::variable(variable);
         // The variable is value/scale.
@@ -114,20 +114,20 @@ struct Bound {
     is_below: bool,
     slope: Integer,
     rest: Poly,
-    /// Of the variable from the bound.
+    /// The sign of the variable's distance from the bound.
     distance: Sign,
 }
 
 impl Bound {
-    /// The bound that a fact sets; none where it is not affine in the variable with a number as factor.
-    fn of(fact: &Poly, compared: Compared, variable: u32) -> Option<Self> {
+    /// The bound that a fact sets; none if it is not affine in the variable with a number as factor.
+    fn of(fact: &Poly, comparison: Relation, variable: u32) -> Option<Self> {
         if fact.degree(variable) != 1 {
             return None;
         }
         let slope = fact.leading_coefficient_in(variable).to_constant()?;
         let is_below = !slope.is_negative();
         let rest = fact - &Poly::variable(variable).scale(&slope);
-        let distance = if compared == Compared::Positive { Sign::Positive } else { Sign::NonNegative };
+        let distance = if comparison == Relation::Positive { Sign::Positive } else { Sign::NonNegative };
         Some(Self { is_below, slope: slope.abs(), rest: if is_below { -&rest } else { rest }, distance })
     }
 }
@@ -141,7 +141,7 @@ mod tests {
     use super::Sign;
     use crate::tower::sign::Field;
 
-    /// Facts and a question, of three symbols, with the sign.
+    /// Facts and a polynomial, of three symbols, with the sign.
     type Case = (fn(&Arena, [Expr; 3]) -> Vec<(Expr, Relation)>, fn(&Arena, [Expr; 3]) -> Expr, Option<Sign>);
 
     fn less(arena: &Arena, a: Expr, number: i64) -> Expr {

@@ -14,7 +14,7 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use crate::analysis::design::{Cascade, Derivation, Verdict};
-use pebo_cas::forms::tidy::{operations, shortest_turned};
+use pebo_cas::forms::tidy::{operations, shortest_oriented};
 use pebo_cas::solve::elimination::Elimination;
 
 /// The search for an operating point may take one part in so many of what the command has left.
@@ -117,7 +117,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let shown = |value: Expr| match operations(arena, value) {
         // Its normal form would be longer than anybody reads, and take longer than all claims.
         MOST_TIDIED.. => value,
-        _ => orientation.of(shortest_turned(arena, &orientation, value)),
+        _ => orientation.of(shortest_oriented(arena, &orientation, value)),
     };
     let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))

@@ -25,7 +25,7 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use super::design::{Cascade, Claim, Class, Comparison, Verdict, Witness};
 use super::{affine, blame, pencil};
-use pebo_cas::forms::tidy::{asking_less, authors, proved_shortest, shortest};
+use pebo_cas::forms::tidy::{authors_form, proved_shortest, shortest, with_fewer_conditions};
 
 /// One component of the derivative of the transform.
 enum Component {
@@ -215,8 +215,8 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
                     !arena.depends_on(*form, &hidden) && decide(arena, arena.sub(*form, tidied), domain).is_zero()
                 };
                 let forms: Vec<Expr> = forms.filter(equal).chain([tidied]).collect();
-                let own = authors(arena, rate, &forms).unwrap_or(tidied);
-                Component::Free(asking_less(arena, domain, own, &forms))
+                let own = authors_form(arena, rate, &forms).unwrap_or(tidied);
+                Component::Free(with_fewer_conditions(arena, domain, own, &forms))
             }
             Answer::Open(obstacle) => Component::Open(obstacle),
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use crate::analysis::design::Cascade;
 use crate::plant::Plant;
-use pebo_cas::domain::cells::{Part, Side};
+use pebo_cas::domain::cells::{Cell, Side};
 use pebo_cas::domain::manifold::Manifold;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::graph::enclosure::Point;
@@ -28,7 +28,7 @@ const FEW_POINTS: usize = 2;
 
 /// A part, and the rows that are seen in it.
 pub(super) struct Seen<'a> {
-    pub(super) part: &'a Part,
+    pub(super) part: &'a Cell,
     pub(super) rows: Vec<Vec<Expr>>,
 }
 
@@ -58,8 +58,8 @@ pub(super) fn all_shown(
 }
 
 /// What divides two parts, if it is one formula alone.
-fn border(first: &Part, second: &Part) -> Option<Expr> {
-    let is_of = |part: &Part, side: &(Expr, Side)| part.sides.contains(side);
+fn border(first: &Cell, second: &Cell) -> Option<Expr> {
+    let is_of = |part: &Cell, side: &(Expr, Side)| part.sides.contains(side);
     let mut apart = first.sides.iter().filter(|side| !is_of(second, side));
     let (expr, _) = apart.next()?;
     let same = first.sides.len() == second.sides.len() && second.sides.iter().any(|(other, _)| other == expr);
@@ -122,7 +122,7 @@ fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&Seen<'_>; 2], unknown
 
 /// Formulas as they are on a part, which have values at its border too.
 fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
-    let field = Field::on(arena, &domain.but_for_radicands(arena, exprs), exprs)?;
+    let field = Field::on(arena, &domain.without_radicand_facts(arena, exprs), exprs)?;
     exprs.iter().map(|expr| Ok(field.show(&field.fraction(*expr)?))).collect()
 }
 

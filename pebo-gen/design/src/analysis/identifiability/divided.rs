@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
-use pebo_cas::domain::cells::Part;
+use pebo_cas::domain::cells::Cell;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr};
 
@@ -74,7 +74,7 @@ pub(super) fn decide(
     let identified =
         |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
     if identified(&whole) {
-        let parts = domain.parts(arena, &formulas.all(), |expr| !varies(plant, expr))?;
+        let parts = domain.cells(arena, &formulas.all(), |expr| !varies(plant, expr))?;
         for part in parts.iter().filter(|part| !part.sides.is_empty()) {
             let claim = on_parts(plant, &part.domain, (cascade, regression), formulas, &mut Vec::new(), &on)?;
             let at_once = |claim: &Claim<Identifiability>| {
@@ -97,7 +97,7 @@ fn varies(plant: &Plant, expr: Expr) -> bool {
 }
 
 /// With parameters of other signs there is another answer.
-fn depends_on_signs(plant: &Plant, part: &Part) -> Diagnostic {
+fn depends_on_signs(plant: &Plant, part: &Cell) -> Diagnostic {
     let sides: Vec<String> =
         part.sides.iter().map(|(expr, side)| format!("`{} {}`", plant.arena.print(*expr), side.sign())).collect();
     Diagnostic::error(
@@ -110,7 +110,7 @@ fn depends_on_signs(plant: &Plant, part: &Part) -> Diagnostic {
 }
 
 /// None of the parts shows all unknowns, and no motion was found that passes from one into another and shows them.
-fn parted(plant: &Plant, parts: &[Part]) -> Diagnostic {
+fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
     let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
     let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
     Diagnostic::error(Code::IdentifiabilityUndecided, at_phi(plant), "no motion was found that identifies the unknowns")
@@ -124,12 +124,12 @@ fn parted(plant: &Plant, parts: &[Part]) -> Diagnostic {
 }
 
 /// The motions within parts on which not all unknowns are seen: of all parts together, where all have the same.
-fn of_parts(plant: &Plant, within: &[(&Part, Vec<Blind>)], parts: usize) -> Vec<Blind> {
+fn of_parts(plant: &Plant, within: &[(&Cell, Vec<Blind>)], parts: usize) -> Vec<Blind> {
     let key = |blind: &Blind| (blind.place(plant), blind.seen.clone());
     let mut found: Vec<Blind> = Vec::new();
     for (part, motions) in within {
         for motion in motions {
-            let is_same = |(_, others): &&(&Part, Vec<Blind>)| others.iter().any(|other| key(other) == key(motion));
+            let is_same = |(_, others): &&(&Cell, Vec<Blind>)| others.iter().any(|other| key(other) == key(motion));
             let place = if within.iter().filter(is_same).count() == parts {
                 motion.place.clone()
             } else {
@@ -157,10 +157,10 @@ fn on_parts(
     let varies = |expr: Expr| varies(plant, expr);
     let mut told = Vec::new();
     let whole = on(domain, &mut told);
-    let instant = |part: &Part| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
+    let instant = |part: &Cell| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
     if whole.kind() == Some(Excitation::Instant) {
         let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
-        let everywhere = match domain.parts(arena, &formulas.of_regressor(), varies) {
+        let everywhere = match domain.cells(arena, &formulas.of_regressor(), varies) {
             Ok(parts) => parts.len() == 1 || parts.iter().all(instant),
             // Where the rank drops is told even so.
             Err(Obstacle::TooLarge | Obstacle::OutOfBudget | Obstacle::NoPoint) if listed => true,
@@ -171,13 +171,13 @@ fn on_parts(
             return Ok(whole.claim);
         }
     }
-    let parts = domain.parts(arena, &formulas.all(), varies)?;
+    let parts = domain.cells(arena, &formulas.all(), varies)?;
     if parts.len() == 1 {
         found.extend(told);
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
-    let mut within: Vec<(&Part, Vec<Blind>)> = Vec::new();
+    let mut within: Vec<(&Cell, Vec<Blind>)> = Vec::new();
     let mut shown = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;

@@ -19,7 +19,7 @@ use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::domain::reducible::reducible;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::linear::rank::{full_rank, null_vectors, rank_seen};
+use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
@@ -279,12 +279,12 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
     let arena = &plant.arena;
     let Ok(mut flow) = Flow::new(plant, domain, cascade) else { return false };
     let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
-    let mut rank = rank_seen(arena, domain, &stack, unknowns);
+    let mut rank = proved_rank(arena, domain, &stack, unknowns);
     for _ in 1..unknowns {
         let Ok(rates) = flow.rates(arena, &latest) else { return false };
         latest = rates;
         stack.extend(latest.iter().cloned());
-        let next = rank_seen(arena, domain, &stack, unknowns);
+        let next = proved_rank(arena, domain, &stack, unknowns);
         // No derivative adds to a rank that one derivative did not raise.
         if next == rank || next == unknowns {
             return next == unknowns;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::plant::Plant;
 use crate::source::Span;
 use pebo_cas::domain::zero::{Answer, decide};
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Domain, Expr, Function, Relation, Symbol};
 
 /// What a formula for a state asks at z = phi(x, y) that the domain does not show: the ask, and the ask there.
@@ -18,7 +18,7 @@ use pebo_cas::{Arena, Domain, Expr, Function, Relation, Symbol};
 pub(super) fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relation), (Expr, Relation))> {
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    let asked = arena.asks(&[formula], Want::Value).into_iter();
+    let asked = arena.domain_conditions(&[formula], Regularity::Defined).into_iter();
     let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
     there.filter(|(_, ask)| !domain.grants(arena, *ask)).collect()
 }

@@ -13,9 +13,9 @@ use std::collections::BTreeMap;
 
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
-use pebo_cas::domain::injectivity::Twice;
+use pebo_cas::domain::injectivity::Collision;
 use pebo_cas::domain::zero::{self, Answer, decide, refute};
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{self, Domain, Expr, Rational, Relation, Symbol};
 
 use super::design::{Claim, Comparison, LeftInverse, Origin, Verdict, Witness};
@@ -170,11 +170,11 @@ fn taken_twice(plant: &Plant, domain: &Domain, state: Symbol) -> Option<Witness>
     }
     // The domain is where the plant and the transform have values and derivatives.
     let formulas: Vec<Expr> = transform.iter().copied().chain(plant.rates().into_values()).collect();
-    let asks = arena.asks(&formulas, Want::Slope);
+    let asks = arena.domain_conditions(&formulas, Regularity::Differentiable);
     let points = domain.points(arena, &formulas).take(POINTS);
     points.into_iter().find_map(|point| {
-        let Twice { at, between, values } =
-            pebo_cas::domain::injectivity::taken_twice(arena, domain, &asks, component, state, &point)?;
+        let Collision { at, between, values } =
+            pebo_cas::domain::injectivity::collision(arena, domain, &asks, component, state, &point)?;
         let difference = arena.sub(arena.of_symbol(state), arena.number(at.clone()));
         let ends = [&between[0] - &at, &between[1] - &at].map(|end| end.to_f64());
         let place = |value: &Rational| vec![(state, arena.number(value.clone()))];

@@ -7,7 +7,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use crate::plant::{Plant, State};
-use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::forms::tidy::{dissolves, functions, operations, root_differences, shortest};
 use pebo_cas::solve::{Equation, solve};
 use pebo_cas::tower::Obstacle;
@@ -51,15 +51,15 @@ impl<'a> Solving<'a> {
             solve(arena, domain, &equations(plant, plant.transform()), &states)?
         };
         let hidden = plant.hidden();
-        let mut frozen = Frozen::new(arena, &hidden);
-        let kept = frozen.freeze(&plant.transform());
+        let mut frozen = OpaqueTerms::new(arena, &hidden);
+        let kept = frozen.replace(&plant.transform());
         let mut as_written = if alone.is_empty() || frozen.is_empty() {
             BTreeMap::new()
         } else {
             solve(arena, domain, &equations(plant, kept), &states).unwrap_or_default()
         };
         for formula in as_written.values_mut().flatten() {
-            *formula = frozen.thaw(*formula);
+            *formula = frozen.restore(*formula);
         }
         Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), together: OnceCell::new() })
     }

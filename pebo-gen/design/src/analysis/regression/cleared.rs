@@ -12,7 +12,7 @@ use crate::analysis::design::LeftInverse;
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::solve::{Equation, cleared, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Node, Symbol};
@@ -20,7 +20,7 @@ use pebo_cas::{Domain, Expr, Node, Symbol};
 /// What vanishes by an identity as affine functions of the transform; none where no form of it is one.
 pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec<affine::Row>, Obstacle> {
     // Where it holds an identity says 0 = 0: what it says of z is read off it elsewhere.
-    let everywhere = domain.everywhere();
+    let everywhere = domain.without_equations();
     let written = affine::of(plant, &everywhere, identity);
     if let Ok(Some(row)) = written {
         return Ok(vec![row]);
@@ -36,10 +36,10 @@ pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec
 /// A form over the transform, what is free of x left as it is written.
 fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::Row> {
     let hidden = plant.hidden();
-    let mut frozen = Frozen::new(&plant.arena, &hidden);
-    let form = frozen.freeze(&[form])[0];
+    let mut frozen = OpaqueTerms::new(&plant.arena, &hidden);
+    let form = frozen.replace(&[form])[0];
     let row = affine::of(plant, everywhere, form).ok()??;
-    Some(row.into_iter().map(|entry| frozen.thaw(entry)).collect())
+    Some(row.into_iter().map(|entry| frozen.restore(entry)).collect())
 }
 
 /// The identities as equations between z, y and u: in a form that is affine in z, else in one whose parts can be told
@@ -84,7 +84,7 @@ fn components(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
     let known = solve(arena, domain, &[equation], &[*state]).unwrap_or_default().remove(state).unwrap_or_default();
     let is_the_state = |known: &Expr| {
         let error = arena.sub(arena.substitute(*known, &value), arena.of_symbol(*state));
-        !arena.depends_on(*known, &hidden) && decide(arena, error, &domain.everywhere()).is_zero()
+        !arena.depends_on(*known, &hidden) && decide(arena, error, &domain.without_equations()).is_zero()
     };
     let Some(known) = known.into_iter().find(is_the_state) else { return Vec::new() };
     let at = BTreeMap::from([(*state, known)]);
@@ -99,7 +99,7 @@ fn forms(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
     let value = value(plant, identity);
     let mut forms = cleared(arena, domain, identity, &plant.hidden());
     forms.retain(|form| match &value {
-        Some(value) => decide(arena, arena.substitute(*form, value), &domain.everywhere()).is_zero(),
+        Some(value) => decide(arena, arena.substitute(*form, value), &domain.without_equations()).is_zero(),
         None => decide(arena, *form, domain).is_zero(),
     });
     forms

@@ -20,7 +20,7 @@ use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Rational, Symbol};
 
-use pebo_cas::forms::tidy::{asking_less, shortest};
+use pebo_cas::forms::tidy::{shortest, with_fewer_conditions};
 
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;
@@ -82,7 +82,7 @@ pub(super) fn equation(
     if self::factor(plant, domain, whole)?.is_some_and(|below| arena.depends_on(below, &unknown)) {
         return Ok(None);
     }
-    let right = asking_less(arena, domain, shortest(arena, domain, right), &[whole]);
+    let right = with_fewer_conditions(arena, domain, shortest(arena, domain, right), &[whole]);
     // Proved of the plant itself: at z = phi(x, y), along its vector field.
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let moving = arena.directional(arena.substitute(primitive, &transform), &plant.rates());

@@ -7,8 +7,8 @@ use crate::analysis::design::{Cascade, LeftInverse, Regression, RegressionKind};
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::forms::tidy::{asking_less, functions, shortest, shortest_equal};
-use pebo_cas::graph::conditions::Want;
+use pebo_cas::forms::tidy::{functions, shortest, shortest_equal, with_fewer_conditions};
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
@@ -42,7 +42,7 @@ pub(super) fn decompose(
 fn asks(plant: &Plant, domain: &Domain, row: &Row) -> usize {
     let arena = &plant.arena;
     let formulas = [row.factors.as_slice(), &[row.known]].concat();
-    let asked = arena.asks(&formulas, Want::Value).into_iter();
+    let asked = arena.domain_conditions(&formulas, Regularity::Defined).into_iter();
     asked.filter(|ask| !domain.grants(arena, *ask)).count()
 }
 
@@ -120,7 +120,7 @@ pub(super) fn linear(
         let calls = |form: Expr| functions(arena, &[form]).len();
         let tidied = || {
             let candidates = [written.as_slice(), &[shortest(arena, domain, known)]].concat();
-            asking_less(arena, domain, shortest_equal(arena, domain, known, &candidates), &written)
+            with_fewer_conditions(arena, domain, shortest_equal(arena, domain, known, &candidates), &written)
         };
         phi_0.push(match own {
             Some(own) if calls(own) == 0 => own,
@@ -134,7 +134,7 @@ pub(super) fn linear(
             .zip(extension)
             .map(|(factor, symbol)| {
                 let slopes: Vec<Expr> = written.iter().map(|w| arena.derivative(*w, *symbol)).collect();
-                asking_less(arena, domain, *factor, &slopes)
+                with_fewer_conditions(arena, domain, *factor, &slopes)
             })
             .collect();
         phi_1.push(match &cascade.lambda {

@@ -13,7 +13,7 @@ use pebo_cas::linear::combination::combine;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Symbol};
 
-use pebo_cas::linear::rank::rank_seen;
+use pebo_cas::linear::rank::proved_rank;
 
 /// With more components the products are too many to be compared.
 const MOST_COMPONENTS: usize = 6;
@@ -72,7 +72,7 @@ pub(super) fn are_all(plant: &Plant, domain: &Domain, relations: &[Expr]) -> boo
         plant.z.iter().map(slope).collect::<Vec<Expr>>()
     });
     let rows: Vec<Vec<Expr>> = slopes.collect();
-    rank_seen(arena, domain, &rows, plant.z.len()) + independent_directions(plant, domain) >= plant.z.len()
+    proved_rank(arena, domain, &rows, plant.z.len()) + independent_directions(plant, domain) >= plant.z.len()
 }
 
 /// The rank of the transform's derivative in x, as far as points show it.
@@ -80,7 +80,7 @@ fn independent_directions(plant: &Plant, domain: &Domain) -> usize {
     let arena = &plant.arena;
     let slopes = |phi: Expr| plant.x.iter().map(|x| arena.derivative(phi, x.symbol)).collect::<Vec<Expr>>();
     let rows: Vec<Vec<Expr>> = plant.transform().into_iter().map(slopes).collect();
-    rank_seen(arena, domain, &rows, plant.x.len())
+    proved_rank(arena, domain, &rows, plant.x.len())
 }
 
 /// The products of two components, as their positions.

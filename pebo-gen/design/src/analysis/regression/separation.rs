@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plant::Plant;
 use pebo_cas::domain::zero::{Answer, decide};
-use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::linear::combination::combine;
 use pebo_cas::poly::Monomial;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
@@ -50,13 +50,13 @@ pub(in crate::analysis) fn separate(
     let Some(mut separated) = apart(plant, domain, &unknown, &exprs)? else { return Ok(None) };
     // Functions of known signals stay as they are written, where no relation among them is needed: `tanh(5*u)` by
     // exponentials overflows where it is 1.
-    let mut frozen = Frozen::new(arena, &unknown);
-    let signals = frozen.freeze(&exprs);
+    let mut frozen = OpaqueTerms::new(arena, &unknown);
+    let signals = frozen.replace(&exprs);
     if !frozen.is_empty()
         && let Ok(Some(kept)) = apart(plant, domain, &unknown, &signals)
         && kept.eta == separated.eta
     {
-        let thaw = |exprs: &[Expr]| -> Vec<Expr> { exprs.iter().map(|expr| frozen.thaw(*expr)).collect() };
+        let thaw = |exprs: &[Expr]| -> Vec<Expr> { exprs.iter().map(|expr| frozen.restore(*expr)).collect() };
         separated.known = thaw(&kept.known);
         separated.factors = kept.factors.iter().map(|row| thaw(row)).collect();
     }

@@ -50,7 +50,7 @@ fn value_in_z(plant: &Plant, domain: &Domain, output: usize) -> Option<Expr> {
     let output = &plant.y[output];
     let value = output.value.filter(|_| output.moves_with_value())?;
     // Where it holds the difference is 0, an affine function of anything: what it says of z is read off it elsewhere.
-    let everywhere = domain.everywhere();
+    let everywhere = domain.without_equations();
     let row = affine::of(plant, &everywhere, arena.sub(arena.of_symbol(output.symbol), value.expr)).ok()??;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
     let tells = row[1..].iter().any(|factor| !arena.is_zero(*factor));

@@ -7,7 +7,7 @@ mod adjugate;
 
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::determinant::determinant;
-use pebo_cas::linear::rank::rank_seen;
+use pebo_cas::linear::rank::proved_rank;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Facts, Symbol};
 
@@ -135,7 +135,7 @@ impl Matrix {
         // A rank that a point shows is the least that there is: the greatest possible needs no elimination.
         let most = self.height().min(self.width());
         let domain = Domain { facts: facts.clone(), ..Domain::default() };
-        if rank_seen(arena, &domain, &self.rows, self.width()) == most {
+        if proved_rank(arena, &domain, &self.rows, self.width()) == most {
             return Ok(most);
         }
         self.echelon(arena, facts, |_, echelon| echelon.rank())

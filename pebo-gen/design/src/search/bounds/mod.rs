@@ -19,7 +19,7 @@ mod series;
 use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::linear::null_space_of_numbers;
-use pebo_cas::linear::residues::Rows;
+use pebo_cas::linear::residues::ResidueRows;
 use pebo_cas::poly::{PrimeField, Residue};
 use pebo_cas::{Expr, Rational, Symbol};
 
@@ -224,7 +224,7 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
         rows.iter().map(|row| row.iter().map(|e| prime.from_rational(e)).collect()).collect();
     let images = images?;
     // Rows that are zero but for the gradient's columns, after elimination.
-    let mut echelon = Rows::new(&prime, columns.len());
+    let mut echelon = ResidueRows::new(&prime, columns.len());
     for row in images.iter().cloned() {
         if !question.arena.budget().take((columns.len() * (echelon.rank() + 1) / 8) as u64) {
             return None;
@@ -263,7 +263,7 @@ fn certificate(
     (split, wanted): (usize, usize),
 ) -> Option<Vec<(Vec<Rational>, usize)>> {
     // Combinations of rows: the null space of the transposed left part, those that are not zero on the right.
-    let mut transposed = Rows::new(prime, rows.len());
+    let mut transposed = ResidueRows::new(prime, rows.len());
     for column in 0..split {
         if !question.arena.budget().take((rows.len() * (transposed.rank() + 1) / 8) as u64) {
             return None;
@@ -271,7 +271,7 @@ fn certificate(
         transposed.insert(images.iter().map(|row| row[column]).collect());
     }
     let width = rows.first()?.len() - split;
-    let mut seen = Rows::new(prime, width);
+    let mut seen = ResidueRows::new(prime, width);
     let mut found = Vec::new();
     let mut vectors = transposed.null_space();
     vectors.sort_by_key(|(_, vector)| vector.iter().filter(|e| !e.is_zero()).count());

@@ -11,7 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pebo_cas::forms::opaque::Frozen;
+use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::combination::equations;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
@@ -51,15 +51,15 @@ impl Connection {
         moving.retain(|symbol| !question.y.contains(symbol));
         let mut found = Self::solved(question, &conditions, &moving)?;
         // What the outputs are known by stays as it is written, where that is enough: `(q - q0)^4` rather than its terms.
-        let mut frozen = Frozen::new(arena, &moving);
-        let written: Vec<Vec<Expr>> = conditions.iter().map(|row| frozen.freeze(row)).collect();
+        let mut frozen = OpaqueTerms::new(arena, &moving);
+        let written: Vec<Vec<Expr>> = conditions.iter().map(|row| frozen.replace(row)).collect();
         if !frozen.is_empty()
             && let Ok(written) = Self::solved(question, &written, &moving)
         {
             let entries = found.gamma.iter_mut().flatten().chain(&mut found.shift);
             for (known, written) in entries.zip(written.gamma.iter().flatten().chain(&written.shift)) {
                 if let (Some(known), Some(written)) = (known, written) {
-                    *known = written.iter().map(|entry| frozen.thaw(*entry)).collect();
+                    *known = written.iter().map(|entry| frozen.restore(*entry)).collect();
                 }
             }
         }

@@ -1,10 +1,10 @@
-//! Values known exactly or to many digits, and where there is none.
+//! Values known exactly or to many digits, and undefined values.
 
 use super::super::constants;
 use super::super::dyadic::scaled;
 use super::*;
 
-/// Whether the result is the one number.
+/// True if the result is the one number.
 fn is(result: Option<Interval>, n: i64) -> bool {
     result.is_some_and(|x| x == number(n))
 }
@@ -83,7 +83,7 @@ fn constants_are_floors() {
 }
 
 #[test]
-fn undefined_where_the_function_is() {
+fn results_are_undefined_where_the_function_is() {
     let p = bits(64);
     let (zero, one, minus_one, two) = (number(0), number(1), number(-1), number(2));
     let around_zero = minus_one.hull(&one);
@@ -125,7 +125,7 @@ fn straight_pieces_are_exact() {
 }
 
 #[test]
-fn magnitudes_are_bounded() {
+fn absolute_values_are_bounded() {
     let p = bits(64);
     let million = number(1_048_576);
     assert!(million.exp(p).is_none());

@@ -1,4 +1,4 @@
-//! Helpers of the tests: what a function is, where it may be asked, and how intervals compare.
+//! Helpers of the tests: functions, their arguments, and comparisons of intervals.
 
 mod cases;
 mod identities;

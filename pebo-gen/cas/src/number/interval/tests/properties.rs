@@ -1,4 +1,4 @@
-//! What holds of every function: inclusion, refinement, tightness, agreement with `f64`, no panic.
+//! Properties of every function: inclusion, refinement, tightness, agreement with `f64`, no panic.
 
 use proptest::num::f64::{NORMAL, SUBNORMAL};
 
@@ -23,7 +23,7 @@ fn ends() -> impl Strategy<Value = [i64; 2]> {
     prop_oneof![[part(), part()], (part(), 0_i64..4000).prop_map(near)]
 }
 
-/// Whether a function is within two units at a precision, and its enclosure with more bits within the coarse one.
+/// True if a function is within two units at a precision, and its enclosure with more bits within the coarse one.
 fn tight_and_finer(function: &Unary, argument: &Rational, precision: u32) -> Result<(), TestCaseError> {
     let at = |n: u32| (function.enclose)(&point(argument, 64.max(n)), bits(n)).unwrap();
     let (coarse, fine) = (at(precision), at(precision + 100));
@@ -107,7 +107,7 @@ proptest! {
         prop_assert_eq!((x.lo(), x.hi(), x.width()), (value, value, 0.0));
     }
 
-    /// A stack machine: every operation is applied to whatever the earlier ones left.
+    /// A stack machine: every operation is applied to the results of earlier ones.
     #[test]
     fn never_panics(code in prop::collection::vec((0_usize..32, wide(), 0_u32..300), 1..40)) {
         let mut stack = vec![number(1), number(-2).hull(&number(3))];

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::analysis::design::{Cascade, Regression};
 use crate::analysis::identifiability::flow::{Flow, effective, without_psi};
 use crate::plant::Plant;
-use pebo_cas::linear::rank::{null_vectors, rank_seen};
+use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
@@ -55,7 +55,7 @@ impl Question<'_> {
         let (phi_1, primitive_1) = (there(&regression.phi_1), there(&regression.primitive_1));
         let mut latest = effective(arena, &flow, &phi_1, &primitive_1);
         let mut stack = without_psi(plant, &latest);
-        let mut rank = rank_seen(arena, &domain, &stack, unknowns);
+        let mut rank = proved_rank(arena, &domain, &stack, unknowns);
         let mut hidden = None;
         for _ in 1..unknowns {
             if rank == unknowns {
@@ -64,7 +64,7 @@ impl Question<'_> {
             let before = stack.clone();
             latest = flow.rates(arena, &latest)?;
             stack.extend(without_psi(plant, &latest));
-            let next = rank_seen(arena, &domain, &stack, unknowns);
+            let next = proved_rank(arena, &domain, &stack, unknowns);
             if next == rank {
                 if arena.postorder(&stack.concat()).len() > MOST_PARTS {
                     return Err(Obstacle::TooLarge);

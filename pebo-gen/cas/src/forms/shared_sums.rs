@@ -1,9 +1,9 @@
-//! Long rational formulas over the sums that they hold several times, which stay as they are.
+//! Long rational formulas over the sums that they hold several times, which are opaque.
 //!
-//! In: a formula. Out: the same over a fresh symbol for each such sum, and what the symbols stand for. What is zero
-//! whatever they stand for is zero, and a form of the one is a form of the other. A linear plant in symbols divides by a
-//! determinant of hundreds of terms, and multiplies minors that are no shorter: little of what is asked of it has to open
-//! them. What has to is not seen this way.
+//! In: a formula. Out: the formula over a fresh symbol for each such sum, and the sums. If the result is zero for any
+//! values of the symbols, so is the formula, and a form of the one is a form of the other. A linear plant in symbols
+//! divides by a determinant of hundreds of terms, and multiplies minors that are no shorter: few problems need to
+//! expand them. Results that need the expansion are not found.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,20 +14,20 @@ use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::tower::Field;
 
-/// Subexpressions of a formula up to which its normal form costs no more than looking for another.
+/// Subexpressions of a formula up to which its normal form costs no more than a search for shared sums.
 const SHORT: usize = 200;
 
-/// How often sums that are held several times are opened down to those that they hold.
+/// The number of times that shared sums are expanded down to the shared sums within them.
 const MOST_LAYERS: usize = 2;
 
 /// A formula over symbols for the sums that it held several times.
-pub(crate) struct Shared {
+pub(crate) struct SharedSums {
     pub expr: Expr,
     values: BTreeMap<Symbol, Expr>,
 }
 
-impl Shared {
-    /// None of a formula that is short, that holds functions or roots, or that holds no sum twice.
+impl SharedSums {
+    /// None if a formula is short, holds functions or roots, or holds no sum twice.
     pub(crate) fn of(arena: &Arena, expr: Expr) -> Option<Self> {
         let sums = shared_sums(arena, expr);
         (!sums.is_empty()).then(|| Self::over(arena, expr, &sums))
@@ -44,20 +44,20 @@ impl Shared {
         Self { expr: arena.replace(expr, &symbols), values }
     }
 
-    /// A formula in the symbols with what they stand for.
-    pub(crate) fn opened(&self, arena: &Arena, expr: Expr) -> Expr {
+    /// A formula with the symbols replaced by their sums.
+    pub(crate) fn expanded(&self, arena: &Arena, expr: Expr) -> Expr {
         arena.substitute(expr, &self.values)
     }
 }
 
-/// Whether it is zero whatever the sums stand for that it holds several times: the outermost, or those that these hold.
+/// True if the expression is zero for any values of its shared sums: the outermost, or those within them.
 pub(crate) fn vanishes_over_shared_sums(arena: &Arena, facts: &Facts, expr: Expr) -> bool {
     let mut sums = shared_sums(arena, expr);
     for _ in 0..MOST_LAYERS {
         if sums.is_empty() {
             return false;
         }
-        let shared = Shared::over(arena, expr, &sums);
+        let shared = SharedSums::over(arena, expr, &sums);
         let field = Field::of_long_sums(arena, facts, &[shared.expr]);
         if field.and_then(|field| field.fraction(shared.expr)).is_ok_and(|fraction| fraction.is_zero()) {
             return true;
@@ -70,7 +70,7 @@ pub(crate) fn vanishes_over_shared_sums(arena: &Arena, facts: &Facts, expr: Expr
     false
 }
 
-/// The sums that a long rational formula holds several times; none of another.
+/// The sums that a long rational formula holds several times; none for any other formula.
 fn shared_sums(arena: &Arena, expr: Expr) -> Vec<Expr> {
     let parts = arena.postorder(&[expr]);
     if parts.len() <= SHORT || !parts.iter().all(|part| is_rational(arena, *part)) {
@@ -85,7 +85,7 @@ fn shared_sums(arena: &Arena, expr: Expr) -> Vec<Expr> {
     parts.into_iter().filter(is_shared).collect()
 }
 
-/// Whether the last operation of an expression is one of rational functions.
+/// True if the last operation of an expression is one of rational functions.
 fn is_rational(arena: &Arena, expr: Expr) -> bool {
     match arena.node(expr) {
         Node::Number(_) | Node::Symbol(_) | Node::Sum(_) => true,
@@ -103,7 +103,7 @@ mod tests {
 
     /// `(A B - C (A B/C)) D` over sums of many terms: zero, though written out it would have some 10^9 of them.
     #[test]
-    fn what_cancels_between_long_sums_is_zero_without_writing_them_out() {
+    fn differences_of_long_sums_are_zero_without_expansion() {
         let arena = Arena::within(Budget::of_seconds(0.2));
         let sum = |name: &str| arena.sum((0..60).map(|k| arena.variable(&format!("{name}{k}"))));
         let [a, b, c, d] = ["a", "b", "c", "d"].map(sum);
@@ -124,8 +124,8 @@ mod tests {
         let [x, y] = ["x", "y"].map(|name| arena.variable(name));
         let inner = arena.add(arena.mul(a, x), y);
         let outer = arena.sum([arena.mul(inner, x), arena.mul(inner, y), arena.mul(a, b), arena.div(x, a)]);
-        let shared = Shared::of(&arena, outer).expect("a sum twice");
+        let shared = SharedSums::of(&arena, outer).expect("a sum twice");
         assert_ne!(shared.expr, outer);
-        assert_eq!(shared.opened(&arena, shared.expr), outer);
+        assert_eq!(shared.expanded(&arena, shared.expr), outer);
     }
 }

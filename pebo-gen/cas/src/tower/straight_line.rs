@@ -1,12 +1,12 @@
-//! Residues of formulas as they are written, where their normal form would be long and only values are asked for.
+//! Residues of formulas as they are written, where only values are needed and the normal form would be long.
 //!
 //! ```text
 //! formulas -> sums, products and whole powers of atoms; the field of the atoms -> values of kernels -> residues
 //! ```
 //!
-//! In: formulas that share parts. Out: the field of what they are made of, and for values of its kernels a residue of
-//! each formula. Holds after: a residue that comes out is that of the formula's fraction; where the formula divides by
-//! zero there is none, even if the fraction has one.
+//! In: formulas that share subexpressions. Out: the field of their atoms, and for values of its kernels a residue of
+//! each formula. Holds after: a residue is that of the formula's fraction; if the formula divides by zero there is
+//! none, even if the fraction has one.
 
 use std::collections::BTreeSet;
 
@@ -16,42 +16,42 @@ use super::{Field, Fraction, Obstacle};
 use crate::poly::{PrimeField, Residue};
 use crate::{Arena, Expr, Facts, Node, Rational};
 
-/// How a value follows from those before it, which are named by their places.
+/// An instruction: a value computed from earlier ones, which are named by their positions.
 #[derive(Debug)]
-enum Step {
+enum Instruction {
     Sum(Residue, Vec<(usize, Residue)>),
     Product(Residue, Vec<(usize, Power)>),
 }
 
-/// A whole power: the exponent's magnitude, and whether it divides.
+/// An integer power: the exponent's absolute value, and true if it divides.
 #[derive(Clone, Copy, Debug)]
 struct Power {
     exponent: u64,
     divides: bool,
 }
 
-/// Formulas with what is needed to evaluate them modulo the prime for which they were prepared.
+/// A program that evaluates formulas modulo the prime for which they were compiled.
 #[derive(Debug)]
-pub struct Straight<'a> {
+pub struct StraightLineProgram<'a> {
     field: Field<'a>,
     /// Symbols, functions and roots, whose values come first.
     atoms: Vec<Fraction>,
-    steps: Vec<Step>,
-    /// The place of each formula's value.
+    instructions: Vec<Instruction>,
+    /// The position of each formula's value.
     values: Vec<usize>,
 }
 
-impl<'a> Straight<'a> {
+impl<'a> StraightLineProgram<'a> {
     /// Compiles formulas for values modulo a prime.
     pub fn of(arena: &'a Arena, facts: &Facts, prime: &PrimeField, formulas: &[Expr]) -> Result<Self, Obstacle> {
         let (atoms, compounds) = parts(arena, formulas);
         let field = Field::over(arena, facts, &atoms)?;
         let fractions = atoms.iter().map(|atom| field.fraction(*atom)).collect::<Result<_, _>>()?;
         let places: FxHashMap<Expr, usize> = atoms.iter().chain(&compounds).copied().zip(0..).collect();
-        let step = |compound: &Expr| step(arena, prime, *compound, &places).ok_or(Obstacle::TooLarge);
-        let steps = compounds.iter().map(step).collect::<Result<_, _>>()?;
+        let instruction = |compound: &Expr| instruction(arena, prime, *compound, &places).ok_or(Obstacle::TooLarge);
+        let instructions = compounds.iter().map(instruction).collect::<Result<_, _>>()?;
         let values = formulas.iter().map(|formula| places[formula]).collect();
-        Ok(Self { field, atoms: fractions, steps, values })
+        Ok(Self { field, atoms: fractions, instructions, values })
     }
 
     /// The field of the atoms.
@@ -59,25 +59,25 @@ impl<'a> Straight<'a> {
         &self.field
     }
 
-    /// How many values are worked out for the residues.
+    /// The number of values computed for the residues.
     pub fn length(&self) -> usize {
-        self.atoms.len() + self.steps.len()
+        self.atoms.len() + self.instructions.len()
     }
 
-    /// The residues of all formulas; none where one divides by zero.
+    /// The residues of all formulas; none if one divides by zero.
     pub fn residues(&self, prime: &PrimeField, kernels: &[Residue]) -> Option<Vec<Residue>> {
         let mut values = Vec::with_capacity(self.length());
         for atom in &self.atoms {
             values.push(atom.residue(prime, kernels)?);
         }
-        for step in &self.steps {
-            values.push(step.value(prime, &values)?);
+        for instruction in &self.instructions {
+            values.push(instruction.value(prime, &values)?);
         }
         Some(self.values.iter().map(|place| values[*place]).collect())
     }
 }
 
-impl Step {
+impl Instruction {
     fn value(&self, prime: &PrimeField, values: &[Residue]) -> Option<Residue> {
         match self {
             Self::Sum(constant, terms) => {
@@ -95,7 +95,7 @@ impl Step {
     }
 }
 
-/// A factor of a product as a whole power: of its base, or of the root that it is.
+/// A factor of a product as an integer power of its base, or of the root that it is.
 fn factor(arena: &Arena, base: Expr, exponent: &Rational) -> (Expr, Power) {
     match exponent.to_i64() {
         Some(exponent) => (base, Power { exponent: exponent.unsigned_abs(), divides: exponent < 0 }),
@@ -103,7 +103,7 @@ fn factor(arena: &Arena, base: Expr, exponent: &Rational) -> (Expr, Power) {
     }
 }
 
-/// What formulas are made of: atoms, and the sums and products of them, each after its operands.
+/// The subexpressions of formulas: atoms, and the sums and products of them, each after its operands.
 fn parts(arena: &Arena, formulas: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     let (mut atoms, mut compounds) = (BTreeSet::new(), BTreeSet::new());
     let mut open = formulas.to_vec();
@@ -125,19 +125,24 @@ fn parts(arena: &Arena, formulas: &[Expr]) -> (Vec<Expr>, Vec<Expr>) {
     (atoms.into_iter().collect(), compounds.into_iter().collect())
 }
 
-/// How a sum or product follows from its operands; none if a number has no residue.
-fn step(arena: &Arena, prime: &PrimeField, compound: Expr, places: &FxHashMap<Expr, usize>) -> Option<Step> {
+/// The instruction for a sum or product of its operands; none if a number has no residue.
+fn instruction(
+    arena: &Arena,
+    prime: &PrimeField,
+    compound: Expr,
+    places: &FxHashMap<Expr, usize>,
+) -> Option<Instruction> {
     match arena.node(compound) {
         Node::Sum(sum) => {
             let terms = sum.terms.iter().map(|(term, c)| Some((places[term], prime.from_rational(c)?)));
-            Some(Step::Sum(prime.from_rational(&sum.constant)?, terms.collect::<Option<_>>()?))
+            Some(Instruction::Sum(prime.from_rational(&sum.constant)?, terms.collect::<Option<_>>()?))
         }
         Node::Product(product) => {
             let factors = product.factors.iter().map(|(base, exponent)| {
                 let (base, power) = factor(arena, *base, exponent);
                 (places[&base], power)
             });
-            Some(Step::Product(prime.from_rational(&product.coefficient)?, factors.collect()))
+            Some(Instruction::Product(prime.from_rational(&product.coefficient)?, factors.collect()))
         }
         _ => None,
     }
@@ -165,7 +170,7 @@ mod tests {
             arena.call(Function::Exp, &[arena.mul(sum, a)]),
         ];
         let prime = prime_of_kernels().expect("a prime");
-        let straight = Straight::of(&arena, &Facts::new(), &prime, &formulas).expect("formulas");
+        let straight = StraightLineProgram::of(&arena, &Facts::new(), &prime, &formulas).expect("formulas");
         let field = straight.field();
         let fractions: Vec<Fraction> = formulas.iter().map(|e| field.fraction(*e).expect("a fraction")).collect();
         let mut words = Words::new(3);
@@ -177,12 +182,12 @@ mod tests {
     }
 
     #[test]
-    fn where_a_formula_divides_by_zero_there_is_no_residue() {
+    fn a_division_by_zero_has_no_residue() {
         let arena = Arena::new();
         let a = arena.variable("a");
         let formula = arena.power(arena.sub(arena.mul(a, a), arena.one()), &(-1).into());
         let prime = prime_of_kernels().expect("a prime");
-        let straight = Straight::of(&arena, &Facts::new(), &prime, &[formula]).expect("a formula");
+        let straight = StraightLineProgram::of(&arena, &Facts::new(), &prime, &[formula]).expect("a formula");
         assert_eq!(straight.residues(&prime, &[prime.one()]), None);
     }
 }

@@ -1,7 +1,7 @@
-//! How the parts of a formula are arranged where it is written: which summand comes first, what stands below the line.
+//! The arrangement of a formula in print: the order of summands, and the denominator.
 //!
-//! In: a sum or a product of the graph. Out: its parts in the order of writing, signs apart. Every printer writes
-//! these parts, each in its own notation.
+//! In: a sum or a product of the graph. Out: its parts in the order of writing, signs apart. Every printer writes these
+//! parts, each in its own notation.
 
 use crate::Rational;
 use crate::graph::arena::Arena;
@@ -27,7 +27,7 @@ pub(crate) enum Factor<'a> {
     Power(Expr, &'a Rational),
 }
 
-/// The summands, each with whether it is subtracted; the first is not, if any is not.
+/// The summands, each with true if it is subtracted; the first is not, if any is not.
 pub(crate) fn summands(arena: &Arena, sum: &Sum) -> Vec<(bool, Summand)> {
     let mut summands: Vec<(bool, Summand)> = Vec::with_capacity(sum.terms.len() + 1);
     for (term, coefficient) in &sum.terms {
@@ -53,30 +53,30 @@ pub(crate) fn summands(arena: &Arena, sum: &Sum) -> Vec<(bool, Summand)> {
     summands
 }
 
-/// What stands above and below the line, without the sign.
+/// Numerator and denominator, without the sign.
 pub(crate) fn quotient<'a>(arena: &Arena, product: &'a Product) -> (Vec<Factor<'a>>, Vec<Factor<'a>>) {
     let coefficient = product.coefficient.abs();
-    let (mut above, mut below) = (Vec::new(), Vec::new());
+    let (mut numerator, mut denominator) = (Vec::new(), Vec::new());
     if arena.notation().as_fraction(&coefficient) {
-        for (part, side) in [(coefficient.numerator(), &mut above), (coefficient.denominator(), &mut below)] {
+        for (part, side) in [(coefficient.numerator(), &mut numerator), (coefficient.denominator(), &mut denominator)] {
             if !part.is_one() {
                 side.push(Factor::Number(part.clone().into()));
             }
         }
     } else {
-        above.push(Factor::Number(coefficient));
+        numerator.push(Factor::Number(coefficient));
     }
     for (base, exponent) in &product.factors {
         if exponent.is_negative() {
-            below.push(Factor::Power(*base, exponent));
+            denominator.push(Factor::Power(*base, exponent));
         } else {
-            above.push(Factor::Power(*base, exponent));
+            numerator.push(Factor::Power(*base, exponent));
         }
     }
-    (above, below)
+    (numerator, denominator)
 }
 
-/// Whether the exponent, sign apart, is that of a square root.
+/// True if the exponent, sign apart, is that of a square root.
 pub(crate) fn is_root(exponent: &Rational) -> bool {
     Rational::new(1, 2).as_ref() == Some(exponent)
 }

@@ -1,10 +1,10 @@
 //! Basis angles for long sums: absolute angles rather than those between neighbours.
 //!
-//! In: what a field is made for. Out: whole combinations of symbols, of which the arguments of its sines and cosines are
-//! shorter sums than of the symbols; none where their sums are short as they are. The sine of a sum of n angles has
-//! 2^(n-1) terms: a chain of links whose author writes `q1 + q2 + .. + q6` has 32 terms in each q, and one in its links'
-//! absolute angles, of which the angle between two links is a difference. What stands in such a kernel is no longer told apart:
-//! it is for questions that do not ask.
+//! In: the roots of a field. Out: integer combinations of symbols, in which the arguments of its sines and cosines are
+//! shorter sums than in the symbols; none if their sums are short. The sine of a sum of n angles has 2^(n-1) terms: a
+//! chain of links whose author writes `q1 + q2 + .. + q6` has 32 terms in each q, and one in its links' absolute
+//! angles, whose differences are the angles between links. The symbols within such a kernel are no longer separated: it
+//! serves problems that do not need them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,10 @@ use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::{Arena, Rational};
 
-/// Sums with fewer terms stay what they are: what is shown is nearest to what the author wrote then.
+/// Sums with fewer terms are unchanged: the result is then nearest to the author's formula.
 const SHORT: u64 = 4;
 
-/// Symbols, and arguments, that a basis is looked for among.
+/// The greatest number of symbols, and of arguments, in the search for a basis.
 const MOST: usize = 64;
 
 /// The basis, as expressions.
@@ -52,7 +52,8 @@ pub(in crate::tower) fn absolute_angles(arena: &Arena, roots: &[Expr]) -> Vec<Ex
     basis.iter().map(shown).collect()
 }
 
-/// The symbols in arguments of sines and cosines, and each argument's whole multiples of them; none if there are too many.
+/// The symbols in arguments of sines and cosines, and each argument's integer multiples of them; none if there are too
+/// many.
 fn written(arena: &Arena, roots: &[Expr]) -> Option<(Vec<Expr>, Vec<Vec<i64>>)> {
     let mut arguments: BTreeSet<Vec<(Expr, i64)>> = BTreeSet::new();
     for expr in arena.postorder(roots) {
@@ -92,7 +93,7 @@ fn stepped(angles: &[Vec<i64>], i: usize, j: usize, sign: i64) -> Vec<Vec<i64>> 
     stepped
 }
 
-/// How many basis angles a sum has.
+/// The number of basis angles in a sum.
 fn length(angle: &[i64]) -> u64 {
     angle.iter().map(|times| times.unsigned_abs()).sum()
 }
@@ -132,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_asks_for_symbols_has_the_sum_split() {
+    fn fields_that_separate_symbols_split_the_sum() {
         let arena = Arena::new();
         let symbols: Vec<Expr> = ["a", "b", "c", "d"].map(|name| arena.variable(name)).to_vec();
         let sine = arena.call(Function::Sin, &[arena.sum(symbols)]);
