@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::real::Real;
+use crate::Real;
 
 /// The reason for which a call was refused. What was called is then exactly as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -95,55 +95,36 @@ pub use nalgebra;
 
 #[cfg(feature = "serde")]
 mod array;
-mod decay;
-mod double;
-mod drift;
-mod eigenvalue;
 pub mod estimator;
-mod exponential;
 mod extension;
 mod fault;
-mod filter;
-mod gap;
-mod gate;
 mod interface;
-mod limits;
-mod linear;
 mod model;
 mod monitor;
+mod numeric;
 mod observer;
 mod output_form;
-mod real;
 mod regression;
-mod sampled;
-mod single;
-mod sum;
-mod turn;
-mod window;
+mod samples;
 mod within;
 
-pub use drift::Drift;
 pub use estimator::{
     Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
     RegressorExtension, Response, Uncertain,
 };
-pub use extension::{Extension, Flow, Fundamental, Integrator};
+pub use extension::{Drift, Extension, Flow, Fundamental, Integrator, Turn};
 pub use fault::Fault;
-pub use filter::{Filter, Filtered, Hold, Weights};
-pub use gap::Gap;
-pub use gate::Gate;
 pub use interface::{INTERFACE, emitted_for};
-pub use limits::Limits;
 pub use model::{Model, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
+pub use numeric::{Real, Sum};
 pub use observer::{Innovation, Observer, State};
 pub use output_form::{Measured, OutputForm};
-pub use real::Real;
-pub use regression::{FilteredRegression, Outcome, RegressionOperator, Rows, Sides};
-pub use sampled::SampledRegression;
-pub use sum::Sum;
-pub use turn::Turn;
-pub use window::{Moved, WindowedRegression};
+pub use regression::{
+    Filter, Filtered, FilteredRegression, Hold, Moved, Outcome, RegressionOperator, Rows, SampledRegression, Sides,
+    Weights, WindowedRegression,
+};
+pub use samples::{Gap, Gate, Limits};
 pub use within::Within;
 
 /// The package's front page, of which the example is a test.

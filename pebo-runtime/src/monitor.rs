@@ -2,10 +2,10 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::decay::Decay;
-use crate::eigenvalue::smallest_eigenvalue;
-use crate::linear::solve;
-use crate::sum::{Sum, all_finite};
+use crate::numeric::decay::Decay;
+use crate::numeric::eigenvalue::smallest_eigenvalue;
+use crate::numeric::linear::solve;
+use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Filter, Real};
 
 /// What the data so far are good for.

@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Estimator, Uncertain};
-use crate::linear::solve;
-use crate::sum::{Sum, all_finite};
+use crate::numeric::linear::solve;
+use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
 
 /// An estimator whose estimate is projected onto bounds `lower <= eta <= upper`, component by component.

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::cramer::{adjugate_times, determinant};
 use super::{Estimator, RegressorExtension};
-use crate::sum::{Sum, all_finite};
+use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
 
 /// DREM with the scalar gradient estimator.

@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Drem, Estimator, RegressorExtension};
-use crate::linear::solve;
-use crate::sum::{Sum, all_finite};
+use crate::numeric::linear::solve;
+use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
 
 /// Finite-time DREM.

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Estimator, Information};
-use crate::sum::{Sum, all_finite, as_blemish};
+use crate::numeric::sum::{Sum, all_finite, as_blemish};
 use crate::{Fault, Real, Turn};
 
 /// The gradient estimator `theta' = Gamma Phi^T (vartheta - Phi theta)` (the paper, Section 5.3, the equation

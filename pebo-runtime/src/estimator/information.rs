@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::sum::all_finite;
+use crate::numeric::sum::all_finite;
 use crate::{Fault, Real, Turn};
 
 /// A weighted least-squares problem, kept in triangular form.

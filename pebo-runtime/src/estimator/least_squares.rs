@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Estimator, Information, Uncertain};
-use crate::decay::Decay;
-use crate::sum::{Sum, all_finite};
+use crate::numeric::decay::Decay;
+use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
 
 /// Least squares with forgetting and bounded covariance.

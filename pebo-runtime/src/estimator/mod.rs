@@ -35,7 +35,7 @@ pub use normalised::NormalisedGradient;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::sum::as_blemish;
+use crate::numeric::sum::as_blemish;
 use crate::{Fault, Real, Turn};
 
 /// Estimates `NE` constants from `NR` linear equations a sample.

@@ -6,8 +6,8 @@ mod rebasing;
 use nalgebra::{SMatrix, SVector};
 
 use crate::extension::Extension;
+use crate::numeric::sum::{all_finite, blemish};
 use crate::regression::{Outcome as _, Sides};
-use crate::sum::{all_finite, blemish};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator};
 pub use confidence::Innovation;
 use rebasing::Rebasing;

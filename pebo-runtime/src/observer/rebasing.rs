@@ -6,8 +6,8 @@
 use nalgebra::SVector;
 
 use super::{Next, Observer, State, check};
+use crate::numeric::sum::all_finite;
 use crate::regression::Outcome as _;
-use crate::sum::all_finite;
 use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator};
 
 /// What makes an observer move what its extension holds of `z`.

@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::RegressorExtension;
-use crate::decay::Decay;
-use crate::sum::Sum;
+use crate::numeric::decay::Decay;
+use crate::numeric::sum::Sum;
 use crate::{Fault, Real, Turn};
 
 /// Kreisselmeier's regressor extension.

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::RegressorExtension;
 use crate::estimator::Estimator;
-use crate::sum::Sum;
+use crate::numeric::sum::Sum;
 use crate::{Fault, Real, Turn};
 
 /// The response of an estimator as an extended regression.

@@ -8,9 +8,16 @@
 //! - [`WindowedRegression`](crate::WindowedRegression): the mean over a window, the integral form;
 //! - [`SampledRegression`](crate::SampledRegression): each sample by itself, for sensors of known standard deviation.
 
+mod filter;
+mod sampled;
+mod window;
+
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Filter, Filtered, Real, Turn};
+use crate::{Real, Turn};
+pub use filter::{Filter, Filtered, Hold, Weights};
+pub use sampled::SampledRegression;
+pub use window::{Moved, WindowedRegression};
 
 /// Both sides of `known = factor * eta` at one instant; of a model, `phi_0` and `phi_1`, or what stands under their
 /// derivative.

@@ -2,8 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::regression::{Outcome, RegressionOperator, Rows, Sides};
-use crate::sum::blemish;
+use super::{Outcome, RegressionOperator, Rows, Sides};
+use crate::numeric::sum::blemish;
 use crate::{Fault, Real, Turn};
 
 /// The sides of the regression at each sample, row `i` divided by `s_i sqrt(dt)`.

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::linear::solve;
+use crate::numeric::linear::solve;
 use crate::{Fault, Real};
 
 /// More halvings than any step needs that is not 1e19 times too long.

@@ -2,8 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::regression::{Outcome, RegressionOperator, Sides};
-use crate::sum::{Sum, all_finite, as_blemish};
+use super::{Outcome, RegressionOperator, Sides};
+use crate::numeric::sum::{Sum, all_finite, as_blemish};
 use crate::{Hold, Real, Turn};
 
 /// The mean of both sides over the last `NW` steps.

@@ -5,7 +5,7 @@
 
 use nalgebra::{ComplexField, RealField};
 
-use crate::{double, single};
+use super::{double, single};
 
 /// A real scalar: `f32` or `f64`.
 ///

@@ -9,7 +9,7 @@ use pebo_runtime::{
 
 use crate::converter::{Case, CaseOne, Loop};
 use crate::noise::Noise;
-use crate::rebasing::Pair;
+use crate::observer::rebasing::Pair;
 
 /// The continuous-discrete Kalman filter of `z' = Lambda z + h + noise`, `y = C z + noise`.
 struct Kalman<const N: usize, const M: usize> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::linear::solve;
+use crate::numeric::linear::solve;
 use crate::{Fault, Real, Sum};
 
 /// The unknown `eta` becomes `matrix * eta`.

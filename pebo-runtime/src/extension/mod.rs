@@ -3,13 +3,18 @@
 //! After every step `z(t) = chi(t) + theta` ([`Integrator`]) or `z(t) = xi(t) + Psi(t) theta` ([`Fundamental`]) holds as
 //! well as the samples tell: the error is of second order in the step.
 
+mod drift;
+mod turn;
+
 use core::fmt::Debug;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::exponential::Propagator;
-use crate::sum::as_blemish;
-use crate::{Fault, Real, Sum, Turn};
+use crate::numeric::exponential::Propagator;
+use crate::numeric::sum::as_blemish;
+use crate::{Fault, Real, Sum};
+pub use drift::Drift;
+pub use turn::Turn;
 
 /// The flow `z' = lambda z + h` of the transformed coordinates at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,9 @@
+//! Checks of samples before the observer takes them, and the intervals without one.
+
+mod gap;
+mod gate;
+mod limits;
+
+pub use gap::Gap;
+pub use gate::Gate;
+pub use limits::Limits;

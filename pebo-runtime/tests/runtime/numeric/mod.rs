@@ -1,0 +1,5 @@
+//! The scalar's functions.
+
+mod double;
+mod real;
+mod single;

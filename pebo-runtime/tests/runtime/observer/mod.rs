@@ -1,0 +1,8 @@
+//! The whole observer: kinds of regression, sampling, re-basing, bounds, and random faults.
+
+mod drift;
+mod kinds;
+pub(crate) mod rebasing;
+mod sampling;
+mod storm;
+mod within;
