@@ -1,8 +1,8 @@
 //! The conditions under which the formulas have values, less those that the assumptions discharge.
 //!
-//! In: what the plant's formulas ask of their parts, and those that were derived of it. Out: one list of what remains
-//! to be seen to, by factors: the proofs hold wherever these hold. What no list can mend is told apart: that a formula
-//! asks of an extension, which may have any values, or that it asks for a sign which the plant itself does not.
+//! In: the domain conditions of the plant's formulas and of the derived ones. Out: one list of the open conditions, by
+//! factors: the proofs hold wherever these hold. Two kinds cannot be listed and are reported separately: a condition on
+//! an extension, which may have any values, and a sign that the plant itself does not need.
 
 use std::collections::BTreeMap;
 
@@ -16,16 +16,16 @@ use super::design::{Cascade, LeftInverse, Regression};
 /// A comparison with zero.
 pub(super) type Ask = (Expr, Relation);
 
-/// What the proofs rest on besides the assumptions, each once.
+/// The conditions of the proofs besides the assumptions, each once.
 pub(super) struct Conditions {
-    /// What is listed, in the order it was met; a key by which equal conditions are known stands with each.
+    /// The listed conditions, in the order of their discovery, each with a key that is the same for equal ones.
     listed: Vec<(Expr, Ask)>,
     /// The assumptions, and the signs that are listed.
     known: Domain,
 }
 
 impl Conditions {
-    /// What the plant's own formulas ask.
+    /// The domain conditions of the plant's own formulas.
     pub(super) fn of(plant: &Plant) -> Self {
         let mut conditions = Self { listed: Vec::new(), known: plant.assumed() };
         // Signs first: they may show that something does not vanish.
@@ -40,8 +40,8 @@ impl Conditions {
         conditions
     }
 
-    /// Lists what the domain does not show: of what must not vanish, each factor. Of a magnitude or a square, which are never
-    /// negative, it is asked only that it does not vanish.
+    /// Lists a condition that the domain does not imply: of an expression that must not vanish, each factor. An
+    /// absolute value or a square is never negative; its condition is that it does not vanish.
     pub(super) fn list(&mut self, arena: &Arena, ask: Ask) {
         let only_zero = ask.1 == Relation::Positive && is_magnitude(arena, ask.0);
         let relation = if only_zero { Relation::NonZero } else { ask.1 };
@@ -61,12 +61,12 @@ impl Conditions {
         }
     }
 
-    /// The assumptions together with what is listed.
+    /// The assumptions with the listed conditions.
     pub(super) fn domain(&self) -> &Domain {
         &self.known
     }
 
-    /// The list: of what is at least zero and must not be zero, that it is positive.
+    /// The list: an expression that is nonnegative and nonzero is listed as positive.
     pub(super) fn listed(self) -> Vec<Ask> {
         let has =
             |key: Expr, wanted: Relation| self.listed.iter().any(|(k, (_, relation))| (*k, *relation) == (key, wanted));
@@ -78,20 +78,21 @@ impl Conditions {
         self.listed.iter().filter_map(merged).collect()
     }
 
-    /// What the formulas of the cascade ask.
+    /// Lists the domain conditions of the cascade's formulas.
     pub(super) fn ask_cascade(&mut self, plant: &Plant, cascade: &Cascade) -> Option<Ask> {
         let formulas: Vec<Expr> = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()).copied().collect();
         self.ask(plant, &formulas, &BTreeMap::new())
     }
 
-    /// What the left inverse asks of z = phi(x, y); estimates of z may lie elsewhere.
+    /// Lists the domain conditions of the left inverse at z = phi(x, y); estimates of z may lie elsewhere.
     pub(super) fn ask_left_inverse(&mut self, plant: &Plant, inverse: &LeftInverse) -> Option<Ask> {
         let transform = plant.z.iter().copied().zip(plant.transform()).collect();
         let formulas: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
         self.ask(plant, &formulas, &transform)
     }
 
-    /// What the regression asks, for all values of the extension, and its way back to theta of the functions of theta.
+    /// Lists the domain conditions of the regression, for all values of the extension, and of its way back to theta
+    /// from the functions of theta.
     pub(super) fn ask_regression(&mut self, plant: &Plant, regression: &Regression) -> Option<Ask> {
         let rows = [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten();
         let formulas = rows.chain(&regression.phi_0).chain(&regression.primitive_0).chain(&regression.eta).copied();
@@ -100,9 +101,9 @@ impl Conditions {
         self.ask(plant, &formulas, &BTreeMap::new()).or_else(|| self.ask(plant, &regression.theta, &back))
     }
 
-    /// Lists what the formulas ask at these values; the first ask that cannot be listed is handed back.
+    /// Lists the domain conditions of the formulas at these values; returns the first condition that cannot be listed.
     ///
-    /// Read off the formulas as they stand: what they are at the values may simplify.
+    /// The conditions are read off the formulas as written: at the values they may simplify.
     fn ask(&mut self, plant: &Plant, formulas: &[Expr], values: &BTreeMap<Symbol, Expr>) -> Option<Ask> {
         let arena = &plant.arena;
         for (part, relation) in arena.domain_conditions(formulas, Regularity::Defined) {
@@ -120,7 +121,7 @@ impl Conditions {
     }
 }
 
-/// The factors of what must not vanish, each with a key that is the same for all that vanish where it does.
+/// The factors of an expression that must not vanish, each with a key that is the same for factors with the same zeros.
 fn factors(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<(Expr, Expr)> {
     let written: Vec<Expr> = match arena.node(expr) {
         Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
@@ -130,7 +131,7 @@ fn factors(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<(Expr, Expr)> {
     written.flat_map(|base| split(arena, domain, base).unwrap_or_else(|_| vec![(base, base)])).collect()
 }
 
-/// Whether it is a product of magnitudes and even powers.
+/// Tests whether it is a product of absolute values and even powers.
 fn is_magnitude(arena: &Arena, expr: Expr) -> bool {
     match arena.node(expr) {
         Node::Call(Function::Abs, _) => true,
@@ -143,7 +144,7 @@ fn is_magnitude(arena: &Arena, expr: Expr) -> bool {
     }
 }
 
-/// What vanishes where the expression does: the argument of a magnitude.
+/// An expression with the same zeros: the argument of an absolute value.
 fn inside(arena: &Arena, expr: Expr) -> Expr {
     match arena.node(expr) {
         Node::Call(Function::Abs, arguments) => inside(arena, arguments[0]),

@@ -1,4 +1,4 @@
-//! The order of the claims: what each builds on.
+//! The claims in the order of their dependence.
 
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
@@ -57,7 +57,7 @@ impl Derivation {
             identifiability.doubt();
         }
         if plant.arena.budget().is_exhausted() {
-            // What was not shown by then may hold.
+            // An undecided claim before this may hold.
             found.truncate(settled);
         }
         if ended(plant, &found) {
@@ -78,12 +78,12 @@ impl Derivation {
         }
     }
 
-    /// What is derived of a plant without a transform: nothing.
+    /// The empty derivation of a plant without a transform.
     pub fn without_transform(diagnostics: Vec<Diagnostic>) -> Self {
         Self::without_claims(Verdict::Undecided, diagnostics)
     }
 
-    /// What is derived where the identities do not stand: nothing.
+    /// The empty derivation of a plant whose identities are not proved.
     fn without_claims(standing: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
             outcome: outcome(&[standing]),
@@ -98,25 +98,25 @@ impl Derivation {
         }
     }
 
-    /// The derivation, if every claim is proved; else what to tell the author.
+    /// The derivation, if every claim is proved; else its diagnostics.
     pub fn admit(&self) -> Result<&Self, &[Diagnostic]> {
         if self.outcome == Outcome::Accepted { Ok(self) } else { Err(&self.diagnostics) }
     }
 }
 
 impl Outcome {
-    /// The verdict on a model of which no plant was made: undecided where all that is said is that something could not
-    /// be worked out.
+    /// The verdict on a model without a plant: undecided if every diagnostic says that something could not be worked
+    /// out.
     pub fn of_unread(diagnostics: &[Diagnostic]) -> Self {
         if diagnostics.iter().all(|diagnostic| diagnostic.code.is_open()) { Self::Undecided } else { Self::Rejected }
     }
 }
 
-/// What a stronger regression settles.
+/// The codes that a stronger regression settles.
 const OPEN: [Code; 2] = [Code::NeverIdentifiable, Code::IdentifiabilityUndecided];
 
-/// What becomes of unknowns that a regression does not identify with all that the plant's equations say besides; none
-/// if that is nothing.
+/// The claims for unknowns that a regression does not identify, by all other equations of the plant; none if there are
+/// no others.
 fn strengthened(
     plant: &Plant,
     domain: &Domain,
@@ -161,7 +161,8 @@ impl<T> Claim<T> {
         Self { verdict: Verdict::Skipped, result: None }
     }
 
-    /// What a proved claim's formulas ask that can be neither shown nor listed: then it is not proved.
+    /// Makes a proved claim undecided if a domain condition of its formulas is neither implied nor listed; returns the
+    /// condition.
     fn settle(&mut self, ask: impl FnOnce(&T) -> Option<Ask>) -> Option<Ask> {
         let result = self.result.as_ref().filter(|_| self.verdict == Verdict::Proved)?;
         let unmet = ask(result)?;
@@ -169,7 +170,7 @@ impl<T> Claim<T> {
         Some(unmet)
     }
 
-    /// Makes what is proved undecided.
+    /// Makes a proved claim undecided.
     fn doubt(&mut self) {
         if self.verdict == Verdict::Proved {
             self.verdict = Verdict::Undecided;
@@ -187,8 +188,8 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     }
 }
 
-/// The claims on regression and identifiability under a proved cascade: of the first of the forms of the regression that
-/// identifies the unknowns, or of the one that is asked for.
+/// The claims on regression and identifiability under a proved cascade: with the first form of the regression that
+/// identifies the unknowns, or with the form that the author chose.
 fn regressed(
     plant: &Plant,
     domain: &Domain,
@@ -221,8 +222,8 @@ fn regressed(
     forms::standing(plant, domain, claims, given, found, before)
 }
 
-/// Outputs that are given by their value stand by it wherever that identifies as much as their rates; else the given.
-/// Of the diagnostics, those from `before` on are of these claims.
+/// The claims with outputs by their values wherever that identifies as much as their rates; else the given. Of the
+/// diagnostics, those from `before` on are of these claims.
 fn by_values(
     plant: &Plant,
     domain: &Domain,
@@ -244,8 +245,7 @@ fn by_values(
     }
 }
 
-/// Where a rate has no usable form, those that are affine in phi may do, or those that are made of functions of theta: else
-/// the given.
+/// The claims without a rate that has no usable form: with rates affine in phi, or functions of theta; else the given.
 fn without_others(
     plant: &Plant,
     domain: &Domain,
@@ -275,7 +275,7 @@ fn without_others(
     given
 }
 
-/// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.
+/// The claims from an identity, where the outputs' rates do not identify the unknowns; else the given.
 fn from_identities(
     plant: &Plant,
     domain: &Domain,
@@ -311,7 +311,7 @@ fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -
     diagnostic.help(format!("if it holds, write `{ask}` under `assume`"))
 }
 
-/// Whether a point of the domain was found at which all formulas have values together.
+/// Tests whether a point of the domain was found at which all formulas have values.
 fn is_somewhere(plant: &Plant, domain: &Domain, cascade: Option<&Cascade>, regression: Option<&Regression>) -> bool {
     let arena = &plant.arena;
     let mut formulas: Vec<Expr> = plant.transform();

@@ -1,8 +1,8 @@
-//! Which form a relation between the components of the transform takes.
+//! The form of a relation between the components of the transform.
 //!
-//! In: the regression and its identifiability as they were proved of the plant's equations as they stand. Out: the same,
-//! or those of a relation under the derivative, where these are to be preferred; and whatever there is, a regression of the
-//! form that the model asks for, or a refusal.
+//! In: the regression and its identifiability, proved of the plant's equations as given. Out: the same, or those of a
+//! relation under the derivative where these are preferable; in any case a regression of the form that the model
+//! chooses, or a refusal.
 
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
@@ -13,7 +13,7 @@ use super::design::{
 };
 use super::{identifiability, permitted, regression};
 
-/// The two claims in the form to be preferred. Of the diagnostics, those from `before` on are of these claims.
+/// The two claims in the preferable form. Of the diagnostics, those from `before` on are of these claims.
 pub(super) fn preferred(
     plant: &Plant,
     domain: &Domain,
@@ -60,13 +60,13 @@ pub(super) fn preferred(
     (given, seen)
 }
 
-/// Whether one moment shows all unknowns.
+/// Tests whether one instant identifies all unknowns.
 pub(super) fn at_once(claim: &Claim<Identifiability>) -> bool {
     claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
 }
 
-/// The two claims with a relation as it holds at every instant, where the model asks for that and the given regression has
-/// none. Of the diagnostics, those from `before` on are of these claims.
+/// The two claims with a relation as it holds at every instant, where the model chooses that and the given regression
+/// has none. Of the diagnostics, those from `before` on are of these claims.
 pub(super) fn standing(
     plant: &Plant,
     domain: &Domain,
@@ -97,7 +97,7 @@ pub(super) fn standing(
     both
 }
 
-/// A regression with its identifiability, where both claims are proved, and what is to be said of them.
+/// A regression with its identifiability, where both claims are proved, and its diagnostics.
 pub(super) fn proved(
     plant: &Plant,
     domain: &Domain,
@@ -111,7 +111,7 @@ pub(super) fn proved(
     (shown.verdict == Verdict::Proved).then_some((regression, shown))
 }
 
-/// The claims where a form is asked for that there is not.
+/// The claims where the chosen form does not exist.
 fn refused(plant: &Plant, found: &mut Vec<Diagnostic>) -> (Claim<Regression>, Claim<Identifiability>) {
     found.extend(plant.relation_form.map(|asked| regression::no_such_form(plant, asked)));
     (Claim { verdict: Verdict::Undecided, result: None }, Claim::skipped())

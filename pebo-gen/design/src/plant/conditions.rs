@@ -1,8 +1,7 @@
-//! Where a formula has a value at all, and where it is differentiable: what its author wrote under roots and
-//! logarithms and below fraction bars.
+//! Domain conditions of formulas as written: arguments of roots and logarithms, denominators, and differentiability.
 //!
-//! In: formulas as written. Out: what the algebra's tables say that each operation asks of its operands. They are
-//! read off the text because construction simplifies (`x/x` is 1) and would forget.
+//! In: formulas as written. Out: the conditions of each operation on its operands, by the algebra's tables. They are
+//! read off the text because construction simplifies (`x/x` is 1) and would forget them.
 
 use crate::model::formula::{Formula, Operator, Term};
 use crate::source::Diagnostic;
@@ -11,7 +10,7 @@ use pebo_cas::{Arena, Expr, Relation};
 
 use super::{Assumption, Scope, lower};
 
-/// Adds what the formula asks of its parts.
+/// Adds the domain conditions of the formula.
 pub(super) fn collect(
     arena: &Arena,
     scope: &Scope,
@@ -45,7 +44,7 @@ pub(super) fn collect(
     formula.parts().into_iter().try_for_each(|part| collect(arena, scope, part, want, found))
 }
 
-/// Whether the formula uses the name.
+/// Tests whether the formula uses the name.
 pub(super) fn uses(formula: &Formula, name: &str) -> bool {
     match &formula.term {
         Term::Name(used) => used == name,

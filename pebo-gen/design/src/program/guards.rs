@@ -1,19 +1,19 @@
-//! What a program divides by and takes roots and logarithms of, as it is rounded.
+//! Rounded denominators and arguments of roots and logarithms in a program.
 //!
-//! In: the program from the parameters to the constants, those that the constants go into, and a program whose outputs are
-//! compared with zero. Out: that program with the values that have to be compared besides. Two forms of a value, as
-//! `a - b/c` and `a*c - b`, differ in floating point: one can be positive where the other is zero. A product of what is
-//! not zero vanishes below the range of the numbers alone: it is asked for only where no constant tells, by not being
-//! finite.
+//! In: the program from the parameters to the constants, those that the constants go into, and a program whose outputs
+//! are compared with zero. Out: that program with the further values that have to be compared. Two forms of a value, as
+//! `a - b/c` and `a*c - b`, differ in floating point: one can be positive where the other is zero. A product of nonzero
+//! values vanishes below the range of the numbers alone: it is compared only where no constant reveals that, by not
+//! being finite.
 
 use super::straight::{Constant, Operand, Operation, Program};
 use pebo_cas::{Arena, Expr, Function, Relation};
 
-/// What is known of a value as it is computed.
+/// Facts about a value as it is computed.
 #[derive(Clone, Copy)]
 struct Known {
     relation: Relation,
-    /// Whether it is zero all the same where it is too small for its type.
+    /// True if underflow may make it zero.
     may_vanish: bool,
 }
 
@@ -22,7 +22,7 @@ impl Known {
         Self { relation, may_vanish: false }
     }
 
-    /// Whether it is as asked; `is_told` if a constant is not finite where it is too small.
+    /// Tests whether it satisfies the relation; `is_told` if a constant is not finite where it underflows.
     fn meets(self, asked: Relation, is_told: bool) -> bool {
         match asked {
             Relation::NonNegative => self.relation != Relation::NonZero,
@@ -32,7 +32,7 @@ impl Known {
     }
 }
 
-/// A program that compares, and what it compares behind its own outputs.
+/// A program that compares, and the compared values after its own outputs.
 #[derive(Clone, Debug)]
 pub struct Guarded {
     /// From the arguments to the outputs, and behind these to the guarded values.
@@ -41,7 +41,8 @@ pub struct Guarded {
     pub guards: Vec<(Expr, Relation)>,
 }
 
-/// `checked`, whose outputs compare so with zero, with what `setup` and the users of its outputs ask of its values besides.
+/// `checked`, whose outputs compare so with zero, with the conditions of `setup` and the users of its outputs on its
+/// values.
 pub(super) fn guarded(
     arena: &Arena,
     setup: &Program,
@@ -95,7 +96,7 @@ pub(super) fn guarded(
 }
 
 impl Operation {
-    /// The value that must not be zero or negative, and what it has to be.
+    /// The value that must not be zero or negative, and its relation to zero.
     fn demand(self, program: &Program) -> Option<(Operand, Relation)> {
         match self {
             Self::Div(_, divisor) => Some((divisor, Relation::NonZero)),
@@ -109,7 +110,7 @@ impl Operation {
         }
     }
 
-    /// Whether the result is not finite where this operand is not.
+    /// Tests whether the result is not finite where this operand is not.
     fn passes_on(self, operand: Operand) -> bool {
         match self {
             Self::Neg(_) | Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Unary(Function::Sqrt, _) => true,
@@ -120,7 +121,7 @@ impl Operation {
 }
 
 impl Program {
-    /// Of each operation, whether some output is not finite where its result is not.
+    /// For each operation, true if some output is not finite where its result is not.
     fn told(&self) -> Vec<bool> {
         let mut told = vec![false; self.operations.len()];
         let tell = |told: &mut Vec<bool>, operand: Operand| {
@@ -141,7 +142,7 @@ impl Program {
     }
 }
 
-/// What is known of the values of a program, as far as it was looked at.
+/// Facts about the values of a program, as far as computed.
 struct Values<'a> {
     setup: &'a Program,
     of_inputs: Vec<Option<Known>>,
@@ -169,7 +170,7 @@ impl Values<'_> {
         }
     }
 
-    /// What follows for the result of an operation.
+    /// The facts about the result of an operation.
     fn of(&self, operation: Operation) -> Option<Known> {
         use Relation::{NonNegative, NonZero, Positive};
         match operation {

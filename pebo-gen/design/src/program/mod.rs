@@ -1,4 +1,4 @@
-//! Straight-line code: how the derived formulas are computed.
+//! Straight-line code: the computation of the derived formulas.
 //!
 //! ```text
 //! Expr -> stage (what depends on parameters alone, apart) -> factor -> lower -> Program -> cost, interpret, emit

@@ -1,9 +1,9 @@
-//! Products in, operations out.
+//! Lowers products to operations.
 //!
-//! An integer power is a chain of multiplications, a half-integer one takes a square root, any other
-//! is a general power. Factors of one magnitude of exponent are raised together: `(q/K)^10` has a value in single precision
-//! where `q^10` and `K^10` overflow. The denominators of a product are multiplied and divided by once; denominators
-//! that several products share become a reciprocal.
+//! An integer power is a chain of multiplications, a half-integer one takes a square root, any other is a general
+//! power. Factors whose exponents have one absolute value are raised as one base: `(q/K)^10` has a value in single
+//! precision where `q^10` and `K^10` overflow. The denominators of a product are multiplied and divided by once;
+//! denominators that several products share become a reciprocal.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use pebo_cas::{Expr, Function, Product, Rational};
 /// Longer chains of multiplications lose to a general power.
 const LONGEST_CHAIN: u32 = 1 << 10;
 
-/// The factors that make up a power, and the side of the fraction on which they stand.
+/// The factors of a power, and their side of the fraction.
 enum Power {
     Above(Vec<Operand>),
     Below(Vec<Operand>),
@@ -69,7 +69,7 @@ impl Lowering<'_> {
         Signed { negative, operand }
     }
 
-    /// The power of a quotient; whether it is one below the bar.
+    /// The power of a quotient; true if it is a denominator.
     fn raised(&mut self, power: &Together) -> (Signed, bool) {
         let mut negative = false;
         let mut sides = [Vec::new(), Vec::new()];
@@ -142,10 +142,10 @@ impl Lowering<'_> {
     }
 }
 
-/// The smallest exponent of what is raised together: squares leave the range of single precision beyond 1e19 alone.
+/// The smallest exponent of a combined base: squares leave the range of single precision beyond 1e19 alone.
 const SMALLEST_TOGETHER: u32 = 3;
 
-/// Bits of the magnitude of a coefficient, or of its reciprocal, that single precision just holds.
+/// Bits of a coefficient, or of its reciprocal, that single precision just holds.
 const MOST_BITS: u64 = 100;
 
 /// A power of a product.
@@ -156,7 +156,7 @@ struct Together {
     exponent: u32,
 }
 
-/// The exponent's magnitude, if what has the same may be raised together with it.
+/// The exponent's absolute value, if factors with the same may be combined.
 pub(super) fn magnitude_together(exponent: &Rational) -> Option<u32> {
     let magnitude = exponent.is_integer().then(|| u32::try_from(exponent.abs().to_i64()?).ok())??;
     (SMALLEST_TOGETHER..=LONGEST_CHAIN).contains(&magnitude).then_some(magnitude)

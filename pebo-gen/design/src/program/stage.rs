@@ -1,4 +1,4 @@
-//! What changes seldom, apart from what changes with every call.
+//! Separates values that change seldom from those that change with every call.
 //!
 //! In: the functions of a model. Out: constants, which depend on parameters alone; terms, which depend on
 //! parameters and the sampled outputs and are worth being kept for all functions and for both ends of an
@@ -32,7 +32,7 @@ pub struct Task {
     pub parts: Vec<(Symbol, Expr)>,
     /// The values.
     pub outputs: Vec<Expr>,
-    /// Whether it runs with every sample. What only others need is computed where they need it.
+    /// True if it runs with every sample. Values that only others need are computed where they need them.
     pub is_regular: bool,
 }
 
@@ -51,7 +51,7 @@ pub struct Staged {
     pub programs: Vec<Program>,
 }
 
-/// Lowers functions together, with constants computed once and terms once a sample.
+/// Lowers several functions, with constants computed once and terms once a sample.
 ///
 /// # Errors
 /// [`Undeclared`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
@@ -97,15 +97,15 @@ pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[
     split.with_fewest_signs(arena, parameters, sampled, tasks)
 }
 
-/// More signs are chosen together, not one by one.
+/// More signs are chosen at once, not one by one.
 const MOST_SIGNS: usize = 12;
 
-/// What is computed when, as expressions.
+/// The expressions of each stage.
 #[derive(Clone)]
 struct Stages {
     constants: Vec<(Symbol, Expr)>,
     terms: Vec<(Symbol, Expr)>,
-    /// Of each task its parts, then its outputs.
+    /// The parts of each task, then its outputs.
     varying: Vec<Expr>,
 }
 
@@ -146,7 +146,7 @@ impl Stages {
     ) -> Result<Staged, Undeclared> {
         let negations = |staged: &Staged| {
             let of = |program: &Program| program.operations.iter().filter(|o| matches!(o, Operation::Neg(_))).count();
-            // What runs at both ends of an interval counts twice.
+            // A function that runs at both ends of an interval counts twice.
             let often = |task: &Task| if task.is_regular { 2 } else { 1 };
             of(&staged.sample) + tasks.iter().zip(&staged.programs).map(|(task, p)| often(task) * of(p)).sum::<usize>()
         };
@@ -186,7 +186,7 @@ impl Stages {
 }
 
 impl Staged {
-    /// A program that compares parameters with zero, with what the constants and the functions ask of them besides.
+    /// A program that compares parameters with zero, with the conditions of the constants and the functions on them.
     pub fn guarded(&self, arena: &Arena, checked: &Program, asked: &[Option<Relation>]) -> Guarded {
         let users: Vec<&Program> = self.programs.iter().chain([&self.sample]).collect();
         guarded(arena, &self.setup, &users, (checked, asked))
@@ -220,14 +220,14 @@ impl Staged {
     }
 }
 
-/// The functions and terms with constants that meet as one: a factor that left a sum stands beside others.
+/// The functions and terms with constants that meet as one: a factor that left a sum is beside others.
 fn merged(
     arena: &Arena,
     varying: Vec<Expr>,
     terms: &mut [(Symbol, Expr)],
     constants: &mut Vec<(Symbol, Expr)>,
 ) -> Vec<Expr> {
-    /// What leaves a sum may leave the next one too.
+    /// A factor that leaves a sum may leave the next one too.
     const ROUNDS: usize = 4;
     let formulas = terms.iter().map(|term| term.1);
     let mut all =
@@ -250,14 +250,14 @@ fn merged(
     varying
 }
 
-/// Whether an expression is one of the constants.
+/// Tests whether an expression is one of the constants.
 fn is_constant(arena: &Arena, constants: &[(Symbol, Expr)]) -> impl Fn(Expr, usize) -> bool {
     let stored: FxHashSet<Expr> = constants.iter().map(|constant| arena.of_symbol(constant.0)).collect();
     move |expr, _| stored.contains(&expr)
 }
 
-/// Terms that are computed as another before them, or as its opposite, and what they are then: two shapes of a formula
-/// may come to the same operations.
+/// Terms that are computed as an earlier one, or as its opposite, and their values then: two shapes of a formula may
+/// come to the same operations.
 fn same(arena: &Arena, inputs: &[Symbol], terms: &[(Symbol, Expr)]) -> Result<BTreeMap<Symbol, Expr>, Undeclared> {
     let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
     let program = lower(arena, inputs, &formulas)?;
@@ -299,9 +299,9 @@ fn split(
     (split.split(&factored), split.found)
 }
 
-/// The expressions without what varies in the sums: what that leaves behind may be a sum of the given symbols. A number
-/// beside what is of `constants` alone is a part of another constant. Beside other formulas of the symbols it is a part of
-/// these where they stand in no other place.
+/// The expressions without varying factors in the sums: the rest may be a sum of the given symbols. A number beside a
+/// value of `constants` alone is part of another constant. Beside other formulas of the symbols it is part of these
+/// where they have no other use.
 fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol], constants: &[Symbol]) -> Vec<Expr> {
     let known = fixed(arena, roots, symbols);
     let stored = fixed(arena, roots, constants);
@@ -309,7 +309,7 @@ fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol], constants: &[Symb
     factor(arena, roots, |base| !known.contains(&base), |base, uses| stored.contains(&base) || is_own(base, uses))
 }
 
-/// Whether computing the value takes more than a few operations.
+/// Tests whether computing the value takes more than a few operations.
 fn is_dear(arena: &Arena, expr: Expr) -> bool {
     /// A multiplication or two cost as much as a number that is kept.
     const FEW: usize = 3;
@@ -414,7 +414,7 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         arena.multiply(&Rational::ONE, factors)
     }
 
-    /// The constant that holds the value; a sign stays outside, so that both signs share one.
+    /// The constant that holds the value; a sign is left outside, so that both signs share one.
     fn constant(&mut self, value: Expr) -> Expr {
         let arena = self.arena;
         if matches!(arena.node(value), Node::Number(_) | Node::Pi) || !(self.worth)(value) {

@@ -5,10 +5,9 @@
 //! ```
 //!
 //! The rate of a transform is linear in the coefficients, however nonlinear the plant is, and it has to lie in the span
-//! over the functions of y and u of given functions: of 1 for a plain cascade, of 1 and x for a generalised one. For one
-//! (y, u) at a few x, a combination of the rates in which those functions cancel has to vanish: a row. Holds after:
-//! what comes out satisfied the condition by exact algebra over the constants of the plant; nothing is proved of the
-//! domain.
+//! over the functions of y and u of given functions: of 1 for a plain cascade, of 1 and x for a generalised one. For
+//! one (y, u) at a few x, a combination of the rates in which those functions cancel has to vanish: a row. Holds after:
+//! the results satisfy the condition by exact algebra over the constants of the plant; nothing is proved of the domain.
 
 use pebo_cas::Expr;
 use pebo_cas::linear::Echelon;
@@ -26,7 +25,7 @@ const MOST_TERMS: usize = 24;
 /// More columns than this are not looked at.
 const MOST_COLUMNS: usize = 300;
 
-/// What the rate of a transform may be.
+/// The permitted rate of a transform.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Rate {
     /// Free of x.
@@ -38,7 +37,7 @@ pub(super) enum Rate {
 /// Functions whose products are the columns.
 #[derive(Clone, Debug)]
 pub(super) struct Ansatz {
-    /// Functions of x, and perhaps y, each with a weight; the first is 1 if functions of y may stand alone.
+    /// Functions of x, and perhaps y, each with a weight; the first is 1 if functions of y may occur alone.
     pub(super) of_x: Vec<(Expr, usize)>,
     /// Functions of y, each with a weight; the first is 1.
     pub(super) of_y: Vec<(Expr, usize)>,
@@ -67,8 +66,8 @@ impl Ansatz {
         columns(question, self).len()
     }
 
-    /// A basis of the transforms of this form whose rate is as asked, each with as few late columns as can be; those that
-    /// hold no state are left out.
+    /// A basis of the transforms of this form with a permitted rate, each with as few late columns as can be;
+    /// transforms without a state are left out.
     pub(super) fn solutions(&self, question: &Question<'_>, asked: Rate) -> Result<Vec<Expr>, Obstacle> {
         let columns = columns(question, self);
         if columns.len() > MOST_COLUMNS {
@@ -129,7 +128,7 @@ impl Ansatz {
     }
 }
 
-/// Weights of the points of a fibre in which 1 and the functions from that place on cancel.
+/// Weights of the points of a fibre in which 1 and the functions from that index on cancel.
 fn weights(prime: &PrimeField, fibre: &[Values], from: usize) -> Option<Values> {
     let mut rows = ResidueRows::new(prime, fibre.len());
     rows.insert(vec![prime.one(); fibre.len()]);
@@ -139,7 +138,7 @@ fn weights(prime: &PrimeField, fibre: &[Values], from: usize) -> Option<Values> 
     rows.null_space().into_iter().next().map(|(_, vector)| vector)
 }
 
-/// The combination of the products whose rate is as asked, exactly; none if there is no single one.
+/// The combination of the products with a permitted rate, exactly; none if there is no single one.
 fn exact(question: &Question<'_>, asked: Rate, products: &[Expr]) -> Result<Option<Expr>, Obstacle> {
     let arena = question.arena;
     let rates: Vec<Expr> = products.iter().map(|product| question.rate(*product)).collect();

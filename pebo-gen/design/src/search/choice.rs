@@ -1,7 +1,7 @@
-//! Which of the transforms of one form to take.
+//! The choice among transforms of one form.
 //!
-//! In: all solutions of an ansatz, simple ones first. Out: few of them whose gradients by x have full rank, and whose span
-//! holds the rates of the outputs if that of all does.
+//! In: all solutions of an ansatz, simple ones first. Out: few of them whose gradients by x have full rank, and whose
+//! span holds the rates of the outputs if the span of all does.
 
 use crate::plant::Matrix;
 use pebo_cas::tower::Obstacle;
@@ -24,7 +24,7 @@ const MOST_SUBSETS: usize = 40;
 pub(super) struct Choice {
     pub(super) transforms: Vec<Vec<Expr>>,
     pub(super) rank: usize,
-    /// Whether the rates of the outputs are affine in the first of them.
+    /// True if the rates of the outputs are affine in the first of them.
     pub(super) affine: bool,
 }
 
@@ -66,11 +66,11 @@ pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choi
         return Ok(Choice { transforms: vec![few], rank, affine });
     }
     if !affine(all)? {
-        // Together they may be related, which is a regression as well.
+        // All of them may be related, which is a regression as well.
         let together = (all.len() <= MOST_IN_SUBSETS).then(|| all.to_vec());
         return Ok(Choice { transforms: [few].into_iter().chain(together).collect(), rank, affine: false });
     }
-    // The longest first: what is left are the shortest that will do.
+    // The longest is dropped first: the shortest that suffice are left.
     let mut kept = all.to_vec();
     for solution in all.iter().rev() {
         let without: Vec<Expr> = kept.iter().copied().filter(|e| e != solution).collect();
@@ -81,7 +81,7 @@ pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choi
     Ok(Choice { transforms: vec![kept, few], rank, affine: true })
 }
 
-/// Whether the gradients by x are shown to be independent on the whole domain.
+/// Tests whether the gradients by x are provably independent on the whole domain.
 fn is_everywhere(question: &Question<'_>, phi: &[Expr]) -> bool {
     let (arena, domain) = (question.arena, &question.domain);
     let slopes = Matrix::build(phi.len(), phi.len(), |row, column| arena.derivative(phi[row], question.x[column]));
@@ -89,7 +89,7 @@ fn is_everywhere(question: &Question<'_>, phi: &[Expr]) -> bool {
     volume.is_ok_and(|volume| domain.implies(arena, volume, Relation::NonZero))
 }
 
-/// The subsets with so many elements, those of the first elements first.
+/// The subsets of this size, those of the first elements first.
 fn subsets(all: &[Expr], size: usize) -> impl Iterator<Item = Vec<Expr>> {
     let chosen = move |mask: u32| {
         let kept = all.iter().enumerate().filter(move |(index, _)| (mask >> index) & 1 == 1);

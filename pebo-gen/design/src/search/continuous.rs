@@ -1,9 +1,9 @@
 //! Transforms without jumps.
 //!
-//! In: a component of a transform, as a form of the search has it. Out: one that goes over from each side of a bend to the
-//! other, of the same merit; none where that is not found. To the equations of the cascade the sign of `q - 1` is a
-//! constant on each side, so that they may choose `q*sign(q - 1)` where `(q - 1)*sign(q - 1)` is as good. Theta would be
-//! another constant on each side, and an observer wrong after each crossing.
+//! In: a component of a transform, as a form of the search has it. Out: one that is continuous across each non-smooth
+//! point, of the same merit; none where that is not found. To the equations of the cascade the sign of `q - 1` is a
+//! constant on each side, so that they may choose `q*sign(q - 1)` where `(q - 1)*sign(q - 1)` is as good. Theta would
+//! be another constant on each side, and an observer wrong after each crossing.
 
 use std::collections::BTreeSet;
 
@@ -37,7 +37,7 @@ pub(super) fn continuous(question: &Question<'_>, component: Expr) -> Option<Exp
     None
 }
 
-/// Whether a component holds what a transform may: states, outputs with a rate, and constants.
+/// Tests whether a component holds only states, outputs with a rate, and constants.
 pub(super) fn is_of_states_and_outputs(question: &Question<'_>, component: Expr) -> bool {
     let known: BTreeSet<Symbol> = question.x.iter().chain(&question.y).copied().collect();
     let signals =

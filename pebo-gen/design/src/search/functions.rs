@@ -1,4 +1,4 @@
-//! The functions that a transform may be made of: those that the plant's own formulas hold, and their neighbours.
+//! The functions of an ansatz for a transform: functions in the plant's own formulas, and their neighbours.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ const MOST_PRODUCTS: usize = 80;
 /// Nor more power products than this of the outputs alone: the null space of as many columns is found in no time.
 const MOST_MONOMIALS: usize = 290;
 
-/// Functions of outputs and constants alone: the outputs, what the rates hold of them, and derivatives of it.
+/// Functions of outputs and constants alone: the outputs, such functions in the rates, and their derivatives.
 pub(super) fn of_outputs(question: &Question<'_>) -> Vec<Expr> {
     let outputs: BTreeSet<Symbol> = question.y.iter().copied().collect();
     let mut found: Vec<Expr> = question.y.iter().map(|symbol| question.arena.of_symbol(*symbol)).collect();
@@ -34,7 +34,7 @@ pub(super) fn of_outputs(question: &Question<'_>) -> Vec<Expr> {
     found
 }
 
-/// Functions of states, and perhaps outputs: the states, and what the rates hold of them.
+/// Functions of states, and perhaps outputs: the states, and such functions in the rates.
 pub(super) fn of_states(question: &Question<'_>) -> Vec<Expr> {
     let arena = question.arena;
     let states = question.states();
@@ -51,7 +51,7 @@ pub(super) fn of_states(question: &Question<'_>) -> Vec<Expr> {
     found
 }
 
-/// Square roots of what the functions divide by, and their reciprocals, where it is positive.
+/// Square roots of positive denominators of the functions, and their reciprocals.
 pub(super) fn roots(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
     let arena = question.arena;
     let bases = of.iter().filter_map(|e| match arena.node(*e) {
@@ -65,8 +65,8 @@ pub(super) fn roots(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
     positive.flat_map(|base| [half(), -&half()].map(|exponent| arena.power(base, &exponent))).collect()
 }
 
-/// Sine and cosine of the outputs that stand in no rate: equations that do not change along one have solutions that turn
-/// with it.
+/// Sine and cosine of the outputs that occur in no rate: equations that do not change along one have solutions that
+/// turn with it.
 pub(super) fn waves(question: &Question<'_>) -> Vec<Expr> {
     let arena = question.arena;
     let rates: Vec<Expr> = question.rates.values().copied().collect();
@@ -172,8 +172,8 @@ pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize
     Some(found)
 }
 
-/// The products of at most so many of the functions, each with that number as its weight, beginning with 1; without those
-/// that are combinations of others.
+/// The products of at most so many of the functions, each with that number as its weight, beginning with 1; without
+/// combinations of others.
 pub(super) fn products(
     question: &Question<'_>,
     functions: &[Expr],

@@ -4,9 +4,9 @@
 //! Plant, class -> candidates -> claims, proved by `analysis` -> Search
 //! ```
 //!
-//! In: a plant; a transform that it has is not looked at. Out: the transforms that were found, in order of merit, each with
-//! all that is proved of it, and what was tried. Holds after: *found* is said only of a transform whose claims are all
-//! proved. Everything before that proof only directs the search: values modulo a prime, null spaces, rules for integrals.
+//! In: a plant; its own transform, if any, is ignored. Out: the transforms that were found, in order of merit, each
+//! with its derivation, and the attempts. Holds after: *found* is said only of a transform whose claims are all proved.
+//! Everything before that proof only directs the search: values modulo a prime, null spaces, rules for integrals.
 //!
 //! It is linear: the rate of `phi = sum of c_k b_k` is linear in the `c_k`, and in dphi, however nonlinear the plant is
 //! (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015, eq. 3). Attempts go from simple forms to large ones; the first whose outputs
@@ -69,11 +69,11 @@ pub use words::settles;
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let question = Question::of(plant);
     let mut hunt = Hunt::new(&question);
-    // What the plant's class gives may leave nothing better to be expected.
+    // The transform of the plant's class may leave nothing better to be expected.
     let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
     hunt.candidates.extend(own);
     hunt.run(class);
-    // An output may tell a state, with all of its noise: what filters it was looked for first.
+    // An output may determine a state, with all of its noise: transforms that filter it were looked for first.
     for told in Question::with_told_states(plant) {
         if hunt.is_full() || !told.goes_on() {
             break;
@@ -139,7 +139,7 @@ fn affine_rates(question: &Question<'_>, others: usize) -> Option<Bound> {
     bounds::bound(question, BoundClass::AffineRate, (LARGEST_ORDER, others))
 }
 
-/// The first transform that recovers the states if those without a known sign are positive.
+/// The first transform that recovers the states if states without a known sign are positive.
 fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Candidate, Vec<Symbol>)> {
     let arena = question.arena;
     let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
@@ -168,18 +168,18 @@ const MOST_PRODUCTS: usize = 100;
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;
 
-/// The part of what is left that polynomials with undetermined coefficients may take.
+/// The share of the remaining budget for polynomials with undetermined coefficients.
 const FOR_INVARIANT: u64 = 8;
 
 struct Hunt<'a> {
     question: &'a Question<'a>,
     candidates: Vec<Candidate>,
     tried: Vec<Tried>,
-    /// What is decided of the transforms affine in x with a plain cascade.
+    /// The decision on transforms affine in x with a plain cascade.
     affine: Option<Bound>,
-    /// What excludes further transforms with a plain cascade.
+    /// The bound that excludes further transforms with a plain cascade.
     bound: Option<Bound>,
-    /// What excludes further transforms that are affine in x.
+    /// The bound that excludes further transforms that are affine in x.
     generalised: Option<Bound>,
     /// Transforms in which the outputs are not affine: they are proved if nothing better is found.
     later: Vec<Vec<Expr>>,
@@ -217,19 +217,19 @@ impl<'a> Hunt<'a> {
 }
 
 impl Hunt<'_> {
-    /// Whether there is nothing better to be expected.
+    /// Tests whether there is nothing better to be expected.
     fn is_over(&self) -> bool {
         !self.question.goes_on()
             || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.copies_an_output())
     }
 
-    /// Whether a transform was found.
+    /// Tests whether a transform was found.
     fn is_full(&self) -> bool {
         self.candidates.iter().any(Candidate::is_full)
     }
 
-    /// Whether a look at transforms affine in x, or at series of low order, shows that no smooth transform has a plain
-    /// cascade and a left inverse.
+    /// Tests whether transforms affine in x, or series of low order, prove that no smooth transform has a plain cascade
+    /// and a left inverse.
     fn is_excluded(&mut self) -> bool {
         self.affine = bounds::largest::affine(self.question, 0);
         self.bound = bounds::largest::smooth(self.question, self.affine.as_ref(), 0)
@@ -264,7 +264,7 @@ impl Hunt<'_> {
             if self.affine.as_ref().is_some_and(Bound::excludes) {
                 break;
             }
-            // Products of the functions in the formulas read better than what is integrated.
+            // Products of the functions in the formulas read better than integrals.
             if degree == 3 {
                 let integrated = arena.budget().share(3, || completion::integration::integrated(question));
                 self.judge(Form::Integrals, 0, integrated);
@@ -272,11 +272,11 @@ impl Hunt<'_> {
                     return;
                 }
             }
-            // What the formulas do not hold comes in where they were not enough.
+            // Functions outside the formulas come in where those were not enough.
             if degree == 2 {
                 let roots = functions::roots(question, &outputs);
                 outputs.extend(roots);
-                // There are transforms, perhaps of what turns with an angle that no formula holds.
+                // There are transforms, perhaps of functions that turn with an angle that no formula holds.
                 if self.affine.as_ref().is_some_and(|affine| affine.transforms().is_some()) {
                     outputs.extend(functions::waves(question));
                 }
@@ -398,8 +398,8 @@ impl Hunt<'_> {
         }
     }
 
-    /// Quotients of the states by a polynomial that divides its own rate: in these the rates may be affine, as that of `1/p`
-    /// is for `p' = a*p + b*p^2`.
+    /// Quotients of the states by a polynomial that divides its own rate: the rates of these may be affine, as that of
+    /// `1/p` is for `p' = a*p + b*p^2`.
     fn of_quotients(&mut self) {
         let question = self.question;
         let arena = question.arena;
@@ -463,10 +463,10 @@ impl Hunt<'_> {
         self.judge(form, columns, solutions);
     }
 
-    /// Has the claims of what was found proved or refuted.
+    /// Derives the claims of the transforms that were found.
     fn judge(&mut self, form: Form, columns: usize, solutions: Result<Vec<Expr>, Obstacle>) {
         let count = solutions.as_ref().map_or(0, Vec::len);
-        // A closure is one transform, which would not close without a part of it.
+        // A closure is one transform, which would not close without one of its components.
         let choose = if matches!(form, Form::Closure(_)) { choice::whole } else { choice::choose };
         let choice = solutions.and_then(|solutions| choose(self.question, &solutions));
         let (choice, obstacle) = match choice {
@@ -489,7 +489,7 @@ impl Hunt<'_> {
         }
     }
 
-    /// Proves what was put off: transforms in which the outputs do not look affine.
+    /// Proves deferred transforms: those in which the outputs do not look affine.
     fn rest(&mut self) {
         for phi in std::mem::take(&mut self.later) {
             if self.is_full() || !self.question.goes_on() {
@@ -499,7 +499,7 @@ impl Hunt<'_> {
         }
     }
 
-    /// Has the claims proved or refuted, with a third of what is left: what is open then does not end the search.
+    /// Derives the claims with a third of the remaining budget: an undecided one then does not end the search.
     fn prove(&mut self, phi: &[Expr]) {
         let question = self.question;
         let may_stand =
@@ -510,7 +510,7 @@ impl Hunt<'_> {
         let Some(phi) = phi.iter().map(|component| continuous(question, *component)).collect::<Option<Vec<_>>>() else {
             return;
         };
-        // What the values of outputs make zero filters nothing; the rest may do alone.
+        // Components that vanish by the values of outputs filter nothing; the rest may do alone.
         let domain = &question.domain;
         let is_zero = |component: &Expr| decide(question.arena, *component, domain).is_zero();
         let rest: Vec<Expr> = match question.plant.identities.as_slice() {

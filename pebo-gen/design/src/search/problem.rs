@@ -1,4 +1,4 @@
-//! What a search is about: a plant without its transform, and how its signals are told apart.
+//! The search problem: a plant without its transform, and the kinds of its signals.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,7 +18,7 @@ pub(super) struct Question<'a> {
     pub(super) x: Vec<Symbol>,
     /// The outputs that a transform may hold: those with a rate.
     pub(super) y: Vec<Symbol>,
-    /// What no rate of a transform may depend on: the states, and unmeasured signals.
+    /// The states and unmeasured signals: no rate of a transform may depend on them.
     pub(super) hidden: BTreeSet<Symbol>,
     /// All that is no constant.
     pub(super) signals: BTreeSet<Symbol>,
@@ -29,8 +29,9 @@ impl<'a> Question<'a> {
         Self::knowing(plant, &BTreeMap::new())
     }
 
-    /// The questions for the other states where outputs tell some by their value, alone or together with states that stay
-    /// unmeasured. An output that is a function of several states tells one of them; which, differs between the questions.
+    /// The problems for the other states where outputs determine some by their value, alone or with states that remain
+    /// unmeasured. An output that is a function of several states determines one of them; which, differs between the
+    /// problems.
     pub(super) fn with_told_states(plant: &'a Plant) -> Vec<Self> {
         let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let values = plant.y.iter().filter_map(|output| output.value.as_ref());
@@ -46,7 +47,7 @@ impl<'a> Question<'a> {
         known.iter().map(|told| Self::knowing(plant, told)).collect()
     }
 
-    /// The question where some states are functions of outputs and of the other states.
+    /// The problem where some states are functions of outputs and of the other states.
     fn knowing(plant: &'a Plant, told: &BTreeMap<Symbol, Expr>) -> Self {
         let states = plant.x.iter().map(|state| state.symbol);
         let x: Vec<Symbol> = states.filter(|state| !told.contains_key(state)).collect();
@@ -83,29 +84,29 @@ impl<'a> Question<'a> {
         self.x.iter().copied().collect()
     }
 
-    /// Whether a function has values and derivatives on the whole domain, but perhaps for the zeros of some formulas,
-    /// which the proof of the claims then lists.
+    /// Tests whether a function has values and derivatives on the whole domain, except perhaps at the zeros of some
+    /// formulas, which the proof of the claims then lists.
     pub(super) fn exists(&self, expr: Expr) -> bool {
         let asked = self.arena.domain_conditions(&[expr], Regularity::Differentiable);
         asked.into_iter().all(|(part, relation)| match relation {
             Relation::NonZero => !self.arena.is_zero(part),
             Relation::NonNegative => self.domain.implies(self.arena, part, relation),
-            // What is nowhere negative is positive but for its zeros.
+            // A nonnegative expression is positive except at its zeros.
             Relation::Positive => {
                 !self.arena.is_zero(part) && self.domain.implies(self.arena, part, Relation::NonNegative)
             }
         })
     }
 
-    /// Whether a function bends or jumps where a combination of the unmeasured states passes zero: theta would be another
-    /// behind a jump, and no proof that leaves the place out tells so.
+    /// Tests whether a function is non-smooth or jumps where a combination of the unmeasured states passes zero: theta
+    /// would be another constant behind a jump, and no proof that omits the point reveals it.
     pub(super) fn bends_in_states(&self, expr: Expr) -> bool {
         let hidden = |part: Expr| self.arena.depends_on(part, &self.hidden);
         self.arena.dividers(&[expr]).into_iter().any(hidden)
     }
 
-    /// Whether nothing suggests components that are not affine in x: the rates are written as polynomials in what is hidden,
-    /// and no state is an unknown constant, which may multiply others.
+    /// Tests whether nothing suggests components that are not affine in x: the rates are written as polynomials in
+    /// hidden symbols, and no state is an unknown constant, which may multiply others.
     pub(super) fn suggests_affine_transforms(&self) -> bool {
         let is_constant = |state: &Symbol| self.rates.get(state).is_some_and(|rate| self.arena.is_zero(*rate));
         if self.x.len() > 1 && self.x.iter().any(is_constant) {
@@ -121,15 +122,15 @@ impl<'a> Question<'a> {
         })
     }
 
-    /// Whether there is something left to take.
+    /// Tests whether some budget is left.
     pub(super) fn goes_on(&self) -> bool {
         !self.arena.budget().is_exhausted()
     }
 }
 
-/// States that outputs with a rate tell by their value, as functions of these and of the states that are left: `th` by
-/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. Of the states
-/// of an output one is told, in the first turn the first that moves, in each further turn the next.
+/// States that outputs with a rate determine by their value, as functions of these and of the remaining states: `th` by
+/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. An output determines one of its states, in the
+/// first turn the first that moves, in each further turn the next.
 fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let domain = plant.domain();
@@ -139,7 +140,7 @@ fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let is_constant = |state: &Symbol| rates.get(state).is_some_and(|rate| arena.is_zero(*rate));
     let values = plant.y.iter().filter(|output| output.rate.is_some());
     let mut values: Vec<(Symbol, Expr)> = values.filter_map(|y| Some((y.symbol, y.value.as_ref()?.expr))).collect();
-    // What an output tells alone is known in those of several states.
+    // A state determined by an output alone is known in the values of outputs of several states.
     values.sort_by_key(|(_, value)| arena.symbols_of(&[*value]).intersection(&states).count());
     let mut found: BTreeMap<Symbol, Expr> = BTreeMap::new();
     for (output, value) in values {

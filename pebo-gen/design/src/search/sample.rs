@@ -1,4 +1,4 @@
-//! Values modulo a prime at random points: what is likely, before anything is proved.
+//! Values modulo a prime at random points: heuristics before a proof.
 //!
 //! In: formulas. Out: their residues at points that share the parameters, or all but the unmeasured states and signals.
 
@@ -22,7 +22,7 @@ const MOST_PRIMES: usize = 16;
 /// Rows that bring nothing new, after which no more are looked at.
 const IDLE: usize = 3;
 
-/// Formulas with what is needed to evaluate them.
+/// Formulas with the data to evaluate them.
 #[derive(Debug)]
 pub(super) struct Sample<'a> {
     pub(super) prime: PrimeField,
@@ -103,8 +103,7 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// Those of the functions that are, as far as random points tell, no combinations with constant coefficients of those
-/// before them.
+/// The functions that, according to random points, are no combinations of earlier ones with constant coefficients.
 pub(super) fn independent(question: &Question<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let mut sample = Sample::of(question, functions)?;
     let columns = functions.len();
@@ -129,8 +128,8 @@ pub(super) fn rank_of_gradients(question: &Question<'_>, functions: &[Expr]) -> 
     Ok(rows.rank())
 }
 
-/// Whether, as far as random points tell, each of the targets is an affine combination of the functions with
-/// coefficients free of what is hidden.
+/// Tests whether, according to random points, each of the targets is an affine combination of the functions with
+/// coefficients free of hidden symbols.
 pub(super) fn is_affine_in(question: &Question<'_>, targets: &[Expr], functions: &[Expr]) -> Result<bool, Obstacle> {
     let count = functions.len();
     let mut sample = Sample::of(question, &[functions, targets].concat())?;
@@ -140,7 +139,7 @@ pub(super) fn is_affine_in(question: &Question<'_>, targets: &[Expr], functions:
     for values in &fibre {
         rows.insert([&[prime.one()], values.as_slice()].concat());
     }
-    // A target that is a combination of what stands left of it, none of them a target.
+    // A target that is a combination of the columns left of it, none of them a target.
     let vectors = rows.null_space();
     Ok((0..targets.len()).all(|target| {
         let column = 1 + count + target;

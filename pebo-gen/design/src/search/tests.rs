@@ -1,4 +1,4 @@
-//! What is decided of plants that are made from their transforms: none of them may be excluded.
+//! Decisions on plants that are made from their transforms: none of them may be excluded.
 
 use proptest::prelude::*;
 
@@ -18,7 +18,7 @@ fn plant(lines: &str) -> Plant {
     Plant::resolve(&model).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message))
 }
 
-/// What is decided of one class, for two values of the parameters.
+/// The decision on one class, for two values of the parameters.
 fn both(lines: &str, class: BoundClass) -> Vec<Bound> {
     let plant = plant(lines);
     let question = Question::of(&plant);
@@ -109,7 +109,7 @@ proptest! {
     }
 }
 
-/// Surfaces of which the Killing fields are known: of constant curvature three, of revolution one.
+/// Surfaces with known Killing fields: three on constant curvature, one on a surface of revolution.
 #[test]
 fn the_number_of_killing_fields_is_that_of_the_surface() {
     let surfaces = [
@@ -180,7 +180,7 @@ fn closures_take_what_formulas_show_and_leave_it_as_it_is() {
             Some(&["exp(p) + 1/exp(p)"]),
         ),
         ("f_x: {p: v*p*(1 + p), s: 0}\nf_y: {q: 1/(1 + p)}", Some(&["1/(p + 1)"])),
-        // x and y together below the bar.
+        // Both x and y in the denominator.
         ("f_x: {p: v, s: 0}\nf_y: {q: 1/(q + p)}", None),
     ] {
         let plant = plant(&format!("x: [p, s]\ny: [q]\nu: [v]\n{lines}"));

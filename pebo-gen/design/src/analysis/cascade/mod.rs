@@ -1,9 +1,8 @@
 //! Claim 1, the cascade: the transform moves by known signals.
 //!
-//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and
-//! h(y, u) with `Lambda phi + h` on the right ([`gpebo`]), or what keeps the derivative from being free of
-//! x, a point that shows it, and a mended transform if adding multiples of the outputs makes one (Ortega et al.
-//! 2015, eq. 3).
+//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and h(y, u)
+//! with `Lambda phi + h` on the right ([`gpebo`]), or the terms of the derivative that depend on x, a point that shows
+//! it, and a repaired transform if multiples of the outputs give one (Ortega et al. 2015, eq. 3).
 
 mod bounded;
 mod gpebo;
@@ -31,13 +30,13 @@ use pebo_cas::forms::tidy::{authors_form, proved_shortest, shortest, with_fewer_
 enum Component {
     /// Free of x.
     Free(Expr),
-    /// Not free of x: the part that varies with x, and where it is seen.
+    /// Dependent on x: the term that varies with x, and a witness.
     Bound { residual: Expr, witness: Witness, through: Vec<Symbol> },
     /// It could not be decided.
     Open(Obstacle),
 }
 
-/// Proves or refutes the cascade: the plain one, and where that fails or is not asked for, the generalised one.
+/// Proves or refutes the cascade: the plain one, else, unless only that is wanted, the generalised one.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
     let lie = plant.derivative_of_transform();
     let components: Vec<Component> =
@@ -81,8 +80,8 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     (Class::Pebo, claim)
 }
 
-/// What stands against the cascade, component by component, but for those that are affine in the transform by `row`
-/// and stand against a plain one alone.
+/// The obstacles to the cascade, component by component; components that `row` makes affine in the transform are
+/// obstacles to a plain one alone.
 fn refuse(
     plant: &Plant,
     domain: &Domain,
@@ -124,7 +123,7 @@ impl Component {
     }
 }
 
-/// One component, by what the class knows of it where it knows.
+/// One component, by the knowledge of the class where there is any.
 fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Component {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
     if plant.origin == TransformOrigin::Found {
@@ -145,8 +144,8 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
     }
 }
 
-/// A component that was searched for, and its rate: the class knows of its own T alone, not of this one. Of momenta along
-/// a Killing field the rate is what it is at rest.
+/// A component that was searched for, and its rate: the class knows of its own T alone, not of this one. The rate of
+/// momenta along a Killing field is the rate at zero velocity.
 fn component_found(
     plant: &Plant,
     domain: &Domain,
@@ -188,13 +187,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
     };
     let tidied = match tidied {
         Ok(tidied) => tidied,
-        // What no normal form reaches may differ at points all the same.
+        // An expression without a normal form may still differ at points.
         Err(obstacle) => {
             return bound(plant, domain, Seen { rate, shown: rate, varying: None })
                 .unwrap_or(Component::Open(obstacle));
         }
     };
-    // Of a number there is no other form.
+    // A number has no other form.
     if arena.as_number(tidied).is_some() {
         return match point_of(arena, rate, domain) {
             Some(_) => Component::Free(tidied),
@@ -202,13 +201,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         };
     }
     if !arena.depends_on(tidied, &hidden) {
-        // The normal form is free of x; that it equals the rate is what the zero test confirms.
+        // The normal form is free of x; the zero test confirms that it equals the rate.
         return match decide(arena, arena.sub(rate, tidied), domain) {
             // It does not depend on x, so its value at any x will do: there the author's own form may have more values.
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                // What is free of x as it is written, then what cancels, then the normal form.
+                // Terms free of x as they are written, then terms that cancel, then the normal form.
                 let forms = as_written(arena, domain, rate, &hidden);
                 let forms = forms.into_iter().chain([shortest(arena, domain, rate), plain]);
                 let equal = |form: &Expr| {
@@ -225,17 +224,17 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
     bound(plant, domain, Seen { rate, shown: tidied, varying: None }).unwrap_or(Component::Open(Obstacle::NoWitness))
 }
 
-/// A rate and how it is shown.
+/// A rate and its printed form.
 struct Seen {
     rate: Expr,
     shown: Expr,
-    /// The part of what is shown that varies with x, if that is known.
+    /// The term of the printed form that varies with x, if known.
     varying: Option<Expr>,
 }
 
-/// What varies with x, with two points of the domain that show it: the same y, u and parameters, another value.
+/// The dependence on x, with two points of the domain that show it: the same y, u and parameters, another value.
 ///
-/// The part of what is shown that varies is its difference to what it is at the second point, if it is not known.
+/// If the varying term of the printed form is unknown, it is the difference to its value at the second point.
 fn bound(plant: &Plant, domain: &Domain, Seen { rate, shown, varying }: Seen) -> Option<Component> {
     let arena = &plant.arena;
     let hidden = plant.hidden();
@@ -310,7 +309,7 @@ fn refuted(
     let arena = &plant.arena;
     let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
     let shown = arena.print(residual);
-    // What the label shows at length is not said again.
+    // A long label is not repeated.
     let term = if shown.len() <= LONGEST { format!("`{shown}`") } else { "this term".to_owned() };
     let component = index + 1;
     let diagnostic = Diagnostic::error(
@@ -335,7 +334,7 @@ fn refuted(
     }
 }
 
-/// Whether the plant is a mechanical one whose inverse of M is not written out.
+/// Tests whether the plant is a mechanical one whose inverse of M is not written out.
 fn is_implicit(plant: &Plant) -> bool {
     matches!(&plant.class, Some(plant::Class::Mechanical(mechanical)) if mechanical.in_velocities.is_some())
 }

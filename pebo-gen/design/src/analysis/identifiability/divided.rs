@@ -1,8 +1,8 @@
-//! Identifiability where formulas bend: part by part.
+//! Identifiability with non-smooth formulas: cell by cell.
 //!
-//! In: how the question is answered where all formulas are analytic. Out: the answer on the whole domain. A rank that is seen
-//! at a point, and a direction that is not seen there, are so almost everywhere in the part of the point alone: with
-//! `p*max(q, 0)` p is seen while q is positive; with `a + b*sign(w)` both are seen once w has had both signs.
+//! In: the decision for analytic formulas. Out: the decision on the whole domain. The rank at a point, and an
+//! unobservable direction there, hold almost everywhere in the cell of the point alone: with `p*max(q, 0)` p is
+//! identifiable while q is positive; with `a + b*sign(w)` both are once w has had both signs.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ use crate::analysis::left_inverse::checking::at_phi;
 pub(super) struct Decided {
     /// The verdict.
     pub(super) claim: Claim<Identifiability>,
-    /// The directions of the unknowns that are never seen.
+    /// The directions of the unknowns that are never observable.
     pub(super) hidden: Vec<Vec<Expr>>,
     /// The rows of the regressor, with the derivatives that were looked at.
     pub(super) rows: Vec<Vec<Expr>>,
@@ -39,13 +39,13 @@ impl From<Claim<Identifiability>> for Decided {
     }
 }
 
-/// What may bend.
+/// The formulas that may be non-smooth.
 pub(super) struct Formulas {
     /// The regressor.
     pub(super) regressor: Vec<Expr>,
     /// All rates.
     pub(super) rates: Vec<Expr>,
-    /// What is zero on the domain: it bends with them.
+    /// The formulas that vanish on the domain: they count too.
     pub(super) identities: Vec<Expr>,
 }
 
@@ -90,7 +90,7 @@ pub(super) fn decide(
     Ok(whole)
 }
 
-/// Whether an expression is not of the parameters alone.
+/// Tests whether an expression depends on more than the parameters.
 fn varies(plant: &Plant, expr: Expr) -> bool {
     let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
     plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
@@ -109,7 +109,7 @@ fn depends_on_signs(plant: &Plant, part: &Cell) -> Diagnostic {
     .help("state the signs of the parameters under `assume`")
 }
 
-/// None of the parts shows all unknowns, and no motion was found that passes from one into another and shows them.
+/// No cell identifies all unknowns, and no trajectory was found that passes from one into another and identifies them.
 fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
     let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
     let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
@@ -123,7 +123,8 @@ fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
         .help("choose a phi of what is seen on one side alone, and state that side under `assume`")
 }
 
-/// The motions within parts on which not all unknowns are seen: of all parts together, where all have the same.
+/// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
+/// same.
 fn of_parts(plant: &Plant, within: &[(&Cell, Vec<Blind>)], parts: usize) -> Vec<Blind> {
     let key = |blind: &Blind| (blind.place(plant), blind.seen.clone());
     let mut found: Vec<Blind> = Vec::new();
@@ -144,7 +145,7 @@ fn of_parts(plant: &Plant, within: &[(&Cell, Vec<Blind>)], parts: usize) -> Vec<
     found
 }
 
-/// Answers on a domain by the answers on its parts.
+/// The decision on a domain from those on its cells.
 fn on_parts(
     plant: &Plant,
     domain: &Domain,
@@ -162,7 +163,7 @@ fn on_parts(
         let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
         let everywhere = match domain.cells(arena, &formulas.of_regressor(), varies) {
             Ok(parts) => parts.len() == 1 || parts.iter().all(instant),
-            // Where the rank drops is told even so.
+            // The drop of the rank is reported even so.
             Err(Obstacle::TooLarge | Obstacle::OutOfBudget | Obstacle::NoPoint) if listed => true,
             Err(obstacle) => return Err(obstacle),
         };
@@ -215,7 +216,7 @@ fn on_parts(
         }
     }
     if blind.len() == parts.len() {
-        // One direction that no part sees: said of the whole domain, it must be the same in all.
+        // A direction that no cell observes is a statement on the whole domain only if it is the same in all.
         let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
         if whole.kind() == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
             found.extend(told);
@@ -232,7 +233,7 @@ fn on_parts(
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
-    // What several parts show together, they show while the plant moves from one to the other.
+    // Several cells identify the unknowns while the plant moves from one to the other.
     let by_itself = by_itself.filter(|_| blind.len() < parts.len());
     let at_rest = at_rest && by_itself == Some(true);
     blind.extend(of_parts(plant, &within, parts.len()));

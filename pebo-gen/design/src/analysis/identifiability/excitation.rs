@@ -1,9 +1,8 @@
-//! How strongly the regression sees the unknowns: `Phi_1' Phi_1`, its determinant, and whether that is
-//! positive throughout the assumed domain (Ortega et al. 2015, remark R3).
+//! The strength of the excitation: `Phi_1' Phi_1`, its determinant, and a proof that this is positive throughout the
+//! assumed domain (Ortega et al. 2015, remark R3).
 //!
-//! Positive is proved by the assumptions, factor by factor, or else by dividing the box that they bound
-//! until an enclosure of the determinant is positive on every part. The box is closed, so that the second
-//! way also covers what lies on its faces.
+//! The proof uses the assumptions, factor by factor, or else divides the box that they bound until an enclosure of the
+//! determinant is positive on every cell. The box is closed, so that the second way also covers its faces.
 
 use std::collections::BTreeMap;
 
@@ -18,11 +17,11 @@ use super::singular::{Places, Volume, gram};
 use crate::analysis::design::{Gram, Positive};
 use pebo_cas::forms::tidy::{shorter, shortest};
 
-/// Parts that a box is divided into before the proof is given up.
+/// Cells that a box is divided into before the proof is given up.
 const MOST_PARTS: usize = 4096;
 
-/// Where a regressor with full column rank at almost every point loses it, and its Gram matrix where that could be worked
-/// out.
+/// The conditions under which a regressor with full column rank at almost every point loses it, and its Gram matrix
+/// where that could be worked out.
 pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (Places, Option<Gram>) {
     let found = || -> Result<(Places, Gram), Obstacle> {
         let volume = Volume::of(&plant.arena, domain, phi_1)?;
@@ -30,7 +29,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (Places
         let gram = worked_out(plant, domain, phi_1, &volume, &places)?;
         let symbols = plant.arena.symbols_of(&[gram.determinant]);
         let general = !plant.parameters.iter().any(|parameter| symbols.contains(&parameter.symbol));
-        // What no factor shows, dividing the box may; with parameters it does so for their values alone.
+        // Dividing the box may prove what no factor does; with parameters it does so for their values alone.
         if gram.positive.is_some() && general {
             places.signals.clear();
             places.all = true;
@@ -76,7 +75,7 @@ fn worked_out(
     Ok(Gram { matrix, determinant: oriented(arena, domain, determinant), positive })
 }
 
-/// Whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
+/// Tests whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
 fn on_box(plant: &Plant, domain: &Domain, expr: Expr, square: bool) -> bool {
     let sign = ranges(plant, domain, expr).and_then(|ranges| sign_on_box(&plant.arena, expr, ranges, MOST_PARTS));
     sign.is_some_and(|positive| positive || square)
@@ -107,14 +106,14 @@ fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
     Some(found)
 }
 
-/// Whether the expression is the same after a turn of the symbol.
+/// Tests whether the expression is the same after a turn of the symbol.
 fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
     let turn = arena.turn();
     let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
     decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
 }
 
-/// What `expr >= 0` says of a symbol alone: whether from below, and the bound.
+/// The bound that `expr >= 0` puts on a symbol alone, with true for a lower one.
 fn bound(arena: &Arena, expr: Expr, symbol: Symbol) -> Option<(bool, Rational)> {
     let slope = arena.as_number(arena.derivative(expr, symbol))?;
     let rest = arena.substitute(expr, &BTreeMap::from([(symbol, arena.zero())]));

@@ -1,11 +1,10 @@
-//! Claim 4, identifiability: the unknowns can be told apart.
+//! Claim 4, identifiability: the unknowns are identifiable.
 //!
-//! In: the regression. Out: `instant` where `Phi_1` has full column rank at almost every point (shown by a
-//! point at which a rigorous elimination finds it), `excitation` where it has only together with its
-//! time derivatives along the plant, `never` where a direction of the unknowns stays unseen by every
-//! derivative (shown by exact linear algebra). Inputs, and signals without an equation, are free
-//! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
-//! et al. 2015, remark R3).
+//! In: the regression. Out: `instant` where `Phi_1` has full column rank at almost every point (proved by a point at
+//! which a rigorous elimination finds it), `excitation` where it has only with its time derivatives along the plant,
+//! `never` where a direction of the unknowns is unobservable in every derivative (proved by exact linear algebra).
+//! Inputs, and signals without an equation, are free functions of time up to the identities: their derivatives are new
+//! symbols (Ortega et al. 2015, remark R3).
 
 mod trajectory;
 
@@ -56,8 +55,7 @@ pub(super) fn prove(
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
 }
 
-/// The rates that the regressor's derivatives hold; all, where they hold inputs, which may have to be what the rates leave
-/// them.
+/// The rates in the regressor's derivatives; all of them if these hold inputs, which the rates may restrict.
 fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Expr]) -> Vec<Expr> {
     let arena = &plant.arena;
     let mut rates = plant.rates();
@@ -76,8 +74,8 @@ fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Ex
     own.chain(lambda).collect()
 }
 
-/// Whether the regressor or a derivative of it along the plant depends on the unmeasured states: through the rates of outputs
-/// that it holds. If not, equations that hold states do not restrict its arguments.
+/// Tests whether the regressor or a derivative of it along the plant depends on the unmeasured states, through the
+/// rates of outputs in it. If not, equations with states do not restrict its arguments.
 fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> bool {
     let arena = &plant.arena;
     let moves = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten());
@@ -91,7 +89,7 @@ fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> b
     !arena.symbols_of(&held).is_disjoint(&plant.hidden())
 }
 
-/// A domain of several parts, on one of which a plant may stay.
+/// A domain of several components, on one of which a plant may remain.
 fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
     let zero = plant.arena.print(equation);
     Diagnostic::error(
@@ -103,7 +101,7 @@ fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
     .help("write the factor that is zero under `identities`, or exclude the others under `assume`")
 }
 
-/// Decides it where the formulas are analytic, so that what is seen at a point holds almost everywhere.
+/// Decides it for analytic formulas, where the rank at a point holds almost everywhere.
 fn where_analytic(
     plant: &Plant,
     domain: &Domain,
@@ -113,7 +111,7 @@ fn where_analytic(
     found: &mut Vec<Diagnostic>,
 ) -> Decided {
     let (arena, unknowns) = (&plant.arena, regression.eta.len());
-    // Of an implicit regression the rates are part of what multiplies the unknowns.
+    // In an implicit regression the rates are among the factors of the unknowns.
     let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
     let flow = Flow::new(plant, domain, cascade);
     let mut stack = match &flow {
@@ -153,7 +151,7 @@ fn where_analytic(
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     let excited = || {
-        // What is to be said of motions does not use up what the other claims need.
+        // Remarks on trajectories do not use up the budget of the other claims.
         let (motion, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
         if let Some(result) = &mut claim.result {
@@ -194,13 +192,13 @@ fn where_analytic(
     let Some(direction) = unseen.directions.first().cloned() else {
         return open(plant, &Obstacle::NoWitness, found).into();
     };
-    // What is constant along every motion and holds what moves may be another constant elsewhere if it can bend: the quotient
-    // of v and |v|.
+    // A direction that is constant along every trajectory but depends on signals may be another constant elsewhere if
+    // it is non-smooth: the quotient of v and |v|.
     let bends = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
     if bends && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
         return open(plant, &Obstacle::NoWitness, found).into();
     }
-    // What does not identify functions of theta may identify theta.
+    // A regression that does not identify functions of theta may identify theta.
     if !regression.is_linear(plant)
         && let Some(doubt) = of_theta(plant, domain, &stack, regression, &direction)
     {
@@ -220,8 +218,8 @@ fn where_analytic(
     }
 }
 
-/// Why theta itself may be identified although its functions are not; none where a direction of theta is provably
-/// unseen by the rows, which are all that the derivatives show.
+/// The reason why theta itself may be identifiable although its functions are not; none where a direction of theta is
+/// provably unobservable in the rows, which determine all derivatives.
 fn of_theta(
     plant: &Plant,
     domain: &Domain,
@@ -261,8 +259,8 @@ fn of_theta(
     ))
 }
 
-/// Where a regressor with the rates of outputs in it loses rank: what parameters and signals alone make zero. What states
-/// make zero is no place that an observer could know.
+/// The conditions under which a regressor with the rates of outputs loses rank: zeros of parameters and signals alone.
+/// An observer cannot know a zero of states.
 fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
     let arena = &plant.arena;
     let found = || Volume::of(arena, domain, rows)?.places(plant, domain);
@@ -274,7 +272,7 @@ fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
     Places { signals, zeros, constants, all: all && other.is_empty(), together }
 }
 
-/// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
+/// Tests whether rows and their derivatives have full rank at points: exact algebra is for deficient ones.
 fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
     let arena = &plant.arena;
     let Ok(mut flow) = Flow::new(plant, domain, cascade) else { return false };
@@ -295,7 +293,7 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
     false
 }
 
-/// Whether formulas hold what moves: all but the parameters and signals whose rate is zero.
+/// Tests whether formulas depend on moving signals: all but the parameters and signals whose rate is zero.
 fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -> bool {
     let arena = &plant.arena;
     let Ok(flow) = Flow::new(plant, domain, cascade) else { return true };
@@ -316,7 +314,7 @@ fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize)
 /// Directions of the unknowns that no row sees.
 struct Unseen {
     directions: Vec<Vec<Expr>>,
-    /// Whether other values of the parameters leave fewer.
+    /// True if other values of the parameters leave fewer.
     special_values: bool,
 }
 

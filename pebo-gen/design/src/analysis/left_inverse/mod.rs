@@ -104,8 +104,8 @@ impl Verdict {
     }
 }
 
-/// Whether the formula provably has a value wherever the plant has, but for what must only not vanish and is listed
-/// among the conditions; where not, says so.
+/// Tests whether the formula provably has a value wherever the plant has, up to listed conditions that something does
+/// not vanish; reports it if not.
 fn defined(
     plant: &Plant,
     domain: &Domain,
@@ -142,7 +142,7 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, 
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let other = BTreeMap::from([(state, arena.substitute(formula, &transform))]);
-    // Where both states are in the domain.
+    // Both states are in the domain.
     let mut both = domain.clone();
     for (fact, relation) in domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&state)) {
         both.facts.assume(arena.substitute(fact, &other), relation);
@@ -197,7 +197,7 @@ fn taken_twice(plant: &Plant, domain: &Domain, state: Symbol) -> Option<Witness>
 /// A direction of x that the transform does not see anywhere, if there is one.
 fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
-    // What an identity holds fixed is no direction of the domain.
+    // A symbol fixed by an identity is no direction of the domain.
     let seen = plant.phi.iter().chain(&plant.identities);
     let slopes: Vec<Vec<Expr>> =
         seen.map(|seen| plant.x.iter().map(|s| arena.derivative(seen.expr, s.symbol)).collect()).collect();

@@ -1,7 +1,7 @@
-//! Formulas for the states, solved for from the transform.
+//! Solves the transform for the states.
 //!
-//! In: the plant. Out: for each state that something was found for, one formula in z and y: one that is right where there is
-//! one, and else the likeliest. Whether it is right is proved by who asks.
+//! In: the plant. Out: for each solved state one formula in z and y: a right one where there is one, else the
+//! likeliest. The caller proves that it is right.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -29,13 +29,13 @@ pub(super) fn formulas<'a>(plant: &'a Plant, domain: &Domain) -> Result<Vec<(&'a
 struct Solving<'a> {
     plant: &'a Plant,
     domain: &'a Domain,
-    /// What it gives alone, the likelier first.
+    /// Solutions of the transform alone, the likelier first.
     alone: Solved,
-    /// What it gives where functions of y alone are kept as they are written: they compute better.
+    /// Solutions with functions of y alone kept as written: they compute better.
     as_written: Solved,
-    /// What it gives by least squares, once that was asked for.
+    /// Least-squares solutions, computed on first use.
     least_squares: OnceCell<BTreeMap<Symbol, Expr>>,
-    /// What it gives together with the values of outputs, once that was asked for.
+    /// Solutions of the transform with the values of outputs, computed on first use.
     together: OnceCell<Result<Solved, Obstacle>>,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Solving<'a> {
     fn of(plant: &'a Plant, domain: &'a Domain) -> Result<Self, Obstacle> {
         let arena = &plant.arena;
         let states = states(plant);
-        // Where a class proposes a formula for every state, nothing is solved for.
+        // If a class proposes a formula for every state, nothing is solved for.
         let proposed = |state: &Symbol| plant.proposal.phi_left.iter().any(|(own, _)| own == state);
         let alone = if states.iter().all(proposed) {
             BTreeMap::new()
@@ -72,11 +72,11 @@ impl<'a> Solving<'a> {
         let candidates = self.candidates(state);
         let found = match self.by_worth(candidates.clone()).into_iter().find(right) {
             Some(found) => Some(found),
-            // What outputs measure comes with their noise: it serves where the transform alone is not solved.
+            // The value of an output comes with its noise: it is used where the transform alone is not solved.
             None => self.with_values(state)?.into_iter().find(right),
         };
         let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
-        // What has a value wherever the plant has is looked for no further.
+        // A formula that has a value wherever the plant has ends the search.
         let all_shown = found.is_some_and(|formula| unshown(self.plant, self.domain, formula).is_empty());
         let squares =
             (!all_shown).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
@@ -93,7 +93,7 @@ impl<'a> Solving<'a> {
         Ok(formula.map(|formula| shortest(arena, self.domain, formula)))
     }
 
-    /// What the class proposes, the shortest first, and what the transform alone gives.
+    /// The proposals of the class, the shortest first, and the solutions of the transform alone.
     fn candidates(&self, state: Symbol) -> Vec<Expr> {
         let arena = &self.plant.arena;
         let proposed = self.plant.proposal.phi_left.iter().filter(|(own, _)| *own == state);
@@ -103,15 +103,16 @@ impl<'a> Solving<'a> {
         candidates
     }
 
-    /// What the transform gives together with the values of outputs, the best first.
+    /// The solutions of the transform with the values of outputs, the best first.
     fn with_values(&self, state: Symbol) -> Result<Vec<Expr>, Obstacle> {
         let solved = self.together.get_or_init(|| together(self.plant, self.domain)).as_ref().map_err(Clone::clone)?;
         Ok(self.by_worth(solved.get(&state).cloned().unwrap_or_default()))
     }
 
-    /// First what has a value wherever the plant has, then what takes no root from what is near it, then what is short.
+    /// Sorts formulas: first those with a value wherever the plant has, then those without a root that cancels, then
+    /// short ones.
     fn by_worth(&self, mut candidates: Vec<Expr>) -> Vec<Expr> {
-        // What a formula asks is looked for only where it is compared.
+        // Domain conditions are computed only for a comparison.
         if candidates.len() > 1 {
             candidates.sort_by_cached_key(|formula| self.cost(*formula));
         }
@@ -130,7 +131,7 @@ impl<'a> Solving<'a> {
         (unshown, foreign, cancelling, operations)
     }
 
-    /// What it asks that is not shown, the roots that cancel, and the operations.
+    /// The number of open domain conditions, of roots that cancel, and of operations.
     fn cost(&self, formula: Expr) -> (usize, usize, usize) {
         let arena = &self.plant.arena;
         let unshown = unshown(self.plant, self.domain, formula).len();
@@ -148,7 +149,7 @@ fn equations(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
     transform.into_iter().zip(values).map(|(formula, value)| Equation { formula, value }).collect()
 }
 
-/// Solves the transform together with the identities; of what comes out, what is a function of z and y.
+/// Solves the transform with the identities; returns the functions of z and y among the solutions.
 fn together(plant: &Plant, domain: &Domain) -> Result<Solved, Obstacle> {
     if plant.identities.is_empty() {
         return Ok(BTreeMap::new());

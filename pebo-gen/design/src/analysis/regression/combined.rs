@@ -1,7 +1,7 @@
-//! Regressions of several kinds of equations together.
+//! Regressions that combine several kinds of equations.
 //!
 //! In: equations `d/dt P(y) = R(z, y, u)`: rates of outputs, rates of combinations of outputs from which unmeasured
-//! signals cancel, and, with P = 0, what holds at every instant between z, y and u. Out: one regression of all. The
+//! signals cancel, and, with P = 0, relations between z, y and u at every instant. Out: one regression of all. The
 //! filter is linear, so that an equation without a derivative goes through it as any other does.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,15 +20,16 @@ use super::equation::Equation;
 use super::functions::over_parameterised;
 use super::linear::decompose;
 
-/// Regressions with more of what a plant's equations say, and whether that is all.
+/// Regressions with more of a plant's equations, and their completeness.
 pub(in crate::analysis) struct Together {
-    /// The regressions: with what is linear in z, then with everything.
+    /// The regressions: with equations linear in z, then with all.
     pub(in crate::analysis) regressions: Vec<Claim<Regression>>,
-    /// Whether nothing is left that could tell more of the unknowns.
+    /// True if no equation is left that could say more of the unknowns.
     pub(in crate::analysis) complete: bool,
 }
 
-/// A regression with what the given one leaves out: combinations of outputs, relations among z, y and u, identities.
+/// Adds to a regression the equations that it leaves out: combinations of outputs, relations among z, y and u,
+/// identities.
 pub(in crate::analysis) fn together(
     plant: &Plant,
     domain: &Domain,
@@ -111,8 +112,8 @@ fn in_z(
     (!arena.depends_on(rate, &plant.hidden())).then_some(Equation { primitive: combination.output, rate })
 }
 
-/// What holds at every instant: relations of the components of the transform with measured signals, and identities;
-/// and whether these are all.
+/// The relations at every instant: of the components of the transform with measured signals, and identities; and true
+/// if these are all.
 fn standing(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
     let arena = &plant.arena;
     let identities = match left_inverse {
@@ -135,8 +136,8 @@ fn standing(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) 
     (equations.map(|rate| Equation { primitive: arena.zero(), rate }).collect(), complete)
 }
 
-/// Whether a relation tells of the unknowns what no choice of phi could: one that is linear with constant coefficients
-/// and a constant right side only says that a component of phi is redundant.
+/// Tests whether a relation restricts the unknowns for every choice of phi: one that is linear with constant
+/// coefficients and a constant right side only makes a component of phi redundant.
 fn tells(plant: &Plant, domain: &Domain, relation: Expr) -> bool {
     let arena = &plant.arena;
     let signals: BTreeSet<Symbol> = plant.y.iter().map(|o| o.symbol).chain(plant.u.iter().copied()).collect();
@@ -177,8 +178,8 @@ pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regre
     Some(equations.collect())
 }
 
-/// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside those
-/// whose rates are affine in z. Others are left unused; none where no rate has such a denominator.
+/// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside
+/// outputs whose rates are affine in z. Others are left unused; none where no rate has such a denominator.
 pub(super) fn under_derivative(
     plant: &Plant,
     domain: &Domain,

@@ -24,8 +24,8 @@ use pebo_cas::forms::tidy::shortest;
 use pebo_cas::number::rational::half;
 use pebo_cas::{Domain, Expr, Symbol};
 
-/// The regression under the derivative, in theta itself, where it has fewer unknowns than the given one, or the model asks
-/// for it.
+/// The regression under the derivative, in theta itself, where it has fewer unknowns than the given one, or the model
+/// chooses it.
 pub(in crate::analysis) fn differentiated(
     plant: &Plant,
     domain: &Domain,
@@ -54,7 +54,7 @@ pub(in crate::analysis) fn differentiated(
         .filter(|claim| proved(claim).is_some_and(|regression| regression.is_linear(plant)))
 }
 
-/// Says that no regression has the form that was asked for.
+/// Reports that no regression has the chosen form.
 pub(in crate::analysis) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
     let (how, needs, other) = match form {
         RelationForm::Static => (
@@ -122,8 +122,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
     (moves && arena.symbols_of(&[primitive]).is_subset(&known)).then_some(Equation { primitive, rate })
 }
 
-/// An expression less what it is where z and y are zero, if it has a value there and no input is in that: a constant has no
-/// rate.
+/// An expression less its value at z = 0 and y = 0, if it has a value there without an input: a constant has no rate.
 fn without_constant(plant: &Plant, domain: &Domain, expr: Expr) -> Expr {
     let arena = &plant.arena;
     let signals = plant.z.iter().copied().chain(plant.y.iter().map(|output| output.symbol));

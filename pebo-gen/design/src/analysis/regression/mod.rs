@@ -45,7 +45,7 @@ pub(super) use valued::by_values;
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
     exponentials, sines and cosines of z were tried";
 
-/// A rate as what it is on the domain, if it bends: the assumptions on the states tell which way, and are not known of z.
+/// A non-smooth rate as it is on the domain: the assumptions on the states decide the side, and are not known of z.
 fn unbent(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     let arena = &plant.arena;
     if arena.dividers(&[rate]).into_iter().all(|part| !arena.depends_on(part, &plant.hidden())) {
@@ -77,7 +77,7 @@ fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> 
         .map(|(index, _)| OtherForm::Function(index))
 }
 
-/// Whether a component of the transform has no rate.
+/// Tests whether a component of the transform has no rate.
 fn is_constant(plant: &Plant, cascade: &Cascade, index: usize) -> bool {
     cascade.lambda.is_none() && plant.arena.is_zero(cascade.h[index])
 }
@@ -126,15 +126,15 @@ fn of_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse, rate: Expr) 
     plant.arena.substitute(unbent(plant, domain, rate), &inverse)
 }
 
-/// Whether a rate is a sum of known signals times functions of theta.
+/// Tests whether a rate is a sum of known signals times functions of theta.
 fn is_separable(plant: &Plant, domain: &Domain, rate: Expr) -> bool {
     matches!(separation::separate(plant, domain, &[rate]), Ok(Some(_)))
 }
 
-/// A rate that is not affine: its output, itself, its place, and why it was not decided.
+/// A rate that is not affine: its output, itself, its span, and the obstacle to a decision.
 type Curved = (usize, Expr, Span, Option<Obstacle>);
 
-/// Leaves the rates that are no sums of functions of theta either: it is these that stand in the way.
+/// Keeps the rates that are no sums of functions of theta either: the obstacles.
 fn formless(plant: &Plant, domain: &Domain, in_z: &BTreeMap<usize, Expr>, curved: &mut Vec<Curved>) {
     let has_form = |row: &Curved| in_z.get(&row.0).is_some_and(|rate| is_separable(plant, domain, *rate));
     let others: Vec<Curved> = curved.iter().filter(|row| !has_form(row)).cloned().collect();
@@ -222,7 +222,7 @@ pub(super) fn prove(
             return claim;
         }
     }
-    // What keeps one rate from being affine may cancel from several.
+    // A term that makes one rate nonlinear may cancel from several.
     let outputs: Vec<usize> = rows.iter().map(|row| row.0).collect();
     let (combined, moving) = affine_combinations(plant, domain, &outputs).unwrap_or((Vec::new(), outputs.len() > 1));
     if combined.len() > affine.len()
@@ -230,16 +230,16 @@ pub(super) fn prove(
     {
         return claim;
     }
-    // What the rates do not say an identity may, in a form that was not found, or a combination that was not put together.
+    // An identity may serve in place of the rates, in a form that was not found, or a combination that was not tried.
     let is_refuted = plant.identities.is_empty() && combined.len() <= affine.len() && !moving;
     let verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
     refuse(plant, domain, (cascade, left_inverse), &sought, obstacles, verdict, found)
 }
 
-/// What was come to of functions of theta.
+/// The result of the search for functions of theta.
 #[derive(Default)]
 struct Sought {
-    /// Whether there are some that no regression is made of.
+    /// True if some are used by no regression.
     unsought: bool,
     /// Functions from which theta was not recovered.
     unrecovered: Option<String>,
@@ -247,7 +247,7 @@ struct Sought {
     in_z: BTreeMap<usize, Expr>,
 }
 
-/// Says of each rate that is in the way what is known of it; the verdict is the firmest that is left.
+/// Reports the obstacle of each nonlinear rate; the verdict is the firmest that is left.
 fn refuse(
     plant: &Plant,
     domain: &Domain,
@@ -268,11 +268,12 @@ fn refuse(
             found.push(not_recovered(plant, index, span, functions));
             continue;
         }
-        // What was given up is not refuted: it may be linear in functions of theta all the same.
+        // A rate that was given up is not refuted: it may be linear in functions of theta all the same.
         let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         let form = match left_inverse {
             Some(_) => sought.in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
-            // What the rate is in z is not known: it may be linear with any function of a component that is constant.
+            // The rate as a function of z is unknown: it may be linear with any function of a component that is
+            // constant.
             None => constant_component(plant, cascade).map(OtherForm::Function),
         };
         if let (Some(shown), Some(form)) = (&bend, form) {

@@ -21,7 +21,7 @@ use pebo_cas::solve::{Equation, solve};
 /// Expressions as `known + factors * eta`.
 #[derive(Clone, Debug)]
 pub(in crate::analysis) struct Separated {
-    /// What is known of each expression.
+    /// The known term of each expression.
     pub known: Vec<Expr>,
     /// The factors of each eta, a row for each expression.
     pub factors: Vec<Vec<Expr>>,
@@ -64,7 +64,7 @@ pub(in crate::analysis) fn separate(
     Ok(Some(separated))
 }
 
-/// The parts of expressions at z = chi + theta; none where a kernel mixes theta with signals.
+/// Separates expressions at z = chi + theta; none where a kernel mixes theta with signals.
 fn apart(
     plant: &Plant,
     domain: &Domain,
@@ -83,7 +83,7 @@ fn apart(
     let mut rows: Vec<BTreeMap<Powers, Fraction>> = Vec::new();
     for expr in exprs {
         let fraction = field.fraction(*expr)?;
-        // A product of kernels of theta may stand below, as exp(theta) in cosh; a sum may not.
+        // A product of kernels of theta may be a denominator, as exp(theta) in cosh; a sum may not.
         let denominator = fraction.denominator().collect(&kernels);
         let [(below, known)] = denominator.as_slice() else { return Ok(None) };
         let below = powers(below, -1);
@@ -149,8 +149,8 @@ fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) 
     Ok(())
 }
 
-/// Joins all functions of theta whose factors are constants of the plant into one, together with the
-/// constants of the known part: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
+/// Joins all functions of theta whose factors are constants of the plant into one, with the constants of the known
+/// term: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
 pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separated) -> Separated {
     let arena = &plant.arena;
     // With several rows the constants would differ from row to row.
@@ -161,7 +161,7 @@ pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, sepa
     if joined.is_empty() {
         return separated;
     }
-    // What the known part is where every signal is zero, if it has a value there, is a constant of it.
+    // The value of the known term at zero signals, if there is one, is a constant of it.
     let signals = arena.symbols_of(&separated.known).into_iter().filter(|s| !constants.contains(s));
     let origin: BTreeMap<Symbol, Expr> = signals.map(|s| (s, arena.zero())).collect();
     let constant = arena.substitute(separated.known[0], &origin);
@@ -180,8 +180,8 @@ pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, sepa
     Separated { known: vec![known], factors: vec![row], eta }
 }
 
-/// Joins functions of theta whose factors are constant combinations of other factors: these cannot be told apart, but
-/// their sums can, as `theta1 + theta2^2` in a rate `a + b^2`.
+/// Joins functions of theta whose factors are constant combinations of other factors: only their sums are identifiable,
+/// as `theta1 + theta2^2` in a rate `a + b^2`.
 pub(in crate::analysis) fn join_dependent(
     plant: &Plant,
     domain: &Domain,
@@ -229,8 +229,8 @@ pub(in crate::analysis) fn join_dependent(
 pub(in crate::analysis) struct Recovered {
     /// An entry for each theta, in the eta symbols.
     pub theta: Vec<Expr>,
-    /// Positions of those that are determined only up to multiples of a step, as from sine and cosine of theta, which have
-    /// the step 2 pi; with the step.
+    /// Indices of the components of theta that are determined up to multiples of a step, as from sine and cosine of
+    /// theta, which have the step 2 pi; with the step.
     pub turning: Vec<(usize, Expr)>,
 }
 
@@ -246,7 +246,7 @@ pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr])
         .filter(|(s, _)| plant.theta.contains(s))
         .collect();
     let rest: Vec<Symbol> = plant.theta.iter().copied().filter(|t| !direct.contains_key(t)).collect();
-    // The others are looked for with these in their place.
+    // The others are solved for with these in their place.
     let equations: Vec<Equation> = equations
         .iter()
         .map(|e| Equation { formula: arena.substitute(e.formula, &direct), value: e.value })
@@ -295,7 +295,7 @@ fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> O
     (!below.is_empty()).then(|| arena.div(arena.sum(above), arena.sum(below)))
 }
 
-/// By how much a formula grows with the angle that it is a multiple of; one where it is none.
+/// The growth of a formula in the angle that it is a multiple of; one where it is none.
 fn per_turn(arena: &Arena, formula: Expr) -> Expr {
     let Node::Product(product) = arena.node(formula) else { return arena.one() };
     let is_angle = |base: &Expr| matches!(arena.node(*base), Node::Call(Function::Atan2, _));

@@ -1,4 +1,4 @@
-//! Static regressions: from identities, or from what the components of the transform have to do with each other.
+//! Static regressions: from identities, or from relations between the components of the transform.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,8 +52,8 @@ pub(in crate::analysis) fn from_identities(
     standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
 }
 
-/// A static regression from what the components of the transform have to do with each other; none if that
-/// is nothing, or nothing that theta can be recovered from.
+/// A static regression from relations between the components of the transform; none if there are none, or theta cannot
+/// be recovered from them.
 pub(super) fn from_relations(
     plant: &Plant,
     domain: &Domain,
@@ -71,7 +71,7 @@ pub(super) fn from_relations(
         }
         None => standing_still(plant, domain, left_inverse?, (&relations, span), &mut own),
     };
-    // A claim that is undecided here is left to what the author can mend: the rates.
+    // An undecided claim is left to the rates, which the author can mend.
     if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
         return None;
     }
@@ -79,7 +79,7 @@ pub(super) fn from_relations(
     Some(claim)
 }
 
-/// What vanishes as an affine function of z, the known part first; none where it is no such function.
+/// A vanishing relation as an affine function of z, the known term first; none where it is no such function.
 fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
     let arena = &plant.arena;
     let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
@@ -89,9 +89,9 @@ fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
     affine.then(|| [vec![arena.substitute(relation, &origin)], slopes].concat())
 }
 
-/// A static regression under a generalised cascade, `z = xi + Psi theta`, from what vanishes as an affine function of z.
+/// A static regression under a generalised cascade, `z = xi + Psi theta`, from an affine function of z that vanishes.
 ///
-/// Functions of theta are not sought here: with Psi between them, they would be functions of known signals too.
+/// Functions of theta are not used here: with Psi between them, they would be functions of known signals too.
 fn under_lambda(
     plant: &Plant,
     domain: &Domain,
@@ -206,7 +206,7 @@ fn standing_still(
     }
 }
 
-/// What is known, as the relation itself at z = chi where that is shorter, but for the constants that the unknowns
+/// The known term, as the relation itself at z = chi where that is shorter, without the constants that the unknowns
 /// have absorbed.
 fn as_written(plant: &Plant, domain: &Domain, in_z: &[Expr], known: &[Expr]) -> Vec<Expr> {
     let arena = &plant.arena;

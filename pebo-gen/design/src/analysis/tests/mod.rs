@@ -86,7 +86,7 @@ fn the_fundamental_matrix_is_never_singular() {
 
 #[test]
 fn a_sign_stays_a_sign_where_code_computes_it() {
-    // As a quotient of q and its magnitude it would be 0/0 at q = 0, where the author's formula has a value.
+    // As a quotient of q and its absolute value it would be 0/0 at q = 0, where the author's formula has a value.
     for factor in ["2 + sign(q)*sqrt(abs(q))", "sign(q)*(1 - exp(-abs(q))) + 3", "sign(q)*max(abs(q) - 1, 0) + 1"] {
         let (plant, derivation) =
             derive(&format!("x: [p]\ny: [q]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: \"p*({factor})\"}}\nphi: [p]"));
@@ -158,7 +158,7 @@ fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
     );
 }
 
-/// Where the normal form would overflow, lose its digits or divide by zero, and the author's own formula does not.
+/// The normal form would overflow, lose its digits or divide by zero, and the author's own formula does not.
 #[test]
 fn results_are_in_the_functions_and_divisors_that_the_author_wrote() {
     let shown = |lines: &str| -> (Vec<String>, Vec<String>) {
@@ -217,7 +217,7 @@ fn a_relation_alone_is_a_regression_under_a_generalised_cascade_too() {
     assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Rejected, vec![Code::NeverIdentifiable]));
 }
 
-/// The difference of two outputs shows b, so that c alone is hidden.
+/// The difference of two outputs makes b observable; c alone is hidden.
 #[test]
 fn a_refusal_counts_what_combinations_of_outputs_show() {
     let (_, derivation) = derive(
@@ -280,7 +280,7 @@ fn what_is_left_of_a_linear_plant_is_the_row_that_no_output_shows() {
     assert_eq!(residual.iter().map(|e| plant.arena.print(*e)).collect::<Vec<_>>(), ["0", "2*b"]);
 }
 
-/// With an output that tells something which no regression uses, what is used may do all the same.
+/// An output that no regression uses does not spoil those that are used.
 #[test]
 fn a_regression_that_identifies_need_not_use_all_outputs() {
     let (_, derivation) = derive(

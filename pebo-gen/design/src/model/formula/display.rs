@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{Comparison, Formula, Operator, Relation, Term};
 
-/// How tightly the outermost part of a formula binds.
+/// The binding strength of the outermost operator of a formula.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,

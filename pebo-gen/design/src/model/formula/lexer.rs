@@ -3,7 +3,7 @@
 use super::{Places, Relation, foreign};
 use crate::source::{Code, Diagnostic, Span};
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Number,
@@ -84,7 +84,7 @@ impl<'a> Lexer<'a> {
         Ok(Token { kind, start, end: self.at })
     }
 
-    /// What is not read yet.
+    /// The text that is not read yet.
     pub(super) fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -126,7 +126,7 @@ fn word(text: &str) -> usize {
     text.bytes().take_while(|byte| byte.is_ascii_alphanumeric() || *byte == b'_').count()
 }
 
-/// What to write instead of a character that people and their editors use.
+/// A replacement for a character that people and their editors use.
 fn substitute(character: char) -> Option<String> {
     let other = match character {
         '−' | '–' | '—' | '‐' | '‑' => "-",

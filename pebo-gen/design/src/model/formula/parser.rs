@@ -9,7 +9,7 @@ use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, P
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::Function;
 
-/// Whether a formula may hold `hat(x)`.
+/// Permission for `hat(x)` in a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimates {
     /// In the plant and its observer there are no estimates.
@@ -198,7 +198,7 @@ impl<'a> Parser<'a> {
         Measured::call(function, arguments, span)
     }
 
-    /// Reads the parenthesis that closes `open`; gives the place of the whole.
+    /// Reads the parenthesis that closes `open`; returns the span of the whole.
     fn close(&mut self, open: Token) -> Result<Span, Diagnostic> {
         match self.next.kind {
             Kind::Close => {

@@ -17,13 +17,13 @@ use crate::model::spanned::{Entry, Spanned};
 use crate::model::written::{CascadeClass, RelationForm};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
-/// What an attribute may say.
+/// The keys of an attribute.
 const KEYS: [&str; 7] = ["title", "reference", "class", "regression", "assume", "angles", "units"];
 
 const ANGLES: &str = "angles(q = 2.0 * PI)";
 const UNITS: &str = "units(L = \"H\", i = \"A\")";
 
-/// What an attribute says.
+/// The arguments of an attribute.
 #[derive(Default)]
 pub(super) struct Arguments {
     pub(super) title: Option<Spanned<String>>,
@@ -120,7 +120,7 @@ impl Arguments {
     }
 }
 
-/// A list of names with what is said of each.
+/// A list of names with a value for each.
 fn pairs(list: &MetaList, wrong: &str, example: &str, places: &mut Places) -> Result<Vec<MetaNameValue>, Diagnostic> {
     let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
     let pairs = pairs

@@ -33,7 +33,7 @@ impl Reader<'_> {
             },
             Stmt::Expr(value, None) => self.value(value, locals),
             other => {
-                // What else it may be is said first.
+                // The diagnostic of another statement comes first.
                 self.bind_statement(other, locals)?;
                 Err(unsupported(self.places.of(other), "the function ends without a value")
                     .help("end it with the expression that it returns, without a semicolon"))

@@ -18,7 +18,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 /// Most calls of helper functions inside one another.
 const CALL_LIMIT: usize = 32;
 
-/// Most expressions that are run, and parts that are copied, for one module.
+/// Most expressions that are evaluated, and parts that are copied, for one module.
 const WORK_LIMIT: usize = 1 << 20;
 
 /// Longest array that is written as a repetition.
@@ -29,9 +29,9 @@ pub(super) struct Reader<'a> {
     pub(super) items: &'a Items<'a>,
     pub(super) places: &'a mut Places,
     pub(super) diagnostics: &'a mut Diagnostics,
-    /// Constants of the module that stand for themselves.
+    /// Constants of the module that are names of their own.
     pub(super) constants: HashSet<String>,
-    /// Whether integers are numbers, as they are in attributes but not in Rust.
+    /// True if integers are numbers, as they are in attributes but not in Rust.
     pub(super) integers: bool,
     calls: usize,
     work: usize,
@@ -42,7 +42,7 @@ impl<'a> Reader<'a> {
         Self { items, places, diagnostics, constants: HashSet::new(), integers: false, calls: 0, work: 0 }
     }
 
-    /// What an expression stands for.
+    /// The value of an expression.
     pub(super) fn value(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Value, Diagnostic> {
         self.spend(1, expr)?;
         match expr {
@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// A number that may be written as an integer: what is converted to a float.
+    /// A number that may be written as an integer: the operand of a conversion to a float.
     pub(super) fn converted(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Value, Diagnostic> {
         let local = matches!(expr, Expr::Path(path) if path.path.get_ident().is_some_and(|name| {
             locals.iter().any(|(local, _)| name.unraw() == local)
@@ -128,7 +128,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A whole number that stands where Rust means one.
+    /// A whole number where Rust means one.
     pub(super) fn whole(&mut self, text: &str, expr: &Expr) -> Result<Measured, Diagnostic> {
         let span = self.places.of(expr);
         let digits = Decimal::parse(text.trim_start_matches('-'), span)?;
@@ -211,7 +211,7 @@ impl<'a> Reader<'a> {
         {
             let mut value = value.clone();
             self.spend(value.size(), path)?;
-            // A declared name is used here; what `let` names was computed where it stands.
+            // A declared name is used here; a name of `let` was computed at its definition.
             if let Value::Number(number) = &mut value
                 && matches!(number.formula.term, Term::Name(_))
             {
@@ -251,7 +251,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// A constant with components, which have no name of their own in the model: their values stand where they are used.
+    /// A constant with components, which have no name of their own in the model: their values are inserted at each use.
     fn constant_list(&mut self, item: &syn::ItemConst, path: &Path) -> Result<Value, Diagnostic> {
         items::unconditional(&item.attrs, self.places)?;
         if self.calls >= CALL_LIMIT {
@@ -342,7 +342,7 @@ impl<'a> Reader<'a> {
         Ok(Value::Record(fields))
     }
 
-    /// Counts work, of which hostile input could ask for any amount.
+    /// Counts work, since hostile input could need any amount.
     fn spend(&mut self, work: usize, tokens: &impl quote::ToTokens) -> Result<(), Diagnostic> {
         self.work = self.work.saturating_add(work);
         if self.work <= WORK_LIMIT {

@@ -13,7 +13,7 @@ use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
 use crate::source::{Code, Diagnostic, Span, listed, nearest};
 use pebo_cas::Function;
 
-/// Functions that Rust calls otherwise than formulas do, or that are not analytic, with what to do instead.
+/// Functions that Rust names differently than formulas do, or that are not analytic, with a replacement.
 const REFUSED: &[(&str, &str)] = &[
     ("floor", "rounding is not continuous: leave it out of the formula"),
     ("ceil", "rounding is not continuous: leave it out of the formula"),
@@ -265,7 +265,7 @@ fn no_such_function(reader: &mut Reader<'_>, path: &syn::ExprPath, name: &str) -
     }
 }
 
-/// Arguments are those in parentheses, without what stands before the point.
+/// The arguments in parentheses, without the receiver.
 fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic {
     let found = if found == 0 { "none".to_owned() } else { found.to_string() };
     let arguments = ["", "b", "b, c"].get(wanted).copied().unwrap_or("..");
@@ -274,7 +274,7 @@ fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic 
 }
 
 fn no_such_method(name: &str, place: Span) -> Diagnostic {
-    // What Rust's numbers call otherwise is among our own.
+    // Functions that Rust's numbers name differently are among our own.
     let otherwise = [Function::Sign, Function::Min, Function::Max, Function::Sat];
     let methods = || Function::table().iter().filter(|row| !otherwise.contains(&row.function));
     let known = || methods().map(|row| row.rust).chain(OWN.iter().copied());

@@ -1,4 +1,4 @@
-//! What a module declares that concerns its model.
+//! The items of a module that concern its model.
 
 use syn::ext::IdentExt as _;
 use syn::{Attribute, Expr, Fields, Item, ItemConst, ItemFn, ItemMod, ItemStruct, ItemType, Type};
@@ -53,7 +53,7 @@ impl<'a> Items<'a> {
         self.constants.iter().copied().filter(|item| self.is_float(&item.ty))
     }
 
-    /// Whether a type is one of the two that signals have, perhaps by another name that the module gives it.
+    /// Tests whether a type is one of the two that signals have, perhaps by another name that the module gives it.
     pub(super) fn is_float(&self, ty: &Type) -> bool {
         let alias = self.aliases.iter().find(|alias| is_named(ty, &alias.ident));
         is_float(alias.map_or(ty, |alias| &alias.ty))
@@ -128,7 +128,7 @@ fn conditional(attributes: &[Attribute]) -> Option<&Attribute> {
     attributes.iter().find(|a| a.path().is_ident("cfg") || a.path().is_ident("cfg_attr"))
 }
 
-/// Refuses what is compiled under a condition: nobody tells a macro whether it holds.
+/// Refuses an item that is compiled under a condition: a macro does not know whether it holds.
 pub(super) fn unconditional(attributes: &[Attribute], places: &mut Places) -> Result<(), Diagnostic> {
     match conditional(attributes) {
         None => Ok(()),

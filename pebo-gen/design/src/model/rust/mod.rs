@@ -6,9 +6,9 @@
 //! tokens -> items::Items -> evaluate::Reader -> Model
 //! ```
 //!
-//! Functions are run with names for numbers: `let`, helper functions, fields and indices disappear, and what each
-//! component of the result was computed by is its formula. Rust's own rules stay Rust's: whatever this reader accepts
-//! means what the compiled function computes, but for rounding.
+//! Functions are run with names for numbers: `let`, helper functions, fields and indices disappear, and each component
+//! of the result keeps the formula of its computation. Rust's own rules hold: an accepted model means what the compiled
+//! function computes, but for rounding.
 //!
 //! There is no text here: a [`Span`](crate::source::Span) is a range of [`Places`], each of which is a run of tokens.
 
@@ -31,7 +31,7 @@ use crate::source::{Diagnostic, Diagnostics};
 pub use spans::Places;
 
 impl Model {
-    /// Reads a module of plain Rust; `arguments` are those of its attribute. What its spans mean is in `places`.
+    /// Reads a module of plain Rust; `arguments` are those of its attribute. `places` resolves its spans.
     pub fn read_rust(
         arguments: TokenStream,
         module: &syn::ItemMod,

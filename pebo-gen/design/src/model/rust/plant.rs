@@ -1,4 +1,4 @@
-//! The module as a model: which function says what.
+//! The module as a model: the meaning of each function.
 
 use proc_macro2::TokenStream;
 use syn::ext::IdentExt as _;
@@ -37,14 +37,14 @@ impl Signals {
     }
 }
 
-/// Reads the model; nothing where one of its parts is not there.
+/// Reads the model; nothing where one of its parts is missing.
 pub(super) fn read(
     arguments: TokenStream,
     module: &ItemMod,
     places: &mut Places,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
-    // The first place is where a diagnostic points that has no better one.
+    // The first place is the default of a diagnostic.
     let name = Spanned { span: places.of(&module.ident), value: module.ident.unraw().to_string() };
     if module.content.is_none() {
         diagnostics.push(
@@ -128,10 +128,10 @@ struct Pass<'a> {
 type Parameters = Vec<Entry<Option<Spanned<Decimal>>>>;
 
 impl<'a> Pass<'a> {
-    /// Constants that are decimals are parameters; those that are computed are definitions.
+    /// Constants that are decimals are parameters; computed ones are definitions.
     fn constants(&mut self) -> (Parameters, Vec<Entry<Formula>>) {
         let (mut parameters, mut computed) = (Vec::new(), Vec::new());
-        // Rust's constants may use those that stand after them.
+        // Rust's constants may use later ones.
         for item in self.reader.items.numbers() {
             if let Err(conditional) = items::unconditional(&item.attrs, self.reader.places) {
                 self.reader.diagnostics.push(conditional);
@@ -270,7 +270,7 @@ impl<'a> Pass<'a> {
         formulas
     }
 
-    /// What the attribute says, in which signals are called by their names alone.
+    /// The arguments of the attribute, in which signals are called by their names alone.
     fn attribute(&mut self, arguments: &Arguments) -> (Vec<Comparison>, Vec<Entry<Formula>>) {
         let mut locals = Locals::new();
         for (letter, fields) in
@@ -322,7 +322,7 @@ fn returned(item: &ItemFn) -> Option<String> {
     Some(path.path.segments.last()?.ident.to_string())
 }
 
-/// Whether an expression mentions a name.
+/// Tests whether an expression mentions a name.
 fn mentions(expr: &Expr, name: &str) -> bool {
     struct Search<'n>(&'n str, bool);
     impl<'ast> syn::visit::Visit<'ast> for Search<'_> {

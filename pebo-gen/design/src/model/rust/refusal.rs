@@ -1,4 +1,4 @@
-//! What to say about Rust that has no meaning in a model.
+//! Diagnostics for Rust that has no meaning in a model.
 
 use proc_macro2::Ident;
 use quote::ToTokens;

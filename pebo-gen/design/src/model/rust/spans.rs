@@ -1,11 +1,11 @@
-//! Where a model in tokens says what.
+//! Spans of a model in tokens.
 
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::ToTokens;
 
 use crate::source::Span;
 
-/// Runs of tokens, by the spans that stand for them.
+/// Runs of tokens, by their spans.
 ///
 /// The place with the number n has the span `n..n + 1`; a span that covers several reaches from the first token of
 /// the first place to the last token of the last one. Compilers do not tell macros the offsets of tokens, so these are
@@ -21,13 +21,13 @@ impl Places {
         Self::default()
     }
 
-    /// A new place: where these tokens stand.
+    /// A new place: the span of these tokens.
     pub(super) fn of(&mut self, tokens: &impl ToTokens) -> Span {
         self.places.push(tokens.to_token_stream());
         Span::new(self.places.len() - 1, self.places.len())
     }
 
-    /// A new place: where the compiler says.
+    /// A new place: a span of the compiler.
     pub(super) fn at(&mut self, span: proc_macro2::Span) -> Span {
         self.of(&Ident::new("here", span))
     }

@@ -1,7 +1,4 @@
-//! A document's texts to formulas.
-//!
-//! In: a [`Document`]. Out: the [`Model`] that it is. A formula that does not parse gets its
-//! diagnostic and is `0` from there on, so that its entry is not missing as well.
+//! Parses a document's texts to formulas.
 
 use super::document::{self, Document, Text};
 use crate::model::class::{Class, Electromechanical, Lti, Mechanical};
@@ -58,7 +55,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
 struct Pass<'a> {
     source: &'a Source,
     diagnostics: &'a mut Diagnostics,
-    /// Whether `hat()` has a meaning in the section at hand.
+    /// Permission for `hat()` in the section at hand.
     estimates: Estimates,
 }
 
@@ -85,7 +82,7 @@ impl Pass<'_> {
         entries.into_iter().map(parse).collect()
     }
 
-    /// The class, of which there is at most one.
+    /// The class, at most one.
     fn class(
         &mut self,
         lti: Option<Lti<Text>>,

@@ -201,7 +201,7 @@ fn speed(place: &Place<'_>, names: &Names<'_>, written: &crate::model::Spanned<S
     })
 }
 
-/// Whether the number of coils that is written is that of the currents.
+/// Checks that the written number of coils is that of the currents.
 fn counted(written: &WrittenClass<Written>, n: usize) -> Result<(), Diagnostic> {
     let Some(coils) = &written.coils else { return Ok(()) };
     let found = pebo_cas::Rational::from_decimal(coils.value.text()).ok();
@@ -212,7 +212,7 @@ fn counted(written: &WrittenClass<Written>, n: usize) -> Result<(), Diagnostic> 
     Err(Diagnostic::error(Code::WrongShape, coils.span, message).help("y lists a current for each coil"))
 }
 
-/// Where a component of the flux stands: the magnet's part if there is one, else the row of L.
+/// The span of a component of the flux: the magnet's entry if there is one, else the row of L.
 fn flux_span(l: &crate::model::Matrix<Written>, mu: Option<&crate::model::Matrix<Written>>, k: usize) -> Span {
     let entry = mu.and_then(|mu| if mu.depth == 2 { mu.rows.get(k)?.first() } else { mu.rows[0].get(k) });
     let row = l.rows.get(k).filter(|_| l.depth == 2);

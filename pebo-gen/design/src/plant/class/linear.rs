@@ -1,9 +1,9 @@
 //! Linear plants: `x' = A11 x + A12 y + B1 u`, `y' = A21 x + A22 y + B2 u`.
 //!
-//! A linear transform z = T1 x + T2 y moves by known signals exactly if `T1 A11 + T2 A21 = 0`, and has a
-//! left inverse exactly if T1 has rank `n_x`. Rows of T1 that make an invertible square part may be
-//! combined to T1 = I, so the question is whether `A11 + T2 A21 = 0` has a solution: whether the rows of
-//! A11 are combinations of those of A21 (Ortega et al. 2015, Section 4, eq. 19).
+//! A linear transform z = T1 x + T2 y moves by known signals exactly if `T1 A11 + T2 A21 = 0`, and has a left inverse
+//! exactly if T1 has rank `n_x`. Rows of T1 that form an invertible square block may be combined to T1 = I, so the
+//! problem is to solve `A11 + T2 A21 = 0`: the rows of A11 have to be combinations of those of A21 (Ortega et al. 2015,
+//! Section 4, eq. 19).
 
 use crate::model::{Formula as Written, Lti};
 use crate::plant::Matrix;
@@ -21,21 +21,21 @@ use crate::plant::plant::{Assumption, Formula, Output, State};
 /// A linear plant.
 #[derive(Clone, Debug)]
 pub struct Linear {
-    /// How the unmeasured states act on themselves.
+    /// The action of the unmeasured states on themselves.
     pub a11: Matrix,
-    /// How they act on the outputs.
+    /// Their action on the outputs.
     pub a21: Matrix,
     /// The transform: `z = T1 x + T2 y`.
     pub t1: Matrix,
     /// See [`Self::t1`].
     pub t2: Matrix,
-    /// Whether T1 and T2 are the author's.
+    /// True if T1 and T2 are the author's.
     pub given: bool,
     /// The parameters whose values make ranks of A11 and A21 others than in general: the values were written in.
     pub special: Vec<Symbol>,
     /// Rows of A11 that are no combination of rows of A21: no transform exists if there is one.
     pub unsolved: Vec<usize>,
-    /// Where A11 stands.
+    /// The span of A11.
     pub span: Span,
 }
 
@@ -77,8 +77,8 @@ pub(super) fn expand(
     let (Some(first), Some(second)) = (&written.a11, &written.a21) else { return Err(Stop::Reported) };
     let facts = &place.domain.facts;
     let open = |obstacle: Obstacle| Stop::from(unresolved("the transform", first.span, &obstacle));
-    // Values at which ranks are others than in general are written in for the parameters: what follows
-    // holds for these values and no others.
+    // Values of the parameters at which ranks differ from the generic ones are inserted: the rest holds for these
+    // values alone.
     let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(entry, &place.domain.fixed));
     let ranks = |a11: &Matrix, a21: &Matrix| -> Result<[usize; 2], Obstacle> {
         let both = Matrix::new(a11.rows().iter().chain(a21.rows()).cloned().collect());
@@ -184,7 +184,7 @@ fn by_cofactors(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> (Matrix, Expr)
     (a11.mul(arena, &adjugate).map(over_determinant), determinant)
 }
 
-/// What must not vanish for the entries to have values: a rank that holds in general falls there.
+/// Expressions that must not vanish for the entries to have values: at their zeros the generic rank falls.
 fn denominators(place: &Place<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacle> {
     let arena = place.arena;
     let field = Field::over(arena, &place.domain.facts, &matrix.entries())?;
@@ -205,8 +205,8 @@ fn denominators(place: &Place<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacl
     Ok(found)
 }
 
-/// `x = T1^+ (z - T2 y)` with `T1^+ = (T1' T1)^-1 T1'`, and the regression of claim C3:
-/// `y' = (A22 - A21 T1^+ T2) y + B2 u + A21 T1^+ z`. Where T2 is too long for normal forms, so is what is made of it.
+/// `x = T1^+ (z - T2 y)` with `T1^+ = (T1' T1)^-1 T1'`, and the regression of claim C3: `y' = (A22 - A21 T1^+ T2) y +
+/// B2 u + A21 T1^+ z`. If T2 is too long for normal forms, so are the products with it.
 fn propose(
     place: &Place<'_>,
     [t1, t2]: [&Matrix; 2],

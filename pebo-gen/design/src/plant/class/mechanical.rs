@@ -42,13 +42,13 @@ pub struct Mechanical {
     pub inverse_metric: Matrix,
     /// The velocities `(T' M)^-1 z`.
     pub velocities: Vec<Expr>,
-    /// `-T' (dV/dq - G u)`: what z' is if the terms that are quadratic in momenta vanish.
+    /// `-T' (dV/dq - G u)`: z' without the terms that are quadratic in momenta.
     pub h: Vec<Expr>,
     /// The energy H.
     pub energy: Expr,
-    /// What is shown where the inverse of T' M T is too long to be written out.
+    /// The printed forms where the inverse of T' M T is too long to be written out.
     pub in_velocities: Option<InVelocities>,
-    /// Where T stands.
+    /// The span of T.
     pub span: Span,
 }
 
@@ -114,10 +114,10 @@ pub(super) fn expand(
     let inverse =
         inverse_metric(place, (&inertia, &frame), &metric, names).map_err(open("the inverse of M", m.span))?;
     let (inverse_metric, is_implicit) = inverse.ok_or_else(|| singular("M", m.span))?;
-    // Not in normal form: where W is simple, what the author wrote for T is shorter.
+    // Not in normal form: if W is simple, the author's T is shorter.
     let velocity = frame.mul(arena, &inverse_metric);
-    // det W = det(T)^2 det M: where it does not vanish, T has an inverse wherever it has a value. Where the inverse of W is not
-    // written out, neither is what must not vanish: the rates have no value there.
+    // det W = det(T)^2 det M: if it does not vanish, T has an inverse wherever it has a value. If the inverse of W is
+    // not written out, neither is its condition: the rates have no value there.
     let (inverted, span) = if is_implicit { (&frame, t.span) } else { (&metric, m.span) };
     let conditions = nonzero_determinant(place, inverted, span)?.into_iter().collect();
 
@@ -170,7 +170,7 @@ pub(super) fn expand(
         phi: phi.collect(),
         proposal: if given { proposal } else { Proposal::default() },
         conditions,
-        // What the class knows is of its own frame.
+        // The class knows its own frame alone.
         class: given.then(|| {
             Class::Mechanical(Mechanical {
                 q: names.y.to_vec(),
@@ -188,7 +188,7 @@ pub(super) fn expand(
     })
 }
 
-/// What is written of a mechanical plant, over its positions.
+/// The entries of a mechanical plant as written, over its positions.
 struct Read {
     inertia: Matrix,
     forces: Matrix,
@@ -224,7 +224,7 @@ fn read(
     }
 }
 
-/// That a determinant does not vanish, where it is no number.
+/// The condition that a determinant does not vanish, where it is no number.
 fn nonzero_determinant(place: &Place<'_>, matrix: &Matrix, span: Span) -> Result<Option<Assumption>, Stop> {
     let determinant = matrix.determinant(place.arena, &place.domain.facts);
     let expr = determinant.map_err(|obstacle| Stop::from(unresolved("a determinant", span, &obstacle)))?;
@@ -281,9 +281,10 @@ fn implicit_inverse(
     Ok(exists.then(|| adjugate.map(|cofactor| arena.div(cofactor, determinant))))
 }
 
-/// The product with a vector, each component over one denominator where that is shorter, but for what is not written out.
+/// The product with a vector, each component over one denominator where that is shorter, except for inverses that are
+/// not written out.
 ///
-/// As a product of what the author wrote it has a value wherever the author's formulas have, and sums of angles are kept.
+/// As a product of the author's formulas it has a value wherever these have, and sums of angles are kept.
 fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr], is_implicit: bool) -> Result<Vec<Expr>, Obstacle> {
     let arena = place.arena;
     let products = matrix.apply(arena, vector);
@@ -298,12 +299,12 @@ fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr], is_implicit: b
     products.iter().map(shortened).collect()
 }
 
-/// Of two equal formulas the one with fewer operations, the first where they have as many.
+/// The one of two equal formulas with fewer operations, the first where they have as many.
 fn shorter(arena: &Arena, [first, second]: [Expr; 2]) -> Expr {
     if operations(arena, second) < operations(arena, first) { second } else { first }
 }
 
-/// Where the column of T stands that a component of z is made of: its first entry that is not zero.
+/// The span of T's column for a component of z: its first entry that is not zero.
 fn column(written: &crate::model::Matrix<Written>, index: usize) -> Span {
     let entries = written.rows.iter().filter_map(|row| row.get(index));
     let is_zero = |f: &&Written| matches!(&f.term, crate::model::Term::Number(n) if n.to_f64() == 0.0);

@@ -1,9 +1,10 @@
-//! The states by which the slope of a transform with a plain cascade is a function of y alone.
+//! Finds the states by which the slope of a transform with a plain cascade is a function of y alone.
 //!
-//! In: a plant. Out: for each state, whether inputs move it by itself. The rate of phi is free of x for every value of an
-//! input, so that its derivative by the input is: phi along the field g by which the input moves the plant. If g has no
-//! part in y and none that depends on x, that is a combination of slopes of phi by x with coefficients free of x. Where
-//! such combinations give a single slope, it is free of x, and phi is affine in that state with a coefficient of y.
+//! In: a plant. Out: for each state, true if inputs move it by itself. The rate of phi is free of x for every value of
+//! an input, so that its derivative by the input is: phi along the field g by which the input moves the plant. If g has
+//! no component in y and none that depends on x, that is a combination of slopes of phi by x with coefficients free of
+//! x. Where such combinations give a single slope, it is free of x, and phi is affine in that state with a coefficient
+//! of y.
 
 use pebo_cas::linear::Echelon;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
@@ -11,7 +12,7 @@ use pebo_cas::{Expr, Symbol};
 
 use crate::search::problem::Question;
 
-/// Of each state, whether the slope by it is shown to be free of x.
+/// For each state, true if the slope by it is provably free of x.
 pub(in crate::search) fn driven(question: &Question<'_>) -> Vec<bool> {
     shown(question).unwrap_or_else(|_| vec![false; question.x.len()])
 }

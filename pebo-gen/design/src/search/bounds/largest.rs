@@ -34,7 +34,7 @@ pub(in crate::search) fn smooth_to(question: &Question<'_>, order: usize, others
     if is_driven(question) { bound(question, BoundClass::Smooth, (order, others)) } else { None }
 }
 
-/// Whether a plant has inputs: others have local transforms, every one.
+/// Tests whether a plant has inputs: without them every plant has local transforms.
 fn is_driven(question: &Question<'_>) -> bool {
     let rates: Vec<Expr> = question.rates.values().copied().collect();
     let symbols = question.arena.symbols_of(&rates);

@@ -1,16 +1,17 @@
-//! How many components a transform can have at most, whatever functions it is made of.
+//! Upper bounds on the number of a transform's components, whatever functions it is made of.
 //!
 //! ```text
 //! f at a rational point -> power series -> linear equations for the Taylor coefficients of phi -> rank, certificate
 //! ```
 //!
-//! If the rate of phi is free of x, so are all coefficients of its power series around a point: the coefficients of `L_f phi`
-//! whose monomials hold x vanish, for every value of the inputs. These are linear equations A c = 0 for the Taylor
-//! coefficients c of phi. A combination of the rows that is a combination of the columns of dphi/dx alone is a relation that
-//! the gradient of every smooth phi satisfies there. So if there are r independent ones, no phi, of any number of
-//! components, has a larger rank than n - r at that point, and none with n > n - r has a differentiable left inverse around
-//! it. The rows that are used are found modulo a prime, and the combination is then solved for in rational numbers, which is
-//! the certificate: a proof by exact arithmetic for the point and the values of the parameters that are named with it.
+//! If the rate of phi is free of x, so are all coefficients of its power series around a point: the coefficients of
+//! `L_f phi` whose monomials hold x vanish, for every value of the inputs. These are linear equations A c = 0 for the
+//! Taylor coefficients c of phi. A combination of the rows that is a combination of the columns of dphi/dx alone is a
+//! relation that the gradient of every smooth phi satisfies there. So if there are r independent ones, no phi, of any
+//! number of components, has a larger rank than n - r at that point, and none with n > n - r has a differentiable left
+//! inverse around it. The rows are found modulo a prime, and the combination is then solved for in rational numbers,
+//! which is the certificate: a proof by exact arithmetic for the point and the values of the parameters that are named
+//! with it.
 
 mod driven;
 pub(crate) mod largest;
@@ -40,9 +41,9 @@ pub struct Bound {
     pub states: usize,
     /// No transform of the class has a larger rank there.
     pub rank: usize,
-    /// Of which transforms this is said.
+    /// The class of transforms that it bounds.
     pub class: BoundClass,
-    /// Whether the certificate was worked out in rational numbers.
+    /// True if the certificate was worked out in rational numbers.
     pub proved: bool,
     /// The point and the values of the parameters for which it is said.
     pub point: Vec<(Symbol, Expr)>,
@@ -50,34 +51,34 @@ pub struct Bound {
     pub x: Vec<Symbol>,
     /// The coefficients of each relation among the entries of a gradient there.
     pub relations: Vec<Vec<Expr>>,
-    /// How it was worked out.
+    /// The evidence.
     pub evidence: Evidence,
 }
 
-/// How a bound was worked out.
+/// The evidence for a bound.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Evidence {
     /// By power series around the point.
     Series {
-        /// How many equations at most are combined to one relation.
+        /// Most equations that one relation combines.
         equations: usize,
         /// The order of the series.
         order: usize,
     },
     /// By completing the equations for transforms affine in x: for every y but for single ones.
     Completion {
-        /// How many independent transforms there are but for functions of y, where that is decided.
+        /// The number of independent transforms up to functions of y, where that is decided.
         transforms: Option<usize>,
     },
 }
 
 impl Bound {
-    /// Whether it is proved that no transform of the class has a differentiable left inverse around the point.
+    /// Tests whether it is proved that no transform of the class has a differentiable left inverse around the point.
     pub fn excludes(&self) -> bool {
         self.proved && self.rank < self.states
     }
 
-    /// How many independent transforms of the class there are but for functions of y, where that is decided.
+    /// The number of independent transforms of the class up to functions of y, where that is decided.
     pub fn transforms(&self) -> Option<usize> {
         match self.evidence {
             Evidence::Completion { transforms } => transforms,
@@ -123,12 +124,12 @@ pub(super) fn bound(question: &Question<'_>, class: BoundClass, (largest, others
     best
 }
 
-/// The transforms of which a bound is said.
+/// The Taylor coefficients of the bounded transforms.
 struct Unknowns {
     class: BoundClass,
     /// The coordinates: states, then outputs.
     width: usize,
-    /// Of each state, whether a monomial that holds it may hold a state besides.
+    /// For each state, true if a monomial that holds it may hold a state besides.
     mixed: Vec<bool>,
 }
 
@@ -254,15 +255,15 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
     Some(bound)
 }
 
-/// Combinations of the rows that vanish but for the last columns, in rational numbers and checked; as many as asked, or
-/// none.
+/// Combinations of the rows that vanish but for the last columns, in rational numbers and checked; as many as wanted,
+/// or none.
 fn certificate(
     question: &Question<'_>,
     prime: &PrimeField,
     (rows, images): (&[Vec<Rational>], &[Vec<Residue>]),
     (split, wanted): (usize, usize),
 ) -> Option<Vec<(Vec<Rational>, usize)>> {
-    // Combinations of rows: the null space of the transposed left part, those that are not zero on the right.
+    // Combinations of rows: those in the null space of the transposed left block that are not zero on the right.
     let mut transposed = ResidueRows::new(prime, rows.len());
     for column in 0..split {
         if !question.arena.budget().take((rows.len() * (transposed.rank() + 1) / 8) as u64) {
@@ -306,7 +307,7 @@ fn certificate(
     Some(found)
 }
 
-/// The same relations in their simplest form: what annihilates all that they annihilate.
+/// The same relations in their simplest form: the annihilator of their annihilator.
 fn reduced(question: &Question<'_>, relations: &[Vec<Rational>]) -> Option<Vec<Vec<Rational>>> {
     let (width, budget) = (question.x.len(), question.arena.budget());
     let gradients = null_space_of_numbers(relations, width, budget)?;

@@ -13,7 +13,7 @@ use crate::search::problem::Question;
 /// A monomial in the coordinates, as exponents.
 pub(in crate::search) type Monomial = Vec<u8>;
 
-/// A truncated power series; the constant part may hold multiples of the angle whose sine is 3/5 and cosine 4/5.
+/// A truncated power series; the constant term may hold multiples of the angle whose sine is 3/5 and cosine 4/5.
 #[derive(Clone, Debug)]
 pub(in crate::search) struct Jet {
     terms: BTreeMap<Monomial, Rational>,
@@ -41,7 +41,7 @@ pub(in crate::search) struct Jets {
     coordinates: Vec<Symbol>,
 }
 
-/// Steps that a product of two terms takes: one of rational numbers, and a place among the terms.
+/// Steps of a product of two terms: one of rational numbers, and an index among the terms.
 const STEPS_OF_A_PAIR: u64 = 30;
 
 /// `atan(3/4)`, whose sine and cosine are rational.
@@ -59,7 +59,7 @@ impl Jets {
         let coordinates: Vec<Symbol> = question.x.iter().chain(&question.y).copied().collect();
         for turned in [true, false] {
             let mut domain = question.domain.clone();
-            // Claims are for all values of the parameters with these signs: those with few digits make short proofs.
+            // Claims are for all values of the parameters with these signs: values with few digits make short proofs.
             domain.fixed.clear();
             for symbol in zeros.iter().chain(angles.iter().filter(|_| !turned)) {
                 domain.fixed.entry(*symbol).or_insert(arena.zero());
@@ -104,7 +104,7 @@ impl Jets {
     }
 }
 
-/// Symbols that stand in sines and cosines alone, with rational factors, and those that stand in other functions.
+/// Symbols that occur in sines and cosines alone, with rational factors, and symbols that occur in other functions.
 fn special(arena: &Arena, formulas: &[Expr]) -> (Vec<Symbol>, Vec<Symbol>) {
     let (mut within, mut others) = (Vec::new(), Vec::new());
     let mut plain: BTreeSet<Symbol> = BTreeSet::new();
@@ -228,7 +228,7 @@ impl Series<'_> {
         Some(Jet { terms, angle: Rational::ZERO })
     }
 
-    /// The value at the point, and what is left of the series.
+    /// The value at the point, and the rest of the series.
     fn split(&self, jet: &Jet) -> (Rational, Jet) {
         let mut rest = jet.clone();
         let value = rest.terms.remove(&vec![0; self.coordinates.len()]).unwrap_or(Rational::ZERO);

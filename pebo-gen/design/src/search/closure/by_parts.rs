@@ -1,9 +1,10 @@
 //! Transforms of plants with unknown constants, by integration by parts.
 //!
-//! In: a plant some of whose states have the rate zero. Out: functions of x and y whose rates are affine in themselves. Where
-//! a constant c multiplies in a rate what is the rate of w, c*w is taken into the component instead, as the constant has no
-//! rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has z = y' + b*y with z' = -a*y + u. What is left in
-//! the rates are the components, and products of constants times known signals, which are components too.
+//! In: a plant some of whose states have the rate zero. Out: functions of x and y whose rates are affine in themselves.
+//! Where a constant c multiplies the rate of w in another rate, c*w is taken into the component instead, as the
+//! constant has no rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has z = y' + b*y with z' = -a*y
+//! + u. The rates then consist of the components, and of products of constants and known signals, which are components
+//! too.
 //!
 //! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply measured
 //! signals alone (Marino and Tomei 1992).
@@ -21,7 +22,7 @@ use crate::search::problem::Question;
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
 
-/// Steps by parts, and rounds over all rates, after which they are taken not to end.
+/// Steps by parts, and rounds over all rates, after which they are assumed endless.
 const MOST_STEPS: usize = 500;
 const MOST_ROUNDS: usize = 12;
 
@@ -83,8 +84,8 @@ impl ByParts<'_, '_> {
         self.components.iter().map(|component| component.function).collect()
     }
 
-    /// The rate without the components that it holds; what is left holds constants alone. A component whose rate this is takes
-    /// in what goes by parts. None where it does not end.
+    /// The rate without its components; constants alone are left. A component with this rate absorbs the terms
+    /// integrated by parts. None where it does not end.
     fn reduced(&mut self, rate: Expr, owner: Option<usize>) -> Result<Option<Expr>, Obstacle> {
         let arena = self.question.arena;
         let mut rest = rate;
@@ -98,7 +99,7 @@ impl ByParts<'_, '_> {
             if self.steps > MOST_STEPS {
                 return Ok(None);
             }
-            // Components first: what they leave may cancel what would go by parts.
+            // Components first: the rest may cancel terms that would be integrated by parts.
             let component = |term: &Term| self.components.iter().find(|component| component.lead == term.product);
             if let Some((term, component)) = open.iter().find_map(|term| Some((term, component(term)?))) {
                 rest = arena.sub(rest, arena.mul(term.coefficient, component.function));
@@ -120,7 +121,7 @@ impl ByParts<'_, '_> {
         }
     }
 
-    /// What has the term in its rate: a constant times a function whose rate holds the rest of the product.
+    /// The function with the term in its rate: a constant times a function whose rate holds the rest of the product.
     fn part(&self, term: &Term) -> Result<Option<Expr>, Obstacle> {
         let (arena, question) = (self.question.arena, self.question);
         let held = arena.symbols_of(&[term.product]);
@@ -195,7 +196,7 @@ impl ByParts<'_, '_> {
         Ok(found)
     }
 
-    /// The formula without what it holds of the parameters as a factor, and with a first term that is not subtracted.
+    /// The formula without its factor of parameters, and with a first term that is not subtracted.
     fn without_numbers(&self, formula: Expr) -> Result<Expr, Obstacle> {
         let (arena, question) = (self.question.arena, self.question);
         let field = Field::over(arena, &question.domain.facts, &[formula])?;

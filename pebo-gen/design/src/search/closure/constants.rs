@@ -1,8 +1,7 @@
-//! Transforms of plants with unknown constants, by way of those that there are if the constants are measured.
+//! Transforms of plants with unknown constants, by way of transforms for measured constants.
 //!
-//! In: a plant some of whose states have the rate zero. Out: the functions of x that the outputs' rates consist of, and
-//! those that their rates consist of, in the coordinates z = phi(x, y; c) of a plain cascade of the plant in which the
-//! constants c are outputs.
+//! In: a plant some of whose states have the rate zero. Out: the functions of x in the outputs' rates, and in the rates
+//! of these, in the coordinates z = phi(x, y; c) of a plain cascade of the plant in which the constants c are outputs.
 //!
 //! In these coordinates the rates are free of z, so that each step takes a degree in z away and the steps end:
 //! `S' = -c*S*I, I' = c*S*I - g*I` has z = S + I with z' = -g*I, and `c*z` and c close.
@@ -79,8 +78,8 @@ pub(in crate::search) fn closure(
     Ok(Some(arena.substitute_all(&found, &transform)))
 }
 
-/// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they stand
-/// in a sum below a fraction bar, or in a function.
+/// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they
+/// occur in a sum in a denominator, or in a function.
 fn monomials(question: &Question<'_>, formula: Expr, hidden: &BTreeSet<Symbol>) -> Result<Option<Vec<Expr>>, Obstacle> {
     let holds_symbols = |product: &Expr| !question.arena.symbols_of(&[*product]).is_empty();
     let terms = terms(question, formula, hidden)?;

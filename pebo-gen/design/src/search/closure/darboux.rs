@@ -1,9 +1,9 @@
 //! Polynomials in the states that divide their own rates: Darboux polynomials.
 //!
-//! In: a plant whose rates are polynomials, or quotients of them, in what is hidden. Out: polynomials q of the first and
-//! second degree in states and outputs, with constant coefficients, so that q = 0 is kept by every input. The rate of
-//! `log(q)` is then a polynomial, and that of a sum of such logarithms may be free of x (Darboux 1878; Prelle and Singer
-//! 1983).
+//! In: a plant whose rates are polynomials, or quotients of them, in hidden symbols. Out: polynomials q of the first
+//! and second degree in states and outputs, with constant coefficients, for which q = 0 is invariant under every input.
+//! The rate of `log(q)` is then a polynomial, and that of a sum of such logarithms may be free of x (Darboux 1878;
+//! Prelle and Singer 1983).
 //!
 //! The coefficients are undetermined: q = 0 is solved for a state, or the square of one, and put into the rate of q, which
 //! has to vanish whatever the other signals are. That gives equations for the coefficients alone.
@@ -19,7 +19,7 @@ use crate::search::problem::Question;
 /// Polynomials of the second degree in more symbols have more coefficients than are solved for.
 const MOST_OF_SECOND_DEGREE: usize = 3;
 
-/// Those of the first in more symbols than this.
+/// Most symbols of polynomials of the first degree.
 const MOST_SYMBOLS: usize = 6;
 
 /// A polynomial with undetermined coefficients: `lead * x^power + rest`.
@@ -145,7 +145,7 @@ fn solved(question: &Question<'_>, shape: &Shape) -> Result<Vec<Expr>, Obstacle>
         found.push(arena.substitute(arena.substitute(whole, values), &zero));
         None
     };
-    // What is not solved for is not found.
+    // A polynomial that is not solved for is not found.
     let _ended = elimination.run(&equations, &[BTreeMap::new()], &mut accept);
     Ok(found)
 }
@@ -165,7 +165,7 @@ fn factors(question: &Question<'_>, polynomial: Expr) -> Result<Vec<Expr>, Obsta
     Ok(found)
 }
 
-/// Whether a polynomial divides its own rate.
+/// Tests whether a polynomial divides its own rate.
 fn divides(question: &Question<'_>, polynomial: Expr) -> Result<bool, Obstacle> {
     let rate = question.rate(polynomial);
     let field = Field::over(question.arena, &question.domain.facts, &[polynomial, rate])?;

@@ -1,12 +1,12 @@
 //! Functions of x whose rates are affine in themselves: an immersion into a plant that is linear in z.
 //!
-//! In: formulas, those of the outputs' rates or the states. Out: the functions of x that they consist of, with those that the
-//! rates of these consist of, and so on until nothing is added; none if that does not end soon. Coefficients are functions
-//! of y and u, so that the cascade is a generalised one, and what the functions were taken from is affine in them.
+//! In: formulas, those of the outputs' rates or the states. Out: their functions of x, with those in the rates of
+//! these, and so on until nothing is added; none if that does not end soon. Coefficients are functions of y and u, so
+//! that the cascade is a generalised one, and the given formulas are affine in the functions.
 //!
-//! A function is what multiplies one function of y and u in a formula: `2*v*p + 2*s - p^2` consists of p and `2*s - p^2`,
-//! as no other part of it is seen. Functions that are combinations of others with constant coefficients are left out, so
-//! that of a closure that begins with the outputs nothing stays hidden because of its size.
+//! A function is the coefficient of one function of y and u in a formula: `2*v*p + 2*s - p^2` consists of p and `2*s -
+//! p^2`, as nothing else of it is observable. Functions that are combinations of others with constant coefficients are
+//! left out, so that of a closure that begins with the outputs nothing stays hidden because of its size.
 
 pub(super) mod by_parts;
 pub(super) mod constants;
@@ -29,10 +29,10 @@ use products::apart;
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
 
-/// Nor do functions of more parts: rates of rates that do not close grow with every step.
+/// Most nodes of the functions: rates of rates that do not close grow with every step.
 const MOST_PARTS: usize = 3_000;
 
-/// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave what it can say.
+/// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave this form.
 pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
     let mut found: Vec<Expr> = Vec::new();
     let mut open: Vec<Expr> = start.to_vec();
@@ -58,8 +58,8 @@ pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<
     Ok(Some(found))
 }
 
-/// The outputs' rates that hold states and no input, and their rates, and so on until those are affine in what is there; none
-/// if they hold an input before, or it is more than that.
+/// The outputs' rates that hold states and no input, and their rates, and so on until those are affine in earlier ones;
+/// none if they hold an input before, or there are more than that.
 pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
     let arena = question.arena;
     let others: BTreeSet<Symbol> = question.plant.u.iter().chain(&question.plant.w).copied().collect();
@@ -91,8 +91,8 @@ fn is_long(question: &Question<'_>, function: Expr) -> bool {
     question.arena.postorder(&[function]).len() > MOST_PARTS
 }
 
-/// The functions of x of which a formula is a combination with coefficients that are free of x, independent of each other;
-/// none where they are not seen, as x stands together with what is known in a factor of the denominator.
+/// The functions of x of which a formula is a combination with coefficients that are free of x, independent of each
+/// other; none where they are not separable, as x occurs with known signals in a factor of the denominator.
 fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Expr>>, Obstacle> {
     let arena = question.arena;
     let field = Field::over(arena, &question.domain.facts, &[formula])?;
@@ -102,7 +102,7 @@ fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Exp
     let known = field.kernels_of(&known);
     let parts = apart(&field, fraction.denominator(), [&hidden, &known])?;
     let Some([divisor, _]) = parts else { return Ok(None) };
-    // Kernels of x and y together may be coefficients times one another: only those of x alone are told apart.
+    // Kernels of both x and y may be coefficients times one another: only kernels of x alone are separable.
     let numerator = fraction.numerator();
     if numerator.variables().iter().any(|kernel| hidden.contains(kernel) && known.contains(kernel)) {
         return Ok(None);
@@ -114,8 +114,8 @@ fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Exp
     Ok(Some(found))
 }
 
-/// What polynomials in hidden kernels, divided by another, span with constant coefficients: where that is all of their
-/// monomials, these. A sum is divided term by term where it can be: `exp(p) + exp(-p)` rather than one fraction.
+/// The span of quotients of polynomials in hidden kernels with constant coefficients: where that is all of their
+/// monomials, these. A sum is divided term by term where possible: `exp(p) + exp(-p)` rather than one fraction.
 fn combinations(
     field: &Field<'_>,
     parts: impl Iterator<Item = Poly>,
@@ -123,7 +123,7 @@ fn combinations(
 ) -> Result<Vec<Expr>, Obstacle> {
     let arena = field.arena();
     let hidden: Vec<u32> = hidden.iter().copied().collect();
-    // A constant is no part of a function, unless it is divided by what is hidden.
+    // A constant is no part of a function, unless it is divided by a hidden kernel.
     let is_kept = |(monomial, _): &(Monomial, Poly)| !(divisor.is_one() && monomial.is_one());
     let parts: Vec<BTreeMap<Monomial, Poly>> =
         parts.map(|part| part.collect(&hidden).into_iter().filter(is_kept).collect()).collect();
@@ -153,7 +153,7 @@ fn combinations(
     echelon.rows().map(of_row).collect()
 }
 
-/// Whether a function is no combination of 1 and those that were found with constant coefficients.
+/// Tests whether a function is no combination of 1 and the known ones with constant coefficients.
 fn is_new(question: &Question<'_>, found: &[Expr], function: Expr) -> Result<bool, Obstacle> {
     let arena = question.arena;
     let all = [&[arena.one()], found, &[function]].concat();

@@ -1,9 +1,9 @@
-//! The part of a transform that the outputs depend on.
+//! The observable part of a transform.
 //!
-//! In: functions of x and y whose rates are affine in themselves, and in which the rates of the outputs are affine. Out:
-//! the combinations of them with constant coefficients that occur in the outputs' rates as factors of different functions
-//! of y and u, with those that occur in their rates, and so on: the others are seen by no output. `b*S - g` of b*S, b and g,
-//! where an output's rate is `(b*S - g)*I - b*I^2`, with b.
+//! In: functions of x and y whose rates are affine in themselves, and in which the rates of the outputs are affine.
+//! Out: the combinations of them with constant coefficients that occur in the outputs' rates as factors of different
+//! functions of y and u, with those that occur in their rates, and so on: the others are unobservable. `b*S - g` of
+//! b*S, b and g, where an output's rate is `(b*S - g)*I - b*I^2`, with b.
 
 use crate::plant::matrix::dot;
 use pebo_cas::Expr;
@@ -13,8 +13,8 @@ use pebo_cas::tower::{Field, Fraction, Obstacle};
 
 use crate::search::problem::Question;
 
-/// The functions that are observable, in terms of those that are given; those themselves where all are, or the rates are
-/// not affine in them.
+/// The observable functions, in terms of the given ones; the given ones themselves where all are, or the rates are not
+/// affine in them.
 pub(in crate::search) fn observable(question: &Question<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let arena = question.arena;
     let rates = functions.iter().map(|function| question.rate(*function));

@@ -1,4 +1,4 @@
-//! Formulas as sums of products of hidden symbols, and reciprocals of sums of them, with coefficients in what is known.
+//! Formulas as sums of products of hidden symbols, and reciprocals of sums of them, with known coefficients.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ pub(in crate::search) struct Term {
     pub(in crate::search) coefficient: Expr,
 }
 
-/// The terms of a formula; none where hidden symbols stand in functions, or together with what is known in a factor of the
+/// The terms of a formula; none where hidden symbols occur in functions, or with known signals in a factor of the
 /// denominator.
 pub(in crate::search) fn terms(
     question: &Question<'_>,

@@ -1,13 +1,13 @@
-//! What the plant demands of the derivatives of `T(y) x + s(y)`.
+//! The plant's equations for the derivatives of `T(y) x + s(y)`.
 //!
 //! ```text
 //! x_i f_yj, f_yj, f_xi -> dT_ij = sum of Gamma T, ds_j = sum of A T -> integrating factors, antiderivatives
 //! ```
 //!
-//! For a plain cascade: with row T, the rate is `sum of dT_ij (x_i f_yj) + sum of ds_j f_yj + sum of T_i f_xi`; that it is free
-//! of x are linear equations over the functions of y. Where they give `dT_ij = r T_i` for every output, `T_i` is an exponential
-//! of an integral; where they give `ds_j`, s is an integral. For a generalised one the rate may be affine in x, which leaves
-//! fewer equations. Both lead to functions that the plant's formulas do not hold.
+//! For a plain cascade: with row T, the rate is `sum of dT_ij (x_i f_yj) + sum of ds_j f_yj + sum of T_i f_xi`; its
+//! independence of x is a system of linear equations over the functions of y. Where they give `dT_ij = r T_i` for every
+//! output, `T_i` is an exponential of an integral; where they give `ds_j`, s is an integral. For a generalised one the
+//! rate may be affine in x, which leaves fewer equations. Both lead to functions that the plant's formulas do not hold.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,12 +34,12 @@ pub(in crate::search) struct Connection {
 pub(in crate::search) const MOST_DERIVATIVES: usize = 1024;
 
 impl Connection {
-    /// Solves the equations of a plant for rates as asked.
+    /// Solves the equations of a plant for permitted rates.
     pub(in crate::search) fn of(question: &Question<'_>, asked: Rate) -> Result<Self, Obstacle> {
         let arena = question.arena;
         let mut conditions = conditions(question, &question.rates)?;
         if asked == Rate::Affine {
-            // What is affine in x has slopes that are free of it.
+            // A formula affine in x has slopes that are free of it.
             let slopes = question.hidden.iter().zip(conditions).flat_map(|(symbol, row)| {
                 let by = question.x.contains(symbol).then_some(&question.hidden);
                 let second = |other| row.iter().map(|e| arena.derivative(*e, other)).collect();
@@ -50,7 +50,7 @@ impl Connection {
         let mut moving = question.signals.clone();
         moving.retain(|symbol| !question.y.contains(symbol));
         let mut found = Self::solved(question, &conditions, &moving)?;
-        // What the outputs are known by stays as it is written, where that is enough: `(q - q0)^4` rather than its terms.
+        // Functions of the outputs are left as written, where that is enough: `(q - q0)^4` rather than its terms.
         let mut frozen = OpaqueTerms::new(arena, &moving);
         let written: Vec<Vec<Expr>> = conditions.iter().map(|row| frozen.replace(row)).collect();
         if !frozen.is_empty()
@@ -66,7 +66,7 @@ impl Connection {
         Ok(found)
     }
 
-    /// The conditions, solved for derivatives, as coefficients that are free of what moves.
+    /// The conditions, solved for derivatives, as coefficients that are free of moving symbols.
     fn solved(question: &Question<'_>, conditions: &[Vec<Expr>], moving: &BTreeSet<Symbol>) -> Result<Self, Obstacle> {
         let (states, outputs) = (question.x.len(), question.y.len());
         let roots: Vec<Expr> = conditions.iter().flatten().copied().collect();
@@ -161,8 +161,8 @@ impl Connection {
     }
 }
 
-/// For each hidden symbol a row that says that a rate is free of it, with a column for each derivative of T, those of one
-/// state together, then for each derivative of s, then for each entry of T.
+/// For each hidden symbol a row for the independence of a rate, with a column for each derivative of T, those of one
+/// state in sequence, then for each derivative of s, then for each entry of T.
 pub(in crate::search) fn conditions(
     question: &Question<'_>,
     rates: &BTreeMap<Symbol, Expr>,
@@ -202,7 +202,7 @@ pub(in crate::search) fn potential(question: &Question<'_>, gradient: &[(Symbol,
         let known = arena.derivative(total, *symbol);
         let mut missing = arena.sub(*slope, known);
         if !arena.is_zero(known) {
-            // What the first integrals give along this output cancels in a normal form.
+            // The contribution of the first integrals along this output cancels in a normal form.
             let field = Field::over(arena, &question.domain.facts, &[missing]).ok()?;
             missing = field.show(&field.fraction(missing).ok()?);
         }
@@ -229,7 +229,7 @@ pub(in crate::search) fn exponential(question: &Question<'_>, expr: Expr) -> Exp
         match logarithm {
             Some((call, base)) => {
                 let exponent = arena.div(term, call);
-                // The sign of a component is free, so that whole powers need no magnitude.
+                // The sign of a component is free: whole powers need no absolute value.
                 let whole = arena.as_number(exponent).is_some_and(|number| number.is_integer());
                 let base = match arena.node(base) {
                     Node::Call(Function::Abs, inner) if whole => inner[0],

@@ -1,17 +1,19 @@
-//! What rank the transforms with a plain cascade have at most, and how many there are, whatever functions they are made of.
+//! Decides the largest rank of the transforms with a plain cascade, and their number, whatever functions they are made
+//! of.
 //!
 //! ```text
 //! plant, values of its parameters -> equations for unknown functions -> completed -> rank, number, relations
 //! ```
 //!
-//! That the rate is free of x, of unmeasured signals and the same for all inputs are linear equations ([`super::posed`]).
-//! What their completion leaves bounds the rank of dphi/dx everywhere but at single points, and where it ends
-//! flat the number of transforms is known, whether or not anybody can write them down. The parameters have values that are
-//! named with it. Where each state is driven alone by inputs, every smooth transform is affine in x.
+//! The rate's independence of x, of unmeasured signals and of inputs is a system of linear equations
+//! ([`super::posed`]). Their completion bounds the rank of dphi/dx everywhere but at single points, and where it ends
+//! flat the number of transforms is known, even if they have no closed form. The parameters have values that are named
+//! with it. Where each state is driven alone by inputs, every smooth transform is affine in x.
 //!
-//! Holds after: what is said was shown by exact algebra, if the kernels of the equations are independent: symbols, and sines,
-//! cosines, exponentials, logarithms and roots of rational functions are (see [`pebo_cas::tower`]). The coefficients
-//! that are compared belong to functions of other symbols than those of the unknown functions, so that these may be any.
+//! Holds after: the result is proved by exact algebra, if the kernels of the equations are independent: symbols, and
+//! sines, cosines, exponentials, logarithms and roots of rational functions are (see [`pebo_cas::tower`]). The
+//! coefficients that are compared belong to functions of other symbols than those of the unknown functions, so that
+//! these may be any.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,12 +28,12 @@ use super::{Completed, Derivations, Solutions, System};
 use crate::search::bounds::{Bound, BoundClass, Evidence};
 use crate::search::problem::Question;
 
-/// The part of what is left of the budget that a decision may take: of functions of y, and of functions of x and y, where
-/// equations soon have more terms than series have coefficients.
+/// The share of the remaining budget for a decision: of functions of y, and of functions of x and y, where equations
+/// soon have more terms than series have coefficients.
 const SHARES: [u64; 2] = [8, 200];
 
-/// The rank that smooth transforms of the class can have, for values of the parameters that are found after so many others;
-/// none where the formulas hold what is not known to be independent, or it takes too long.
+/// The possible rank of smooth transforms of the class, for values of the parameters that are found after so many
+/// others; none where the formulas hold kernels that are not known to be independent, or it takes too long.
 pub(in crate::search) fn decided(question: &Question<'_>, class: BoundClass, others: usize) -> Option<Bound> {
     if !question.plant.identities.is_empty() || question.y.is_empty() {
         return None;
@@ -39,7 +41,7 @@ pub(in crate::search) fn decided(question: &Question<'_>, class: BoundClass, oth
     let arena = question.arena;
     let formulas: Vec<Expr> = question.rates.values().copied().collect();
     let mut domain = question.domain.clone();
-    // Claims are for all values of the parameters with these signs: those with few digits make short proofs.
+    // Claims are for all values of the parameters with these signs: values with few digits make short proofs.
     domain.fixed.clear();
     let mut point: Point = domain.points(arena, &formulas).nth(others)?;
     point.retain(|symbol, _| !question.signals.contains(symbol));
@@ -65,7 +67,7 @@ pub(in crate::search) fn decided(question: &Question<'_>, class: BoundClass, oth
     })
 }
 
-/// What a completion says of dphi/dx.
+/// The consequences of a completion for dphi/dx.
 struct Decision {
     relations: Vec<Vec<Expr>>,
     transforms: Option<usize>,
@@ -84,7 +86,7 @@ impl Decision {
         let trivial = system.vanishing();
         let Completed { lift, functions, solutions, .. } = system.completed()?;
         let transforms = match solutions {
-            // Without those that hold no state.
+            // Without transforms that hold no state.
             Solutions::AsFunctions => {
                 let trivial = trivial.completed()?;
                 (trivial.solutions == Solutions::AsFunctions).then(|| functions - trivial.functions)
@@ -98,7 +100,7 @@ impl Decision {
     }
 }
 
-/// Whether the kernels are known to be independent, and those of moving symbols hold none of the base.
+/// Tests whether the kernels are known to be independent, and those of moving symbols hold none of the base.
 fn are_independent(field: &Field<'_>, question: &Question<'_>, moving: &BTreeSet<Symbol>) -> bool {
     let arena = question.arena;
     let is_rational = |of: Expr| {

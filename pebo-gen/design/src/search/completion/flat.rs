@@ -31,7 +31,7 @@ struct Block {
     inverse: Vec<Vec<Expr>>,
 }
 
-/// A matrix of two rows, as `mean I` and what has the trace zero.
+/// A matrix of two rows, as `mean I` and a matrix of trace zero.
 struct Parts {
     mean: Expr,
     diagonal: Expr,
@@ -74,7 +74,7 @@ impl<'a> Flat<'a> {
         Ok(found)
     }
 
-    /// The functions, each after those that it depends on, as far as there is such an order: alone, or two together.
+    /// The functions, each after the ones that it depends on, as far as there is such an order: alone, or two at once.
     fn order(&self) -> Vec<Vec<usize>> {
         let arena = self.question.arena;
         let uses = |function: usize| {
@@ -146,8 +146,8 @@ impl<'a> Flat<'a> {
         self.turned(scale, angle, [diagonal, arena.one(), lower])
     }
 
-    /// Two functions whose derivatives by one output do not vary with it: they are an exponential along it, and what is left
-    /// to solve holds it no more.
+    /// Two functions whose derivatives by one output do not vary with it: they are an exponential along it, and the
+    /// remaining equations are free of it.
     fn along_one_output(&self, pair: [usize; 2]) -> Result<Option<Block>, Obstacle> {
         let question = self.question;
         let arena = question.arena;
@@ -192,12 +192,12 @@ impl<'a> Flat<'a> {
         Ok(None)
     }
 
-    /// What two functions are multiplied by in their derivatives by an output.
+    /// The matrix of two functions' derivatives by an output.
     fn matrix(&self, pair: [usize; 2], output: usize) -> Matrix {
         Matrix::build(2, 2, |row, column| self.slopes[pair[row]][output][pair[column]])
     }
 
-    /// The same, its mean diagonal apart from the rest.
+    /// The same, its mean diagonal separate from the rest.
     fn parts(&self, pair: [usize; 2], output: usize) -> Parts {
         let arena = self.question.arena;
         let matrix = self.matrix(pair, output);
@@ -260,7 +260,7 @@ impl<'a> Flat<'a> {
         Ok(Some(factors))
     }
 
-    /// For each of these functions, what the others add to its derivatives.
+    /// For each of these functions, the contribution of the others to its derivatives.
     fn rests(&self, functions: &[usize], solution: &[Expr]) -> Result<Vec<Vec<Expr>>, Obstacle> {
         let arena = self.question.arena;
         let along = |row: &Vec<Expr>| {

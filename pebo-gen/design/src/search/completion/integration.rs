@@ -1,4 +1,4 @@
-//! Transforms affine in x in closed form, where they are integrals.
+//! Finds transforms affine in x in closed form, where they are integrals.
 //!
 //! ```text
 //! equations for T and the gradient of s, completed -> dw = G w -> T, and s by its gradient -> T(y) x + s(y)
@@ -19,14 +19,14 @@ use super::posed::{Posed, Rows};
 use super::{Derivations, Solutions, System};
 use crate::search::problem::Question;
 
-/// The transforms affine in x, as far as they are integrals of what the equations for them hold.
+/// The transforms affine in x, as far as they are integrals of the functions in their equations.
 pub(in crate::search) fn integrated(question: &Question<'_>) -> Result<Vec<Expr>, Obstacle> {
     let arena = question.arena;
     let posed = Posed::affine(question, &question.rates)?;
     let Some(field) = posed.field(question)? else { return Ok(Vec::new()) };
     let Some(Rows { kept, rows }) = posed.rows(question, &field)? else { return Ok(Vec::new()) };
     let by = Derivations::of(&field, &posed.base)?;
-    // An elimination keeps the last functions: T, in terms of which the gradient of s is given.
+    // An elimination keeps the last functions: T, which determine the gradient of s.
     let (states, outputs) = (question.x.len(), posed.base.len());
     let turned = |row: &Vec<Fraction>| {
         let (slopes, values) = row.split_at(kept.len() * outputs);

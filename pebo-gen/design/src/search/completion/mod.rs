@@ -1,14 +1,14 @@
-//! Linear partial differential equations for functions of y, completed until they contradict nothing that follows from them.
+//! Completes linear partial differential equations for functions of y to an integrable system.
 //!
 //! ```text
 //! rows over [dw | w] -> what holds of w alone is solved -> mixed derivatives agree -> and so on -> dw = G w, flat
 //! ```
 //!
-//! In: equations of first order for unknown functions w of y, linear and homogeneous, over a field of functions of y. Three
-//! steps add what follows from them. An equation without derivatives is solved, and fewer functions are left. A derivative
-//! that no equation gives becomes an unknown function of its own. Second derivatives do not depend on the order: that gives
-//! further equations. Holds after: the functions with which a completion started are `lift w` of those that are left, so
-//! that the rank of `lift` bounds that of all solutions. Where each derivative is given and second derivatives agree, a
+//! In: equations of first order for unknown functions w of y, linear and homogeneous, over a field of functions of y.
+//! Three steps add their consequences. An equation without derivatives is solved, and fewer functions are left. A
+//! derivative that no equation gives becomes an unknown function of its own. Second derivatives do not depend on the
+//! order: that gives further equations. Holds after: the original functions are `lift w` of the remaining ones, so that
+//! the rank of `lift` bounds that of all solutions. Where each derivative is given and second derivatives agree, a
 //! solution is given by its values at a point, any values (Frobenius): there are as many as functions are left.
 
 pub(crate) mod connection;
@@ -53,7 +53,7 @@ impl<'a> Derivations<'a> {
         self.slopes.len()
     }
 
-    /// The derivative by the symbol at this place.
+    /// The derivative by the symbol at this index.
     fn derivative(&self, of: &Fraction, by: usize) -> Result<Fraction, Obstacle> {
         let field = self.field;
         let along = |poly: &Poly| {
@@ -76,29 +76,30 @@ impl<'a> Derivations<'a> {
 #[derive(Debug)]
 pub(super) struct System<'a> {
     by: &'a Derivations<'a>,
-    /// How many functions there are.
+    /// The number of functions.
     functions: usize,
     /// So many of the first are to be given in terms of the others.
     given: usize,
-    /// A row has a column for each derivative, those of one function together, and then one for each function.
+    /// A row has a column for each derivative, those of one function in sequence, and then one for each function.
     rows: Vec<Row>,
-    /// What was asked for, in terms of the functions.
+    /// The wanted functions, in terms of the functions.
     lift: Vec<Row>,
 }
 
-/// What a completion came to.
+/// The result of a completion.
 #[derive(Debug)]
 pub(super) struct Completed {
-    /// What was asked for, in terms of the functions that are left.
+    /// The wanted functions, in terms of the remaining ones.
     pub(super) lift: Vec<Row>,
-    /// How many functions are left.
+    /// The number of remaining functions.
     pub(super) functions: usize,
-    /// Where each derivative of these is given: for each function and symbol, its coefficients in terms of the functions.
+    /// The derivatives of these, where each is given: for each function and symbol, its coefficients in terms of the
+    /// functions.
     pub(super) slopes: Vec<Vec<Row>>,
     pub(super) solutions: Solutions,
 }
 
-/// How many independent solutions there are around a point.
+/// The number of independent solutions around a point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Solutions {
     /// As many as functions are left: each choice of their values at a point gives one.
@@ -110,7 +111,7 @@ pub(super) enum Solutions {
 }
 
 impl<'a> System<'a> {
-    /// The equations; what is asked for are the first of the functions.
+    /// The equations; the wanted functions come first.
     pub(super) fn new(by: &'a Derivations<'a>, (asked, functions): (usize, usize), rows: Vec<Row>) -> Self {
         Self { by, functions, given: 0, rows, lift: (0..asked).map(|index| unit(functions, index)).collect() }
     }
@@ -120,7 +121,7 @@ impl<'a> System<'a> {
         Self { given, ..self }
     }
 
-    /// The same equations for solutions of which all that is asked for vanishes.
+    /// The same equations for solutions in which all wanted functions vanish.
     pub(super) fn vanishing(&self) -> Self {
         let padding = vec![Fraction::zero(); self.functions * self.by.count()];
         let vanishes = self.lift.iter().map(|row| [padding.as_slice(), row].concat());
@@ -163,10 +164,10 @@ impl<'a> System<'a> {
         Completed { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
     }
 
-    /// Replaces functions by those in terms of which they are given.
+    /// Replaces functions by combinations of the remaining ones.
     fn solve(&mut self, slopes: &Echelon, values: &Echelon) -> Result<(), Obstacle> {
         let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
-        // The functions are the columns of `basis` times those that are left.
+        // The functions are the columns of `basis` times the remaining ones.
         let basis = values.null_space();
         let mut changes = Vec::new();
         for vector in &basis {

@@ -1,4 +1,4 @@
-//! The equations that the gradient of a transform with a plain cascade satisfies.
+//! The differential equations for the gradient of a transform with a plain cascade.
 //!
 //! In: a plant, and rates of its signals. Out: linear partial differential equations of first order for unknown functions,
 //! over a field that holds the derivatives of its elements. Of `T(y) x + s(y)` they hold the functions T and the gradient
@@ -13,17 +13,17 @@ use pebo_cas::{Expr, Symbol};
 use super::connection::conditions;
 use crate::search::problem::Question;
 
-/// How often the kernels of derivatives may bring new ones.
+/// Most rounds in which the kernels of derivatives may bring new ones.
 const MOST_ROUNDS: usize = 3;
 
 /// Equations for unknown functions, those for the entries of dphi/dx first.
 pub(in crate::search) struct Posed {
-    /// What the unknown functions are functions of.
+    /// The arguments of the unknown functions.
     pub(in crate::search) base: Vec<Symbol>,
-    /// For each hidden symbol a row that says that a rate is free of it: a column for each derivative of an unknown
-    /// function, those of one together, and one for each function.
+    /// For each hidden symbol a row for the independence of a rate: a column for each derivative of an unknown
+    /// function, those of one in sequence, and one for each function.
     conditions: Vec<Vec<Expr>>,
-    /// The unknown functions that are entries of a gradient: of which and by which symbol of the base.
+    /// The unknown functions that are entries of a gradient: the function and the symbol of the base.
     gradient: Vec<(usize, usize)>,
 }
 
@@ -31,7 +31,7 @@ pub(in crate::search) struct Posed {
 pub(in crate::search) struct Rows {
     /// The unknown functions that the equations hold.
     pub(in crate::search) kept: Vec<usize>,
-    /// Over the derivatives of those, those of one function together, and then over the functions.
+    /// Over the derivatives of those, those of one function in sequence, and then over the functions.
     pub(in crate::search) rows: Vec<Vec<Fraction>>,
 }
 
@@ -66,7 +66,7 @@ impl Posed {
         Self { base, conditions, gradient }
     }
 
-    /// What moves besides the base.
+    /// The moving symbols besides the base.
     pub(in crate::search) fn moving(&self, question: &Question<'_>) -> BTreeSet<Symbol> {
         question.signals.iter().filter(|symbol| !self.base.contains(symbol)).copied().collect()
     }

@@ -1,5 +1,6 @@
-//! Where rows that have full rank with constant inputs, or at rest, lose it: at values of inputs, at values of parameters, and
-//! where a formula of several signals stays zero. It is read off the determinant of the rows, and off their entries.
+//! Conditions under which rows of full rank, with constant inputs or at rest, lose it: values of inputs, values of
+//! parameters, and zeros of formulas of several signals. They are read off the determinant of the rows, and off their
+//! entries.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,11 +13,12 @@ use pebo_cas::{Arena, Expr, Relation, Symbol};
 
 use super::problem::{Question, Restriction, Shown, seen};
 
-/// Parts of the rows up to which their determinant is worked out.
+/// Size of the rows up to which their determinant is worked out.
 pub(super) const MOST_OF_DETERMINANT: usize = 150;
 
 impl Question<'_> {
-    /// Values of parameters at which rows that have full rank with constant inputs lose it, but for what is a condition.
+    /// Values of parameters at which rows that have full rank with constant inputs lose it, but for those that are
+    /// conditions.
     pub(super) fn coincidences(&self, stack: &[Vec<Expr>], conditions: &[Expr]) -> Vec<(Symbol, Expr)> {
         let arena = &self.plant.arena;
         if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
@@ -32,9 +34,10 @@ impl Question<'_> {
         open.filter_map(value).collect()
     }
 
-    /// Where rows that have full rank with constant inputs lose it, but for what is listed: where an input is a function of
-    /// others, it is asked what is seen there; the rest was not decided. And whether there is no other such motion: what a
-    /// motion leaves at once is none, and what several signals make zero is not listed unless it stays so.
+    /// Further conditions under which rows of full rank with constant inputs may lose it: where an input is a function
+    /// of others, the unknowns are decided there; the rest is undecided. And true if there are no other such
+    /// trajectories: a trajectory that leaves the zero at once is none, and a zero of several signals is listed only if
+    /// it is invariant.
     pub(super) fn doubtful(&self, listed: &[Blind], symbols: &[Symbol], stack: &[Vec<Expr>]) -> (Vec<Blind>, bool) {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
@@ -83,7 +86,7 @@ impl Question<'_> {
             }
             let equal = BTreeMap::from([(input, value)]);
             match self.shown(&Restriction { equal, ..Restriction::default() }) {
-                // What the inputs show there by their variation they may not show as constants.
+                // Inputs that identify unknowns by their variation may not do so as constants.
                 Ok(shown) if shown.hidden.is_empty() => match self.steady(input, value) {
                     Ok(shown) if shown.hidden.is_empty() => {}
                     Ok(shown) => found.push(blind(Place::Steady(input, value), shown)),
@@ -91,7 +94,7 @@ impl Question<'_> {
                     Err(_) => found.push(unshown()),
                 },
                 Ok(shown) => found.push(blind(Place::Value(input, value), shown)),
-                // Where the domain holds no such motion, there is nothing to say.
+                // The domain holds no such trajectory.
                 Err(Obstacle::NoPoint) => {}
                 Err(_) => found.push(unshown()),
             }
@@ -133,15 +136,15 @@ impl Question<'_> {
         Ok(found)
     }
 
-    /// What no input moves away from zero, of all that makes rows lose their rank: an output that stays constant, or one that
-    /// multiplies its own rate.
+    /// Zeros at which rows lose their rank and that no input moves: an output that is constant, or one that multiplies
+    /// its own rate.
     pub(super) fn kept(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
         if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
             return Vec::new();
         }
-        // What has no rate of its own is as free as an input is.
+        // A signal without a rate is as free as an input.
         let constants = plant.parameters.iter().map(|p| p.symbol);
         let determined: BTreeSet<Symbol> =
             constants.chain(plant.rates().into_keys()).chain(plant.chi.clone()).collect();
@@ -156,13 +159,13 @@ impl Question<'_> {
         found().unwrap_or_default()
     }
 
-    /// Whether the rows are the same on all motions.
+    /// Tests whether the rows are the same on all trajectories.
     fn is_constant(&self, stack: &[Vec<Expr>]) -> bool {
         let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
         self.plant.arena.symbols_of(&stack.concat()).is_subset(&constants)
     }
 
-    /// Whether what is zero moves on at once, wherever it is.
+    /// Tests whether every trajectory leaves a zero at once.
     fn leaves(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
@@ -179,7 +182,7 @@ impl Question<'_> {
             || arena.symbols_of(&[zero]).into_iter().find_map(there).unwrap_or(false)
     }
 
-    /// Whether what is zero stays so: it divides its rate.
+    /// Tests whether a zero is invariant: the formula divides its rate.
     fn stays(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let divides = || -> Result<bool, Obstacle> {
@@ -190,8 +193,8 @@ impl Question<'_> {
         divides().unwrap_or(false)
     }
 
-    /// What makes rows that have full rank at rest lose it, as all that is zero stays so there; and whether nothing else
-    /// does.
+    /// Zeros at which rows that have full rank at rest lose it, each of which is invariant there; and true if there are
+    /// no others.
     pub(super) fn doubtful_at_rest(&self, stack: &[Vec<Expr>]) -> (Vec<Expr>, bool) {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
@@ -205,7 +208,7 @@ impl Question<'_> {
         let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
         let commanded: BTreeSet<Symbol> = plant.commanded().collect();
-        // What is of inputs alone is looked at on all motions.
+        // Functions of inputs alone are tested on all trajectories.
         let of_outputs = |zero: &Expr| {
             let symbols = arena.symbols_of(&[*zero]);
             symbols.difference(&constants).any(|signal| !commanded.contains(signal))
@@ -245,8 +248,8 @@ impl Question<'_> {
         Ok(found)
     }
 
-    /// Combinations of the parameters at which rows that have full rank on some motions lose it on all, and whether there
-    /// are no other such values.
+    /// Combinations of the parameters at which rows that have full rank on some trajectories lose it on all, and true
+    /// if there are no other such values.
     pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Result<(Vec<Expr>, bool), Obstacle> {
         let arena = &self.plant.arena;
         let own: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
@@ -267,18 +270,18 @@ impl Question<'_> {
                 continue;
             };
             match self.shown_with(&there) {
-                // Other motions show them all the same, but perhaps not for further values.
+                // Other trajectories identify them all the same, but perhaps not for further values.
                 Ok(Some(further)) => all &= !further,
                 Ok(None) => lost.push(formula),
-                // Whether they do is open: the verdict says that such values were not all worked out.
+                // Undecided: the verdict says that such values were not all worked out.
                 Err(_) => all = false,
             }
         }
         Ok((lost, all))
     }
 
-    /// Whether further values of the parameters may hide unknowns that are shown with a restriction; none if they are not
-    /// shown.
+    /// Tests whether further values of the parameters may hide unknowns that are identifiable with a restriction; none
+    /// if they are not identifiable.
     fn shown_with(&self, restriction: &Restriction) -> Result<Option<bool>, Obstacle> {
         let &Self { plant, domain, .. } = self;
         let shown = self.shown(restriction)?;
@@ -293,7 +296,7 @@ impl Question<'_> {
     }
 }
 
-/// Whether what is zero where an input has a value is listed by that.
+/// Tests whether a zero at a value of an input is already listed.
 pub(super) fn is_listed(arena: &Arena, listed: &[Blind], zero: Expr) -> bool {
     listed.iter().any(|other| match &other.place {
         Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
@@ -301,7 +304,7 @@ pub(super) fn is_listed(arena: &Arena, listed: &[Blind], zero: Expr) -> bool {
     })
 }
 
-/// What the symbol is where a formula that is linear in it vanishes.
+/// The value of the symbol at the zero of a formula that is linear in it.
 fn solved(arena: &Arena, formula: Expr, symbol: Symbol) -> Option<Expr> {
     let slope = arena.derivative(formula, symbol);
     let linear = !arena.is_zero(slope) && !arena.depends_on(slope, &BTreeSet::from([symbol]));

@@ -1,12 +1,13 @@
-//! What has to move for unknowns to be seen that one moment does not show, and on which motions they stay hidden.
+//! The motion that unknowns need to be identifiable where one instant does not suffice, and the trajectories on which
+//! they are hidden.
 //!
-//! In: a regression whose rows are of full rank over time on almost every motion. Out: whether they are with all
-//! inputs constant, and at rest; and motions, simple enough to be met with, on which they are not: inputs that are
-//! constant, that are equal, or at a value at which an entry vanishes.
+//! In: a regression whose rows are of full rank over time on almost every trajectory. Out: the same with all inputs
+//! constant, and at rest; and simple trajectories on which they are not: inputs that are constant, that are equal, or
+//! at a value at which an entry vanishes.
 //!
-//! On each of them the same question is asked as of all motions: the rank of the rows with their derivatives. Full, it was
-//! seen at a point; less, exact algebra gives the directions that no derivative shows. What could not be decided is not
-//! said; that there are no other such motions is said only where each of them was seen to end at once.
+//! The problem is the same as for all trajectories: the rank of the rows with their derivatives. A point proves full
+//! rank; otherwise exact algebra gives the directions that no derivative observes. Undecided trajectories are not
+//! reported; that there are no others is reported only if each of them provably ends at once.
 
 mod problem;
 
@@ -29,23 +30,23 @@ use problem::{MOST_PARTS, Question, Restriction, Shown};
 
 pub(super) use problem::seen;
 
-/// Inputs up to which motions are tried one by one.
+/// Inputs up to which trajectories are tried one by one.
 const MOST_INPUTS: usize = 6;
 
-/// Of longer rows, the part of the budget that the conditions on parameters may take.
+/// For longer rows, the share of the budget for the conditions on parameters.
 const FOR_PARAMETERS: u64 = 8;
 
 /// Values of inputs that are tried.
 const MOST_VALUES: usize = 8;
 
-/// What has to move, and combinations of the parameters that must not vanish for the rank to be full.
+/// The necessary motion, and combinations of the parameters whose zeros lower the rank.
 pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: &Regression) -> (Motion, Vec<Expr>) {
     let arena = &plant.arena;
     let question = Question { plant, domain, cascade, regression, unknowns: regression.eta.len() };
     let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let held = question.shown(&Restriction { held: inputs.clone(), ..Restriction::default() });
     let by_itself = held.as_ref().ok().map(|shown| shown.hidden.is_empty()).or(inputs.is_empty().then_some(true));
-    // Where all signals rest, so does z, and with it what a plain extension integrates.
+    // Where all signals are constant, so is z, and with it the input of a plain extension.
     let outputs = plant.y.iter().map(|output| output.symbol);
     let extension = plant.chi.iter().copied().filter(|_| cascade.lambda.is_none());
     let still: BTreeSet<Symbol> = inputs.iter().copied().chain(outputs).chain(extension).collect();
@@ -94,7 +95,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
             }
             let shown = question.shown(&restriction);
             let is_seen = shown.as_ref().is_ok_and(|shown| shown.hidden.is_empty());
-            // What the other inputs show by their variation they do not show as constants.
+            // Inputs that identify unknowns by their variation do not do so as constants.
             if let (true, Some(true), Place::Value(input, value)) = (is_seen, by_itself, &place) {
                 note(Place::Steady(*input, *value), &question.steady(*input, *value));
             }
@@ -135,7 +136,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, cascade: &Cascade, regression: 
 }
 
 impl Question<'_> {
-    /// Motions that are worth a look.
+    /// Candidate trajectories.
     fn candidates(&self, by_itself: bool, stack: &[Vec<Expr>]) -> Vec<(Place, Restriction)> {
         let inputs: Vec<Symbol> = self.plant.commanded().collect();
         let arena = &self.plant.arena;
@@ -161,7 +162,7 @@ impl Question<'_> {
     }
 }
 
-/// What is zero where nothing was decided.
+/// The expression of an undecided zero.
 fn unshown_zero(place: &Place) -> Option<Expr> {
     match place {
         Place::Unshown(zero) => Some(*zero),
@@ -169,8 +170,8 @@ fn unshown_zero(place: &Place) -> Option<Expr> {
     }
 }
 
-/// Inputs that are the only ones with which the plant rests, and the transform with it: read off the rates that hold no
-/// unmeasured state, which are zero there.
+/// The only values of the inputs at which the plant is at equilibrium, and the transform at them: read off the rates
+/// without an unmeasured state, which are zero there.
 fn at_rest(plant: &Plant, domain: &Domain, cascade: &Cascade) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();

@@ -1,4 +1,4 @@
-//! The one question about a motion: which directions of the unknowns no derivative of the rows shows on it.
+//! The observability problem on a trajectory: the directions of the unknowns that no derivative of the rows observes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,10 +9,10 @@ use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-/// Parts of the rows with their derivatives up to which directions are solved for.
+/// Size of the rows with their derivatives up to which directions are solved for.
 pub(super) const MOST_PARTS: usize = 600;
 
-/// A question about motions of a plant.
+/// An observability problem on trajectories of a plant.
 pub(super) struct Question<'a> {
     pub(super) plant: &'a Plant,
     pub(super) domain: &'a Domain,
@@ -21,7 +21,7 @@ pub(super) struct Question<'a> {
     pub(super) unknowns: usize,
 }
 
-/// What is asked of a motion at all times.
+/// The conditions of a trajectory at all times.
 #[derive(Default)]
 pub(super) struct Restriction {
     /// Signals that do not move.
@@ -30,7 +30,7 @@ pub(super) struct Restriction {
     pub(super) equal: BTreeMap<Symbol, Expr>,
 }
 
-/// What the rows with their derivatives show on a motion.
+/// The observations of the rows with their derivatives on a trajectory.
 pub(super) struct Shown {
     /// Rows that show as much as all derivatives do.
     pub(super) stack: Vec<Vec<Expr>>,
@@ -39,7 +39,7 @@ pub(super) struct Shown {
 }
 
 impl Question<'_> {
-    /// What the rows with their derivatives show on the motions that a restriction leaves.
+    /// Solves the problem on the trajectories of a restriction.
     pub(super) fn shown(&self, restriction: &Restriction) -> Result<Shown, Obstacle> {
         let &Self { plant, domain, cascade, regression, unknowns } = self;
         let arena = &plant.arena;
@@ -92,14 +92,14 @@ impl Question<'_> {
         Ok(Shown { stack, hidden })
     }
 
-    /// What is shown where all inputs are constant, and an input or parameter has a value.
+    /// Solves the problem with all inputs constant, and an input or parameter at a value.
     pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Shown, Obstacle> {
         let held = self.plant.commanded().filter(|input| *input != symbol).collect();
         self.shown(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
     }
 }
 
-/// What is seen of the unknowns where these directions are not: combinations that do not change along them. Each direction
+/// The identifiable combinations of the unknowns: those that do not change along the hidden directions. Each direction
 /// has a component that is one, and zero in the others.
 pub(crate) fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
     let own = |index: usize| {

@@ -1,4 +1,4 @@
-//! What has to move, and where the regression is blind, in sentences.
+//! Sentences on the necessary motion and on the trajectories that hide unknowns.
 
 use crate::analysis::design::{Blind, Motion, Place};
 use crate::plant::Plant;
@@ -6,12 +6,12 @@ use pebo_cas::Expr;
 use pebo_cas::domain::cells::Side;
 
 impl Motion {
-    /// Whether there are parts of the domain in which not all unknowns are seen.
+    /// Tests whether there are cells of the domain in which not all unknowns are identifiable.
     pub fn is_divided(&self) -> bool {
         self.blind.iter().any(|blind| matches!(blind.place, Place::Part(_)))
     }
 
-    /// What has to move, in a line, and where the regression is blind, in a line each.
+    /// The necessary motion, in a line, and the trajectories that hide unknowns, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
             _ if self.is_divided() => self.of_parts(),
@@ -45,7 +45,7 @@ impl Motion {
         std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
     }
 
-    /// The first line where there are parts of the domain in which not all unknowns are seen.
+    /// The first line where there are cells of the domain in which not all unknowns are identifiable.
     fn of_parts(&self) -> &'static str {
         match (self.by_itself, self.at_rest) {
             (Some(true), true) => {
@@ -67,12 +67,12 @@ impl Motion {
 }
 
 impl Blind {
-    /// The motion.
+    /// The trajectory.
     pub fn place(&self, plant: &Plant) -> String {
         self.worded(plant).replace('`', "")
     }
 
-    /// The motion, with formulas as code.
+    /// The trajectory, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
         self.place.worded(plant)
     }
@@ -88,7 +88,7 @@ impl Blind {
 }
 
 impl Place {
-    /// The motion, with formulas as code.
+    /// The trajectory, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
         match self {
@@ -118,7 +118,7 @@ impl Place {
         }
     }
 
-    /// Whether what is seen there was not decided.
+    /// Tests whether its identifiability is undecided.
     fn is_undecided(&self) -> bool {
         match self {
             Self::Unshown(_) | Self::UnshownAtRest(_) => true,
