@@ -93,7 +93,7 @@ pub(super) fn read(
         name,
         title,
         reference: arguments.reference,
-        asked: arguments.class,
+        cascade_class: arguments.class,
         relation_form: arguments.regression,
         parameters,
         x,

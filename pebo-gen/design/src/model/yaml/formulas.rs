@@ -33,7 +33,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         u: document.u,
         time: None,
         w: document.w,
-        asked: document.class,
+        cascade_class: document.class,
         relation_form: document.regression,
         define,
         assume,
