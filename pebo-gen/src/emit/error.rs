@@ -13,7 +13,7 @@ pub enum EmitError {
     /// The derivation is accepted, but lacks this result.
     Missing(&'static str),
     /// A function depends on a symbol that it does not get.
-    Undeclared {
+    UndeclaredSymbol {
         /// The symbol.
         symbol: String,
     },
@@ -56,7 +56,7 @@ impl fmt::Display for EmitError {
         match self {
             Self::NotAccepted => f.write_str("not every claim is proved"),
             Self::Missing(what) => write!(f, "the derivation lacks its {what}"),
-            Self::Undeclared { symbol } => {
+            Self::UndeclaredSymbol { symbol } => {
                 write!(f, "`{symbol}` occurs in a function that does not receive it")
             }
             Self::OutOfRange { number } => {

@@ -36,7 +36,7 @@ use module::abbreviation::Abbreviations;
 use pebo_cas::{Arena, Expr, Rational};
 use pebo_design::analysis::Derivation;
 use pebo_design::plant::{Plant, Settings};
-use pebo_design::program::{Undeclared, lower};
+use pebo_design::program::{UndeclaredSymbol, lower};
 
 /// An emitted module. Serialises to its text and the name of its type.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ pub fn emit(
     let arena = &plant.arena;
     let definitions = Definitions::of(plant, derivation, settings)?;
     let parameters: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
-    let undeclared = |undeclared: Undeclared| EmitError::Undeclared { symbol: arena.name(undeclared.0) };
+    let undeclared = |undeclared: UndeclaredSymbol| EmitError::UndeclaredSymbol { symbol: arena.name(undeclared.0) };
     let (choice, accuracy) =
         definition::choice::choose(plant, derivation, (&parameters, scalar), &definitions, &is_zero)
             .map_err(undeclared)?;
@@ -93,7 +93,7 @@ pub fn emit(
             scalar: scalar.name(),
         });
     }
-    let asked = derivation.asked_of_parameters(plant);
+    let asked = derivation.conditions_on_parameters(plant);
     let values: Vec<Expr> = asked.iter().map(|(value, _)| *value).collect();
     let checked = lower(arena, &parameters, &values).map_err(undeclared)?;
     let (asked, checked) = module::check::with_guards(arena, asked, &checked, &staged);

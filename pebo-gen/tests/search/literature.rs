@@ -2,7 +2,7 @@
 //! the search says it.
 
 use pebo_gen::analysis::Class;
-use pebo_gen::search::{BoundClass, Found, Search};
+use pebo_gen::search::{BoundClass, Search, SearchVerdict};
 
 use super::{search, written};
 
@@ -14,7 +14,7 @@ enum Truth {
     /// plant without inputs none that is affine in x; or the outputs are not affine in it.
     Gpebo,
     /// It has one with a generalised cascade, which is to be found; whether it has a plain one is not known.
-    Found,
+    SearchVerdict,
     /// No smooth transform with a plain cascade recovers its states, and none affine in x with a generalised one.
     None,
     /// A transform is found, but the outputs are no linear regression in it, or it holds on a part of the domain only.
@@ -90,7 +90,7 @@ const CASES: &[Case] = &[
         lines: "parameters: [mu, K, k]\nx: [S]\ny: [X]\nu: [D, Sin]\n\
                 assume: [mu > 0, K > 0, k > 0, S > 0, X > 0]\n\
                 f_x: {S: D*(Sin - S) - k*mu*S/(K + S)*X}\nf_y: {X: mu*S/(K + S)*X - D*X}",
-        truth: Truth::Found,
+        truth: Truth::SearchVerdict,
     },
     Case {
         from: "susceptible, exposed, infected (Anderson, May 1991)",
@@ -150,7 +150,7 @@ const CASES: &[Case] = &[
         from: "an epidemic (Kermack, McKendrick 1927) with both its rates unknown",
         lines: "x: [S, beta, gamma]\ny: [I, R]\nassume: [S > 0, I > 0, beta > 0, gamma > 0]\n\
                 f_x: {S: -beta*S*I, beta: 0, gamma: 0}\nf_y: {I: beta*S*I - gamma*I, R: gamma*I}",
-        truth: Truth::Found,
+        truth: Truth::SearchVerdict,
     },
     Case {
         from: "a bicycle with unknown tyres (Riekert, Schunck 1940)",
@@ -158,20 +158,20 @@ const CASES: &[Case] = &[
                 assume: [m > 0, Iz > 0, lf > 0, lr > 0, vx > 0, Cf > 0, Cr > 0, lr*Cr - lf*Cf > 0]\n\
                 f_x: {vy: -(Cf + Cr)*vy/(m*vx) + (lr*Cr - lf*Cf)*r/(m*vx) - vx*r + Cf*delta/m, Cf: 0, Cr: 0}\n\
                 f_y: {r: (lr*Cr - lf*Cf)*vy/(Iz*vx) - (lf^2*Cf + lr^2*Cr)*r/(Iz*vx) + lf*Cf*delta/Iz}",
-        truth: Truth::Found,
+        truth: Truth::SearchVerdict,
     },
     Case {
         from: "a motor from its speed alone, resistance, inductance and torque constant unknown",
         lines: "parameters: [J]\nx: [i, R, k, e]\ny: [w]\nu: [v]\nassume: [J > 0, R > 0, k > 0, e > 0]\n\
                 f_x: {i: (v - R*i - e*w)*k, R: 0, k: 0, e: 0}\nf_y: {w: e*i/J}",
-        truth: Truth::Found,
+        truth: Truth::SearchVerdict,
     },
     Case {
         from: "a fuel cell by its Nernst voltage: partial pressures of hydrogen and oxygen",
         lines: "parameters: {E: 1.2, a: 0.0215, k: 1, m: 0.5, t: 3, s: 6}\nx: [p, o]\ny: [V]\nu: [I, q, r]\n\
                 assume: [p > 0, o > 0]\nf_x: {p: (q - k*p - I)/t, o: (r - m*o - I/2)/s}\n\
                 identities: [exp(2*(V - E)/a) - p^2*o]",
-        truth: Truth::Found,
+        truth: Truth::SearchVerdict,
     },
     Case {
         from: "a tank (Torricelli 1644) with an unknown outlet",
@@ -200,7 +200,7 @@ const CASES: &[Case] = &[
 /// The class of the transform that was found, every claim being proved.
 fn class(lines: &str, found: &Search) -> Class {
     let best = found.candidates.first().expect("a candidate");
-    assert!(found.verdict == Found::Found && best.is_full(), "{lines}");
+    assert!(found.verdict == SearchVerdict::Found && best.is_full(), "{lines}");
     // Beside matrices there is no place for a phi.
     if lines.contains("mechanical:") { best.derivation.class } else { written(lines, found).0 }
 }
@@ -217,18 +217,18 @@ fn what_is_true_of_plants_from_the_literature_is_said() {
                 assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}");
                 let plain = search(lines, Some(Class::Pebo)).1;
                 match plain.verdict {
-                    Found::Found => assert!(!plain.candidates[0].is_linear(), "{from}"),
+                    SearchVerdict::Found => assert!(!plain.candidates[0].is_linear(), "{from}"),
                     _ => assert!(plain.bound.expect("a bound").excludes(), "{from}"),
                 }
             }
-            Truth::Found => assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}"),
+            Truth::SearchVerdict => assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}"),
             Truth::None => {
                 let bound = found.bound.expect("a bound");
                 assert!(bound.class == BoundClass::Smooth && bound.excludes(), "{from}");
-                assert_eq!(found.verdict, Found::None, "{from}");
+                assert_eq!(found.verdict, SearchVerdict::None, "{from}");
             }
             Truth::Open => {
-                assert_eq!(found.verdict, Found::Undecided, "{from}");
+                assert_eq!(found.verdict, SearchVerdict::Undecided, "{from}");
                 assert!(formulas.is_some(), "{from}");
             }
         }

@@ -6,7 +6,7 @@ use pebo_cas::domain::zero::MOST_POINTS;
 use pebo_cas::{Domain, Expr, Relation};
 
 use super::advice::remarks::Remarks;
-use super::conditions::{Ask, Conditions};
+use super::conditions::{Conditions, DomainCondition};
 use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 use super::limited::{ended, limited, unfinished};
@@ -17,9 +17,9 @@ impl Derivation {
     pub fn derive(plant: &Plant) -> Self {
         let domain = plant.domain();
         let mut found: Vec<Diagnostic> = Vec::new();
-        let standing = identities::prove(plant, &domain, &mut found);
-        if standing != Verdict::Proved {
-            return Self::without_claims(standing, found);
+        let verdict = identities::prove(plant, &domain, &mut found);
+        if verdict != Verdict::Proved {
+            return Self::without_claims(verdict, found);
         }
         let mut class = Class::Pebo;
         let mut cascade = limited(plant, "the cascade", &mut found, |found| {
@@ -44,11 +44,13 @@ impl Derivation {
             conditions.list(&plant.arena, (*constant, Relation::NonZero));
         }
         let unmet = [
-            (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.ask_cascade(plant, result))),
-            (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.ask_left_inverse(plant, r))),
-            (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.ask_regression(plant, r))),
+            (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.list_cascade(plant, result))),
+            (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.list_left_inverse(plant, r))),
+            (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.list_regression(plant, r))),
         ];
-        found.extend(unmet.into_iter().filter_map(|(code, what, ask)| Some(without_value(plant, code, what, ask?))));
+        found.extend(
+            unmet.into_iter().filter_map(|(code, what, condition)| Some(without_value(plant, code, what, condition?))),
+        );
         if !is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref()) {
             found.push(nowhere(plant));
             cascade.doubt();
@@ -84,9 +86,9 @@ impl Derivation {
     }
 
     /// The empty derivation of a plant whose identities are not proved.
-    fn without_claims(standing: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
+    fn without_claims(verdict: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
-            outcome: outcome(&[standing]),
+            outcome: outcome(&[verdict]),
             class: Class::Pebo,
             cascade: Claim::skipped(),
             left_inverse: Claim::skipped(),
@@ -125,29 +127,30 @@ fn strengthened(
     found: &mut Vec<Diagnostic>,
 ) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
     let mut said = Vec::new();
-    let together = regression::together(plant, domain, cascade, inverse, regression, &mut said);
+    let combined = regression::combined(plant, domain, cascade, inverse, regression, &mut said);
     let mut last = None;
     let class = if cascade.lambda.is_some() { Class::Gpebo } else { Class::Pebo };
-    for claim in together.regressions {
+    for claim in combined.regressions {
         let claim = permitted::regression(plant, class, claim, &mut said);
         let Some(more) = claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved) else { continue };
         let mut others = Vec::new();
-        let seen = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
-        let proved = seen.verdict == Verdict::Proved;
-        last = Some((claim, seen, others));
+        let identifiability = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
+        let proved = identifiability.verdict == Verdict::Proved;
+        last = Some((claim, identifiability, others));
         if proved {
             break;
         }
     }
-    if let Some((claim, seen, others)) = last {
-        let said_more = verdict == Verdict::Refuted && (seen.verdict == Verdict::Undecided || together.complete);
-        if seen.verdict == Verdict::Proved || said_more {
+    if let Some((claim, identifiability, others)) = last {
+        let said_more =
+            verdict == Verdict::Refuted && (identifiability.verdict == Verdict::Undecided || combined.complete);
+        if identifiability.verdict == Verdict::Proved || said_more {
             found.retain(|d| !OPEN.contains(&d.code));
             found.extend(said.into_iter().chain(others));
-            return Some((claim, seen));
+            return Some((claim, identifiability));
         }
     }
-    if together.complete || verdict == Verdict::Undecided {
+    if combined.complete || verdict == Verdict::Undecided {
         return None;
     }
     found.retain(|d| !OPEN.contains(&d.code));
@@ -163,9 +166,9 @@ impl<T> Claim<T> {
 
     /// Makes a proved claim undecided if a domain condition of its formulas is neither implied nor listed; returns the
     /// condition.
-    fn settle(&mut self, ask: impl FnOnce(&T) -> Option<Ask>) -> Option<Ask> {
+    fn settle(&mut self, condition: impl FnOnce(&T) -> Option<DomainCondition>) -> Option<DomainCondition> {
         let result = self.result.as_ref().filter(|_| self.verdict == Verdict::Proved)?;
-        let unmet = ask(result)?;
+        let unmet = condition(result)?;
         self.doubt();
         Some(unmet)
     }
@@ -219,7 +222,7 @@ fn regressed(
     {
         given = more;
     }
-    forms::standing(plant, domain, claims, given, found, before)
+    forms::static_form(plant, domain, claims, given, found, before)
 }
 
 /// The claims with outputs by their values wherever that identifies as much as their rates; else the given. Of the
@@ -295,12 +298,12 @@ fn from_identities(
 }
 
 /// Formulas that have no value where the claim is made.
-fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -> Diagnostic {
+fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): DomainCondition) -> Diagnostic {
     let arena = &plant.arena;
-    let ask = format!("{} {}", arena.print(part), relation.sign());
+    let condition = format!("{} {}", arena.print(part), relation.sign());
     let diagnostic =
         Diagnostic::error(code, at_phi(plant), format!("{what} was not shown to have a value throughout the domain"))
-            .label(format!("this needs `{ask}`"));
+            .label(format!("this needs `{condition}`"));
     if arena.symbols_of(&[part]).iter().any(|symbol| plant.is_of_extension(*symbol)) {
         return diagnostic
             .note(
@@ -308,7 +311,7 @@ fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -
             )
             .help("choose a phi in which the rates of the outputs are polynomials, exponentials, sines and cosines");
     }
-    diagnostic.help(format!("if it holds, write `{ask}` under `assume`"))
+    diagnostic.help(format!("if it holds, write `{condition}` under `assume`"))
 }
 
 /// Tests whether a point of the domain was found at which all formulas have values.

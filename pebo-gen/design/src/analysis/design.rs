@@ -70,7 +70,7 @@ pub enum Fundamental {
     /// It grows without bound.
     Grows,
     /// Undecided.
-    NotShown,
+    Undecided,
 }
 
 /// A point at which an expression provably is not zero.
@@ -226,21 +226,21 @@ pub struct Identifiability {
     /// A direction of eta that no trajectory makes observable, where there is one.
     pub direction: Option<Vec<Expr>>,
     /// The motion that the unknowns need, where one instant does not identify them.
-    pub motion: Option<Motion>,
+    pub trajectories: Option<Trajectories>,
     /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
     pub gram: Option<Gram>,
 }
 
 /// The motion that makes unknowns identifiable which one instant does not identify.
 #[derive(Clone, Debug)]
-pub struct Motion {
+pub struct Trajectories {
     /// True if no input has to move: with all of them constant the rank over time is full on almost every trajectory.
     /// None if undecided.
     pub by_itself: Option<bool>,
     /// True if nothing has to move: the rank is full even with constant outputs.
     pub at_rest: bool,
     /// Trajectories on which the rank is not full.
-    pub blind: Vec<Blind>,
+    pub blind: Vec<BlindTrajectory>,
     /// True if there are no others with constant inputs.
     pub everywhere: bool,
     /// True if all combinations of the parameters are known at which the rank is full on no trajectory.
@@ -249,20 +249,20 @@ pub struct Motion {
 
 /// Trajectories on which the regression does not identify all unknowns: proved.
 #[derive(Clone, Debug)]
-pub struct Blind {
+pub struct BlindTrajectory {
     /// The condition that defines the trajectories.
-    pub place: Place,
+    pub condition: TrajectoryCondition,
     /// The identifiable combinations of the unknowns: of z1.. where they are theta, else of eta1..
-    pub seen: Vec<Expr>,
+    pub identifiable: Vec<Expr>,
     /// Unobservable directions.
     pub hidden: Vec<Vec<Expr>>,
 }
 
 /// A condition that holds at all times.
 #[derive(Clone, Debug)]
-pub enum Place {
+pub enum TrajectoryCondition {
     /// All inputs and outputs are constant.
-    Rest,
+    Equilibrium,
     /// These inputs are constant.
     Constant(Vec<Symbol>),
     /// The input has this value.
@@ -270,13 +270,13 @@ pub enum Place {
     /// All inputs are constant, and the input or parameter has this value.
     Steady(Symbol, Expr),
     /// This is zero at all times, and rows with all their derivatives may be of a lower rank: undecided.
-    Unshown(Expr),
+    Undecided(Expr),
     /// At an equilibrium this is zero: likewise.
-    UnshownAtRest(Expr),
+    UndecidedAtRest(Expr),
     /// The cell on which these keep their signs: the regressor is non-smooth where one changes.
-    Part(Vec<(Expr, Side)>),
+    Cell(Vec<(Expr, Side)>),
     /// These keep their signs, and the other holds.
-    Within(Vec<(Expr, Side)>, Box<Place>),
+    Within(Vec<(Expr, Side)>, Box<TrajectoryCondition>),
 }
 
 /// `Phi_1' Phi_1`: the strength of the excitation at a point.
@@ -313,7 +313,7 @@ pub enum Excitation {
 impl Derivation {
     /// The domain conditions of the way from estimates back to x, beside the assumptions on y: an estimate of z (or,
     /// where the regression has functions of theta, of these) may lie where the true one cannot.
-    pub fn asked_of_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
+    pub fn conditions_on_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
         let arena = &plant.arena;
         let (mut formulas, mut estimates) = (Vec::new(), plant.z.clone());
         formulas.extend(self.left_inverse.result.iter().flat_map(|inverse| &inverse.x).map(|(_, formula)| *formula));
@@ -322,12 +322,12 @@ impl Derivation {
             estimates.extend(&regression.eta_symbols);
         }
         let domain = self.domain(plant);
-        let mut asked = arena.domain_conditions(&formulas, Regularity::Defined);
-        asked.retain(|(part, relation)| {
+        let mut conditions = arena.domain_conditions(&formulas, Regularity::Defined);
+        conditions.retain(|(part, relation)| {
             let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
             free && !domain.implies(arena, *part, *relation)
         });
-        asked
+        conditions
     }
 
     /// The domain of the proofs: the plant's domain, without the points that the conditions exclude.

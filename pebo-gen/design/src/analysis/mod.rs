@@ -45,8 +45,9 @@ pub use advice::drift::Drift;
 pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 pub use advice::remarks::Remarks;
 pub use design::{
-    Blind, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse,
-    Motion, Origin, Outcome, Place, Positive, Regression, RegressionKind, Verdict, Witness,
+    BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability,
+    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Trajectories, TrajectoryCondition, Verdict,
+    Witness,
 };
 pub use parameters::Sign;
 pub use pebo_cas::domain::cells::Side;

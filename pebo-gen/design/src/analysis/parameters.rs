@@ -23,7 +23,7 @@ pub enum Sign {
 
 impl Derivation {
     /// The conditions on the parameters' values under which the proofs hold.
-    pub fn asked_of_parameters(&self, plant: &Plant) -> Vec<(Expr, Sign)> {
+    pub fn conditions_on_parameters(&self, plant: &Plant) -> Vec<(Expr, Sign)> {
         let arena = &plant.arena;
         let constants: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
         let assumed = plant.assumptions.iter().map(|assumption| (assumption.expr, assumption.relation));
@@ -33,7 +33,7 @@ impl Derivation {
             !symbols.is_empty() && symbols.iter().all(|symbol| constants.contains(symbol))
         });
 
-        let mut asked = Vec::new();
+        let mut conditions = Vec::new();
         let mut domain = Domain::default();
         for parameter in &plant.parameters {
             let symbol = arena.of_symbol(parameter.symbol);
@@ -48,15 +48,15 @@ impl Derivation {
                 Sign::Opposite(relation) => domain.facts.assume(arena.neg(symbol), relation),
                 Sign::Any | Sign::Zero => {}
             }
-            asked.push((symbol, sign));
+            conditions.push((symbol, sign));
         }
         for (expr, relation) in facts {
             if !domain.implies(arena, expr, relation) {
                 domain.facts.assume(expr, relation);
-                asked.push((expr, Sign::Is(relation)));
+                conditions.push((expr, Sign::Is(relation)));
             }
         }
-        asked
+        conditions
     }
 }
 

@@ -19,11 +19,11 @@ type Function = (&'static str, Vec<Expr>, Vec<Symbol>);
 pub(super) fn cascade(plant: &Plant, claim: Claim<Cascade>, found: &mut Vec<Diagnostic>) -> Claim<Cascade> {
     let signals = [outputs(plant), plant.u.clone()].concat();
     // A symbol without a rate would count as a constant.
-    let moving: Vec<Symbol> = plant.rates().into_keys().collect();
+    let with_inputs: Vec<Symbol> = plant.rates().into_keys().collect();
     confined(plant, claim, Code::CascadeUndecided, found, |cascade| {
         let lambda = cascade.lambda.iter().flatten().flatten().copied().collect();
         vec![
-            ("phi", plant.transform(), moving.clone()),
+            ("phi", plant.transform(), with_inputs.clone()),
             ("h", cascade.h.clone(), signals.clone()),
             ("Lambda", lambda, signals.clone()),
         ]
@@ -55,14 +55,14 @@ pub(super) fn regression(
         Class::Pebo => plant.chi.clone(),
         Class::Gpebo => plant.xi.iter().chain(plant.psi.iter().flatten()).copied().collect(),
     };
-    let standing = [extension, outputs(plant)].concat();
-    let moving = [standing.clone(), plant.u.clone()].concat();
+    let without_inputs = [extension, outputs(plant)].concat();
+    let with_inputs = [without_inputs.clone(), plant.u.clone()].concat();
     confined(plant, claim, Code::RegressionUndecided, found, |regression| {
         vec![
-            ("phi_0", regression.phi_0.clone(), moving.clone()),
-            ("phi_1", regression.phi_1.concat(), moving.clone()),
-            ("primitive_0", regression.primitive_0.clone(), standing.clone()),
-            ("primitive_1", regression.primitive_1.concat(), standing.clone()),
+            ("phi_0", regression.phi_0.clone(), with_inputs.clone()),
+            ("phi_1", regression.phi_1.concat(), with_inputs.clone()),
+            ("primitive_0", regression.primitive_0.clone(), without_inputs.clone()),
+            ("primitive_1", regression.primitive_1.concat(), without_inputs.clone()),
             ("eta", regression.eta.clone(), plant.theta.clone()),
             ("theta", regression.theta.clone(), regression.eta_symbols.clone()),
         ]

@@ -77,7 +77,7 @@ impl Fundamental {
         match self {
             Self::Bounded { .. } => Verdict::Proved.word(),
             Self::Grows => Verdict::Refuted.word(),
-            Self::NotShown => "not shown",
+            Self::Undecided => "not shown",
         }
     }
 }

@@ -40,7 +40,7 @@ pub struct Model {
     /// Named sub-expressions, each of which uses only earlier ones.
     pub define: Vec<Entry<Formula>>,
     /// The class of cascade that the author wants; either if absent.
-    pub asked: Option<Spanned<CascadeClass>>,
+    pub cascade_class: Option<Spanned<CascadeClass>>,
     /// The form of a regression made of a relation between the components of the transform.
     pub relation_form: Option<Spanned<RelationForm>>,
     /// Inequalities that hold where the plant operates.

@@ -18,25 +18,25 @@ pub(super) fn collect(
     want: Regularity,
     found: &mut Vec<Assumption>,
 ) -> Result<(), Diagnostic> {
-    let mut ask = |part: &Formula, asks: Vec<(Expr, Relation)>| {
-        let open = asks.into_iter().filter(|ask| !arena.holds_of_number(*ask));
+    let mut add = |part: &Formula, conditions: Vec<(Expr, Relation)>| {
+        let open = conditions.into_iter().filter(|condition| !arena.holds_of_number(*condition));
         found.extend(open.map(|(expr, relation)| Assumption { expr, relation, span: part.span }));
     };
     match &formula.term {
         Term::Binary(Operator::Divide, _, below) => {
-            ask(below, arena.division_conditions(lower(arena, scope, below)?));
+            add(below, arena.division_conditions(lower(arena, scope, below)?));
         }
         Term::Binary(Operator::Power, base, exponent) => {
             let (value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);
-            let asked = match arena.as_number(exponent) {
+            let conditions = match arena.as_number(exponent) {
                 Some(power) => arena.power_condition(value, &power, want),
                 None => Some(arena.symbolic_power_condition(value)),
             };
-            ask(base, asked.into_iter().collect());
+            add(base, conditions.into_iter().collect());
         }
         Term::Call(function, arguments) => {
             let values = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
-            ask(&arguments[0], arena.call_conditions(*function, &values, want));
+            add(&arguments[0], arena.call_conditions(*function, &values, want));
         }
         _ => {}
     }

@@ -90,8 +90,8 @@ fn division_by_zero(span: Span) -> Diagnostic {
 
 /// Checks that constant arguments are where the function has a real value.
 fn in_domain(arena: &Arena, function: Function, arguments: &[Expr], span: Span) -> Result<(), Diagnostic> {
-    let asked = arena.call_conditions(function, arguments, Regularity::Defined);
-    if asked.into_iter().any(|ask| arena.fails_of_number(ask)) {
+    let conditions = arena.call_conditions(function, arguments, Regularity::Defined);
+    if conditions.into_iter().any(|ask| arena.fails_of_number(ask)) {
         let name = function.row().name;
         let values: Vec<String> = arguments.iter().map(|argument| arena.print(*argument)).collect();
         return Err(Diagnostic::error(

@@ -32,7 +32,7 @@ pub struct Plant {
     /// The proposals of the class; proved like anything else.
     pub proposal: Proposal,
     /// The class of cascade that the author wants; either if absent.
-    pub asked: Option<CascadeClass>,
+    pub cascade_class: Option<CascadeClass>,
     /// The form of a regression of relations between the components of the transform that the author wants, with the
     /// span.
     pub relation_form: Option<(RelationForm, Span)>,
@@ -168,8 +168,8 @@ pub struct Assumption {
 
 impl Plant {
     /// Tests whether the author wants this form of a relation between the components of the transform.
-    pub fn asks_for(&self, form: RelationForm) -> bool {
-        self.relation_form.is_some_and(|asked| asked.0 == form)
+    pub fn wants(&self, form: RelationForm) -> bool {
+        self.relation_form.is_some_and(|wanted| wanted.0 == form)
     }
 
     /// The same plant with another transform, which was searched for: a component that fails is pointed at where the

@@ -58,7 +58,7 @@ impl Plant {
                 within(formula, &on_states, "phi(x, y)")
             }),
             Some(class) => {
-                let place = class::Place { arena: &arena, scope: &scope, model, domain: &domain, z: &own.z };
+                let place = class::ClassContext { arena: &arena, scope: &scope, model, domain: &domain, z: &own.z };
                 let names = class::Names { x: &x, y: &y, u: &u, w: &w, constants: &constants };
                 place.expand(class, &names, &mut problems).unwrap_or_default()
             }
@@ -88,7 +88,7 @@ impl Plant {
         }));
         let units =
             model.units.iter().map(|entry| (arena.symbol(&entry.name.value), entry.value.value.clone())).collect();
-        let conditions = asked(&arena, &scope, model, conditions);
+        let conditions = domain_conditions(&arena, &scope, model, conditions);
         let terms = terms::of_rates(&arena, &scope, model);
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
         if arena.budget().is_exhausted() {
@@ -102,7 +102,7 @@ impl Plant {
             title: model.title.as_ref().map(|t| t.value.clone()),
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
-            asked: model.asked.as_ref().map(|asked| asked.value),
+            cascade_class: model.cascade_class.as_ref().map(|class| class.value),
             relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
             proposal,
             parameters,
@@ -153,7 +153,7 @@ fn names_of(arena: &Arena, model: &Model, parameters: &[Parameter], problems: &m
 
 /// The domain conditions of the formulas, and the conditions for the transform to have derivatives, beside those of a
 /// class: some of its formulas are differentiated.
-fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
+fn domain_conditions(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
     let mut conditions = of_class;
     let mut collect = |formula: &model::Formula, want: Regularity| {
         // A failure was reported where the formula itself was lowered.

@@ -285,7 +285,7 @@ pub fn cannot_rebase(name: &str, rebase: Span) -> Diagnostic {
 }
 
 /// A list that has no value for each unknown, or a number that cannot be read.
-struct Unusable;
+struct RefusedSetting;
 
 struct Section<'a, F> {
     written: &'a Observer,
@@ -345,12 +345,12 @@ impl<F> Section<'_, F> {
     }
 
     /// The restarts of the extension, if any.
-    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, Unusable>
+    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, RefusedSetting>
     where
         F: Fn(&Decimal) -> Option<N>,
     {
         let model::Rebase { samples, above, leak, .. } = &self.written.rebase;
-        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(Unusable);
+        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(RefusedSetting);
         Ok(match (samples, above, leak) {
             (Some(samples), ..) => Some(Rebase::Samples(number(samples)?)),
             (None, Some(bound), _) => Some(Rebase::Above(number(bound)?)),
@@ -394,16 +394,18 @@ impl<F> Section<'_, F> {
         written: &[Spanned<Decimal>],
         count: usize,
         what: &str,
-    ) -> Result<Option<Vec<N>>, Unusable>
+    ) -> Result<Option<Vec<N>>, RefusedSetting>
     where
         F: Fn(&Decimal) -> Option<N>,
     {
         match written {
             [] => Ok(None),
-            [one] => Ok(Some(vec![self.number(one).ok_or(Unusable)?; count])),
-            all if all.len() == count => {
-                all.iter().map(|value| self.number(value).ok_or(Unusable)).collect::<Result<Vec<N>, _>>().map(Some)
-            }
+            [one] => Ok(Some(vec![self.number(one).ok_or(RefusedSetting)?; count])),
+            all if all.len() == count => all
+                .iter()
+                .map(|value| self.number(value).ok_or(RefusedSetting))
+                .collect::<Result<Vec<N>, _>>()
+                .map(Some),
             all => {
                 let message = format!("{} values are given, where the observer takes {count}: {what}", all.len());
                 self.problems.push(
@@ -415,7 +417,7 @@ impl<F> Section<'_, F> {
                         },
                     ),
                 );
-                Err(Unusable)
+                Err(RefusedSetting)
             }
         }
     }

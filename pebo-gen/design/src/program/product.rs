@@ -27,7 +27,7 @@ impl Lowering<'_> {
         let mut negative = product.coefficient.is_negative();
         let mut numerator: Vec<Operand> = Vec::new();
         let mut denominator: Vec<Operand> = Vec::new();
-        let (together, apart) = raised_together(product);
+        let (combined, apart) = combined_powers(product);
         let below = denominators(&apart);
         let shared = self.sharing.is_shared(&below);
         let mut factor = apart.coefficient.abs();
@@ -41,7 +41,7 @@ impl Lowering<'_> {
             let coefficient = self.number(&factor);
             numerator.push(coefficient);
         }
-        for power in &together {
+        for power in &combined {
             let (value, is_below) = self.raised(power);
             negative ^= value.negative;
             if is_below { &mut denominator } else { &mut numerator }.push(value.operand);
@@ -70,7 +70,7 @@ impl Lowering<'_> {
     }
 
     /// The power of a quotient; true if it is a denominator.
-    fn raised(&mut self, power: &Together) -> (Signed, bool) {
+    fn raised(&mut self, power: &CombinedPower) -> (Signed, bool) {
         let mut negative = false;
         let mut sides = [Vec::new(), Vec::new()];
         if !power.coefficient.is_one() {
@@ -143,13 +143,13 @@ impl Lowering<'_> {
 }
 
 /// The smallest exponent of a combined base: squares leave the range of single precision beyond 1e19 alone.
-const SMALLEST_TOGETHER: u32 = 3;
+const SMALLEST_COMBINED: u32 = 3;
 
 /// Bits of a coefficient, or of its reciprocal, that single precision just holds.
 const MOST_BITS: u64 = 100;
 
 /// A power of a product.
-struct Together {
+struct CombinedPower {
     coefficient: Rational,
     /// The factors of the base, and whether they divide.
     bases: Vec<(Expr, bool)>,
@@ -157,22 +157,22 @@ struct Together {
 }
 
 /// The exponent's absolute value, if factors with the same may be combined.
-pub(super) fn magnitude_together(exponent: &Rational) -> Option<u32> {
+pub(super) fn combined_exponent(exponent: &Rational) -> Option<u32> {
     let magnitude = exponent.is_integer().then(|| u32::try_from(exponent.abs().to_i64()?).ok())??;
-    (SMALLEST_TOGETHER..=LONGEST_CHAIN).contains(&magnitude).then_some(magnitude)
+    (SMALLEST_COMBINED..=LONGEST_CHAIN).contains(&magnitude).then_some(magnitude)
 }
 
 /// The powers of products, and the product of the other factors.
-fn raised_together(product: &Product) -> (Vec<Together>, Product) {
+fn combined_powers(product: &Product) -> (Vec<CombinedPower>, Product) {
     let mut groups: BTreeMap<u32, Vec<(Expr, bool)>> = BTreeMap::new();
     for (base, exponent) in &product.factors {
-        if let Some(magnitude) = magnitude_together(exponent) {
+        if let Some(magnitude) = combined_exponent(exponent) {
             groups.entry(magnitude).or_default().push((*base, exponent.is_negative()));
         }
     }
     let mut coefficient = product.coefficient.clone();
     let is_far = |number: &Rational| number.numerator().bits().abs_diff(number.denominator().bits()) > MOST_BITS;
-    let mut together = Vec::new();
+    let mut combined = Vec::new();
     for (exponent, bases) in groups {
         // `(q/10)^40` where 1e-40 has no value in single precision.
         let root = is_far(&coefficient).then(|| coefficient.abs().root_exact(exponent)).flatten();
@@ -182,13 +182,13 @@ fn raised_together(product: &Product) -> (Vec<Together>, Product) {
         if root.is_some() {
             coefficient = Rational::from(coefficient.signum());
         }
-        together.push(Together { coefficient: root.unwrap_or(Rational::ONE), bases, exponent });
+        combined.push(CombinedPower { coefficient: root.unwrap_or(Rational::ONE), bases, exponent });
     }
     let raised = |exponent: &Rational| {
-        magnitude_together(exponent).is_some_and(|magnitude| together.iter().any(|power| power.exponent == magnitude))
+        combined_exponent(exponent).is_some_and(|magnitude| combined.iter().any(|power| power.exponent == magnitude))
     };
     let factors = product.factors.iter().filter(|(_, exponent)| !raised(exponent)).cloned().collect();
-    (together, Product { coefficient, factors })
+    (combined, Product { coefficient, factors })
 }
 
 pub(super) fn is_half(fraction: &Rational) -> bool {

@@ -14,10 +14,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::angles::halved;
 use super::factor::factor;
 use super::fixed::fixed;
-use super::guards::{Guarded, guarded};
-use super::lower::{Undeclared, lower, lower_with};
+use super::guards::{GuardedProgram, guarded};
+use super::lower::{UndeclaredSymbol, lower, lower_with};
 use super::oriented::oriented;
-use super::product::magnitude_together;
+use super::product::combined_exponent;
 use super::reuse::with_values;
 use super::spread::spread;
 use super::straight::{Operand, Operation, Program};
@@ -38,7 +38,7 @@ pub struct Task {
 
 /// Functions that share constants and terms.
 #[derive(Clone, Debug)]
-pub struct Staged {
+pub struct StagedPrograms {
     /// The constants: each a formula in the parameters, the output of `setup` at the same position.
     pub constants: Vec<(Symbol, Expr)>,
     /// From the parameters to the constants.
@@ -54,8 +54,13 @@ pub struct Staged {
 /// Lowers several functions, with constants computed once and terms once a sample.
 ///
 /// # Errors
-/// [`Undeclared`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
-pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[Task]) -> Result<Staged, Undeclared> {
+/// [`UndeclaredSymbol`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
+pub fn stage(
+    arena: &Arena,
+    parameters: &[Symbol],
+    sampled: &[Symbol],
+    tasks: &[Task],
+) -> Result<StagedPrograms, UndeclaredSymbol> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
     let roots = spread(arena, &prepared(arena, &halved(arena, &roots), parameters, parameters), parameters);
@@ -116,7 +121,7 @@ impl Stages {
         parameters: &[Symbol],
         sampled: &[Symbol],
         tasks: &[Task],
-    ) -> Result<Staged, Undeclared> {
+    ) -> Result<StagedPrograms, UndeclaredSymbol> {
         let formulas = |named: &[(Symbol, Expr)]| named.iter().map(|part| part.1).collect::<Vec<Expr>>();
         let setup = lower(arena, parameters, &formulas(&self.constants))?;
         let mut inputs: Vec<Symbol> = self.constants.iter().map(|constant| constant.0).collect();
@@ -133,7 +138,7 @@ impl Stages {
             let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
             programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
         }
-        Ok(Staged { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
+        Ok(StagedPrograms { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
     }
 
     /// The programs, with the opposites of constants and terms kept where that leaves fewer negations.
@@ -143,8 +148,8 @@ impl Stages {
         parameters: &[Symbol],
         sampled: &[Symbol],
         tasks: &[Task],
-    ) -> Result<Staged, Undeclared> {
-        let negations = |staged: &Staged| {
+    ) -> Result<StagedPrograms, UndeclaredSymbol> {
+        let negations = |staged: &StagedPrograms| {
             let of = |program: &Program| program.operations.iter().filter(|o| matches!(o, Operation::Neg(_))).count();
             // A function that runs at both ends of an interval counts twice.
             let often = |task: &Task| if task.is_regular { 2 } else { 1 };
@@ -185,11 +190,11 @@ impl Stages {
     }
 }
 
-impl Staged {
+impl StagedPrograms {
     /// A program that compares parameters with zero, with the conditions of the constants and the functions on them.
-    pub fn guarded(&self, arena: &Arena, checked: &Program, asked: &[Option<Relation>]) -> Guarded {
+    pub fn guarded(&self, arena: &Arena, checked: &Program, wanted: &[Option<Relation>]) -> GuardedProgram {
         let users: Vec<&Program> = self.programs.iter().chain([&self.sample]).collect();
-        guarded(arena, &self.setup, &users, (checked, asked))
+        guarded(arena, &self.setup, &users, (checked, wanted))
     }
 
     /// The constants and terms whose opposite is used, or that of a product with them.
@@ -258,7 +263,11 @@ fn is_constant(arena: &Arena, constants: &[(Symbol, Expr)]) -> impl Fn(Expr, usi
 
 /// Terms that are computed as an earlier one, or as its opposite, and their values then: two shapes of a formula may
 /// come to the same operations.
-fn same(arena: &Arena, inputs: &[Symbol], terms: &[(Symbol, Expr)]) -> Result<BTreeMap<Symbol, Expr>, Undeclared> {
+fn same(
+    arena: &Arena,
+    inputs: &[Symbol],
+    terms: &[(Symbol, Expr)],
+) -> Result<BTreeMap<Symbol, Expr>, UndeclaredSymbol> {
     let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
     let program = lower(arena, inputs, &formulas)?;
     let opposite = |operand: Operand| {
@@ -392,8 +401,8 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
             factors.iter().cloned().partition(|factor| self.fixed.contains(&factor.0));
         // In a power of a quotient the parameters are a power of one constant: `K^10` alone may overflow.
         let is_raised = |(_, exponent): &(Expr, Rational)| {
-            let magnitude = magnitude_together(exponent);
-            magnitude.is_some() && rest.iter().any(|(_, moving)| magnitude_together(moving) == magnitude)
+            let magnitude = combined_exponent(exponent);
+            magnitude.is_some() && rest.iter().any(|(_, moving)| combined_exponent(moving) == magnitude)
         };
         let (raised, fixed): (Vec<_>, Vec<_>) = fixed.into_iter().partition(is_raised);
         let mut factors: Vec<_> = rest.into_iter().map(|(base, e)| (known[&base], e)).collect();

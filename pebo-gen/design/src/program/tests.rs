@@ -187,7 +187,7 @@ proptest! {
 }
 
 /// The cost of lowering one formula in x, y, d (arguments) and L, C (parameters).
-fn staged(build: impl FnOnce(&Arena) -> Vec<Expr>) -> (Arena, Staged) {
+fn staged(build: impl FnOnce(&Arena) -> Vec<Expr>) -> (Arena, StagedPrograms) {
     let arena = Arena::new();
     let parameters = ["L", "C"].map(|name| arena.symbol(name));
     let arguments = ["x", "y", "d"].map(|name| arena.symbol(name)).to_vec();
@@ -501,7 +501,7 @@ fn a_part_is_computed_once_as_it_is_written() {
     assert_eq!(run(&staged.programs[0], &point), [3.75, 11.25, 18.75]);
     let unknown = arena.symbol("w");
     let strange = stage(&arena, &[], &[], &[task(vec![(part, arena.of_symbol(unknown))], vec![named])]);
-    assert_eq!(strange.unwrap_err(), Undeclared(unknown));
+    assert_eq!(strange.unwrap_err(), UndeclaredSymbol(unknown));
 }
 
 #[test]
@@ -509,7 +509,7 @@ fn an_undeclared_symbol_is_an_error() {
     let arena = Arena::new();
     let (x, w) = (arena.symbol("x"), arena.symbol("w"));
     let sum = arena.add(arena.of_symbol(x), arena.of_symbol(w));
-    assert_eq!(lower(&arena, &[x], &[sum]), Err(Undeclared(w)));
+    assert_eq!(lower(&arena, &[x], &[sum]), Err(UndeclaredSymbol(w)));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::{Arena, Expr};
 
-use super::problem::Question;
+use super::problem::Problem;
 
 /// A transform with the verdicts on its claims.
 #[derive(Debug)]
@@ -18,8 +18,8 @@ pub struct Candidate {
 
 impl Candidate {
     /// Derives the claims of a transform.
-    pub(super) fn of(question: &Question<'_>, phi: &[Expr]) -> Self {
-        let plant = question.plant.with_transform(phi);
+    pub(super) fn of(problem: &Problem<'_>, phi: &[Expr]) -> Self {
+        let plant = problem.plant.with_transform(phi);
         let derivation = Derivation::derive(&plant);
         Self { plant, derivation }
     }

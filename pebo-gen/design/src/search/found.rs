@@ -10,7 +10,7 @@ use super::candidate::Candidate;
 #[derive(Debug)]
 pub struct Search {
     /// The verdict, in a word.
-    pub verdict: Found,
+    pub verdict: SearchVerdict,
     /// The transforms that were proved or refuted, in order of merit.
     pub candidates: Vec<Candidate>,
     /// A transform that would be accepted if these states were positive, where none is accepted as it is.
@@ -23,12 +23,12 @@ pub struct Search {
     /// The same of transforms affine in x with a generalised cascade, where the first is small.
     pub generalised: Option<Bound>,
     /// The attempts, in order.
-    pub tried: Vec<Tried>,
+    pub tried: Vec<Attempt>,
 }
 
 /// The verdict of a search.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Found {
+pub enum SearchVerdict {
     /// There is one whose claims are all proved, and which recovers all states.
     Found,
     /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if a
@@ -42,7 +42,7 @@ pub enum Found {
 
 /// A form of transforms that was tried.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Tried {
+pub struct Attempt {
     /// The form.
     pub form: Form,
     /// The functions among which a null space was looked for, where there was one.

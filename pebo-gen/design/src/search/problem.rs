@@ -8,7 +8,7 @@ use pebo_cas::{Arena, Domain, Expr, Node, Relation, Symbol};
 
 /// A plant whose transform is looked for.
 #[derive(Debug)]
-pub(super) struct Question<'a> {
+pub(super) struct Problem<'a> {
     pub(super) plant: &'a Plant,
     pub(super) arena: &'a Arena,
     /// The domain of the model: where its own formulas have values.
@@ -24,7 +24,7 @@ pub(super) struct Question<'a> {
     pub(super) signals: BTreeSet<Symbol>,
 }
 
-impl<'a> Question<'a> {
+impl<'a> Problem<'a> {
     pub(super) fn of(plant: &'a Plant) -> Self {
         Self::knowing(plant, &BTreeMap::new())
     }
@@ -32,31 +32,31 @@ impl<'a> Question<'a> {
     /// The problems for the other states where outputs determine some by their value, alone or with states that remain
     /// unmeasured. An output that is a function of several states determines one of them; which, differs between the
     /// problems.
-    pub(super) fn with_told_states(plant: &'a Plant) -> Vec<Self> {
+    pub(super) fn with_measured_states(plant: &'a Plant) -> Vec<Self> {
         let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let values = plant.y.iter().filter_map(|output| output.value.as_ref());
         let count = |value: Expr| plant.arena.symbols_of(&[value]).intersection(&states).count();
         let turns = values.map(|value| count(value.expr)).max().unwrap_or(0);
         let mut known: Vec<BTreeMap<Symbol, Expr>> = Vec::new();
         for turn in 0..turns {
-            let told = told(plant, turn);
-            if !told.is_empty() && told.len() < plant.x.len() && !known.contains(&told) {
-                known.push(told);
+            let measured = measured(plant, turn);
+            if !measured.is_empty() && measured.len() < plant.x.len() && !known.contains(&measured) {
+                known.push(measured);
             }
         }
-        known.iter().map(|told| Self::knowing(plant, told)).collect()
+        known.iter().map(|measured| Self::knowing(plant, measured)).collect()
     }
 
     /// The problem where some states are functions of outputs and of the other states.
-    fn knowing(plant: &'a Plant, told: &BTreeMap<Symbol, Expr>) -> Self {
+    fn knowing(plant: &'a Plant, measured: &BTreeMap<Symbol, Expr>) -> Self {
         let states = plant.x.iter().map(|state| state.symbol);
-        let x: Vec<Symbol> = states.filter(|state| !told.contains_key(state)).collect();
+        let x: Vec<Symbol> = states.filter(|state| !measured.contains_key(state)).collect();
         let moving = plant.y.iter().filter(|output| output.rate.is_some());
         let mut hidden = plant.hidden();
-        hidden.retain(|symbol| !told.contains_key(symbol));
+        hidden.retain(|symbol| !measured.contains_key(symbol));
         let outputs = plant.y.iter().map(|output| output.symbol);
         let signals = plant.hidden().into_iter().chain(outputs).chain(plant.u.iter().copied()).collect();
-        let rates = plant.rates().into_iter().map(|(symbol, rate)| (symbol, plant.arena.substitute(rate, told)));
+        let rates = plant.rates().into_iter().map(|(symbol, rate)| (symbol, plant.arena.substitute(rate, measured)));
         Self {
             plant,
             arena: &plant.arena,
@@ -87,8 +87,8 @@ impl<'a> Question<'a> {
     /// Tests whether a function has values and derivatives on the whole domain, except perhaps at the zeros of some
     /// formulas, which the proof of the claims then lists.
     pub(super) fn exists(&self, expr: Expr) -> bool {
-        let asked = self.arena.domain_conditions(&[expr], Regularity::Differentiable);
-        asked.into_iter().all(|(part, relation)| match relation {
+        let conditions = self.arena.domain_conditions(&[expr], Regularity::Differentiable);
+        conditions.into_iter().all(|(part, relation)| match relation {
             Relation::NonZero => !self.arena.is_zero(part),
             Relation::NonNegative => self.domain.implies(self.arena, part, relation),
             // A nonnegative expression is positive except at its zeros.
@@ -100,7 +100,7 @@ impl<'a> Question<'a> {
 
     /// Tests whether a function is non-smooth or jumps where a combination of the unmeasured states passes zero: theta
     /// would be another constant behind a jump, and no proof that omits the point reveals it.
-    pub(super) fn bends_in_states(&self, expr: Expr) -> bool {
+    pub(super) fn is_non_smooth_in_states(&self, expr: Expr) -> bool {
         let hidden = |part: Expr| self.arena.depends_on(part, &self.hidden);
         self.arena.dividers(&[expr]).into_iter().any(hidden)
     }
@@ -131,7 +131,7 @@ impl<'a> Question<'a> {
 /// States that outputs with a rate determine by their value, as functions of these and of the remaining states: `th` by
 /// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. An output determines one of its states, in the
 /// first turn the first that moves, in each further turn the next.
-fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
+fn measured(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let domain = plant.domain();
     let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
@@ -157,10 +157,10 @@ fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
             let is_free = !arena.depends_on(slope, &states) && !arena.is_zero(slope);
             is_free && domain.implies(arena, slope, Relation::NonZero)
         };
-        let mut told: Vec<Symbol> = plant.x.iter().map(|x| x.symbol).filter(|x| symbols.contains(x)).collect();
-        told.retain(is_steep);
-        told.sort_by_key(is_constant);
-        let Some(state) = (!told.is_empty()).then(|| told[turn % told.len()]) else { continue };
+        let mut measured: Vec<Symbol> = plant.x.iter().map(|x| x.symbol).filter(|x| symbols.contains(x)).collect();
+        measured.retain(is_steep);
+        measured.sort_by_key(is_constant);
+        let Some(state) = (!measured.is_empty()).then(|| measured[turn % measured.len()]) else { continue };
         let rest = arena.substitute(value, &BTreeMap::from([(state, arena.zero())]));
         let difference = arena.sub(arena.of_symbol(output), rest);
         let by_output = arena.div(difference, arena.derivative(value, state));

@@ -11,7 +11,7 @@ use pebo_cas::tower::residue::{Words, prime_of_kernels};
 use pebo_cas::tower::straight_line::StraightLineProgram;
 use pebo_cas::{Budget, Expr};
 
-use super::problem::Question;
+use super::problem::Problem;
 
 /// Points that are given up because a denominator vanishes there.
 const MOST_POLES: usize = 50;
@@ -38,9 +38,9 @@ pub(super) struct Sample<'a> {
 pub(super) type Values = Vec<Residue>;
 
 impl<'a> Sample<'a> {
-    pub(super) fn of(question: &Question<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
+    pub(super) fn of(problem: &Problem<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
         let mut words = Words::new(0x5eed);
-        let of = |prime: &PrimeField| StraightLineProgram::of(question.arena, &question.domain.facts, prime, formulas);
+        let of = |prime: &PrimeField| StraightLineProgram::of(problem.arena, &problem.domain.facts, prime, formulas);
         let first_prime = prime_of_kernels().ok_or(Obstacle::TooLarge)?;
         let mut straight = of(&first_prime)?;
         let mut found = straight.field().draw(&first_prime, &mut words, |_| None).map(|values| (first_prime, values));
@@ -54,11 +54,11 @@ impl<'a> Sample<'a> {
         let (prime, first) = found.ok_or(Obstacle::NoResidue)?;
         let formulas = straight;
         let field = formulas.field();
-        let hidden = field.kernels_of(&question.hidden);
-        let moving = field.kernels_of(&question.signals);
+        let hidden = field.kernels_of(&problem.hidden);
+        let moving = field.kernels_of(&problem.signals);
         let constant = |(number, value): (u32, Residue)| (!moving.contains(&number)).then_some(value);
         let constants = (0..).zip(first).map(constant).collect();
-        Ok(Self { prime, formulas, hidden, constants, words, budget: question.arena.budget().clone() })
+        Ok(Self { prime, formulas, hidden, constants, words, budget: problem.arena.budget().clone() })
     }
 
     /// The values at so many points that differ in the unmeasured states and signals alone; the parameters are those of
@@ -104,8 +104,8 @@ impl<'a> Sample<'a> {
 }
 
 /// The functions that, according to random points, are no combinations of earlier ones with constant coefficients.
-pub(super) fn independent(question: &Question<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
-    let mut sample = Sample::of(question, functions)?;
+pub(super) fn independent(problem: &Problem<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let mut sample = Sample::of(problem, functions)?;
     let columns = functions.len();
     let dependent = sample.rows(columns, 1, |_, fibre| fibre.first().cloned()).ok_or(Obstacle::OutOfBudget)?;
     let is_free = |column: &usize| dependent.iter().all(|(free, _)| free != column);
@@ -114,11 +114,10 @@ pub(super) fn independent(question: &Question<'_>, functions: &[Expr]) -> Result
 
 /// The rank over the functions of y and u of the gradients of these functions by the states, as far as a random point
 /// tells.
-pub(super) fn rank_of_gradients(question: &Question<'_>, functions: &[Expr]) -> Result<usize, Obstacle> {
-    let (arena, width) = (question.arena, question.x.len());
-    let slopes: Vec<Expr> =
-        functions.iter().flat_map(|e| question.x.iter().map(|x| arena.derivative(*e, *x))).collect();
-    let mut sample = Sample::of(question, &slopes)?;
+pub(super) fn rank_of_gradients(problem: &Problem<'_>, functions: &[Expr]) -> Result<usize, Obstacle> {
+    let (arena, width) = (problem.arena, problem.x.len());
+    let slopes: Vec<Expr> = functions.iter().flat_map(|e| problem.x.iter().map(|x| arena.derivative(*e, *x))).collect();
+    let mut sample = Sample::of(problem, &slopes)?;
     let fibre = sample.fibre(1).ok_or(Obstacle::NoPoint)?;
     let prime = &sample.prime;
     let mut rows = ResidueRows::new(prime, width);
@@ -130,9 +129,9 @@ pub(super) fn rank_of_gradients(question: &Question<'_>, functions: &[Expr]) -> 
 
 /// Tests whether, according to random points, each of the targets is an affine combination of the functions with
 /// coefficients free of hidden symbols.
-pub(super) fn is_affine_in(question: &Question<'_>, targets: &[Expr], functions: &[Expr]) -> Result<bool, Obstacle> {
+pub(super) fn is_affine_in(problem: &Problem<'_>, targets: &[Expr], functions: &[Expr]) -> Result<bool, Obstacle> {
     let count = functions.len();
-    let mut sample = Sample::of(question, &[functions, targets].concat())?;
+    let mut sample = Sample::of(problem, &[functions, targets].concat())?;
     let fibre = sample.fibre(count + targets.len() + 2).ok_or(Obstacle::NoPoint)?;
     let prime = &sample.prime;
     let mut rows = ResidueRows::new(prime, 1 + count + targets.len());

@@ -9,10 +9,10 @@ use pebo_cas::{Arena, Expr, Symbol};
 
 use super::bounds::{Bound, BoundClass, Evidence};
 use super::candidate::Candidate;
-use super::found::{Form, Found, Search, Start, Tried};
+use super::found::{Attempt, Form, Search, SearchVerdict, Start};
 use super::frame::{Block, blocks};
 
-impl Found {
+impl SearchVerdict {
     /// The verdict in a word.
     pub fn word(self) -> &'static str {
         match self {
@@ -124,7 +124,7 @@ impl Bound {
     }
 }
 
-impl Tried {
+impl Attempt {
     /// The attempt in a line.
     pub fn sentence(&self) -> String {
         let form = self.form.words();
@@ -207,7 +207,7 @@ impl Search {
     /// The open possibilities after a search that found none.
     pub fn open(&self) -> Option<&'static str> {
         let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
-        (self.verdict == Found::None && excluded).then_some(
+        (self.verdict == SearchVerdict::None && excluded).then_some(
             "a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
         )
     }
@@ -241,7 +241,7 @@ impl Search {
 
     /// The refusal of a given transform, with the search's result in its place.
     pub fn advise(&self, plant: &Plant, refusal: Diagnostic) -> Diagnostic {
-        if let Some(best) = self.candidates.first().filter(|_| self.verdict == Found::Found) {
+        if let Some(best) = self.candidates.first().filter(|_| self.verdict == SearchVerdict::Found) {
             let class = best.derivation.class.name();
             if let Some(keys) = best.keys() {
                 return refusal.help(format!("use {keys}, which is accepted ({class})"));
@@ -257,7 +257,7 @@ impl Search {
             Some(bound) => {
                 let noted = refusal.note(bound.sentence(&plant.arena));
                 // To choose a phi is no advice where there is none.
-                let help = match (self.killing_fields(plant), plant.asked) {
+                let help = match (self.killing_fields(plant), plant.cascade_class) {
                     (Some(help), _) => help,
                     (None, _) if bound.class != BoundClass::Smooth => return noted,
                     (None, Some(Class::Pebo)) => "leave out `class: pebo`, or measure another signal".to_owned(),

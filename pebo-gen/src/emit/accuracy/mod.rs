@@ -31,7 +31,7 @@ use pebo_cas::number::interval::{Interval, Precision};
 use pebo_cas::{Arena, Expr, Rational, Symbol};
 use pebo_design::analysis::Derivation;
 use pebo_design::plant::Plant;
-use pebo_design::program::{Program, Staged, Task, stage};
+use pebo_design::program::{Program, StagedPrograms, Task, stage};
 use points::{Place, places};
 use rounded::{round, run};
 use spot::Spot;
@@ -159,7 +159,7 @@ impl<'a> Ground<'a> {
     }
 
     /// What loses digits somewhere in this scalar, the author's losses among it.
-    pub(super) fn losing(&self, definitions: &Definitions, staged: &Staged, scalar: Scalar) -> Losing {
+    pub(super) fn losing(&self, definitions: &Definitions, staged: &StagedPrograms, scalar: Scalar) -> Losing {
         let arena = &self.plant.arena;
         let groups = definitions.groups();
         let mut losing = Losing::new();
@@ -195,7 +195,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Measures the functions that run with every sample.
-    pub(super) fn measure(&self, definitions: &Definitions, staged: &Staged) -> Accuracy {
+    pub(super) fn measure(&self, definitions: &Definitions, staged: &StagedPrograms) -> Accuracy {
         let Self { plant, .. } = *self;
         let groups = definitions.groups();
         let spots = self.spots(&groups);
@@ -283,7 +283,7 @@ fn extended(plant: &Plant, definitions: &Definitions, place: &Place) -> Option<P
 fn by_groups(
     plant: &Plant,
     definitions: &Definitions,
-    staged: &Staged,
+    staged: &StagedPrograms,
     scalar: Scalar,
     place: &Place,
 ) -> Vec<Vec<f64>> {
@@ -296,7 +296,7 @@ fn by_groups(
 /// What programs give at a place, for the sampled symbols and the arguments of each.
 fn computed(
     plant: &Plant,
-    staged: &Staged,
+    staged: &StagedPrograms,
     (sampled, arguments): (&[Symbol], &[Vec<Symbol>]),
     scalar: Scalar,
     place: &Place,

@@ -14,7 +14,7 @@ use pebo_cas::forms::tidy::{operations, others};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::Derivation;
 use pebo_design::plant::Plant;
-use pebo_design::program::{Staged, Undeclared};
+use pebo_design::program::{StagedPrograms, UndeclaredSymbol};
 
 /// Ways to write an entry that are tried.
 const MOST_WAYS: usize = 12;
@@ -29,7 +29,7 @@ const SHARE: u64 = 2;
 #[derive(Clone, Debug)]
 pub(in crate::emit) struct Choice<'a> {
     pub(in crate::emit) definitions: Definitions<'a>,
-    pub(in crate::emit) staged: Staged,
+    pub(in crate::emit) staged: StagedPrograms,
     /// What loses digits.
     losing: Losing,
 }
@@ -49,21 +49,21 @@ impl Choice<'_> {
 /// Chooses for numbers of this type.
 ///
 /// # Errors
-/// [`Undeclared`] if a function depends on a symbol that it does not get.
+/// [`UndeclaredSymbol`] if a function depends on a symbol that it does not get.
 pub(in crate::emit) fn choose<'a>(
     plant: &Plant,
     derivation: &Derivation,
     (parameters, scalar): (&[Symbol], Scalar),
     definitions: &Definitions<'a>,
     is_zero: impl Fn(&Arena, Expr) -> bool,
-) -> Result<(Choice<'a>, Accuracy), Undeclared> {
+) -> Result<(Choice<'a>, Accuracy), UndeclaredSymbol> {
     let arena = &plant.arena;
     let ground = Ground::of(plant, derivation, definitions);
-    let of = |definitions: &Definitions<'a>, staged: Staged| {
+    let of = |definitions: &Definitions<'a>, staged: StagedPrograms| {
         let losing = ground.losing(definitions, &staged, scalar);
         Choice { definitions: definitions.clone(), staged, losing }
     };
-    let measured = |definitions: &Definitions<'a>| -> Result<Choice<'a>, Undeclared> {
+    let measured = |definitions: &Definitions<'a>| -> Result<Choice<'a>, UndeclaredSymbol> {
         let (cheaper, other) = tasks::staged(arena, parameters, definitions, &is_zero)?;
         let cheaper = of(definitions, cheaper);
         let Some(other) = other.filter(|_| !cheaper.losing.is_empty()) else { return Ok(cheaper) };
@@ -76,7 +76,7 @@ pub(in crate::emit) fn choose<'a>(
             break;
         }
         let before = choice.definitions.clone();
-        let better = arena.budget().share(SHARE, || -> Result<Option<Choice<'a>>, Undeclared> {
+        let better = arena.budget().share(SHARE, || -> Result<Option<Choice<'a>>, UndeclaredSymbol> {
             let keeps = |entry: Expr, form: Expr| {
                 ground.keeps(form, entry, &before, scalar) && is_zero(arena, arena.sub(form, entry))
             };

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::{Argument, Definitions, VELOCITY};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::RegressionKind;
-use pebo_design::program::{Cost, Staged, Task, Undeclared, stage};
+use pebo_design::program::{Cost, StagedPrograms, Task, UndeclaredSymbol, stage};
 
 /// More choices are made together, not one by one.
 const MOST_SWITCHES: usize = 12;
@@ -21,13 +21,13 @@ pub(in crate::emit) fn staged(
     parameters: &[Symbol],
     definitions: &Definitions,
     is_zero: impl Fn(&Arena, Expr) -> bool,
-) -> Result<(Staged, Option<Staged>), Undeclared> {
+) -> Result<(StagedPrograms, Option<StagedPrograms>), UndeclaredSymbol> {
     let sampled = definitions.symbols(Argument::Y);
     let derived = stage(arena, parameters, &sampled, &tasks(definitions))?;
     let Some(affine) = Affine::of(arena, definitions, &is_zero) else {
         return Ok((derived, None));
     };
-    let attempt = |by_factors: &[bool]| -> Result<(usize, Staged), Undeclared> {
+    let attempt = |by_factors: &[bool]| -> Result<(usize, StagedPrograms), UndeclaredSymbol> {
         let staged = stage(arena, parameters, &sampled, &affine.tasks(arena, definitions, by_factors))?;
         Ok((work(&staged, definitions), staged))
     };
@@ -198,7 +198,7 @@ impl Affine {
 }
 
 /// The work of a step: a sample once, flow, regression and primitives at both ends.
-fn work(staged: &Staged, definitions: &Definitions) -> usize {
+fn work(staged: &StagedPrograms, definitions: &Definitions) -> usize {
     let programs = definitions.groups().into_iter().zip(&staged.programs).map(|(group, program)| {
         let times = if ["flow", "regression", "primitive"].contains(&group.name) { 2 } else { 1 };
         times * Cost::of(program).weighted()

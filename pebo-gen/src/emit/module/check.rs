@@ -13,7 +13,7 @@ use crate::emit::expression::{Piece, ident};
 use crate::emit::read_back::value::{self, Value, expression, unreadable};
 use pebo_cas::{Arena, Domain, Expr, Node, Relation};
 use pebo_design::analysis::Sign;
-use pebo_design::program::{Guarded, Program, Staged};
+use pebo_design::program::{GuardedProgram, Program, StagedPrograms};
 
 /// A condition on values: one is finite, one compares so with zero, or both.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -56,7 +56,7 @@ pub(in crate::emit) fn with_guards(
     arena: &Arena,
     mut asked: Vec<(Expr, Sign)>,
     checked: &Program,
-    staged: &Staged,
+    staged: &StagedPrograms,
 ) -> (Vec<(Expr, Sign)>, Program) {
     let mut domain = Domain::default();
     for (expr, sign) in &asked {
@@ -74,7 +74,7 @@ pub(in crate::emit) fn with_guards(
             Sign::Opposite(Relation::NonNegative) | Sign::Any | Sign::Zero => None,
         })
         .collect();
-    let Guarded { program, guards } = staged.guarded(arena, checked, &relations);
+    let GuardedProgram { program, guards } = staged.guarded(arena, checked, &relations);
     asked.extend(guards.into_iter().map(|(expr, relation)| {
         let sign = match relation {
             Relation::NonZero if domain.implies(arena, expr, Relation::Positive) => Sign::Is(Relation::Positive),

@@ -12,7 +12,7 @@ use crate::emit::definition::{Argument, Definitions, Group, VELOCITY};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind};
 use pebo_design::plant::Plant;
-use pebo_design::program::{Cost, Staged};
+use pebo_design::program::{Cost, StagedPrograms};
 
 /// The documentation of the module.
 pub(in crate::emit) fn module(module: &Module<'_>) -> Vec<String> {
@@ -56,7 +56,7 @@ pub(in crate::emit) fn module(module: &Module<'_>) -> Vec<String> {
 const MODULE: usize = 96;
 
 /// All formulas that the documentation shows.
-pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged: &Staged) -> Vec<Expr> {
+pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged: &StagedPrograms) -> Vec<Expr> {
     let arena = &plant.arena;
     let constants = staged.constants.iter().copied().collect();
     let states = plant.x.iter().map(|state| state.rate.expr);
@@ -193,7 +193,7 @@ fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
             "`Psi` stays bounded but decays in some directions, in which later disturbances of `z` are not corrected."
         }
         Some(Fundamental::Grows) => "`Psi` grows without bound and amplifies every error of `theta`.",
-        Some(Fundamental::NotShown) => {
+        Some(Fundamental::Undecided) => {
             "It was not shown that `Psi` stays bounded; if it grows, it amplifies errors of `theta`."
         }
     };
@@ -238,7 +238,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         inverse.push_str(", for some of the states");
     }
     lines.push(format!("{inverse}."));
-    let asked = derivation.asked_of_estimates(plant);
+    let asked = derivation.conditions_on_estimates(plant);
     if !asked.is_empty() {
         let asked: Vec<String> = asked.iter().map(|(e, relation)| compared(arena, *e, *relation)).collect();
         lines.push(format!(
@@ -261,7 +261,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             }
             Excitation::Instant => "- Identifiability: almost every input excites".to_owned(),
             Excitation::Excitation => {
-                let lines = identifiability.motion.iter().flat_map(|motion| motion.lines(plant));
+                let lines = identifiability.trajectories.iter().flat_map(|trajectories| trajectories.lines(plant));
                 format!("- Identifiability: over time; {}", lines.collect::<Vec<String>>().join("; "))
             }
             Excitation::Never => "- Identifiability: none".to_owned(),
@@ -300,7 +300,7 @@ fn compared(arena: &Arena, expr: Expr, relation: Relation) -> String {
 }
 
 /// The functions with what they return, and the operations of one call of each.
-pub(in crate::emit) fn costs(definitions: &Definitions, staged: &Staged) -> Vec<(String, Cost)> {
+pub(in crate::emit) fn costs(definitions: &Definitions, staged: &StagedPrograms) -> Vec<(String, Cost)> {
     let mut costs = vec![("`new`, once".to_owned(), Cost::of(&staged.setup))];
     if !staged.terms.is_empty() {
         costs.push(("`terms`, once a sample".to_owned(), Cost::of(&staged.sample)));

@@ -32,7 +32,7 @@ use describe::describe;
 use pebo_cas::{Expr, Rational, Symbol};
 use pebo_design::analysis::{Class, Derivation, RegressionKind, Sign};
 use pebo_design::plant::{Plant, Settings};
-use pebo_design::program::{Constant, Program, Staged};
+use pebo_design::program::{Constant, Program, StagedPrograms};
 
 /// The `INTERFACE` of the runtime library that emitted code is written for: it fails to compile against another.
 const INTERFACE: u32 = 2;
@@ -42,7 +42,7 @@ pub(super) struct Module<'a> {
     pub(super) plant: &'a Plant,
     pub(super) derivation: &'a Derivation,
     pub(super) definitions: &'a Definitions<'a>,
-    pub(super) staged: &'a Staged,
+    pub(super) staged: &'a StagedPrograms,
     /// What is asked of the parameters.
     pub(super) asked: &'a [(Expr, Sign)],
     /// What the observer is built with, where the model says it.

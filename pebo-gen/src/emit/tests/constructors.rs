@@ -44,7 +44,7 @@ fn tuned(settings: &Settings<Rational>) -> String {
 fn refuse_changed(given: &Settings<Rational>, changes: &[(&str, &str)]) {
     let (plant, derivation) = CUK.build();
     let definitions = Definitions::of(&plant, &derivation, Some(given)).unwrap();
-    let asked = derivation.asked_of_parameters(&plant);
+    let asked = derivation.conditions_on_parameters(&plant);
     let confirm = |text: &str| {
         let tokens = text.parse().unwrap();
         read_back::confirm(&plant, &definitions, (&asked, Some(given)), Scalar::F64, &tokens, vanishes)

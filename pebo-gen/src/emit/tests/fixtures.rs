@@ -170,7 +170,7 @@ impl Sketch {
             }),
             identifiability: proved(Identifiability {
                 kind: Excitation::Instant,
-                motion: None,
+                trajectories: None,
                 gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
                 everywhere_else: true,
@@ -183,7 +183,7 @@ impl Sketch {
         let plant = Plant {
             origin: pebo_design::plant::TransformOrigin::Given,
             class: None,
-            asked: None,
+            cascade_class: None,
             relation_form: None,
             proposal: Proposal::default(),
             terms: std::collections::BTreeMap::new(),

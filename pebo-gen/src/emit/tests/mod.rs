@@ -157,7 +157,7 @@ fn signals_have_the_names_of_the_author() {
 fn an_undeclared_symbol_is_an_error() {
     let (plant, derivation) = Sketch { phi_0: &["i1", "0.0"], ..CUK }.build();
     let error = emit(&plant, &derivation, None, Scalar::F64, vanishes).unwrap_err();
-    assert_eq!(error, EmitError::Undeclared { symbol: "i1".to_owned() });
+    assert_eq!(error, EmitError::UndeclaredSymbol { symbol: "i1".to_owned() });
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn a_number_out_of_range_is_an_error() {
 fn tampered_tokens_are_refused() {
     let (plant, derivation) = CUK.build();
     let definitions = Definitions::of(&plant, &derivation, None).unwrap();
-    let asked = derivation.asked_of_parameters(&plant);
+    let asked = derivation.conditions_on_parameters(&plant);
     let text = emitted(CUK);
     let confirm = |text: &str| {
         let tokens = text.parse().unwrap();
@@ -266,7 +266,7 @@ fn an_unconfirmed_emission_is_refused() {
     let (plant, derivation) = Sketch { phi_0: ROWS, ..CUK }.build();
     let definitions = Definitions::of(&plant, &derivation, None).unwrap();
     let tokens = emitted(Sketch { phi_0: &["1.0", "0.0"], ..CUK }).parse().unwrap();
-    let asked = derivation.asked_of_parameters(&plant);
+    let asked = derivation.conditions_on_parameters(&plant);
     let confirm = |is_zero: fn(&Arena, Expr) -> bool| {
         read_back::confirm(&plant, &definitions, (&asked, None), Scalar::F64, &tokens, is_zero)
     };

@@ -41,7 +41,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let lie = plant.derivative_of_transform();
     let components: Vec<Component> =
         lie.iter().enumerate().map(|(index, rate)| component_of(plant, domain, index, *rate)).collect();
-    if plant.asked != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
+    if plant.cascade_class != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
         let h = components.iter().filter_map(Component::free).collect();
         return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(Cascade { h, ..Cascade::default() }) });
     }
@@ -57,13 +57,13 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let rows: Vec<Result<Option<affine::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
     let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
     let mends = mends(plant, domain, &lie, &components);
-    if generalised && plant.asked != Some(Class::Pebo) {
+    if generalised && plant.cascade_class != Some(Class::Pebo) {
         let result = gpebo::cascade(plant, domain, rows.into_iter().filter_map(|row| row.ok()?).collect());
         let plain = components.iter().any(|c| c.free().is_none()).then(|| mends.into_iter().collect()).flatten();
         let result = Cascade { mend: plain, ..result };
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
     }
-    if plant.asked == Some(Class::Pebo) {
+    if plant.cascade_class == Some(Class::Pebo) {
         let mut refusals = Vec::new();
         let claim = pencil::refuse(plant, domain, &mut refusals);
         let claim = claim.unwrap_or_else(|| refuse(plant, domain, (&components, &mends), |_| Ok(None), &mut refusals));
@@ -133,9 +133,10 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
         Ok(true) => Component::Free(momentum::rate(plant, domain, mechanical, index)),
         Ok(false) => match &mechanical.in_velocities {
             // The rate has no normal form that could be looked at; that it varies, points show.
-            Some(shown) => {
-                let varying = killing::quadratic(&plant.arena, mechanical, index, &shown.velocities);
-                let rate = Seen { rate, shown: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
+            Some(printed) => {
+                let varying = killing::quadratic(&plant.arena, mechanical, index, &printed.velocities);
+                let rate =
+                    RateForm { rate, printed: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
                 bound(plant, domain, rate).unwrap_or(Component::Open(Obstacle::NoWitness))
             }
             None => component(plant, domain, rate),
@@ -189,7 +190,7 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         Ok(tidied) => tidied,
         // An expression without a normal form may still differ at points.
         Err(obstacle) => {
-            return bound(plant, domain, Seen { rate, shown: rate, varying: None })
+            return bound(plant, domain, RateForm { rate, printed: rate, varying: None })
                 .unwrap_or(Component::Open(obstacle));
         }
     };
@@ -221,13 +222,14 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };
     }
-    bound(plant, domain, Seen { rate, shown: tidied, varying: None }).unwrap_or(Component::Open(Obstacle::NoWitness))
+    bound(plant, domain, RateForm { rate, printed: tidied, varying: None })
+        .unwrap_or(Component::Open(Obstacle::NoWitness))
 }
 
 /// A rate and its printed form.
-struct Seen {
+struct RateForm {
     rate: Expr,
-    shown: Expr,
+    printed: Expr,
     /// The term of the printed form that varies with x, if known.
     varying: Option<Expr>,
 }
@@ -235,18 +237,18 @@ struct Seen {
 /// The dependence on x, with two points of the domain that show it: the same y, u and parameters, another value.
 ///
 /// If the varying term of the printed form is unknown, it is the difference to its value at the second point.
-fn bound(plant: &Plant, domain: &Domain, Seen { rate, shown, varying }: Seen) -> Option<Component> {
+fn bound(plant: &Plant, domain: &Domain, RateForm { rate, printed, varying }: RateForm) -> Option<Component> {
     let arena = &plant.arena;
     let hidden = plant.hidden();
     let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
     let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
-    let read = if varying.is_some() { rate } else { shown };
+    let read = if varying.is_some() { rate } else { printed };
     let through: Vec<Symbol> = arena.symbols_of(&[read]).intersection(&hidden).copied().collect();
     let fixed: BTreeMap<Symbol, Expr> = through.iter().filter_map(|s| Some((*s, *reference.get(s)?))).collect();
     let residual =
-        varying.unwrap_or_else(|| shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed))));
+        varying.unwrap_or_else(|| shortest(arena, domain, arena.sub(printed, arena.substitute(printed, &fixed))));
     let difference = here.sub(there, Precision::new(256))?;
-    let compared = Comparison::of([shown, read], &points, &hidden);
+    let compared = Comparison::of([printed, read], &points, &hidden);
     let witness = Witness {
         expr: residual,
         point: points.points[0].iter().map(|(symbol, value)| (*symbol, *value)).collect(),
@@ -308,9 +310,9 @@ fn refuted(
 ) -> Diagnostic {
     let arena = &plant.arena;
     let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
-    let shown = arena.print(residual);
+    let printed = arena.print(residual);
     // A long label is not repeated.
-    let term = if shown.len() <= LONGEST { format!("`{shown}`") } else { "this term".to_owned() };
+    let term = if printed.len() <= LONGEST { format!("`{printed}`") } else { "this term".to_owned() };
     let component = index + 1;
     let diagnostic = Diagnostic::error(
         Code::CascadeRefuted,
@@ -320,7 +322,7 @@ fn refuted(
             listed(names.iter().map(String::as_str))
         ),
     )
-    .label(format!("its derivative keeps the term `{shown}`"))
+    .label(format!("its derivative keeps the term `{printed}`"))
     .note(format!("d(phi)/dt must be a function of y and u alone, but {term} remains in z{component}'"))
     .note(
         witness

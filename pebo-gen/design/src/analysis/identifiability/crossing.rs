@@ -28,34 +28,34 @@ const MOST_POINTS: usize = 16;
 const FEW_POINTS: usize = 2;
 
 /// A cell and its rows.
-pub(super) struct Seen<'a> {
+pub(super) struct CellRows<'a> {
     pub(super) part: &'a Cell,
     pub(super) rows: Vec<Vec<Expr>>,
 }
 
 /// Tests whether every cell identifies all unknowns with another into which trajectories pass.
-pub(super) fn all_shown(
+pub(super) fn all_identified(
     plant: &Plant,
     cascade: &Cascade,
     varies: impl Fn(Expr) -> bool,
-    parts: &[Seen<'_>],
+    parts: &[CellRows<'_>],
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
-    let mut shown = vec![false; parts.len()];
+    let mut identified = vec![false; parts.len()];
     for first in 0..parts.len() {
         for second in first + 1..parts.len() {
             let Some(border) = border(parts[first].part, parts[second].part) else { continue };
-            if shown[first] && shown[second] {
+            if identified[first] && identified[second] {
                 continue;
             }
             let pair = [&parts[first], &parts[second]];
             if passes(plant, cascade, &varies, pair, border, unknowns)? {
-                shown[first] = true;
-                shown[second] = true;
+                identified[first] = true;
+                identified[second] = true;
             }
         }
     }
-    Ok(shown.into_iter().all(|shown| shown))
+    Ok(identified.into_iter().all(|identified| identified))
 }
 
 /// The border function of two cells, if it is one formula alone.
@@ -73,7 +73,7 @@ fn passes(
     plant: &Plant,
     cascade: &Cascade,
     varies: &impl Fn(Expr) -> bool,
-    pair: [&Seen<'_>; 2],
+    pair: [&CellRows<'_>; 2],
     border: Expr,
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
@@ -85,10 +85,10 @@ fn passes(
     }
     let mut rates = Vec::new();
     let mut rows = Vec::new();
-    for seen in pair {
-        let domain = &seen.part.domain;
+    for cell in pair {
+        let domain = &cell.part.domain;
         let rate = Flow::new(plant, domain, cascade)?.rate(arena, border);
-        let entries: Vec<Expr> = seen.rows.iter().flatten().copied().chain([rate]).collect();
+        let entries: Vec<Expr> = cell.rows.iter().flatten().copied().chain([rate]).collect();
         let mut sides = as_on(arena, domain, &entries)?;
         if arena.dividers(&sides).into_iter().any(varies) {
             // Not one formula up to the border.
@@ -108,8 +108,8 @@ fn passes(
 }
 
 /// Tests whether the combined rows of two cells have full rank at points that differ in the inputs alone.
-fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&Seen<'_>; 2], unknowns: usize) -> bool {
-    let [here, there] = pair.map(|seen| seen.rows.concat());
+fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&CellRows<'_>; 2], unknowns: usize) -> bool {
+    let [here, there] = pair.map(|cell| cell.rows.concat());
     let both = [here.as_slice(), &there].concat();
     // The derivatives of inputs are other symbols, and are the same: that is enough.
     pair[0].part.domain.points(arena, &both).take(MOST_POINTS).any(|point| {

@@ -12,13 +12,16 @@ use pebo_cas::domain::cells::Cell;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr};
 
-use super::crossing::{Seen, all_shown};
-use super::trajectory::seen;
-use crate::analysis::design::{Blind, Cascade, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
+use super::crossing::{CellRows, all_identified};
+use super::trajectory::identifiable;
+use crate::analysis::design::{
+    BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, Trajectories, TrajectoryCondition,
+    Verdict,
+};
 use crate::analysis::left_inverse::checking::at_phi;
 
 /// An answer where all formulas are analytic.
-pub(super) struct Decided {
+pub(super) struct AnalyticDecision {
     /// The verdict.
     pub(super) claim: Claim<Identifiability>,
     /// The directions of the unknowns that are never observable.
@@ -27,13 +30,13 @@ pub(super) struct Decided {
     pub(super) rows: Vec<Vec<Expr>>,
 }
 
-impl Decided {
+impl AnalyticDecision {
     fn kind(&self) -> Option<Excitation> {
         self.claim.result.as_ref().map(|result| result.kind)
     }
 }
 
-impl From<Claim<Identifiability>> for Decided {
+impl From<Claim<Identifiability>> for AnalyticDecision {
     fn from(claim: Claim<Identifiability>) -> Self {
         Self { claim, hidden: Vec::new(), rows: Vec::new() }
     }
@@ -66,11 +69,11 @@ pub(super) fn decide(
     (cascade, regression): (&Cascade, &Regression),
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
-    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
-    let mut told = Vec::new();
-    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut told, &on)?;
+    let mut reported = Vec::new();
+    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut reported, &on)?;
     let identified =
         |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
     if identified(&whole) {
@@ -86,7 +89,7 @@ pub(super) fn decide(
             }
         }
     }
-    found.extend(told);
+    found.extend(reported);
     Ok(whole)
 }
 
@@ -125,20 +128,21 @@ fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
 
 /// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
 /// same.
-fn of_parts(plant: &Plant, within: &[(&Cell, Vec<Blind>)], parts: usize) -> Vec<Blind> {
-    let key = |blind: &Blind| (blind.place(plant), blind.seen.clone());
-    let mut found: Vec<Blind> = Vec::new();
-    for (part, motions) in within {
-        for motion in motions {
-            let is_same = |(_, others): &&(&Cell, Vec<Blind>)| others.iter().any(|other| key(other) == key(motion));
-            let place = if within.iter().filter(is_same).count() == parts {
-                motion.place.clone()
+fn of_parts(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], parts: usize) -> Vec<BlindTrajectory> {
+    let key = |blind: &BlindTrajectory| (blind.condition(plant), blind.identifiable.clone());
+    let mut found: Vec<BlindTrajectory> = Vec::new();
+    for (part, trajectories) in within {
+        for trajectory in trajectories {
+            let is_same =
+                |(_, others): &&(&Cell, Vec<BlindTrajectory>)| others.iter().any(|other| key(other) == key(trajectory));
+            let condition = if within.iter().filter(is_same).count() == parts {
+                trajectory.condition.clone()
             } else {
-                Place::Within(part.sides.clone(), Box::new(motion.place.clone()))
+                TrajectoryCondition::Within(part.sides.clone(), Box::new(trajectory.condition.clone()))
             };
-            let motion = Blind { place, ..motion.clone() };
-            if !found.iter().any(|other| key(other) == key(&motion)) {
-                found.push(motion);
+            let trajectory = BlindTrajectory { condition, ..trajectory.clone() };
+            if !found.iter().any(|other| key(other) == key(&trajectory)) {
+                found.push(trajectory);
             }
         }
     }
@@ -152,12 +156,12 @@ fn on_parts(
     (cascade, regression): (&Cascade, &Regression),
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
-    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
     let varies = |expr: Expr| varies(plant, expr);
-    let mut told = Vec::new();
-    let whole = on(domain, &mut told);
+    let mut reported = Vec::new();
+    let whole = on(domain, &mut reported);
     let instant = |part: &Cell| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
     if whole.kind() == Some(Excitation::Instant) {
         let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
@@ -168,46 +172,50 @@ fn on_parts(
             Err(obstacle) => return Err(obstacle),
         };
         if everywhere {
-            found.extend(told);
+            found.extend(reported);
             return Ok(whole.claim);
         }
     }
     let parts = domain.cells(arena, &formulas.all(), varies)?;
     if parts.len() == 1 {
-        found.extend(told);
+        found.extend(reported);
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
-    let mut within: Vec<(&Cell, Vec<Blind>)> = Vec::new();
-    let mut shown = Vec::new();
+    let mut within: Vec<(&Cell, Vec<BlindTrajectory>)> = Vec::new();
+    let mut cells = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
     let (mut by_itself, mut at_rest) = (Some(true), true);
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     for part in &parts {
-        let mut told = Vec::new();
-        let decided = on(&part.domain, &mut told);
+        let mut reported = Vec::new();
+        let decided = on(&part.domain, &mut reported);
         match decided.kind() {
             None => {
-                found.extend(told);
+                found.extend(reported);
                 return Ok(decided.claim);
             }
             Some(Excitation::Instant) => {}
             Some(Excitation::Excitation) => {
-                let motion = decided.claim.result.as_ref().and_then(|result| result.motion.as_ref());
-                let also = motion.and_then(|motion| motion.by_itself);
+                let trajectories = decided.claim.result.as_ref().and_then(|result| result.trajectories.as_ref());
+                let also = trajectories.and_then(|trajectories| trajectories.by_itself);
                 by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
-                at_rest &= motion.is_some_and(|motion| motion.at_rest);
-                within.extend(motion.map(|motion| (part, motion.blind.clone())));
+                at_rest &= trajectories.is_some_and(|trajectories| trajectories.at_rest);
+                within.extend(trajectories.map(|trajectories| (part, trajectories.blind.clone())));
             }
             Some(Excitation::Never) => {
-                let (seen, hidden) = (seen(arena, symbols, &decided.hidden), decided.hidden.clone());
-                blind.push(Blind { place: Place::Part(part.sides.clone()), seen, hidden });
+                let (identifiable, hidden) = (identifiable(arena, symbols, &decided.hidden), decided.hidden.clone());
+                blind.push(BlindTrajectory {
+                    condition: TrajectoryCondition::Cell(part.sides.clone()),
+                    identifiable,
+                    hidden,
+                });
             }
         }
-        shown.push(Seen { part, rows: decided.rows });
+        cells.push(CellRows { part, rows: decided.rows });
         if let Some(result) = decided.claim.result {
-            parameters &= result.motion.is_none_or(|motion| motion.parameters);
+            parameters &= result.trajectories.is_none_or(|trajectories| trajectories.parameters);
             for constant in result.constants {
                 if !constants.contains(&constant) {
                     constants.push(constant);
@@ -219,16 +227,16 @@ fn on_parts(
         // A direction that no cell observes is a statement on the whole domain only if it is the same in all.
         let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
         if whole.kind() == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
-            found.extend(told);
+            found.extend(reported);
             return Ok(whole.claim);
         }
         // A fundamental matrix is another at every moment, so that rows of two moments do not compare.
-        let entries: Vec<Expr> = shown.iter().flat_map(|seen| seen.rows.concat()).collect();
+        let entries: Vec<Expr> = cells.iter().flat_map(|cell| cell.rows.concat()).collect();
         let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
         if by_psi {
             return Err(Obstacle::NoWitness);
         }
-        if !all_shown(plant, cascade, varies, &shown, regression.eta.len())? {
+        if !all_identified(plant, cascade, varies, &cells, regression.eta.len())? {
             found.push(parted(plant, &parts));
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
@@ -238,12 +246,16 @@ fn on_parts(
     let at_rest = at_rest && by_itself == Some(true);
     blind.extend(of_parts(plant, &within, parts.len()));
     // On the borders too a column may vanish.
-    let on_whole = whole.claim.result.and_then(|result| result.motion).map(|motion| motion.blind);
-    let undecided = on_whole.into_iter().flatten().filter(|motion| matches!(motion.place, Place::Unshown(_)));
-    let others: Vec<Blind> =
-        undecided.filter(|motion| blind.iter().all(|other| other.place(plant) != motion.place(plant))).collect();
+    let on_whole = whole.claim.result.and_then(|result| result.trajectories).map(|trajectories| trajectories.blind);
+    let undecided = on_whole
+        .into_iter()
+        .flatten()
+        .filter(|trajectory| matches!(trajectory.condition, TrajectoryCondition::Undecided(_)));
+    let others: Vec<BlindTrajectory> = undecided
+        .filter(|trajectory| blind.iter().all(|other| other.condition(plant) != trajectory.condition(plant)))
+        .collect();
     blind.extend(others);
-    let motion = Motion { by_itself, at_rest, blind, everywhere: false, parameters };
+    let trajectories = Trajectories { by_itself, at_rest, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,
         result: Some(Identifiability {
@@ -252,7 +264,7 @@ fn on_parts(
             everywhere_else: false,
             constants,
             direction: None,
-            motion: Some(motion),
+            trajectories: Some(trajectories),
             gram: None,
         }),
     })

@@ -13,7 +13,7 @@ use pebo_cas::forms::oriented::oriented;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Rational, Relation, Symbol};
 
-use super::singular::{Places, Volume, gram};
+use super::singular::{Volume, ZeroSet, gram};
 use crate::analysis::design::{Gram, Positive};
 use pebo_cas::forms::tidy::{shorter, shortest};
 
@@ -22,21 +22,21 @@ const MOST_PARTS: usize = 4096;
 
 /// The conditions under which a regressor with full column rank at almost every point loses it, and its Gram matrix
 /// where that could be worked out.
-pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (Places, Option<Gram>) {
-    let found = || -> Result<(Places, Gram), Obstacle> {
+pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (ZeroSet, Option<Gram>) {
+    let found = || -> Result<(ZeroSet, Gram), Obstacle> {
         let volume = Volume::of(&plant.arena, domain, phi_1)?;
-        let mut places = volume.places(plant, domain)?;
-        let gram = worked_out(plant, domain, phi_1, &volume, &places)?;
+        let mut zero_set = volume.zero_set(plant, domain)?;
+        let gram = worked_out(plant, domain, phi_1, &volume, &zero_set)?;
         let symbols = plant.arena.symbols_of(&[gram.determinant]);
         let general = !plant.parameters.iter().any(|parameter| symbols.contains(&parameter.symbol));
         // Dividing the box may prove what no factor does; with parameters it does so for their values alone.
         if gram.positive.is_some() && general {
-            places.signals.clear();
-            places.all = true;
+            zero_set.signals.clear();
+            zero_set.all = true;
         }
-        Ok((places, gram))
+        Ok((zero_set, gram))
     };
-    found().map_or_else(|_| (Places::default(), None), |(places, gram)| (places, Some(gram)))
+    found().map_or_else(|_| (ZeroSet::default(), None), |(zero_set, gram)| (zero_set, Some(gram)))
 }
 
 fn worked_out(
@@ -44,7 +44,7 @@ fn worked_out(
     domain: &Domain,
     phi_1: &[Vec<Expr>],
     volume: &Volume<'_>,
-    places: &Places,
+    zero_set: &ZeroSet,
 ) -> Result<Gram, Obstacle> {
     let columns = phi_1.first().map_or(0, Vec::len);
     let arena = &plant.arena;
@@ -58,15 +58,15 @@ fn worked_out(
     let columns: Vec<Vec<Expr>> = (0..columns).map(|column| phi_1.iter().map(|row| row[column]).collect()).collect();
     let written = |i: usize, j: usize| arena.dot(&columns[i], &columns[j]);
     let entry = |i: usize, j: usize, product: &Fraction| {
-        let shown = shorter(arena, written(i, j), shortest(arena, domain, field.show(product)));
-        oriented(arena, domain, shown)
+        let printed = shorter(arena, written(i, j), shortest(arena, domain, field.show(product)));
+        oriented(arena, domain, printed)
     };
     let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
     let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
     let square = volume.square;
-    let root = volume.shown();
+    let root = volume.printed();
     // Never negative, it is positive where it does not vanish.
-    let positive = if places.are_none() {
+    let positive = if zero_set.are_none() {
         Some(Positive::Assumed)
     } else {
         on_box(plant, domain, root, square).then_some(Positive::Divided)

@@ -22,9 +22,9 @@ use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-use self::divided::{Decided, Formulas};
+use self::divided::{AnalyticDecision, Formulas};
 use self::flow::{Flow, effective, without_psi};
-use self::singular::{Places, Volume};
+use self::singular::{Volume, ZeroSet};
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 use super::pencil;
@@ -42,8 +42,8 @@ pub(super) fn prove(
     let identities: Vec<Expr> = plant.identities.iter().map(|identity| identity.expr).collect();
     let formulas = Formulas { rates: moving(plant, cascade, &regressor, &identities), regressor, identities };
     let hidden = plant.hidden();
-    let sees_states = depends_on_states(plant, &formulas, cascade);
-    let concerns = |equation| sees_states || !plant.arena.depends_on(equation, &hidden);
+    let holds_states = depends_on_states(plant, &formulas, cascade);
+    let concerns = |equation| holds_states || !plant.arena.depends_on(equation, &hidden);
     if let Some(equation) = reducible(&plant.arena, domain, concerns) {
         found.push(falls_apart(plant, equation));
         return Claim { verdict: Verdict::Undecided, result: None };
@@ -109,7 +109,7 @@ fn where_analytic(
     regression: &Regression,
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
-) -> Decided {
+) -> AnalyticDecision {
     let (arena, unknowns) = (&plant.arena, regression.eta.len());
     // In an implicit regression the rates are among the factors of the unknowns.
     let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
@@ -127,21 +127,21 @@ fn where_analytic(
             everywhere_else: false,
             constants: Vec::new(),
             direction,
-            motion: None,
+            trajectories: None,
             gram: None,
         }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
-        let (places, gram) =
+        let (zero_set, gram) =
             if by_rates { (of_rates(plant, domain, &phi_1), None) } else { excitation::of(plant, domain, &phi_1) };
         let result = Identifiability {
             kind: Excitation::Instant,
-            singular_where: places.signals,
-            everywhere_else: places.all,
-            constants: places.constants,
+            singular_where: zero_set.signals,
+            everywhere_else: zero_set.all,
+            constants: zero_set.constants,
             direction: None,
-            motion: None,
+            trajectories: None,
             gram,
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) }.into();
@@ -152,10 +152,10 @@ fn where_analytic(
     };
     let excited = || {
         // Remarks on trajectories do not use up the budget of the other claims.
-        let (motion, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
+        let (trajectories, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
         if let Some(result) = &mut claim.result {
-            result.motion = Some(motion);
+            result.trajectories = Some(trajectories);
             result.constants = constants;
         }
         claim
@@ -164,8 +164,8 @@ fn where_analytic(
         return excited().into();
     }
     let mut latest = stack.clone();
-    let mut unseen = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
-        Ok(unseen) => unseen,
+    let mut hidden = match hidden_from(arena, domain, &without_psi(plant, &stack), unknowns) {
+        Ok(hidden) => hidden,
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     for _ in 1..unknowns {
@@ -178,24 +178,24 @@ fn where_analytic(
             return excited().into();
         }
         flow.advance(plant);
-        let next = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
+        let next = match hidden_from(arena, domain, &without_psi(plant, &stack), unknowns) {
             Ok(next) => next,
             Err(obstacle) => return open(plant, &obstacle, found).into(),
         };
         // No derivative adds to a rank that one derivative did not raise.
-        let settled = next.directions.len() == unseen.directions.len();
-        unseen = next;
+        let settled = next.directions.len() == hidden.directions.len();
+        hidden = next;
         if settled {
             break;
         }
     }
-    let Some(direction) = unseen.directions.first().cloned() else {
+    let Some(direction) = hidden.directions.first().cloned() else {
         return open(plant, &Obstacle::NoWitness, found).into();
     };
     // A direction that is constant along every trajectory but depends on signals may be another constant elsewhere if
     // it is non-smooth: the quotient of v and |v|.
-    let bends = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
-    if bends && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
+    let is_non_smooth = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
+    if is_non_smooth && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
         return open(plant, &Obstacle::NoWitness, found).into();
     }
     // A regression that does not identify functions of theta may identify theta.
@@ -206,14 +206,14 @@ fn where_analytic(
         return Claim { verdict: Verdict::Undecided, result: None }.into();
     }
     let refusal = never(plant, domain, &direction, regression, left_inverse);
-    found.push(if unseen.special_values {
+    found.push(if hidden.special_values {
         refusal.note("this holds for the given values of the parameters, not for general values")
     } else {
         refusal
     });
-    Decided {
+    AnalyticDecision {
         claim: answer(Excitation::Never, Some(direction), Verdict::Refuted),
-        hidden: unseen.directions,
+        hidden: hidden.directions,
         rows: stack,
     }
 }
@@ -261,15 +261,15 @@ fn of_theta(
 
 /// The conditions under which a regressor with the rates of outputs loses rank: zeros of parameters and signals alone.
 /// An observer cannot know a zero of states.
-fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
+fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> ZeroSet {
     let arena = &plant.arena;
-    let found = || Volume::of(arena, domain, rows)?.places(plant, domain);
-    let Places { signals, zeros, constants, all, together } = arena.budget().share(8, found).unwrap_or_default();
+    let found = || Volume::of(arena, domain, rows)?.zero_set(plant, domain);
+    let ZeroSet { signals, zeros, constants, all, joint } = arena.budget().share(8, found).unwrap_or_default();
     let hidden = plant.hidden();
     let (known, other): (Vec<_>, Vec<_>) =
         signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));
     let (signals, zeros) = known.into_iter().unzip();
-    Places { signals, zeros, constants, all: all && other.is_empty(), together }
+    ZeroSet { signals, zeros, constants, all: all && other.is_empty(), joint }
 }
 
 /// Tests whether rows and their derivatives have full rank at points: exact algebra is for deficient ones.
@@ -303,16 +303,21 @@ fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -
 
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
 /// parameters where these values are nothing special.
-fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Unseen, Obstacle> {
+fn hidden_from(
+    arena: &Arena,
+    domain: &Domain,
+    rows: &[Vec<Expr>],
+    columns: usize,
+) -> Result<HiddenDirections, Obstacle> {
     let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &domain.fixed)).collect();
     let special = null_vectors(arena, domain, &valued, columns)?;
     let general = null_vectors(arena, domain, rows, columns)?;
     let special_values = special.len() > general.len();
-    Ok(Unseen { directions: if special_values { special } else { general }, special_values })
+    Ok(HiddenDirections { directions: if special_values { special } else { general }, special_values })
 }
 
 /// Directions of the unknowns that no row sees.
-struct Unseen {
+struct HiddenDirections {
     directions: Vec<Vec<Expr>>,
     /// True if other values of the parameters leave fewer.
     special_values: bool,

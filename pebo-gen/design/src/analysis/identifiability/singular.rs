@@ -19,7 +19,7 @@ use pebo_cas::{Arena, Domain, Expr, Facts, Node, Rational, Relation, Symbol};
 
 /// The zeros of a determinant.
 #[derive(Default)]
-pub(super) struct Places {
+pub(super) struct ZeroSet {
     /// Conditions on signals, each of which makes it vanish.
     pub signals: Vec<String>,
     /// The functions that vanish there, in the same order.
@@ -30,10 +30,10 @@ pub(super) struct Places {
     pub all: bool,
     /// True if values of the parameters are not excluded that make a factor vanish at all signals, by several
     /// equations.
-    pub together: bool,
+    pub joint: bool,
 }
 
-impl Places {
+impl ZeroSet {
     /// Tests whether it vanishes nowhere.
     pub(super) fn are_none(&self) -> bool {
         self.all && self.signals.is_empty() && self.constants.is_empty()
@@ -70,7 +70,7 @@ impl<'a> Volume<'a> {
     }
 
     /// As an expression, in factors.
-    pub(super) fn shown(&self) -> Expr {
+    pub(super) fn printed(&self) -> Expr {
         let core = self.field.show_factored(&self.core);
         let powers = self.powers.iter().map(|(base, power)| (self.split(*base).unwrap_or(*base), power.clone()));
         self.arena.multiply(&Rational::ONE, powers.chain([(core, Rational::ONE)]))
@@ -84,15 +84,15 @@ impl<'a> Volume<'a> {
     }
 
     /// The zeros.
-    pub(super) fn places(&self, plant: &Plant, domain: &Domain) -> Result<Places, Obstacle> {
-        let mut places = Places { all: true, ..Places::default() };
+    pub(super) fn zero_set(&self, plant: &Plant, domain: &Domain) -> Result<ZeroSet, Obstacle> {
+        let mut zero_set = ZeroSet { all: true, ..ZeroSet::default() };
         for (base, power) in &self.powers {
             if !power.is_negative() {
-                self.zeros_of(&self.field.fraction(*base)?, &[vec![*base]], plant, domain, &mut places)?;
+                self.zeros_of(&self.field.fraction(*base)?, &[vec![*base]], plant, domain, &mut zero_set)?;
             }
         }
-        self.zeros_of(&self.core, &self.rest, plant, domain, &mut places)?;
-        Ok(places)
+        self.zeros_of(&self.core, &self.rest, plant, domain, &mut zero_set)?;
+        Ok(zero_set)
     }
 
     /// Adds the zeros of a fraction, which is the determinant of a matrix as it is written.
@@ -102,7 +102,7 @@ impl<'a> Volume<'a> {
         written: &[Vec<Expr>],
         plant: &Plant,
         domain: &Domain,
-        places: &mut Places,
+        zero_set: &mut ZeroSet,
     ) -> Result<(), Obstacle> {
         let field = &self.field;
         let open = |factor: &Poly| -> Result<bool, Obstacle> {
@@ -119,7 +119,7 @@ impl<'a> Volume<'a> {
             if field.may_vanish_together(&factor, fraction.denominator())? {
                 shared = true;
             } else {
-                self.add(&factor, plant, domain, places)?;
+                self.add(&factor, plant, domain, zero_set)?;
             }
         }
         if !shared {
@@ -141,9 +141,9 @@ impl<'a> Volume<'a> {
                 Some((value.is_zero(), there.show(&value)))
             });
             match there {
-                Some((true, _)) => self.add(&factor, plant, domain, places)?,
+                Some((true, _)) => self.add(&factor, plant, domain, zero_set)?,
                 Some((false, there)) if domain.implies(self.arena, there, Relation::NonZero) => {}
-                _ => places.all = false,
+                _ => zero_set.all = false,
             }
         }
         Ok(())
@@ -176,22 +176,22 @@ impl<'a> Volume<'a> {
     }
 
     /// Adds the zeros of a factor.
-    fn add(&self, factor: &Poly, plant: &Plant, domain: &Domain, places: &mut Places) -> Result<(), Obstacle> {
+    fn add(&self, factor: &Poly, plant: &Plant, domain: &Domain, zero_set: &mut ZeroSet) -> Result<(), Obstacle> {
         let formula = self.field.show(&self.field.of_polynomial(factor)?);
         if self.arena.symbols_of(&[formula]).is_subset(&constants(plant)) {
-            if !places.constants.contains(&formula) {
-                places.constants.push(formula);
+            if !zero_set.constants.contains(&formula) {
+                zero_set.constants.push(formula);
             }
             return Ok(());
         }
-        places.together |= self.may_be_nothing(factor, plant, domain)?;
-        let place = match self.solved(factor, plant)? {
+        zero_set.joint |= self.may_be_nothing(factor, plant, domain)?;
+        let condition = match self.solved(factor, plant)? {
             Some((kernel, value)) => format!("{} = {}", self.arena.print(kernel), self.arena.print(value)),
             None => format!("{} = 0", self.arena.print(formula)),
         };
-        if !places.signals.contains(&place) {
-            places.signals.push(place);
-            places.zeros.push(formula);
+        if !zero_set.signals.contains(&condition) {
+            zero_set.signals.push(condition);
+            zero_set.zeros.push(formula);
         }
         Ok(())
     }

@@ -16,11 +16,15 @@ use pebo_cas::{Arena, Domain, Expr, Function, Relation, Symbol};
 ///
 /// Arguments of roots and logarithms and denominators are read off the formula as written, since substituting would
 /// simplify its domain away.
-pub(super) fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relation), (Expr, Relation))> {
+pub(super) fn open_conditions(
+    plant: &Plant,
+    domain: &Domain,
+    formula: Expr,
+) -> Vec<((Expr, Relation), (Expr, Relation))> {
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    let asked = arena.domain_conditions(&[formula], Regularity::Defined).into_iter();
-    let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
+    let conditions = arena.domain_conditions(&[formula], Regularity::Defined).into_iter();
+    let there = conditions.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
     there.filter(|(_, ask)| !domain.grants(arena, *ask)).collect()
 }
 

@@ -19,7 +19,7 @@ use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{self, Domain, Expr, Rational, Relation, Symbol};
 
 use super::design::{Claim, Comparison, LeftInverse, Origin, Verdict, Witness};
-use checking::{check, unshown};
+use checking::{check, open_conditions};
 use pebo_cas::linear::rank::null_vectors;
 use words::{degenerate, not_injective, refuted, takes_twice, undecided, underivable};
 
@@ -115,7 +115,7 @@ fn defined(
     found: &mut Vec<Diagnostic>,
 ) -> bool {
     let arena = &plant.arena;
-    let unproved = unshown(plant, domain, formula).into_iter().find(|(_, ask)| ask.1 != Relation::NonZero);
+    let unproved = open_conditions(plant, domain, formula).into_iter().find(|(_, ask)| ask.1 != Relation::NonZero);
     let Some(((part, relation), (at_phi, _))) = unproved else { return true };
     let (sign, at_phi) = (relation.sign(), arena.print(at_phi));
     found.push(

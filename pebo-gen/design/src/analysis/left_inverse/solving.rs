@@ -13,33 +13,33 @@ use pebo_cas::solve::{Equation, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
-use super::checking::{check, unshown};
+use super::checking::{check, open_conditions};
 use super::overdetermined::by_least_squares;
 
-type Solved = BTreeMap<Symbol, Vec<Expr>>;
+type StateFormulas = BTreeMap<Symbol, Vec<Expr>>;
 
 /// A formula for each state that one was found for.
 pub(super) fn formulas<'a>(plant: &'a Plant, domain: &Domain) -> Result<Vec<(&'a State, Expr)>, Obstacle> {
-    let solving = Solving::of(plant, domain)?;
+    let solving = StateSolver::of(plant, domain)?;
     let formula = |state: &'a State| Ok(solving.formula(state.symbol)?.map(|formula| (state, formula)));
     plant.x.iter().filter_map(|state| formula(state).transpose()).collect()
 }
 
 /// The transform, solved in several ways.
-struct Solving<'a> {
+struct StateSolver<'a> {
     plant: &'a Plant,
     domain: &'a Domain,
     /// Solutions of the transform alone, the likelier first.
-    alone: Solved,
+    alone: StateFormulas,
     /// Solutions with functions of y alone kept as written: they compute better.
-    as_written: Solved,
+    as_written: StateFormulas,
     /// Least-squares solutions, computed on first use.
     least_squares: OnceCell<BTreeMap<Symbol, Expr>>,
     /// Solutions of the transform with the values of outputs, computed on first use.
-    together: OnceCell<Result<Solved, Obstacle>>,
+    with_outputs: OnceCell<Result<StateFormulas, Obstacle>>,
 }
 
-impl<'a> Solving<'a> {
+impl<'a> StateSolver<'a> {
     fn of(plant: &'a Plant, domain: &'a Domain) -> Result<Self, Obstacle> {
         let arena = &plant.arena;
         let states = states(plant);
@@ -61,7 +61,7 @@ impl<'a> Solving<'a> {
         for formula in as_written.values_mut().flatten() {
             *formula = frozen.restore(*formula);
         }
-        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), together: OnceCell::new() })
+        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), with_outputs: OnceCell::new() })
     }
 
     /// The best formula for a state that is right, and else the likeliest: one that is wrong may still show that the
@@ -77,9 +77,8 @@ impl<'a> Solving<'a> {
         };
         let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
         // A formula that has a value wherever the plant has ends the search.
-        let all_shown = found.is_some_and(|formula| unshown(self.plant, self.domain, formula).is_empty());
-        let squares =
-            (!all_shown).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
+        let is_total = found.is_some_and(|formula| open_conditions(self.plant, self.domain, formula).is_empty());
+        let squares = (!is_total).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
         let squares = squares.and_then(|squares| squares.get(&state)).copied().filter(right);
         let forms =
             found.into_iter().chain(written).chain(squares).map(|formula| shortest(arena, self.domain, formula));
@@ -105,7 +104,8 @@ impl<'a> Solving<'a> {
 
     /// The solutions of the transform with the values of outputs, the best first.
     fn with_values(&self, state: Symbol) -> Result<Vec<Expr>, Obstacle> {
-        let solved = self.together.get_or_init(|| together(self.plant, self.domain)).as_ref().map_err(Clone::clone)?;
+        let solved =
+            self.with_outputs.get_or_init(|| with_outputs(self.plant, self.domain)).as_ref().map_err(Clone::clone)?;
         Ok(self.by_worth(solved.get(&state).cloned().unwrap_or_default()))
     }
 
@@ -127,15 +127,15 @@ impl<'a> Solving<'a> {
         let is_foreign = |call: &Expr| !own.contains(call) && arena.symbols_of(&[*call]).is_disjoint(&z);
         let foreign = functions(arena, &[formula]).into_iter().filter(is_foreign).count()
             + usize::from(dissolves(arena, &self.plant.transform(), formula));
-        let (unshown, cancelling, operations) = self.cost(formula);
-        (unshown, foreign, cancelling, operations)
+        let (open_conditions, cancelling, operations) = self.cost(formula);
+        (open_conditions, foreign, cancelling, operations)
     }
 
     /// The number of open domain conditions, of roots that cancel, and of operations.
     fn cost(&self, formula: Expr) -> (usize, usize, usize) {
         let arena = &self.plant.arena;
-        let unshown = unshown(self.plant, self.domain, formula).len();
-        (unshown, root_differences(arena, formula).len(), operations(arena, formula))
+        let open_conditions = open_conditions(self.plant, self.domain, formula).len();
+        (open_conditions, root_differences(arena, formula).len(), operations(arena, formula))
     }
 }
 
@@ -150,7 +150,7 @@ fn equations(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
 }
 
 /// Solves the transform with the identities; returns the functions of z and y among the solutions.
-fn together(plant: &Plant, domain: &Domain) -> Result<Solved, Obstacle> {
+fn with_outputs(plant: &Plant, domain: &Domain) -> Result<StateFormulas, Obstacle> {
     if plant.identities.is_empty() {
         return Ok(BTreeMap::new());
     }

@@ -21,7 +21,7 @@ use super::functions::over_parameterised;
 use super::linear::decompose;
 
 /// Regressions with more of a plant's equations, and their completeness.
-pub(in crate::analysis) struct Together {
+pub(in crate::analysis) struct CombinedRegressions {
     /// The regressions: with equations linear in z, then with all.
     pub(in crate::analysis) regressions: Vec<Claim<Regression>>,
     /// True if no equation is left that could say more of the unknowns.
@@ -30,14 +30,14 @@ pub(in crate::analysis) struct Together {
 
 /// Adds to a regression the equations that it leaves out: combinations of outputs, relations among z, y and u,
 /// identities.
-pub(in crate::analysis) fn together(
+pub(in crate::analysis) fn combined(
     plant: &Plant,
     domain: &Domain,
     cascade: &Cascade,
     left_inverse: Option<&LeftInverse>,
     regression: &Regression,
     found: &mut Vec<Diagnostic>,
-) -> Together {
+) -> CombinedRegressions {
     let unused = outputs_but(plant, &regression.rows);
     let combined = combinations(plant, domain, &unused);
     let mut complete = moved_freely(plant, domain, &unused, combined.len());
@@ -49,15 +49,15 @@ pub(in crate::analysis) fn together(
         }
     }
     // A static regression is made of these.
-    let standing = if regression.kind == RegressionKind::Static {
+    let static_equations = if regression.kind == RegressionKind::Static {
         (Vec::new(), plant.identities.is_empty() || !relations::possible(plant, domain))
     } else {
-        standing(plant, domain, left_inverse)
+        static_equations(plant, domain, left_inverse)
     };
-    complete &= standing.1;
-    more.extend(standing.0);
+    complete &= static_equations.1;
+    more.extend(static_equations.0);
     if more.is_empty() {
-        return Together { regressions: Vec::new(), complete };
+        return CombinedRegressions { regressions: Vec::new(), complete };
     }
     let mut regressions = Vec::new();
     if let Some(base) = of_regression(plant, cascade, regression) {
@@ -79,7 +79,7 @@ pub(in crate::analysis) fn together(
     } else {
         complete = false;
     }
-    Together { regressions, complete }
+    CombinedRegressions { regressions, complete }
 }
 
 /// A regression from combinations of outputs alone.
@@ -114,7 +114,7 @@ fn in_z(
 
 /// The relations at every instant: of the components of the transform with measured signals, and identities; and true
 /// if these are all.
-fn standing(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
+fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
     let arena = &plant.arena;
     let identities = match left_inverse {
         Some(left_inverse) => cleared::in_z(plant, domain, left_inverse),
@@ -203,11 +203,11 @@ pub(super) fn under_derivative(
             others.push(equation);
         }
     }
-    let joined = |bent: Vec<Equation>, found: &mut Vec<Diagnostic>| {
-        if bent.is_empty() {
+    let joined = |chosen: Vec<Equation>, found: &mut Vec<Diagnostic>| {
+        if chosen.is_empty() {
             return None;
         }
-        joined(plant, domain, cascade, Some(left_inverse), &[bent, straight.clone()].concat(), found)
+        joined(plant, domain, cascade, Some(left_inverse), &[chosen, straight.clone()].concat(), found)
     };
     let whole = joined([linear.clone(), others.clone()].concat(), found);
     whole.or_else(|| if others.is_empty() { None } else { joined(linear, found) })

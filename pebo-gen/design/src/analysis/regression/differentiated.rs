@@ -33,9 +33,9 @@ pub(in crate::analysis) fn differentiated(
     left_inverse: Option<&LeftInverse>,
     given: &Claim<Regression>,
 ) -> Option<Claim<Regression>> {
-    let asked = plant.asks_for(RelationForm::Differentiated);
+    let wanted = plant.wants(RelationForm::Differentiated);
     let longer = |g: &Regression| g.kind == RegressionKind::Static && g.eta.len() > plant.theta.len();
-    if !asked && !proved(given).is_none_or(longer) {
+    if !wanted && !proved(given).is_none_or(longer) {
         return None;
     }
     let relations = if !plant.identities.is_empty() {
@@ -93,7 +93,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
         constants.iter().chain(&plant.z).copied().chain(plant.y.iter().map(|o| o.symbol)).collect();
     let mut squares = Vec::new();
     let mut rate = Vec::new();
-    let mut bent = None;
+    let mut witness = None;
     for (i, first) in plant.z.iter().enumerate() {
         let slope = arena.derivative(relation, *first);
         for (j, second) in plant.z.iter().enumerate() {
@@ -102,7 +102,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
                 return None;
             }
             if !arena.is_zero(curvature) {
-                bent.get_or_insert((curvature, *first, *second));
+                witness.get_or_insert((curvature, *first, *second));
             }
             let curvature = arena.scale(curvature, &half());
             squares.push(arena.product([curvature, z[i], z[j]]));
@@ -114,7 +114,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
     let primitive = shortest(arena, domain, arena.neg(arena.scale(without_constant(plant, domain, rest), &half())));
     let rate = arena.sum(rate);
     // The relation is zero: a multiple of it takes the square away, and with it all others, if they are in proportion.
-    let (curvature, first, second) = bent?;
+    let (curvature, first, second) = witness?;
     let multiple = arena.div(arena.derivative(arena.derivative(rate, first), second), curvature);
     let rate = shortest(arena, domain, arena.sub(rate, arena.mul(multiple, relation)));
     let moves = !arena.is_zero(primitive) || !arena.is_zero(rate);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::separation::{self, Recovered, Separated};
+use super::separation::{self, Separation, ThetaRecovery};
 use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::analysis::left_inverse::checking::is_whole_turns;
 use crate::plant::Plant;
@@ -18,7 +18,7 @@ pub(super) fn over_parameterised(
     domain: &Domain,
     left_inverse: &LeftInverse,
     (rows, held): (Vec<usize>, usize),
-    separated: Separated,
+    separated: Separation,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
     // The fewer functions, if they are enough.
@@ -68,7 +68,7 @@ pub(super) fn steps(
     domain: &Domain,
     left_inverse: &LeftInverse,
     eta: &[Expr],
-    recovered: &Recovered,
+    recovered: &ThetaRecovery,
     found: &mut Vec<Diagnostic>,
 ) -> Result<Vec<(Symbol, Expr)>, Verdict> {
     let arena = &plant.arena;

@@ -42,8 +42,8 @@ pub(super) fn decompose(
 fn asks(plant: &Plant, domain: &Domain, row: &Row) -> usize {
     let arena = &plant.arena;
     let formulas = [row.factors.as_slice(), &[row.known]].concat();
-    let asked = arena.domain_conditions(&formulas, Regularity::Defined).into_iter();
-    asked.filter(|ask| !domain.grants(arena, *ask)).count()
+    let conditions = arena.domain_conditions(&formulas, Regularity::Defined).into_iter();
+    conditions.filter(|ask| !domain.grants(arena, *ask)).count()
 }
 
 /// The rate at the left inverse, where that is affine in z; proved.

@@ -72,7 +72,7 @@ fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
 }
 
 /// A generalised cascade whose outputs may be linear in functions of theta.
-pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic {
+pub(super) fn not_tried(plant: &Plant, index: usize, span: Span) -> Diagnostic {
     let output = plant.arena.name(plant.y[index].symbol);
     Diagnostic::error(
         Code::RegressionUndecided,

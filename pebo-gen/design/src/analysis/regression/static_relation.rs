@@ -49,7 +49,7 @@ pub(in crate::analysis) fn from_identities(
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
     let identities = cleared::in_z(plant, domain, left_inverse);
-    standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+    constant_relation(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
 }
 
 /// A static regression from relations between the components of the transform; none if there are none, or theta cannot
@@ -69,7 +69,7 @@ pub(super) fn from_relations(
             let rows = relations.iter().filter_map(|relation| in_z(plant, *relation)).map(Ok).collect();
             under_lambda(plant, domain, (rows, span), &mut own)
         }
-        None => standing_still(plant, domain, left_inverse?, (&relations, span), &mut own),
+        None => constant_relation(plant, domain, left_inverse?, (&relations, span), &mut own),
     };
     // An undecided claim is left to the rates, which the author can mend.
     if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
@@ -102,13 +102,13 @@ fn under_lambda(
     let xi: Vec<Expr> = plant.xi.iter().map(|s| arena.of_symbol(*s)).collect();
     let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
     let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
-    let mut told: Vec<&affine::Row> = Vec::new();
+    let mut known_rows: Vec<&affine::Row> = Vec::new();
     for row in rows.iter().filter_map(|row| row.as_ref().ok()) {
         let opposite: affine::Row = row.iter().map(|entry| arena.neg(*entry)).collect();
-        if told.iter().any(|known| *known == row || **known == opposite) {
+        if known_rows.iter().any(|known| *known == row || **known == opposite) {
             continue;
         }
-        told.push(row);
+        known_rows.push(row);
         // known + factors (xi + Psi theta) = 0
         phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
         let column = |column: usize| {
@@ -152,7 +152,7 @@ fn under_lambda(
 }
 
 /// A static regression from expressions in z that vanish.
-fn standing_still(
+fn constant_relation(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,

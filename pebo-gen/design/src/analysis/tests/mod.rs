@@ -140,19 +140,19 @@ fn claims_about_no_point_that_was_found_stay_open() {
 fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
     let lines = "x: [p]\ny: [q]\nu: [w]\nf_x: {p: (a + b + c + d + e)*w}\nf_y: {q: p}\nphi: [p]\n\
                  parameters: {a: null, b: null, c: null, d: -3, e: 0}";
-    let asked = |assume: &str| -> Vec<String> {
+    let conditions = |assume: &str| -> Vec<String> {
         let (plant, derivation) = derive(&format!("{lines}\nassume: [{assume}]"));
-        let shown = derivation.asked_of_parameters(&plant);
+        let shown = derivation.conditions_on_parameters(&plant);
         shown.iter().map(|(expr, sign)| format!("{} {sign:?}", plant.arena.print(*expr))).collect()
     };
     let given = ["d Opposite(Positive)", "e Zero"];
-    assert_eq!(asked("q > 0"), ["a Any", "b Any", "c Any", given[0], given[1]]);
+    assert_eq!(conditions("q > 0"), ["a Any", "b Any", "c Any", given[0], given[1]]);
     assert_eq!(
-        asked("a >= 0, a > 0, b != 0, c <= 0"),
+        conditions("a >= 0, a > 0, b != 0, c <= 0"),
         ["a Is(Positive)", "b Is(NonZero)", "c Opposite(NonNegative)", given[0], given[1]]
     );
     assert_eq!(
-        asked("a > 0, c > 0, a - d > 0, a > c, q > a"),
+        conditions("a > 0, c > 0, a - d > 0, a > c, q > a"),
         ["a Is(Positive)", "b Any", "c Is(Positive)", given[0], given[1], "a - c Is(Positive)"],
         "what follows from the signs is not asked again, and nothing of signals"
     );

@@ -126,15 +126,15 @@ fn the_claim_in_which_the_budget_ends_is_the_last_that_is_told_of() {
 
 #[test]
 fn the_way_back_asks_of_estimates_what_no_value_of_theirs_grants() {
-    let asked = |phi: &str, left: &str| -> Vec<String> {
+    let conditions = |phi: &str, left: &str| -> Vec<String> {
         let (plant, derivation) = derive(&format!(
             "x: [p]\ny: [q, r]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: p, r: v}}\nphi: [{phi}]\nphi_left: {{p: {left}}}"
         ));
-        let asked = derivation.asked_of_estimates(&plant);
-        asked.iter().map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
+        let conditions = derivation.conditions_on_estimates(&plant);
+        conditions.iter().map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
     };
-    assert_eq!(asked("p", "z1"), Vec::<String>::new());
-    assert_eq!(asked("exp(p)", "log(z1)"), ["z1 > 0"]);
+    assert_eq!(conditions("p", "z1"), Vec::<String>::new());
+    assert_eq!(conditions("exp(p)", "log(z1)"), ["z1 > 0"]);
 }
 
 #[test]
@@ -179,8 +179,8 @@ fn what_vanishes_on_a_part_of_the_domain_is_seen_on_the_other() {
     let model = |head: &str, rates: &str| format!("{head}\nx: [p]\nu: [v]\nf_x: {{p: v}}\nf_y: {{{rates}}}\nphi: [p]");
     let judged = |head: &str, rates: &str| {
         let (_, derivation) = derive(&model(head, rates));
-        let parts = derivation.identifiability.result.as_ref().and_then(|result| result.motion.as_ref());
-        (derivation.outcome, parts.map_or(0, |motion| motion.blind.len()))
+        let parts = derivation.identifiability.result.as_ref().and_then(|result| result.trajectories.as_ref());
+        (derivation.outcome, parts.map_or(0, |trajectories| trajectories.blind.len()))
     };
     let outputs = "y: [q, r]";
     for factor in ["sqrt(q^2) + q", "(q^2)^(1/2) - q", "exp(abs(q)) - exp(q)", "atan2(q, abs(q)) - pi/4"] {

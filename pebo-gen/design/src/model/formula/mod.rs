@@ -1,6 +1,6 @@
 //! The expression language.
 //!
-//! In: a text and the [`Places`] of its bytes in the file. Out: a [`Formula`], a tree with a span on every node; or one
+//! In: a text and the [`SpanMap`] of its bytes in the file. Out: a [`Formula`], a tree with a span on every node; or one
 //! diagnostic, for the first mistake.
 //!
 //! ```text
@@ -40,7 +40,7 @@ pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
 pub(super) use lexer::greek;
 pub use parser::{Estimates, parse_comparison, parse_formula};
-pub use spans::Places;
+pub use spans::SpanMap;
 
 /// The constant of a circle: this name, unless the model declares it.
 pub const PI: &str = "pi";

@@ -7,13 +7,13 @@ use crate::source::{Source, Span};
 /// YAML folds lines, strips indentation and replaces escapes: a scalar's text is not always a slice of the file.
 /// Unchanged runs of it map exactly; if anything but white space was changed, every range maps to the whole scalar.
 #[derive(Clone, Debug)]
-pub struct Places {
+pub struct SpanMap {
     whole: Span,
     /// Starts of runs, ascending: offset in the text, offset in the file.
     runs: Vec<(usize, usize)>,
 }
 
-impl Places {
+impl SpanMap {
     /// For `text`, the value of the scalar at `whole` in `source`.
     pub fn align(text: &str, whole: Span, source: &Source) -> Self {
         let raw = source.slice(whole);

@@ -10,7 +10,7 @@
 //! of the result keeps the formula of its computation. Rust's own rules hold: an accepted model means what the compiled
 //! function computes, but for rounding.
 //!
-//! There is no text here: a [`Span`](crate::source::Span) is a range of [`Places`], each of which is a run of tokens.
+//! There is no text here: a [`Span`](crate::source::Span) is a range of [`TokenSpans`], each of which is a run of tokens.
 
 mod spans;
 
@@ -28,17 +28,17 @@ use proc_macro2::TokenStream;
 
 use super::{Model, check};
 use crate::source::{Diagnostic, Diagnostics};
-pub use spans::Places;
+pub use spans::TokenSpans;
 
 impl Model {
-    /// Reads a module of plain Rust; `arguments` are those of its attribute. `places` resolves its spans.
+    /// Reads a module of plain Rust; `arguments` are those of its attribute. `spans` resolves its spans.
     pub fn read_rust(
         arguments: TokenStream,
         module: &syn::ItemMod,
-        places: &mut Places,
+        spans: &mut TokenSpans,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut diagnostics = Diagnostics::new();
-        let model = plant::read(arguments, module, places, &mut diagnostics);
+        let model = plant::read(arguments, module, spans, &mut diagnostics);
         if let Some(model) = &model {
             check(model, &mut diagnostics);
         }

@@ -103,7 +103,7 @@ pub(super) struct Names<'a> {
 
 /// The context in which the formulas of a class are resolved.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct ClassContext<'a> {
     pub(super) arena: &'a Arena,
     pub(super) scope: &'a Scope,
     pub(super) model: &'a Model,
@@ -126,7 +126,7 @@ impl From<Diagnostic> for Stop {
     }
 }
 
-impl Place<'_> {
+impl ClassContext<'_> {
     /// The plant of a class; nothing if there was a mistake, which is among the problems then.
     pub(super) fn expand(
         &self,

@@ -11,7 +11,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::Symbol;
 use pebo_cas::domain::zero::{Answer, decide};
 
-use super::Place;
+use super::ClassContext;
 
 /// The size of a matrix, and the names of its counts.
 #[derive(Clone, Copy)]
@@ -26,16 +26,16 @@ pub(super) struct Size {
 
 /// A written matrix with its name.
 #[derive(Clone, Copy)]
-pub(super) struct Written<'a> {
+pub(super) struct WrittenMatrix<'a> {
     pub(super) name: &'static str,
     pub(super) matrix: &'a Option<model::Matrix<model::Formula>>,
 }
 
-impl Place<'_> {
+impl ClassContext<'_> {
     /// The matrix in that size; zero where none is written. Mistakes are reported.
     pub(super) fn matrix(
         &self,
-        written: Written<'_>,
+        written: WrittenMatrix<'_>,
         size: Size,
         allowed: &BTreeSet<Symbol>,
         problems: &mut Diagnostics,

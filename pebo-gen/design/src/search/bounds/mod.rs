@@ -24,7 +24,7 @@ use pebo_cas::linear::residues::ResidueRows;
 use pebo_cas::poly::{PrimeField, Residue};
 use pebo_cas::{Expr, Rational, Symbol};
 
-use super::problem::Question;
+use super::problem::Problem;
 use driven::driven;
 use series::{Jets, Monomial};
 
@@ -101,19 +101,19 @@ pub enum BoundClass {
 /// Bounds the rank of transforms of one class by series to this order, at the first point that is found or after so many
 /// others; none where no point was found, or the equations are too many. Where identities hold, a rate has to be free of x
 /// on them alone, and nothing is said.
-pub(super) fn bound(question: &Question<'_>, class: BoundClass, (largest, others): (usize, usize)) -> Option<Bound> {
-    if !question.plant.identities.is_empty() {
+pub(super) fn bound(problem: &Problem<'_>, class: BoundClass, (largest, others): (usize, usize)) -> Option<Bound> {
+    if !problem.plant.identities.is_empty() {
         return None;
     }
-    let states = question.x.len();
-    let jets = Jets::of(question, others)?;
-    let unknowns = Unknowns::of(question, class);
+    let states = problem.x.len();
+    let jets = Jets::of(problem, others)?;
+    let unknowns = Unknowns::of(problem, class);
     let mut best: Option<Bound> = None;
     for order in 1..=largest {
-        if !question.goes_on() || unknowns.monomials(order + 1).len() > MOST_UNKNOWNS {
+        if !problem.goes_on() || unknowns.monomials(order + 1).len() > MOST_UNKNOWNS {
             break;
         }
-        let Some(found) = at(question, &unknowns, &jets, order) else { break };
+        let Some(found) = at(problem, &unknowns, &jets, order) else { break };
         if best.as_ref().is_none_or(|best| (found.rank, !found.proved) < (best.rank, !best.proved)) {
             best = Some(found);
         }
@@ -134,12 +134,12 @@ struct Unknowns {
 }
 
 impl Unknowns {
-    fn of(question: &Question<'_>, class: BoundClass) -> Self {
+    fn of(problem: &Problem<'_>, class: BoundClass) -> Self {
         let mixed = match class {
-            BoundClass::Smooth => driven(question).into_iter().map(|driven| !driven).collect(),
-            BoundClass::Affine | BoundClass::AffineRate => vec![false; question.x.len()],
+            BoundClass::Smooth => driven(problem).into_iter().map(|driven| !driven).collect(),
+            BoundClass::Affine | BoundClass::AffineRate => vec![false; problem.x.len()],
         };
-        Self { class, width: question.x.len() + question.y.len(), mixed }
+        Self { class, width: problem.x.len() + problem.y.len(), mixed }
     }
 
     /// The monomials of phi up to that degree, but for 1.
@@ -177,8 +177,8 @@ struct Equations {
     columns: Vec<Monomial>,
 }
 
-fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Equations> {
-    let states = question.x.len();
+fn equations(problem: &Problem<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Equations> {
+    let states = problem.x.len();
     let mut columns = unknowns.monomials(order + 1);
     let is_gradient = |m: &Monomial| {
         m[..states].iter().map(|e| usize::from(*e)).sum::<usize>() == 1 && m[states..].iter().all(|e| *e == 0)
@@ -187,7 +187,7 @@ fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: u
     // The least degree in x that a rate must not have.
     let known = if unknowns.class == BoundClass::AffineRate { 2 } else { 1 };
     let mut rows = Vec::new();
-    for field in jets.fields(question, order)? {
+    for field in jets.fields(problem, order)? {
         // The rate of each monomial, term by term.
         let mut equations: BTreeMap<Monomial, Vec<Rational>> = BTreeMap::new();
         for (column, monomial) in columns.iter().enumerate() {
@@ -207,7 +207,7 @@ fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: u
                 }
             }
         }
-        if !question.arena.budget().take((columns.len() * equations.len()) as u64) {
+        if !problem.arena.budget().take((columns.len() * equations.len()) as u64) {
             return None;
         }
         rows.extend(equations.into_values());
@@ -216,9 +216,9 @@ fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: u
 }
 
 /// The bound at a point, from series of that order.
-fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Bound> {
-    let states = question.x.len();
-    let Equations { rows, columns } = equations(question, unknowns, jets, order)?;
+fn at(problem: &Problem<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Bound> {
+    let states = problem.x.len();
+    let Equations { rows, columns } = equations(problem, unknowns, jets, order)?;
     let split = columns.len() - states;
     let prime = PrimeField::below(1 << 31)?;
     let images: Option<Vec<Vec<Residue>>> =
@@ -227,7 +227,7 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
     // Rows that are zero but for the gradient's columns, after elimination.
     let mut echelon = ResidueRows::new(&prime, columns.len());
     for row in images.iter().cloned() {
-        if !question.arena.budget().take((columns.len() * (echelon.rank() + 1) / 8) as u64) {
+        if !problem.arena.budget().take((columns.len() * (echelon.rank() + 1) / 8) as u64) {
             return None;
         }
         echelon.insert(row);
@@ -238,17 +238,17 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
         rank: states - pivots,
         class: unknowns.class,
         proved: pivots == 0,
-        point: jets.point(question),
-        x: question.x.clone(),
+        point: jets.point(problem),
+        x: problem.x.clone(),
         relations: Vec::new(),
         evidence: Evidence::Series { equations: 0, order },
     };
     if pivots > 0 {
-        let relations = certificate(question, &prime, (&rows, &images), (split, pivots))?;
+        let relations = certificate(problem, &prime, (&rows, &images), (split, pivots))?;
         let equations = relations.iter().map(|(_, equations)| *equations).max().unwrap_or(0);
         bound.evidence = Evidence::Series { equations, order };
-        let relations = reduced(question, &relations.into_iter().map(|(relation, _)| relation).collect::<Vec<_>>())?;
-        let number = |value: &Rational| question.arena.number(value.clone());
+        let relations = reduced(problem, &relations.into_iter().map(|(relation, _)| relation).collect::<Vec<_>>())?;
+        let number = |value: &Rational| problem.arena.number(value.clone());
         bound.relations = relations.iter().map(|relation| relation.iter().map(number).collect()).collect();
         bound.proved = bound.relations.len() == pivots;
     }
@@ -258,7 +258,7 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
 /// Combinations of the rows that vanish but for the last columns, in rational numbers and checked; as many as wanted,
 /// or none.
 fn certificate(
-    question: &Question<'_>,
+    problem: &Problem<'_>,
     prime: &PrimeField,
     (rows, images): (&[Vec<Rational>], &[Vec<Residue>]),
     (split, wanted): (usize, usize),
@@ -266,7 +266,7 @@ fn certificate(
     // Combinations of rows: those in the null space of the transposed left block that are not zero on the right.
     let mut transposed = ResidueRows::new(prime, rows.len());
     for column in 0..split {
-        if !question.arena.budget().take((rows.len() * (transposed.rank() + 1) / 8) as u64) {
+        if !problem.arena.budget().take((rows.len() * (transposed.rank() + 1) / 8) as u64) {
             return None;
         }
         transposed.insert(images.iter().map(|row| row[column]).collect());
@@ -288,7 +288,7 @@ fn certificate(
         }
         let support: Vec<usize> = (0..rows.len()).filter(|row| !vector[*row].is_zero()).collect();
         let chosen: Vec<&Vec<Rational>> = support.iter().map(|row| &rows[*row]).collect();
-        let combination = combination(question, &chosen, split)?;
+        let combination = combination(problem, &chosen, split)?;
         // The check of the certificate: c A = (0 | relation), every entry in rational numbers.
         let total = |column: usize| {
             combination.iter().zip(&chosen).fold(Rational::ZERO, |sum, (factor, row)| &sum + &(factor * &row[column]))
@@ -308,19 +308,19 @@ fn certificate(
 }
 
 /// The same relations in their simplest form: the annihilator of their annihilator.
-fn reduced(question: &Question<'_>, relations: &[Vec<Rational>]) -> Option<Vec<Vec<Rational>>> {
-    let (width, budget) = (question.x.len(), question.arena.budget());
+fn reduced(problem: &Problem<'_>, relations: &[Vec<Rational>]) -> Option<Vec<Vec<Rational>>> {
+    let (width, budget) = (problem.x.len(), problem.arena.budget());
     let gradients = null_space_of_numbers(relations, width, budget)?;
     null_space_of_numbers(&gradients, width, budget)
 }
 
 /// The combination of these rows that vanishes left of the split, if it is the only one.
-fn combination(question: &Question<'_>, rows: &[&Vec<Rational>], split: usize) -> Option<Vec<Rational>> {
+fn combination(problem: &Problem<'_>, rows: &[&Vec<Rational>], split: usize) -> Option<Vec<Rational>> {
     let transposed: Vec<Vec<Rational>> = (0..split)
         .map(|column| rows.iter().map(|row| row[column].clone()).collect::<Vec<Rational>>())
         .filter(|row| row.iter().any(|entry| !entry.is_zero()))
         .collect();
-    let vectors = null_space_of_numbers(&transposed, rows.len(), question.arena.budget())?;
+    let vectors = null_space_of_numbers(&transposed, rows.len(), problem.arena.budget())?;
     let [vector] = vectors.as_slice() else { return None };
     Some(vector.clone())
 }

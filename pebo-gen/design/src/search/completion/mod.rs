@@ -14,8 +14,8 @@
 pub(crate) mod connection;
 pub(crate) mod decision;
 mod flat;
+mod gradient;
 pub(super) mod integration;
-mod posed;
 
 use pebo_cas::Symbol;
 use pebo_cas::linear::Echelon;
@@ -28,7 +28,7 @@ const MOST_ROUNDS: usize = 24;
 /// More functions than this are not completed.
 const MOST_FUNCTIONS: usize = 24;
 
-pub(super) type Row = Vec<Fraction>;
+pub(super) type EquationRow = Vec<Fraction>;
 
 /// Differentiation of the elements of a field by some symbols.
 #[derive(Debug)]
@@ -81,21 +81,21 @@ pub(super) struct System<'a> {
     /// So many of the first are to be given in terms of the others.
     given: usize,
     /// A row has a column for each derivative, those of one function in sequence, and then one for each function.
-    rows: Vec<Row>,
+    rows: Vec<EquationRow>,
     /// The wanted functions, in terms of the functions.
-    lift: Vec<Row>,
+    lift: Vec<EquationRow>,
 }
 
 /// The result of a completion.
 #[derive(Debug)]
-pub(super) struct Completed {
+pub(super) struct Completion {
     /// The wanted functions, in terms of the remaining ones.
-    pub(super) lift: Vec<Row>,
+    pub(super) lift: Vec<EquationRow>,
     /// The number of remaining functions.
     pub(super) functions: usize,
     /// The derivatives of these, where each is given: for each function and symbol, its coefficients in terms of the
     /// functions.
-    pub(super) slopes: Vec<Vec<Row>>,
+    pub(super) slopes: Vec<Vec<EquationRow>>,
     pub(super) solutions: Solutions,
 }
 
@@ -112,8 +112,8 @@ pub(super) enum Solutions {
 
 impl<'a> System<'a> {
     /// The equations; the wanted functions come first.
-    pub(super) fn new(by: &'a Derivations<'a>, (asked, functions): (usize, usize), rows: Vec<Row>) -> Self {
-        Self { by, functions, given: 0, rows, lift: (0..asked).map(|index| unit(functions, index)).collect() }
+    pub(super) fn new(by: &'a Derivations<'a>, (wanted, functions): (usize, usize), rows: Vec<EquationRow>) -> Self {
+        Self { by, functions, given: 0, rows, lift: (0..wanted).map(|index| unit(functions, index)).collect() }
     }
 
     /// The same, with so many of the first functions to be given in terms of the others where that can be.
@@ -130,7 +130,7 @@ impl<'a> System<'a> {
     }
 
     /// Adds all that follows.
-    pub(super) fn completed(mut self) -> Result<Completed, Obstacle> {
+    pub(super) fn completed(mut self) -> Result<Completion, Obstacle> {
         for _ in 0..MOST_ROUNDS {
             let width = self.functions * self.by.count();
             let (slopes, rest) = Echelon::of(self.by.field, std::mem::take(&mut self.rows), width)?;
@@ -146,7 +146,7 @@ impl<'a> System<'a> {
                 let count = self.by.count();
                 let of = |column: usize| self.rows[column][width..].iter().map(Fraction::opposite).collect();
                 let slopes = (0..self.functions).map(|f| (0..count).map(|by| of(f * count + by)).collect()).collect();
-                return Ok(Completed { slopes, ..self.ended(Solutions::AsFunctions) });
+                return Ok(Completion { slopes, ..self.ended(Solutions::AsFunctions) });
             }
             // There is nothing with which derivatives by one symbol could disagree.
             if self.by.count() == 1 {
@@ -160,8 +160,8 @@ impl<'a> System<'a> {
         Ok(self.ended(Solutions::Unknown))
     }
 
-    fn ended(self, solutions: Solutions) -> Completed {
-        Completed { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
+    fn ended(self, solutions: Solutions) -> Completion {
+        Completion { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
     }
 
     /// Replaces functions by combinations of the remaining ones.
@@ -171,8 +171,9 @@ impl<'a> System<'a> {
         let basis = values.null_space();
         let mut changes = Vec::new();
         for vector in &basis {
-            let by = |direction| vector.iter().map(|e| self.by.derivative(e, direction)).collect::<Result<Row, _>>();
-            changes.push((0..directions).map(by).collect::<Result<Vec<Row>, Obstacle>>()?);
+            let by =
+                |direction| vector.iter().map(|e| self.by.derivative(e, direction)).collect::<Result<EquationRow, _>>();
+            changes.push((0..directions).map(by).collect::<Result<Vec<EquationRow>, Obstacle>>()?);
         }
         let mut rows = Vec::new();
         for (_, row) in slopes.rows() {
@@ -204,7 +205,7 @@ impl<'a> System<'a> {
 
     /// Makes unknown functions of the derivatives that are not given, keeps the others as rows, and gives the equations that
     /// say that second derivatives agree.
-    fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<Row>, Obstacle> {
+    fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<EquationRow>, Obstacle> {
         let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
         let width = before * directions;
         let is_pivot = |column: &usize| slopes.rows().any(|(pivot, _)| pivot == *column);
@@ -261,7 +262,7 @@ impl<'a> System<'a> {
     }
 }
 
-fn unit(length: usize, index: usize) -> Row {
+fn unit(length: usize, index: usize) -> EquationRow {
     let mut row = vec![Fraction::zero(); length];
     row[index] = Fraction::one();
     row

@@ -6,7 +6,7 @@ pub(super) enum Fate {
     /// It dies out, no slower than some exponential.
     Fades,
     /// Bounded.
-    Stays,
+    Bounded,
     /// It grows without bound.
     Grows,
     /// Nothing.

@@ -9,7 +9,7 @@ use super::fate::Fate;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
 pub(super) fn fate(field: &Field<'_>, entries: &[Vec<Fraction>], block: &[usize]) -> Result<Fate, Obstacle> {
-    let mut fate = Fate::Stays;
+    let mut fate = Fate::Bounded;
     for &from in block {
         let mut gain = Fraction::zero();
         for &to in block {

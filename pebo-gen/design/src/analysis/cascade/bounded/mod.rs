@@ -27,7 +27,7 @@ const MOST_COMPONENTS: usize = 6;
 
 /// The behaviour of the fundamental matrix.
 pub(super) fn of(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Fundamental {
-    judged(plant, domain, lambda).unwrap_or(Fundamental::NotShown)
+    judged(plant, domain, lambda).unwrap_or(Fundamental::Undecided)
 }
 
 fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundamental, Obstacle> {
@@ -50,8 +50,8 @@ fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundam
             rows[component] = fate;
         }
     }
-    let bounded = rows.iter().all(|fate| matches!(fate, Fate::Fades | Fate::Stays));
-    Ok(if bounded { Fundamental::Bounded { fades } } else { Fundamental::NotShown })
+    let bounded = rows.iter().all(|fate| matches!(fate, Fate::Fades | Fate::Bounded));
+    Ok(if bounded { Fundamental::Bounded { fades } } else { Fundamental::Undecided })
 }
 
 struct System<'a> {
@@ -138,7 +138,7 @@ impl System<'_> {
                 return Ok(Fate::Open);
             }
             if !self.is_constant(&loss) || !field.signs().is_positive(&loss)? {
-                fate = Fate::Stays;
+                fate = Fate::Bounded;
             }
         }
         Ok(fate)
@@ -164,7 +164,7 @@ impl System<'_> {
         }
         // s^2 + c with c > 0: an oscillation.
         let oscillates = block.len() == 2 && polynomial[1].is_zero() && field.signs().is_positive(&polynomial[2])?;
-        Ok(if oscillates { Fate::Stays } else { Fate::Open })
+        Ok(if oscillates { Fate::Bounded } else { Fate::Open })
     }
 
     /// The characteristic polynomial, from its leading coefficient down (Faddeev and Le Verrier).
@@ -224,13 +224,13 @@ impl System<'_> {
             for factor in block.iter().map(|&i| &self.entries[i][j]).filter(|factor| !factor.is_zero()) {
                 let constant = self.is_constant(factor);
                 all_fade &= constant && rows[j] == Fate::Fades;
-                all_bounded &= constant && matches!(rows[j], Fate::Fades | Fate::Stays);
+                all_bounded &= constant && matches!(rows[j], Fate::Fades | Fate::Bounded);
             }
         }
         match alone {
             Fate::Fades if all_fade => Fate::Fades,
-            Fate::Fades if all_bounded => Fate::Stays,
-            Fate::Stays if all_fade => Fate::Stays,
+            Fate::Fades if all_bounded => Fate::Bounded,
+            Fate::Bounded if all_fade => Fate::Bounded,
             _ => Fate::Open,
         }
     }

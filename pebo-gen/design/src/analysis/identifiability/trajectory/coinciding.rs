@@ -6,10 +6,10 @@
 
 use std::collections::BTreeSet;
 
-use super::problem::Question;
+use super::problem::TrajectoryProblem;
 use pebo_cas::{Expr, Node, Relation, Symbol};
 
-impl Question<'_> {
+impl TrajectoryProblem<'_> {
     /// Tests whether values of the parameters may make functions in the rows constant or equal.
     pub(super) fn may_coincide(&self, stack: &[Vec<Expr>]) -> bool {
         let arena = &self.plant.arena;

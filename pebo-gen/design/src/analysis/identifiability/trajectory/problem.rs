@@ -13,7 +13,7 @@ use pebo_cas::{Arena, Domain, Expr, Symbol};
 pub(super) const MOST_PARTS: usize = 600;
 
 /// An observability problem on trajectories of a plant.
-pub(super) struct Question<'a> {
+pub(super) struct TrajectoryProblem<'a> {
     pub(super) plant: &'a Plant,
     pub(super) domain: &'a Domain,
     pub(super) cascade: &'a Cascade,
@@ -31,16 +31,16 @@ pub(super) struct Restriction {
 }
 
 /// The observations of the rows with their derivatives on a trajectory.
-pub(super) struct Shown {
+pub(super) struct Observation {
     /// Rows that show as much as all derivatives do.
     pub(super) stack: Vec<Vec<Expr>>,
     /// Directions that they do not show.
     pub(super) hidden: Vec<Vec<Expr>>,
 }
 
-impl Question<'_> {
+impl TrajectoryProblem<'_> {
     /// Solves the problem on the trajectories of a restriction.
-    pub(super) fn shown(&self, restriction: &Restriction) -> Result<Shown, Obstacle> {
+    pub(super) fn solve(&self, restriction: &Restriction) -> Result<Observation, Obstacle> {
         let &Self { plant, domain, cascade, regression, unknowns } = self;
         let arena = &plant.arena;
         let domain = if restriction.equal.is_empty() {
@@ -89,19 +89,19 @@ impl Question<'_> {
         if hidden.is_empty() && rank < unknowns {
             return Err(Obstacle::NoWitness);
         }
-        Ok(Shown { stack, hidden })
+        Ok(Observation { stack, hidden })
     }
 
     /// Solves the problem with all inputs constant, and an input or parameter at a value.
-    pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Shown, Obstacle> {
+    pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Observation, Obstacle> {
         let held = self.plant.commanded().filter(|input| *input != symbol).collect();
-        self.shown(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
+        self.solve(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
     }
 }
 
 /// The identifiable combinations of the unknowns: those that do not change along the hidden directions. Each direction
 /// has a component that is one, and zero in the others.
-pub(crate) fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+pub(crate) fn identifiable(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
     let own = |index: usize| {
         (0..symbols.len()).find(|&column| {
             let entry = |(other, vector): (usize, &Vec<Expr>)| {

@@ -12,7 +12,7 @@ fn of(lines: &str) -> Vec<String> {
     let derivation = Derivation::derive(&plant);
     assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}");
     let result = derivation.identifiability.result.as_ref().expect("proved");
-    let mut lines = result.motion.as_ref().expect("over time").lines(&plant);
+    let mut lines = result.trajectories.as_ref().expect("over time").lines(&plant);
     lines.extend(result.constants.iter().map(|e| format!("{} != 0", plant.arena.print(*e))));
     lines
 }
@@ -184,9 +184,9 @@ fn outputs_that_no_input_moves_from_a_blind_value_are_listed() {
         ))
     };
     let open = "while `r = 0`, it was not decided what is identified".to_owned();
-    for stays in ["0", "-r", "r*(v - q)"] {
-        let lines = of_rate(stays);
-        assert!(lines.contains(&open), "{stays}: {lines:?}");
+    for is_invariant in ["0", "-r", "r*(v - q)"] {
+        let lines = of_rate(is_invariant);
+        assert!(lines.contains(&open), "{is_invariant}: {lines:?}");
     }
     assert!(of_rate("0")[0].contains("keep the inputs varying"));
     assert!(!of_rate("v").contains(&open));
