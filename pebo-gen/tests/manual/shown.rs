@@ -101,7 +101,9 @@ impl Run {
 
     /// Commands for a shell that are run elsewhere.
     fn elsewhere(&mut self, block: &Block) {
-        let ci = [".ci/run", ".ci/full"].map(|script| std::fs::read_to_string(root().join(script)).expect("a script")).concat();
+        let ci = [".ci/run", ".ci/full"]
+            .map(|script| std::fs::read_to_string(root().join(script)).expect("a script"))
+            .concat();
         // CI runs the whole of README.md's blocks by itself.
         if self.page.path == root().join("README.md") {
             return;
