@@ -1,6 +1,6 @@
 //! Observers from build scripts.
 //!
-//! In: model files. Out: a Rust file for each, and one that declares them as modules; or what is wrong with them.
+//! In: model files. Out: a Rust file for each, and one that declares them as modules; or their diagnostics.
 
 use std::fmt::{self, Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
@@ -46,8 +46,8 @@ pub struct Built {
     pub path: PathBuf,
 }
 
-/// Why a build script wrote nothing: the generator's diagnostics, as both `Display` and `Debug`, so that a build
-/// script that unwraps shows them as they are.
+/// The reason that a build script wrote nothing: the generator's diagnostics, as both `Display` and `Debug`, so that a
+/// build script that unwraps shows them as they are.
 pub struct BuildError(String);
 
 impl Default for Builder {
@@ -69,7 +69,7 @@ impl Builder {
         }
     }
 
-    /// Writes into this folder, which is made if it is not there.
+    /// Writes into this folder, which is created if it is missing.
     #[must_use]
     pub fn out_dir(mut self, folder: impl Into<PathBuf>) -> Self {
         self.out_dir = Some(folder.into());
@@ -83,15 +83,15 @@ impl Builder {
         self
     }
 
-    /// Whether to tell cargo to run the build script again when a model file changes. To be refused where the
-    /// program that calls this is no build script.
+    /// Tells cargo, or does not, to run the build script again when a model file changes. Not for programs that are no
+    /// build scripts.
     #[must_use]
     pub fn emit_rerun_if_changed(mut self, tell: bool) -> Self {
         self.rerun = tell;
         self
     }
 
-    /// Whether to lay the code out as rustfmt does; else it is written without line breaks.
+    /// Lays the code out as rustfmt does, or writes it without line breaks.
     #[must_use]
     pub fn format(mut self, format: bool) -> Self {
         self.format = format;
@@ -105,8 +105,8 @@ impl Builder {
         self
     }
 
-    /// How much work a model may take, in seconds of a machine of today: 10 unless this says otherwise. It is counted
-    /// in steps and not by the clock, so that whether a model is accepted does not depend on the machine.
+    /// The work that a model may take, in seconds of a machine of today: 10 unless this says otherwise. It is counted
+    /// in steps and not by the clock, so that a verdict does not depend on the machine.
     #[must_use]
     pub fn limit(mut self, seconds: f64) -> Self {
         self.limit = seconds;

@@ -1,7 +1,7 @@
-//! From a source to what is proved of it, and from there to code and to a closed loop.
+//! From a source to its proofs, and from there to code and to a closed loop.
 //!
-//! In: a source, or a model that somebody read. Out: a [`Derived`], whose claims all have a verdict; a transform that the
-//! model does not have is searched for. Nothing more is worked out before it is asked for.
+//! In: a source, or a model that was read. Out: a [`Derived`], whose claims all have a verdict; a missing transform is
+//! searched for. Everything else is computed on demand.
 
 use crate::emit::{self, EmitError, Emitted, Scalar};
 use pebo_cas::domain::zero::decide;
@@ -15,13 +15,13 @@ use pebo_design::source::Source;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_lab::settings::Tuned;
 
-/// A model with everything that was derived of it.
+/// A model with its plant and its derivation.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Derived {
-    /// What was written.
+    /// The model as it was written.
     pub model: Model,
-    /// What it means; with the transform that was found, where the model has none.
+    /// The plant; with the transform that the search found, if the model has none.
     pub plant: Plant,
     /// The claims, each with its verdict.
     pub derivation: Derivation,
@@ -45,22 +45,22 @@ pub fn derive(source: &Source) -> Result<Derived, Vec<Diagnostic>> {
     derive_within(source, Budget::default())
 }
 
-/// The same within a budget, from which all that is asked of the model later draws too.
+/// The same within a budget, which later questions about the model draw from too.
 #[cfg(feature = "yaml")]
 pub fn derive_within(source: &Source, budget: Budget) -> Result<Derived, Vec<Diagnostic>> {
     Derived::within(Model::parse(source)?, budget)
 }
 
-/// Of what is left of the budget, the part for the search that follows a refusal: `solve` has all of it.
+/// The search that follows a refusal may take this fraction of the remaining budget; `solve` takes all of it.
 const SHARE_OF_ADVICE: u64 = 5;
 
 impl Derived {
-    /// Derives the observer of a model, whoever read it, within the usual budget of steps.
+    /// Derives the observer of a model that was read, within the usual budget of steps.
     pub fn of(model: Model) -> Result<Self, Vec<Diagnostic>> {
         Self::within(model, Budget::default())
     }
 
-    /// The same within a budget, from which all that is asked of the model later draws too.
+    /// The same within a budget, which later questions about the model draw from too.
     pub fn within(model: Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
         let plant = Plant::resolve_within(&model, budget)?;
         if !plant.phi.is_empty() {
@@ -81,21 +81,21 @@ impl Derived {
         Ok(Self { model, plant, derivation })
     }
 
-    /// Whether all that was derived holds of another reading of the model too, which then may stand in the place of
-    /// [`model`](Self::model): one that differs in the sections `observer`, `simulation` and `recording` alone, as with
+    /// The derivation holds for another version of the model too, which then may replace [`model`](Self::model): one
+    /// that differs in the sections `observer`, `simulation` and `recording` alone, as with
     /// [`Source::set`](pebo_design::source::Source::set).
     pub fn holds_of(&self, other: &Model) -> bool {
         let Model { observer, simulation, recording, .. } = self.model.clone();
         Model { observer, simulation, recording, ..other.clone() } == self.model
     }
 
-    /// What there is to tell of the claims; where a transform is refused or undecided, followed by what a search for another
-    /// found.
+    /// The diagnostics of the claims; if a transform is refused or undecided, followed by the result of a search for
+    /// another.
     pub fn advised(&self) -> Vec<Diagnostic> {
         let mut diagnostics = self.derivation.diagnostics.clone();
         let searched = match self.plant.origin {
             TransformOrigin::Given => true,
-            // Of linear plants and coils the class knows what there is.
+            // The class knows all transforms of linear plants and coils.
             TransformOrigin::Class => matches!(self.plant.class, Some(Class::Mechanical(_))),
             TransformOrigin::Found => false,
         };
@@ -105,7 +105,7 @@ impl Derived {
             let budget = self.plant.arena.budget();
             let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.cascade_class));
             *first = search.advise(&self.plant, first.clone());
-            // What mends the first mends the others.
+            // A mend of the first mends the others.
             if search.verdict == SearchVerdict::Found {
                 open.for_each(|other| other.help = None);
             }
@@ -113,15 +113,15 @@ impl Derived {
         diagnostics
     }
 
-    /// Writes the observer as Rust, and proves that the written code computes what was derived.
+    /// Writes the observer as Rust, and proves that the written code computes the derived formulas.
     pub fn emit(&self, scalar: Scalar) -> Result<Emitted, EmitError> {
         let domain = self.plant.domain();
         let is_zero = |arena: &Arena, expr| decide(arena, expr, &domain).is_zero();
         emit::emit(&self.plant, &self.derivation, self.settings().0.as_ref(), scalar, is_zero)
     }
 
-    /// What the section `observer` says of the observer, if that is all it needs; `simulate` reports what is missing.
-    /// With it what is wrong with the section.
+    /// The settings of the section `observer`, if they are complete, and the diagnostics of the section; `simulate`
+    /// reports missing ones.
     fn settings(&self) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
         let mut problems = Diagnostics::default();
         let tuned = Tuned::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
@@ -129,7 +129,7 @@ impl Derived {
         (settings.filter(|_| !problems.has_errors()), problems.into_vec())
     }
 
-    /// The same for a front end: where there is no code, diagnostics say why, be it a claim or the code itself.
+    /// The same for a front end: if there is no code, diagnostics say why, be it a claim or the code itself.
     pub fn admitted(&self, scalar: Scalar) -> Result<Emitted, Vec<Diagnostic>> {
         if self.derivation.admit().is_err() {
             return Err(self.advised());
@@ -141,7 +141,7 @@ impl Derived {
         self.emit(scalar).map_err(|error| vec![self.refusal(&error, scalar)])
     }
 
-    /// What the emitted code loses because the model's own formulas lose it, said of the model's name.
+    /// Warnings at the model's name about digits that the emitted code loses because the model's own formulas do.
     pub fn cautions(&self, emitted: &Emitted, scalar: Scalar) -> Vec<Diagnostic> {
         let losses = emitted.accuracy.cautions(scalar).into_iter().map(|(function, worst)| {
             let (scalar, place) = (scalar.name(), &worst.place);
@@ -157,7 +157,7 @@ impl Derived {
         losses.collect()
     }
 
-    /// Why an accepted derivation is not emitted, said of the model's name.
+    /// The reason at the model's name that an accepted derivation is not emitted.
     fn refusal(&self, error: &EmitError, scalar: Scalar) -> Diagnostic {
         let span = self.model.name.span;
         let help = match error {

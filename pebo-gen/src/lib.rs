@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A model file describes a plant and a candidate transform (Ortega, Bobtsov, Pyrkin and Aranovskiy
-//! 2015). [`derive()`] says what is proved of it, claim by claim; [`Derived::emit`] writes the observer
-//! if everything is. [`answer()`] is both in one call, with all that front ends show, as one value that serialises.
+//! 2015). [`derive()`] proves or refutes its claims one by one; [`Derived::emit`] writes the observer if all
+//! are proved. [`answer()`] is both in one call, with all that front ends show, as one value that serialises.
 
 #[cfg(feature = "yaml")]
 mod answer;
@@ -34,7 +34,7 @@ pub use derived::{derive, derive_within};
 
 pub use pebo_design::{analysis, model, plant, search, source};
 
-/// The package's front page, of which the example is a test.
+/// The package's front page, whose example is a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 mod front_page {}

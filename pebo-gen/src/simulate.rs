@@ -1,6 +1,6 @@
-//! The closed loop of plant, controller and observer, and the observer over recorded data, run.
+//! Runs of the closed loop of plant, controller and observer, and of the observer over recorded data.
 //!
-//! What users of the library call of the crate `pebo-lab`.
+//! The public face of the crate `pebo-lab`.
 
 pub use pebo_lab::{
     Certainty, Ensemble, Estimate, Excitation, Failure, Faults, Known, Numbers, Overrides, Quantiles, Rated, SETTLED,

@@ -1,4 +1,4 @@
-//! Plants by class: what is expanded, what is refused, and that two forms of a condition agree.
+//! Plants by class: expansions, refusals, and the agreement of two forms of a condition.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -50,7 +50,7 @@ fn an_observable_linear_plant_may_have_no_transform() {
     let (plain, either) = (turning("class: pebo\n").derivation, turning("").derivation);
     assert_eq!((plain.outcome, plain.class), (Outcome::Rejected, Class::Pebo));
     assert_eq!((either.outcome, either.class), (Outcome::Accepted, Class::Gpebo));
-    // Neither observable nor with a transform: of the generalised observer, theta is what cannot be had.
+    // Neither observable nor with a transform: the generalised observer's theta is not identifiable.
     let blind =
         |class: &str| derived(&format!("x: [a, b]\ny: [y]\n{class}lti: {{A11: [[-1, 0], [0, -2]], A21: [[1, 0]]}}"));
     for (class, code) in [("class: pebo\n", Code::CascadeRefuted), ("", Code::NeverIdentifiable)] {
@@ -89,7 +89,7 @@ fn ranks_are_those_at_the_values() {
     assert_eq!(special("3").derivation.outcome, Outcome::Accepted);
 }
 
-/// A verdict names the values that it rests on, or the parameters that must not vanish.
+/// A verdict names the values that it depends on, or the parameters that must not vanish.
 #[test]
 fn special_values_are_named() {
     let seen_through = |parameters: &str, a21: &str| {
@@ -303,7 +303,8 @@ fn a_chain_of_point_masses_rests_where_it_is_held() {
 
 /// Two masses, each at the end of two links, with T the inverse of the Jacobian of their positions.
 ///
-/// Over one denominator, the rates of the outputs would be divided by `sin(2*q1 + q2)`, which is zero in harmless postures.
+/// Over one denominator, the rates of the outputs would be divided by `sin(2*q1 + q2)`, which is zero in harmless
+/// postures.
 const FOUR_LINKS: &str = r"x: [p1, p2, p3, p4]
 y: [q1, q2, q3, q4]
 u: [u1, u2, u3, u4]
@@ -337,8 +338,8 @@ fn a_plant_is_divided_by_what_its_frame_is_divided_by() {
     let links = derived(FOUR_LINKS);
     assert_eq!(links.derivation.outcome, Outcome::Accepted, "{:?}", links.derivation.diagnostics);
     assert_eq!(links.derivation.conditions.len(), 0);
-    // Along the horizontal, weight does nothing, and does not stand in the formula either. Along the vertical it is that
-    // of the mass, and not divided.
+    // Along the horizontal, weight does nothing, and does not stand in the formula either. Along the vertical it is
+    // that of the mass, and not divided.
     let cascade = links.derivation.cascade.result.as_ref().expect("a cascade");
     assert_eq!(
         printed(&links, &cascade.h)[2..],
@@ -372,7 +373,7 @@ fn the_circle_of_fluxes_is_found() {
     assert_eq!(printed(&motor, &regression.primitive_1.concat()), ["L*i1", "L*i2"]);
     let line = "as it stands it is a regression in 3 unknowns, with `regression: static`";
     assert!(summary(&motor.plant, &motor.derivation).contains(line));
-    // As it stands.
+    // As it is.
     let motor = derived(&format!("regression: static\n{MOTOR}"));
     let regression = motor.derivation.regression.result.as_ref().expect("a regression");
     assert_eq!(regression.kind, RegressionKind::Static);
@@ -456,7 +457,7 @@ fn a_rate_has_a_primitive_or_is_refused() {
     for rate in ["u/x", "x/(1 + x)", "u/(x + y)", "(u + x)/(x + x*y^2 + 1)"] {
         assert_eq!(kind(rate), implicit, "{rate}");
     }
-    // No primitive: what multiplies the rate depends on the input, is no polynomial in y, mixes theta with signals, or is
+    // No primitive: the factor of the rate depends on the input, is no polynomial in y, mixes theta with signals, or is
     // not affine in the unknown.
     let refused =
         ["u/(x + u)", "u/(x + exp(y))", "u/(x + log(y))", "1/(1 + exp(-x^2))", "1/(1 + exp(x*y))", "u/(1 + x^2)"];

@@ -1,4 +1,4 @@
-//! One budget for a model: what does not end within it is undecided and names the phase, whatever the machine.
+//! One budget for a model: a longer derivation is undecided and names the phase, whatever the machine.
 #![cfg(feature = "yaml")]
 
 use std::cell::Cell;
@@ -48,7 +48,7 @@ fn matrices(size: usize) -> String {
     )
 }
 
-/// Functions times polynomials, of which each derivative is many times as long as the one before.
+/// Functions times polynomials, each of whose derivatives is many times as long as the one before.
 fn products() -> String {
     [
         "model: m",
@@ -84,7 +84,7 @@ fn natural_models_that_take_long_are_undecided_and_name_the_phase() {
     }
 }
 
-/// Whatever the number of steps, a model is accepted or undecided, and the claims that are proved stay proved.
+/// Whatever the number of steps, a model is accepted or undecided, and proved claims remain proved.
 #[test]
 fn a_budget_never_makes_a_true_claim_false() {
     let models = ["cuk", "motor"].map(|name| {

@@ -1,11 +1,11 @@
-//! Refusals point at what causes them: a component of the transform, a summand of a rate, a pair of assumptions.
+//! Refusals point at their causes: a component of the transform, a summand of a rate, a pair of assumptions.
 #![cfg(feature = "yaml")]
 
 use pebo_gen::analysis::Outcome;
 use pebo_gen::derive;
 use pebo_gen::source::{Code, Source};
 
-/// What, lines of the model, code, the text that is underlined, other texts that are.
+/// A name, the lines of the model, the code, the underlined text, other underlined texts.
 type Row = (&'static str, &'static str, Code, &'static str, &'static [&'static str]);
 
 const TABLE: &[Row] = &[
@@ -116,8 +116,8 @@ fn assumptions_that_can_hold_are_not_refused() {
     }
 }
 
-/// What contradicts itself in less plain ways is refused too, where algebra or an enclosure shows it; else the claims
-/// are undecided: every claim about no values is true.
+/// Less plain contradictions are refused too, if algebra or an enclosure proves them; else the claims are undecided:
+/// every claim about no values is true.
 #[test]
 fn a_domain_without_a_point_is_not_accepted() {
     let text = |assume: &str| {

@@ -1,7 +1,8 @@
-//! Signs over a domain, row by row: what algebra shows of a formula where the assumptions hold, and what it must not.
+//! Signs over a domain, row by row: those that algebra proves of a formula where the assumptions hold, and those that
+//! it must not.
 //!
-//! Every row is also asked of floating point, at points of its domain: a sign that one of them contradicts is wrong,
-//! whatever the table says.
+//! Every row is also evaluated in floating point, at points of its domain: a sign that one of them contradicts is
+//! wrong, whatever the table says.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use pebo_cas::{Facts, Relation};
 use pebo_gen::model::formula::{Estimates, Formula, Operator, SpanMap, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
-/// What is shown of a formula.
+/// The proved sign of a formula.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Shown {
     Positive,
@@ -20,14 +21,14 @@ enum Shown {
     Negative,
     NotPositive,
     Nothing,
-    /// Nothing, although there is one: where this fails, more is shown than was.
+    /// Nothing, although there is a sign: a failure means that more is proved than before.
     Open,
 }
 use Shown::{Negative, NotNegative, NotPositive, Nothing, Open, Positive};
 
 const NAMES: [&str; 6] = ["a", "b", "c", "x", "y", "z"];
 
-/// Formula; assumptions, a formula that is positive or, with `>=` before it, not negative; what is shown.
+/// Formula; assumptions, a formula that is positive or, with `>=` before it, not negative; the proved sign.
 const TABLE: &[(&str, &[&str], Shown)] = &[
     // Numbers, rational and not.
     ("3", &[], Positive),
@@ -212,7 +213,7 @@ fn value(formula: &Formula, point: &BTreeMap<&str, f64>) -> f64 {
     }
 }
 
-/// Whether a value has the sign, up to rounding.
+/// A value has the sign, up to rounding.
 fn agrees(shown: Shown, value: f64) -> bool {
     match shown {
         Positive | NotNegative => value > -1e-9,
@@ -255,7 +256,7 @@ fn no_sign_is_contradicted_by_a_point() {
             seen[usize::from(found > 0.0)] = true;
         }
         assert!(inside > 10, "{text}: {inside} points of the domain");
-        // Where nothing is shown there is nothing to show.
+        // Where nothing is proved there is no sign.
         let mixed = seen == [true, true];
         assert!(if *expected == Nothing { mixed } else { *expected != Open || !mixed }, "{text}: {seen:?}");
     }

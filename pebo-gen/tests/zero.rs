@@ -196,7 +196,7 @@ const ZERO: &[(&str, &[&str])] = &[
     ("cos(x^2/(x + y) - y^2/(x + y)) - cos(x - y)", &[]),
     ("sin((pi*(1 + 2*y) + 1)/(1 + 2*y)) + sin(1/(1 + 2*y))", &[]),
     ("exp(2/(x^2 - 1)) - exp(1/(x - 1))/exp(1/(x + 1))", &[]),
-    // Roots, magnitudes and logarithms of products.
+    // Roots, absolute values and logarithms of products.
     ("sqrt(x)*sqrt(y) - sqrt(x*y)", &[]),
     ("sqrt(x*y)*sqrt(y*z) - abs(y)*sqrt(x*z)", &[]),
     ("sqrt(x/y) - sqrt(x*y)/abs(y)", &[]),
@@ -290,7 +290,7 @@ const NON_ZERO: &[(&str, &[&str])] = &[
     ("sqrt(x - sqrt(x)) + x", &["x - sqrt(x)"]),
 ];
 
-/// Outside what the normal form covers, or without a value anywhere: neither answer may be given.
+/// Outside the normal form's scope, or without a value anywhere: neither answer may be given.
 const OPEN: &[(&str, &[&str])] = &[
     ("sqrt(-1 - x^2)", &[]),
     ("1/(sqrt(x^2) - abs(x))", &[]),
@@ -333,7 +333,7 @@ fn what_is_not_covered_stays_open() {
     }
 }
 
-/// The signs of functions within functions are asked for once each: otherwise every level would take thrice as long.
+/// The signs of functions within functions are computed once each: otherwise every level would take thrice as long.
 #[test]
 fn functions_within_functions_are_decided() {
     let nested = |function: &str| format!("{}x{}", format!("{function}(").repeat(16), ")".repeat(16));

@@ -12,13 +12,14 @@ const L: f64 = 1e-3;
 const C: f64 = 1e-4;
 const R: f64 = 50.0;
 const E: f64 = 12.0;
-/// What the input voltage is more than its sensor says, in V.
+/// The offset of the input voltage beyond its sensor's value, in V.
 const OFFSET: f64 = 0.1;
 const DT: f64 = 1e-5;
-/// How fast the estimator forgets, in 1/s: the offset costs OFFSET/L/BETA of the current.
+/// The rate of forgetting, in 1/s: the offset costs OFFSET/L/BETA of the current.
 const BETA: f64 = 1e3;
 
-/// `x = i`, `y = v`, `u` the duty cycle and the measured input voltage: `i' = (u2 - (1 - u1) v)/L`, `v' = ((1 - u1) i - v/R)/C`.
+/// `x = i`, `y = v`, `u` the duty cycle and the measured input voltage: `i' = (u2 - (1 - u1) v)/L`, `v' = ((1 - u1) i -
+/// v/R)/C`.
 #[derive(Clone)]
 struct Boost<S>(core::marker::PhantomData<S>);
 

@@ -1,7 +1,7 @@
-//! What the attribute does when it expands: reading, proving, emitting; each of the models, medians in ms.
+//! Times of the attribute's expansion: reading, proving, emitting; each of the models, medians in ms.
 //!
-//! Run with `cargo run --release -p tests --example expansion`; without `--release` it is about as fast as the attribute
-//! is where a user has not optimised build scripts and macros.
+//! Run with `cargo run --release -p tests --example expansion`; without `--release` it is about as fast as the
+//! attribute is where a user has not optimised build scripts and macros.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use pebo_gen::derive;
 use pebo_gen::emit::Scalar;
 use pebo_gen::source::Source;
 
-/// Odd, for a median that was seen.
+/// Odd, so that the median is a measured value.
 const ROUNDS: usize = 11;
 
 fn median(mut times: Vec<Duration>) -> f64 {

@@ -3,10 +3,10 @@
 //!
 //! Run with `cargo run --release -p tests --example models`.
 //!
-//! The error of a state is told in shares of the largest magnitude that the state has in the run. Settled: the time from
-//! which no error reaches 1 % any more, before the step that the plant makes half way, and from that step on. Noise: the
-//! same run with white noise in each output, of 0.1 % of the output's largest magnitude; the largest root mean square of
-//! an error in the last quarter.
+//! The error of a state is relative to the largest absolute value of the state in the run. Settled: the time from which
+//! no error reaches 1 % any more, before the step that the plant makes half way, and from that step on. Noise: the same
+//! run with white noise in each output, of 0.1 % of the output's largest absolute value; the largest root mean square
+//! of an error in the last quarter.
 
 use std::path::Path;
 

@@ -103,7 +103,7 @@ fn rivals() -> Result<Vec<(&'static str, Step)>, Fault> {
     ])
 }
 
-/// What is told of one observer.
+/// The row of one observer.
 #[derive(Clone, Copy)]
 struct Row {
     settled: Vector2<f64>,

@@ -4,7 +4,7 @@
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Extension as _, Fundamental, Integrator, Model, Real};
 
-/// Where to evaluate the functions of a model: values of each argument, as many as it takes.
+/// A point at which to evaluate the functions of a model: values of each argument, as many as it takes.
 #[derive(Clone, Copy)]
 pub struct Point<'a> {
     /// The extension at its start.
@@ -17,8 +17,8 @@ pub struct Point<'a> {
     pub eta: &'a [f64],
     /// The coordinates of the transform.
     pub z: &'a [f64],
-    /// Where results go: `h`, `lambda`, `phi_0`, `phi_1` by rows, `theta`, `phi_left`; behind `own` those of the model's own
-    /// functions.
+    /// The sink of results: `h`, `lambda`, `phi_0`, `phi_1` by rows, `theta`, `phi_left`; behind `own` those of the
+    /// model's own functions.
     pub results: &'a dyn Fn(&str, usize, f64),
 }
 
@@ -68,7 +68,7 @@ where
     M::Extension::new(vector(point.chi))
 }
 
-/// Hands over what a function returned.
+/// Hands over the result of a function.
 fn report<S: Real>(point: Point<'_>, name: &str, values: &[S]) {
     for (index, value) in values.iter().enumerate() {
         (point.results)(name, index, value.to_f64());
@@ -133,7 +133,7 @@ pub mod emitted {
     include!(concat!(env!("OUT_DIR"), "/emitted.rs"));
 }
 
-/// The values of a model's parameters, of which a model may have none.
+/// The values of a model's parameters, if it has any.
 pub(crate) fn defaults<P: Default>() -> P {
     P::default()
 }

@@ -42,7 +42,7 @@ fn a_struct_keeps_its_name() {
     assert_eq!(SVector::from(h), SVector::from(same));
 }
 
-/// What cargo looks at when it decides whether to build again.
+/// The files whose change makes cargo build again.
 #[test]
 fn the_compiler_is_told_of_the_files() {
     let program = std::env::current_exe().expect("this test");

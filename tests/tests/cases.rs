@@ -6,7 +6,7 @@ use pebo_gen::analysis::{Class, Derivation, Excitation, Outcome, RegressionKind}
 use pebo_gen::plant::Plant;
 use pebo_gen::source::{Code, Source};
 
-/// What the answer's verdict asks of the derivation.
+/// The derivation agrees with the answer's verdict.
 fn agrees(verdict: &str, implicit: bool, plant: &Plant, derivation: &Derivation) -> bool {
     let accepted = derivation.outcome == Outcome::Accepted;
     let regression = derivation.regression.result.as_ref();
@@ -43,7 +43,7 @@ fn verified_answers() {
         let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let verdict = text.lines().find_map(|l| l.strip_prefix("#   verdict: ")).expect("an answer").trim_matches('"');
         let implicit = text.lines().any(|line| line.starts_with('#') && line.contains("implicit regression"));
-        // That refusal is of plain observers: a rate affine in x has a generalised one.
+        // The refusal concerns plain observers: a rate affine in x has a generalised one.
         let asked = if verdict == "REJECT_PDE" { "class: pebo\n" } else { "" };
         match pebo_gen::derive(&Source::new(&name, format!("{text}{asked}")).expect("a text")) {
             Ok(derived) if agrees(verdict, implicit, &derived.plant, &derived.derivation) => {}

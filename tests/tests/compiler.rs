@@ -1,4 +1,4 @@
-//! No dependency asks for a newer compiler than the one that the project declares. Of the project's own code clippy says it
+//! No dependency needs a newer compiler than the one that the project declares. Clippy checks the project's own code
 //! (`incompatible_msrv`); cargo alone would notice a dependency with the declared compiler, and not with a newer one.
 
 use std::process::Command;
@@ -29,6 +29,6 @@ fn dependencies_build_with_the_declared_compiler() {
     let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(metadata["packages"].as_array().is_some_and(|packages| packages.len() > 50));
     assert_eq!(newer(&metadata, env!("CARGO_PKG_RUST_VERSION")), [""; 0]);
-    // nalgebra asks for the declared one.
+    // nalgebra needs the declared one.
     assert!(newer(&metadata, "1.88").iter().any(|line| line.contains("nalgebra")));
 }

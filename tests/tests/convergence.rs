@@ -11,7 +11,7 @@ use pebo_gen::source::Source;
 /// sampling, second order in the step, while the signals move.
 const SHARE: f64 = 1e-6;
 
-/// A model with the time in s after which the error stays below [`SHARE`], and what is changed for this test.
+/// A model with the time in s after which the error remains below [`SHARE`], and the changes for this test.
 struct Case {
     model: &'static str,
     within: f64,
@@ -95,8 +95,8 @@ fn estimates_become_the_states() {
     }
 }
 
-/// Of the models whose plant steps half way, what the model does not say: the time within which the errors fall for good
-/// below 1 % of the states' largest magnitudes, after the start and after the step, in s. What was seen, and a quarter.
+/// Models whose plant steps half way: the times within which the errors fall for good below 1 % of the states' largest
+/// absolute values, after the start and after the step, in s. A quarter more than measured.
 const STEPS: &[(&str, f64, f64)] = &[
     ("battery", 440.0, 1.0),
     ("bearing_only", 95.0, 920.0),
@@ -110,7 +110,7 @@ const STEPS: &[(&str, f64, f64)] = &[
     ("reactor", 22.0, 47.0),
 ];
 
-/// A model without what runs beside its observer, and without the panels that show it.
+/// A model without the baselines beside its observer, and without their panels.
 fn without_rivals(text: &str) -> String {
     let mut is_left_out = false;
     let kept = text.lines().filter(|line| {
@@ -166,7 +166,7 @@ const NO_VOLTAGE: &str = "control: {v1: 0, v2: 0}";
 /// Voltages that keep the currents moving whatever the rotor does.
 const TURNING: &str = "control: {v1: 10*cos(40*t), v2: 10*sin(40*t)}";
 
-/// The motor of which the currents alone are measured, with this speed, these voltages and this period.
+/// The motor with the currents alone measured, with this speed, these voltages and this period.
 fn motor(course: &str, voltages: &str, step: &str) -> Trace {
     let text = text("motor_currents");
     for part in [COURSE, NO_VOLTAGE, "step: 1e-5"] {
@@ -185,7 +185,7 @@ fn largest(errors: &[(f64, f64)]) -> f64 {
     errors.iter().map(|(_, error)| error.abs()).fold(0.0, f64::max)
 }
 
-/// By how much the error departs from its first value.
+/// The largest departure of the error from its first value.
 fn wander(errors: &[(f64, f64)]) -> f64 {
     errors.iter().map(|(_, error)| (error - errors[0].1).abs()).fold(0.0, f64::max)
 }
@@ -194,13 +194,13 @@ fn wander(errors: &[(f64, f64)]) -> f64 {
 #[test]
 fn a_motor_of_varying_speed_is_followed_by_its_currents() {
     let trace = motor(COURSE, NO_VOLTAGE, "1e-5");
-    // A decade in 60 ms: that is the gain's and the speed's; the bounds are what was seen, and a quarter.
+    // A decade in 60 ms, by the gain and the speed; the bounds are a quarter more than measured.
     for (from, bound) in [(0.1, 2.4e-2), (0.15, 4.8e-3), (0.2, 8.2e-4), (0.3, 1.8e-5), (0.4, 2.4e-7)] {
         let error = largest(&position_errors(&trace, from));
         println!("from {from} s on: {error:.1e} rad");
         assert!(error < bound, "from {from} s on: {error}");
     }
-    // What stays is that of sampling, of second order in the period.
+    // The remaining error is that of sampling, of second order in the period.
     let left = |trace: &Trace| largest(&position_errors(trace, 1.0));
     let (fine, coarse) = (left(&trace), left(&motor(COURSE, NO_VOLTAGE, "2e-5")));
     println!("from 1 s on: {fine:.1e} rad, at twice the period {coarse:.1e} rad");
@@ -215,7 +215,7 @@ fn a_motor_that_reverses_is_followed_by_its_currents() {
     assert!(largest(&errors) < 1e-6 * 0.3, "{}", largest(&errors));
 }
 
-/// Without motion nothing excites the fluxes' circle, whatever the currents do: the estimate must hold where it is.
+/// At standstill nothing excites the fluxes' circle, whatever the currents do: the estimate must hold its value.
 #[test]
 fn a_motor_at_standstill_keeps_its_estimate() {
     // From the beginning without current: every signal is constant, so not a digit moves.
@@ -230,8 +230,9 @@ fn a_motor_at_standstill_keeps_its_estimate() {
     println!("standing, currents turn: {:.1e} rad", wander(&turning));
     assert!(wander(&turning) < 1e-7, "{}", wander(&turning));
 
-    // A quarter of a second is enough to come near; then the rotor stands. The currents settle within some L/R = 4.5 ms and
-    // the estimator with them, to the one direction that is still seen: after 0.3 s, 66 times that, nothing is left.
+    // A quarter of a second is enough to come near; then the rotor stands. The currents settle within some L/R = 4.5 ms
+    // and the estimator with them, to the one direction that is still observable: after 0.3 s, 66 times that, nothing
+    // is left.
     for (voltages, rests) in [(NO_VOLTAGE, 1e-9), ("control: {v1: 1, v2: 0.5}", 1e-9), (TURNING, 1e-7)] {
         let errors = position_errors(&motor("omega: {0: 20, 0.25: 0}", voltages, "1e-5"), 0.55);
         println!("stopped, {voltages}: {:.4e} rad, wanders by {:.1e} rad", errors[0].1, wander(&errors));

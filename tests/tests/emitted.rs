@@ -56,7 +56,7 @@ fn in_single(line: &str) -> String {
     if line == "//! | function | `f32` | `f64` |" { line.to_owned() } else { line.replace("f64", "f32") }
 }
 
-/// Faults seen in the Rust of other generators.
+/// Faults found in the Rust of other generators.
 #[test]
 fn text_is_free_of_known_faults() {
     for path in models() {
@@ -126,8 +126,8 @@ fn parameters_beside_the_proofs_are_refused() {
     }
 }
 
-/// The leakage inductance is `L_s - L_m^2/L_r` and what is assumed `L_s*L_r - L_m^2 > 0`: rounded, one can be 0 where the
-/// other is positive.
+/// The leakage inductance is `L_s - L_m^2/L_r` and what is assumed `L_s*L_r - L_m^2 > 0`: rounded, one can be 0 where
+/// the other is positive.
 #[test]
 fn parameters_that_divide_by_zero_as_they_are_rounded_are_refused() {
     use pebo_runtime::Fault;
@@ -140,7 +140,7 @@ fn parameters_that_divide_by_zero_as_they_are_rounded_are_refused() {
     assert_eq!(InductionMotor::try_new(&rounded), Err(Fault::Parameter { index: 9 }));
 }
 
-/// What the model files say of their observers is what `observer` builds.
+/// `observer` builds the observers that the model files describe.
 #[test]
 fn an_observer_with_the_settings_of_the_model_runs() {
     use pebo_runtime::Fault;
@@ -161,7 +161,7 @@ fn an_observer_with_the_settings_of_the_model_runs() {
     assert_eq!(cuk_f64::Cuk::try_new(&wrong), Err(Fault::Parameter { index: 1 }));
 }
 
-/// The velocities of a mechanical model are the rates of its outputs: what the regression says of z without theta.
+/// The velocities of a mechanical model are the rates of its outputs: the regression at z without theta.
 #[test]
 fn velocities_are_the_rates_of_the_outputs() {
     use pebo_runtime::Model as _;
@@ -245,7 +245,7 @@ fn compare(derived: &Derived, evaluate: tests::Evaluate, tolerance: f64, trial: 
     for (name, exprs) in expected {
         let found = found.borrow();
         let (found, factors) = (&found[name], &found["phi_1"]);
-        // Where the model has no such function, the trait's own gives zeros.
+        // Without such a function of the model, the trait's own gives zeros.
         if exprs.is_empty() {
             assert!(found.iter().all(|value| *value == 0.0), "{} {name}", plant.name);
             continue;

@@ -1,5 +1,5 @@
-//! A plant in plain Rust is the plant in a model file: the same tokens, and functions that can be called. That the command
-//! line gives them too is a test beside its program (`pebo-gen/tests/front/answer.rs`).
+//! A plant in plain Rust is the plant in a model file: the same tokens, and functions that can be called. That the
+//! command line gives them too is a test beside its program (`pebo-gen/tests/front/answer.rs`).
 
 use std::path::Path;
 
@@ -70,7 +70,7 @@ fn from_file(path: &str, text: &str, scalar: Scalar) -> Emitted {
     answer.emitted.expect("accepted")
 }
 
-/// The attribute asks for a cascade as a model file does.
+/// The attribute names a class of cascade as a model file does.
 #[test]
 fn the_class_that_is_asked_for_is_read() {
     let (_, text, _) = PLANTS.iter().find(|plant| plant.0 == "rotating_frame").expect("a plant");
@@ -129,8 +129,8 @@ fn same(a: &[f64], b: &[f64]) {
     assert_eq!(bits(a), bits(b), "{a:?} and {b:?}");
 }
 
-/// Those of a module of plain Rust, for its own structures, and those of a model file have the same values: with inputs and
-/// without, with either extension.
+/// Those of a module of plain Rust, for its own structures, and those of a model file have the same values: with inputs
+/// and without, with either extension.
 #[test]
 fn the_papers_functions_agree() {
     let model = cuk_f64::Cuk::new(&cuk_f64::Parameters::default());

@@ -1,6 +1,6 @@
-//! Which layer may use which, and which files are one thing: read off the sources.
+//! The table of layers and the known circles among files hold for the sources.
 //!
-//! `cargo run -p tests --example modules` prints what is looked at here.
+//! `cargo run -p tests --example modules` prints the graph.
 
 #[path = "../modules/graph/mod.rs"]
 mod graph;
@@ -45,7 +45,7 @@ fn every_circle_is_known_and_says_why_it_is_one_thing() {
     assert_eq!(said.collect::<Vec<_>>(), CIRCLES, "\n{graph}");
 }
 
-/// What the reader of the graph makes of small sources: a table of texts with the arrows, as the file of the table tells.
+/// Small sources, each with the number of arrows that the reader of the graph finds.
 #[test]
 fn arrows_are_read_off_every_way_to_name_something() {
     let uses: &[(&str, usize)] = &[

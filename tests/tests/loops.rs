@@ -120,7 +120,7 @@ fn shorter_steps_approach_continuous_time() {
         (error[20] - exact).abs()
     };
     let ratio = difference(1e-5) / difference(1e-6);
-    // First order in the step, plus a second-order part that is still seen at the longer one.
+    // First order in the step, plus a second-order term that still counts at the longer one.
     assert!((5.0..20.0).contains(&ratio), "{ratio}");
 }
 

@@ -29,10 +29,10 @@ fn estimate_with_confidence() -> Result<Option<cuk::X>, Fault> {
     let mut gate = Gate::new(25.0, 20)?;
     observer.step(cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.68 }, 10e-6)?;
     let (y, u) = (cuk::Y { v2: 10.1, v4: -12.0 }, cuk::U { d: 0.68 });
-    // Far from what was expected: not taken. The next sample covers the gap.
+    // Far from the expected output: not taken. The next sample covers the gap.
     gate.admit(&observer.innovation(y, u, 10e-6)?)?;
     observer.step(y, u, 10e-6)?;
-    // A sensor with a period of its own: what is not there is NaN.
+    // A sensor with a period of its own: a missing value is NaN.
     observer.step_partly(cuk::Y { v2: 10.1, v4: f64::NAN }, &[0, 1], u, 10e-6)?;
     Ok(observer.standard_error().map(cuk::X::from))
 }
@@ -52,8 +52,8 @@ fn the_examples_run() {
     assert_eq!(estimate_with_a_window(), Ok(cuk::X { i1: 0.0, i3: 0.0 }));
     let errors = estimate_with_confidence().expect("good samples").expect("a linear left inverse");
     assert!(errors.i1 > 0.0 && errors.i1 < 5.0 && errors.i3 > 0.0 && errors.i3 < 20.0, "{errors:?}");
-    // At rest the voltage is 24 V for a duty cycle of one half, and the coil's current twice that of 50 ohms. The observer
-    // of the model takes a tenth of a second.
+    // At rest the voltage is 24 V for a duty cycle of one half, and the coil's current twice that of 50 ohms. The
+    // observer of the model takes a tenth of a second.
     let current = current(&vec![24.0; 100_000], 0.5).expect("good samples");
     assert!((current - 0.96).abs() < 1e-6, "{current}");
 }

@@ -1,4 +1,4 @@
-//! The paper's misprints: what is printed is refused, what is right is derived.
+//! The paper's misprints: the printed formula is refused, the right one is derived.
 //!
 //! The formulas on both sides are those of the paper's Sections 4 and 5.
 

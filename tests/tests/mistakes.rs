@@ -1,4 +1,4 @@
-//! What users of the attribute do wrong, and what the compiler says: pairs in `tests/mistakes`.
+//! Mistakes of the attribute's users with the compiler's messages: pairs in `tests/mistakes`.
 
 #[test]
 #[ignore = "compiles a crate for each mistake, and the generator once more: CI runs it"]

@@ -5,7 +5,7 @@ use std::path::Path;
 use pebo_gen::source::Source;
 use pebo_gen::{Ask, answer};
 
-/// What explains the proof: without the style, and without the code, which has snapshots of its own.
+/// The explanation of the proof, without the style, and without the code, which has snapshots of its own.
 #[test]
 fn page_of_the_pendulum() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/pendulum.yaml");

@@ -1,5 +1,5 @@
-//! The README shows only what is so. Its model, commands and outputs are run by `pebo-gen/tests/manual`, as those of the
-//! manual are; here is what only the workspace can say.
+//! The README is true. Its model, commands and outputs are run by `pebo-gen/tests/manual`, as those of the manual are;
+//! here are the tests that need the workspace.
 
 use std::path::Path;
 use std::process::Command;
@@ -19,8 +19,8 @@ fn blocks(language: &str) -> Vec<&'static str> {
     README.split(fence.as_str()).skip(1).filter_map(|rest| rest.split("```").next()).collect()
 }
 
-/// CI runs the commands as they stand, in a clean checkout. What went wrong there once is seen here at once: without one
-/// default among the programs of the workspace, `cargo run` does not know which is meant.
+/// CI runs the commands as they are, in a clean checkout. A mistake that it found once is found here at once: without
+/// one default among the programs of the workspace, `cargo run` does not know which is meant.
 #[test]
 fn the_commands_that_are_shown_mean_one_program() {
     let commands: Vec<&str> = blocks("sh").iter().flat_map(|block| block.lines()).collect();

@@ -1,4 +1,4 @@
-//! The table of models/README.md, from what the tool says of each model.
+//! The table of models/README.md, from the tool's verdict on each model.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ fn row(derived: &Derived) -> String {
         if singular.is_empty() { kind.to_owned() } else { format!("{kind}, except where {}", singular.join(", ")) }
     });
     let verdict = derivation.outcome.word();
-    // Of the reference, what comes after the year.
+    // The reference behind the year.
     let reference = plant.reference.as_deref().unwrap_or("-");
     let paper = reference.strip_prefix("Ortega et al. 2015, ").unwrap_or(reference);
     format!(
@@ -49,7 +49,7 @@ fn row(derived: &Derived) -> String {
     )
 }
 
-/// What stands behind the table: figures of runs, which `cargo run --release -p tests --example models` prints.
+/// The heading behind the table: figures of runs, which `cargo run --release -p tests --example models` prints.
 const FIGURES: &str = "\n## Settling";
 
 #[test]

@@ -1,12 +1,12 @@
-//! The constructor with the settings of a model, for every estimator that a model file can name: it compiles, and what it
-//! builds converges.
+//! The constructor with the settings of a model, for every estimator that a model file can name: it compiles, and its
+//! observer converges.
 
 use pebo_runtime::nalgebra::SVector;
 
 /// Seconds between samples.
 const STEP: f64 = 1e-3;
 
-/// Where `a' = s`, `b' = -s`, `v' = a + s b` is at `t` for `s = cos t`, from `a = 2`, `b = -1`, `v = -1`.
+/// The solution of `a' = s`, `b' = -s`, `v' = a + s b` at `t` for `s = cos t`, from `a = 2`, `b = -1`, `v = -1`.
 fn plant(t: f64) -> ([f64; 2], f64, f64) {
     let (sine, cosine) = t.sin_cos();
     ([2.0 + sine, -1.0 - sine], 2.0 * t - cosine - sine - sine * sine / 2.0, cosine)
@@ -30,8 +30,8 @@ macro_rules! converge {
                 let estimate = observer.step(Y { v }, U { s }, STEP).expect("a finite sample");
                 worst = (SVector::from(estimate) - SVector::from(x)).abs().max();
             }
-            // An input that is held over a step moves the extension by STEP/2 for each unit that it changes, here two; the
-            // unknowns follow that with a gain of about one.
+            // An input that is held over a step moves the extension by STEP/2 for each unit that it changes, here two;
+            // the unknowns follow that with a gain of about one.
             assert!(worst < 2.0 * STEP, "{worst}");
             assert_eq!(
                 Pair::try_new(&Parameters { k: -1.0 }).err(),

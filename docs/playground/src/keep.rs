@@ -1,4 +1,4 @@
-//! The last model, as it was derived.
+//! The last model with its derivation.
 
 use std::ops::ControlFlow;
 
@@ -6,14 +6,14 @@ use pebo_cas::Budget;
 use pebo_gen::source::{Diagnostic, Source};
 use pebo_gen::{Ask, Derived, Stage, derive_within};
 
-/// The last model with what was derived of it, and what is told of the progress of a call.
+/// The last model with its derivation, and the observer of a call's progress.
 #[derive(Debug)]
 pub(super) struct Kept {
     progress: fn(f64),
     last: Option<Last>,
 }
 
-/// A text, its limit, and what was derived of it.
+/// A text, its limit, and its derivation.
 type Last = (String, Option<f64>, Result<Derived, Vec<Diagnostic>>);
 
 impl Kept {
@@ -22,7 +22,7 @@ impl Kept {
         Self { progress, last: None }
     }
 
-    /// What is asked of every model, within so many seconds.
+    /// The request for every model, within so many seconds.
     pub(super) fn ask(&self) -> Ask {
         let progress = self.progress;
         Ask::new().named("model").watch(move |stage| {

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! `respond` is all there is: `memory` calls it in a page, and `native` in a native program, so that the two can be
-//! compared. The last model is kept as it was derived; what is asked of it next is not derived again.
+//! compared. The last model is kept with its derivation, so that the next question about it derives nothing.
 
 mod keep;
 mod memory;

@@ -42,7 +42,7 @@ pub extern "C" fn ask() -> usize {
     bytes
 }
 
-/// Where the answer is.
+/// The address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {
     TEXT.with_borrow(|text| text.as_ptr())

@@ -1,4 +1,4 @@
-//! Answers the questions on standard input, one a line, with one line each: what the page is held against.
+//! Answers the questions on standard input, one a line, with one line each: the reference for the page.
 //!
 //! An example of the package `tests`, which has the generator compiled already.
 

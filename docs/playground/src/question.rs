@@ -1,4 +1,4 @@
-//! What a page may ask.
+//! The questions of a page.
 
 use pebo_gen::emit::Scalar;
 use pebo_gen::model::Estimator;
@@ -9,7 +9,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "what", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Question {
-    /// The verdict with its diagnostics, the derivation in sections, and what there is to set of its simulation.
+    /// The verdict with its diagnostics, the derivation in sections, and the settings of its simulation.
     Check {
         /// The model file.
         text: String,
@@ -31,13 +31,13 @@ pub(super) enum Question {
         text: String,
         /// As of the commands.
         limit: Option<f64>,
-        /// What the file is to say instead, each `NAME=VALUE` as of `--set`.
+        /// Settings that override the file, each `NAME=VALUE` as of `--set`.
         #[serde(default)]
         set: Vec<String>,
-        /// How it is run.
+        /// Options of the run.
         #[serde(default)]
         how: How,
-        /// Whether the table of all signals is wanted.
+        /// The table of all signals is wanted.
         #[serde(default)]
         csv: bool,
     },
@@ -54,7 +54,7 @@ pub(super) enum Question {
         text: String,
         /// As of the commands.
         limit: Option<f64>,
-        /// What messages call the recording.
+        /// The recording's name in messages.
         name: String,
         /// The recording as CSV.
         csv: String,
@@ -86,7 +86,7 @@ impl From<Number> for Scalar {
     }
 }
 
-/// How a loop is run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct How {

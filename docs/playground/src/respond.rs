@@ -10,21 +10,21 @@ use serde::Serialize;
 use super::keep::{Kept, budget};
 use super::question::Question;
 
-/// What a page calls the text of its editor.
+/// The name of the text of a page's editor.
 const NAME: &str = "model.yaml";
 
-/// The answer on a model, with what a page needs to offer more.
+/// The answer on a model, with the replacements and settings that a page offers.
 #[derive(Debug, Serialize)]
 struct Checked {
     #[serde(flatten)]
     answer: Answer,
-    /// Of each diagnostic, what to write at its place, where that is all there is to do.
+    /// The replacement at the span of each diagnostic, if that mends it.
     replacements: Vec<Option<String>>,
-    /// What there is to set of the simulation, where there is one and everything is proved.
+    /// The settings of the simulation, if there is one and everything is proved.
     knobs: Option<Knobs>,
 }
 
-/// What there is to set of a simulation.
+/// The settings of a simulation.
 #[derive(Debug, Serialize)]
 struct Knobs {
     duration: Option<f64>,
@@ -82,7 +82,7 @@ struct Story {
     paper: Option<&'static str>,
 }
 
-/// What a question that is none gets.
+/// The answer to a malformed question.
 #[derive(Debug, Serialize)]
 struct Misasked {
     error: String,
@@ -164,8 +164,8 @@ fn of_model(
     of_setting(kept, (text, &[]), limit, answer)
 }
 
-/// The same on a text with settings. Of the text alone what was derived is kept, and what is set of its loop changes nothing
-/// of that.
+/// The same on a text with settings. The derivation of the text alone is kept, which settings of its loop do not
+/// change.
 fn of_setting(
     kept: &mut Kept,
     (text, settings): (&str, &[String]),

@@ -1,4 +1,4 @@
-//! What is asked of a model in one call.
+//! The request about a model in one call.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -9,11 +9,10 @@ use pebo_cas::Budget;
 #[cfg(feature = "simulate")]
 use pebo_lab::Overrides;
 
-/// Is told where a call is, and says whether to go on.
+/// Receives the stage of a call, and says whether to go on.
 type Watch = dyn Fn(Stage) -> ControlFlow<()>;
 
-/// What to do with a model beside checking it, and what that may take: nothing and the usual budget, unless it says
-/// otherwise.
+/// The tasks of a call beside checking the model, and their budget: none and the usual one, unless it says otherwise.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -42,7 +41,7 @@ pub struct Ask {
     pub(super) run: Option<AskRun>,
 }
 
-/// How what was proved is explained.
+/// The form of an explanation of the proofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Explained {
     Not,
@@ -50,15 +49,15 @@ pub(super) enum Explained {
     Sections,
 }
 
-/// Where a call is.
+/// The stage of a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// It proves, or checks what it wrote.
+    /// It proves, or checks the code that it wrote.
     Proof,
     /// It runs the closed loop.
     Run {
-        /// Which part of the run is done, 0 to 1.
+        /// The fraction of the run that is done, 0 to 1.
         done: f64,
         /// The samples of the whole run.
         samples: u64,
@@ -72,17 +71,17 @@ pub enum Stage {
     },
 }
 
-/// What to keep of a run of the closed loop beside the errors of its estimates.
+/// The results to keep of a run of the closed loop beside the errors of its estimates.
 #[cfg(feature = "simulate")]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AskRun {
-    /// Settings that go before those of the file.
+    /// Settings that override those of the file.
     pub overrides: Overrides,
-    /// Whether to keep the table of all signals.
+    /// Keep the table of all signals.
     pub trace: bool,
-    /// Whether to draw the figure.
+    /// Draw the figure.
     pub figure: bool,
-    /// How often to run it, if more than once: with the seed and those after it. Then there is no table of all signals,
+    /// The number of runs, if more than one: with the seed and those after it. Then there is no table of all signals,
     /// and the figure is about all runs.
     pub runs: Option<u64>,
 }
@@ -103,22 +102,22 @@ impl Ask {
         }
     }
 
-    /// What to call a model that is too malformed to say its name: the stem of the source's name, unless this is called.
+    /// The name of a model that is too malformed to say its own: the stem of the source's name, unless this is called.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = Some(name.into());
         self
     }
 
-    /// How much work the proofs may take, in seconds of a machine of today: counted in steps, and not by the clock.
+    /// The work that the proofs may take, in seconds of a machine of today: counted in steps, and not by the clock.
     #[must_use]
     pub fn limit(mut self, seconds: f64) -> Self {
         self.seconds = seconds;
         self
     }
 
-    /// Who is asked every few milliseconds of a proof, and some hundred times in a run, whether to go on. What a caller
-    /// stops is undecided, of a run: not there, and a diagnostic says so.
+    /// A function that decides every few milliseconds of a proof, and some hundred times in a run, whether to go on. A
+    /// stopped proof is undecided and a stopped run missing, with a diagnostic.
     #[must_use]
     pub fn watch(mut self, watch: impl Fn(Stage) -> ControlFlow<()> + 'static) -> Self {
         self.watch = Some(Rc::new(watch));
@@ -132,7 +131,7 @@ impl Ask {
         self
     }
 
-    /// To typeset what was derived too.
+    /// To typeset the derivation too.
     #[must_use]
     pub fn mathml(mut self) -> Self {
         self.mathml = true;
@@ -146,16 +145,16 @@ impl Ask {
         self
     }
 
-    /// To write a page that explains what was proved, or what stands against it; with the code for `f64` and the closed
-    /// loop, if the model is accepted and describes one.
+    /// To write a page that explains the proofs or the obstacles; with the code for `f64` and the closed loop, if the
+    /// model is accepted and describes one.
     #[must_use]
     pub fn page(mut self) -> Self {
         self.explained = Explained::Page;
         self
     }
 
-    /// To write the parts of that page that are about what was derived, each by itself and with its places in the file; the
-    /// code is among them if it is asked for, and nothing is run for them. It is these or the page.
+    /// To write the sections of that page about the derivation, each by itself and with its spans in the file; the code
+    /// is among them if it is requested, and nothing is run for them. A call gives these or the page.
     #[must_use]
     pub fn sections(mut self) -> Self {
         self.explained = Explained::Sections;

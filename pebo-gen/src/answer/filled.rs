@@ -1,7 +1,8 @@
 //! A model file with another transform.
 //!
 //! In: the text, and the plant with its transform. Out: the text with the components under `phi`, and without the left
-//! inverse of another transform, or with the matrices of the transform under the key of its class; all else is as it was. None where the result would not read as meant: the text is read again.
+//! inverse of another transform, or with the matrices of the transform under the key of its class; all else is as it
+//! was. None where the result would not read as meant: the text is read again.
 
 use pebo_design::model::Model;
 use pebo_design::plant::{Plant, TransformOrigin};
@@ -12,7 +13,7 @@ use super::framed::{self, quoted};
 
 /// The text with the transform of this plant.
 pub(super) fn filled(source: &Source, model: &Model, plant: &Plant) -> Option<String> {
-    // What the author wrote of the class's transform stays, and of coils there is nothing to write.
+    // The author's own transform of the class is kept, and coils have none to write.
     let blocks = model.class.as_ref().and_then(|class| search::blocks(plant, class.name()));
     let written = blocks.is_none() || model.class.as_ref().is_some_and(framed::is_given);
     if plant.origin == TransformOrigin::Class && written {
@@ -62,7 +63,7 @@ fn with_components(lines: &mut Vec<String>, phi: &[String]) -> Option<()> {
     Some(())
 }
 
-/// The lines of a key of the file, with what is indented below it or continues a list.
+/// The lines of a key of the file, with those that are indented below it or continue a list.
 fn section(lines: &[String], key: &str) -> Option<std::ops::Range<usize>> {
     let start = lines.iter().position(|line| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))?;
     let belongs = |line: &String| line.starts_with([' ', '\t', '-', ']', '}']);

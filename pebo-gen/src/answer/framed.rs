@@ -1,14 +1,14 @@
 //! A model file by class with another transform: a frame T, or the factors T1 and T2.
 //!
-//! In: the lines, and the matrices of the transform. Out: the lines with these among the keys of the class; all else is as
-//! it was.
+//! In: the lines, and the matrices of the transform. Out: the lines with these among the keys of the class; all else is
+//! as it was.
 
 use std::ops::Range;
 
 use pebo_design::model::Class;
 use pebo_design::search::Block;
 
-/// Whether the class has a transform of its author's.
+/// The class has a transform of its author's.
 pub(super) fn is_given(class: &Class) -> bool {
     match class {
         Class::Lti(lti) => lti.t1.is_some(),
@@ -48,7 +48,7 @@ pub(super) fn insert(lines: &mut [String], section: Range<usize>, blocks: &[Bloc
     Some(())
 }
 
-/// The line and the place in it where braces end that begin on the first line; none if there are none.
+/// The end, as line and column, of braces that begin on the first line; none if there are none.
 fn end_of_braces(lines: &[String]) -> Option<(usize, usize)> {
     let (mut depth, mut within) = (0, None);
     for (index, line) in lines.iter().enumerate() {

@@ -4,11 +4,10 @@
 //! Source, Ask -> derive -> report, emit, run -> Answer
 //! ```
 //!
-//! In: a source, and what is asked beside the verdict. Out: the verdict as programs and as people read it, every
-//! diagnostic with its places in bytes, and what was asked for. Holds after: if something that was asked for is not
-//! there, a diagnostic says why. The command line is this call between reading and writing files; a page or an editor
-//! makes the same call. Front ends that need tokens alone call its parts, [`derive_within`] and
-//! [`Derived::admitted`](crate::Derived::admitted).
+//! In: a source, and requests beside the verdict. Out: the verdict for programs and for people, every diagnostic with
+//! its spans in bytes, and the requested results. Holds after: if a requested result is missing, a diagnostic says why.
+//! The command line is this call between reading and writing files; a page or an editor makes the same call. Front ends
+//! that need tokens alone call its parts, [`derive_within`] and [`Derived::admitted`](crate::Derived::admitted).
 
 mod ask;
 mod filled;
@@ -49,9 +48,9 @@ use pebo_design::source::{Diagnostic, Source};
 #[cfg(feature = "simulate")]
 use pebo_lab::recording::Replayed;
 
-/// All there is to say of a model. Fields are only ever added.
+/// The whole answer on a model. Fields are only ever added.
 ///
-/// It serialises, which is what a page or an editor gets:
+/// It serialises, for a page or an editor:
 ///
 /// ```
 /// use pebo_gen::source::Source;
@@ -67,33 +66,33 @@ use pebo_lab::recording::Replayed;
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Answer {
-    /// How the call ended.
+    /// The outcome of the call.
     pub standing: Standing,
     /// The object of `check --format json`.
     pub report: Report,
-    /// The verdict in a few lines for people; empty where no plant was made.
+    /// The verdict in a few lines for people; empty without a plant.
     pub summary: String,
-    /// What there is to tell, the report's diagnostics first, with places in bytes.
+    /// The diagnostics, those of the report first, with spans in bytes.
     pub diagnostics: Vec<Diagnostic>,
-    /// The observer as Rust, if it was asked for and everything is proved.
+    /// The observer as Rust, if it was requested and everything is proved.
     pub emitted: Option<Emitted>,
-    /// What was derived as `MathML`, if that was asked for.
+    /// The derivation as `MathML`, if it was requested.
     pub mathml: Option<Typeset>,
-    /// A Python script that proves the claims again with `SymPy`, if it was asked for and everything is proved.
+    /// A Python script that proves the claims again with `SymPy`, if it was requested and everything is proved.
     pub certificate: Option<String>,
-    /// A page of HTML that explains the proof, if it was asked for and a plant was made, accepted or not.
+    /// A page of HTML that explains the proof, if it was requested and there is a plant, accepted or not.
     pub page: Option<String>,
-    /// The parts of that page that are about what was derived, if they were asked for and a plant was made.
+    /// The sections of that page about the derivation, if they were requested and there is a plant.
     pub sections: Option<Vec<Section>>,
-    /// What came of the closed loop, if a run was asked for and everything is proved.
+    /// The run of the closed loop, if it was requested and everything is proved.
     #[cfg(feature = "simulate")]
     pub run: Option<Run>,
-    /// What came of the observer over recorded data, if that is what the call was for and everything is proved.
+    /// The replay of recorded data, if the call was for one and everything is proved.
     #[cfg(feature = "simulate")]
     pub replay: Option<Replayed>,
 }
 
-/// Checks a model, and does what is asked beside.
+/// Checks a model, and does the requested tasks.
 ///
 /// ```
 /// use pebo_gen::emit::Scalar;
@@ -117,15 +116,15 @@ pub fn answer(source: &Source, ask: &Ask) -> Answer {
     Answer::on(&derived, source, ask)
 }
 
-/// What a model is called that is too malformed to say its name.
+/// The name of a model that is too malformed to say its own.
 fn stem(source: &Source, ask: &Ask) -> String {
     let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     ask.name.clone().or_else(stem).unwrap_or_default()
 }
 
 impl Answer {
-    /// The same of a model that was derived before, from this source: nothing is derived again. What is asked now draws
-    /// from the budget of the derivation.
+    /// The same for a model that was derived before, from this source: nothing is derived again. The call draws from
+    /// the budget of the derivation.
     ///
     /// ```
     /// use pebo_gen::source::Source;
@@ -162,7 +161,7 @@ impl Answer {
         answer
     }
 
-    /// Adds what was asked for of an accepted model.
+    /// Adds the requested results of an accepted model.
     fn add(&mut self, derived: &Derived, ask: &Ask) {
         if ask.certificate {
             self.certificate = certificate(&derived.model, &derived.plant, &derived.derivation);
@@ -196,14 +195,14 @@ impl Answer {
         Self::saying(derivation.outcome.into(), report, report::summary(plant, derivation), diagnostics)
     }
 
-    /// On a model of which no plant was made, perhaps because there is no text of it; `source` is what its diagnostics
-    /// are about.
+    /// The answer on a model without a plant, perhaps because there is no text of it; its diagnostics refer to
+    /// `source`.
     pub fn of_unread(name: &str, diagnostics: Vec<Diagnostic>, source: &Source) -> Self {
         let report = Report::of_unread(name, &diagnostics, source);
         Self::saying(Standing::of_unread(&diagnostics), report, String::new(), diagnostics)
     }
 
-    /// With nothing of what may be asked for besides.
+    /// An answer without requested results.
     fn saying(standing: Standing, report: Report, summary: String, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
             standing,
@@ -222,7 +221,7 @@ impl Answer {
         }
     }
 
-    /// Something that was asked for is not there.
+    /// Records that a requested result is missing.
     fn refuse(&mut self, standing: Standing, found: Vec<Diagnostic>) {
         self.standing = self.standing.max(standing);
         self.diagnostics.extend(found);

@@ -1,4 +1,4 @@
-//! What a page is made of: the verdict, the code for `f64`, and the closed loop where the model describes one.
+//! The content of a page: the verdict, the code for `f64`, and the closed loop if the model describes one.
 
 use crate::derived::Derived;
 use crate::emit::{Emitted, Scalar};
@@ -13,10 +13,10 @@ use super::ask::AskRun;
 use super::run::{self, Run};
 use super::standing::Standing;
 
-/// Why something that the page would have is not there.
+/// The reason that a part of the page is missing.
 type Refusal = (Standing, Vec<Diagnostic>);
 
-/// Writes the page, with what is known already: the diagnostics, and the code where it was asked for.
+/// Writes the page, with the known diagnostics, and the code if it was requested.
 pub(super) fn page(
     derived: &Derived,
     source: &Source,
@@ -55,7 +55,7 @@ pub(super) fn page(
     (page, refusal)
 }
 
-/// The parts of the page that are about what was derived, with what is known already.
+/// The sections of the page about the derivation, with the known diagnostics and code.
 pub(super) fn sections(
     derived: &Derived,
     source: &Source,
@@ -79,7 +79,7 @@ fn described(derived: &Derived, ask: &Ask) -> Option<Result<(Run, Option<Diagnos
     Some(run::run(derived, ask, &AskRun { figure: true, ..AskRun::default() }))
 }
 
-/// What the page shows of a run: the table without the columns that nobody has anything in.
+/// The rows of a run on the page: the table without empty columns.
 #[cfg(feature = "simulate")]
 fn of_run(run: &Run) -> Option<page::Loop<'_>> {
     let rows = run.summary.rows();

@@ -1,7 +1,7 @@
 //! The observer of a model over recorded data, in one call.
 //!
-//! In: a source, what may be taken for it, and a recording. Out: the answer on the model, and what came of the replay; or
-//! the diagnostics of a model that is refused, of columns that are not there, or of a row that is no row.
+//! In: a source, a budget, and a recording. Out: the answer on the model, and the result of the replay; or the
+//! diagnostics of a refused model, of missing columns, or of a malformed row.
 
 use std::io::{Read, Write};
 use std::ops::ControlFlow;
@@ -15,18 +15,17 @@ use super::ask::{Ask, Stage};
 use super::standing::Standing;
 use super::{Answer, stem};
 
-/// A recording, and where the estimates go.
+/// A recording, and the sink of the estimates.
 pub struct Tape<'a> {
-    /// What messages call the recording.
+    /// The recording's name in messages.
     pub name: &'a str,
     /// The recording as CSV; read row by row.
     pub recording: &'a mut dyn Read,
-    /// Takes the estimates as CSV, row by row; what was written is of use only if there is a replay in the answer.
+    /// Takes the estimates as CSV, row by row; they are of use only if there is a replay in the answer.
     pub estimates: Option<&'a mut dyn Write>,
 }
 
-/// Checks a model, and runs its observer over a recording if everything is proved; what else is asked of the model is not
-/// answered here.
+/// Checks a model, and runs its observer over a recording if everything is proved; other requests are ignored here.
 ///
 /// ```
 /// use pebo_gen::source::Source;
@@ -51,7 +50,7 @@ pub fn replay(source: &Source, ask: &Ask, tape: Tape<'_>) -> Answer {
 }
 
 impl Answer {
-    /// The same with a model that was derived before, from this source: nothing is derived again.
+    /// The same for a model that was derived before, from this source: nothing is derived again.
     pub fn replayed_on(derived: &Derived, source: &Source, ask: &Ask, tape: Tape<'_>) -> Self {
         let mut answer = Self::of(derived, source);
         if derived.derivation.outcome == Outcome::Accepted {
@@ -67,8 +66,8 @@ impl Answer {
     }
 }
 
-/// Runs the observer; what the call, the model or the recording does not say well is the caller's mistake. Beside what came
-/// of it what there is to say if it did not converge.
+/// Runs the observer; flaws of the call, the model or the recording are the caller's mistakes. Gives the replay with
+/// diagnostics if it did not converge.
 fn run(
     derived: &Derived,
     ask: &Ask,

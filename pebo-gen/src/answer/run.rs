@@ -1,7 +1,7 @@
-//! What came of a run of the closed loop.
+//! The result of a run of the closed loop.
 //!
-//! In: an accepted derivation and what to keep. Out: how far the estimates were from the truth when it began and when
-//! it ended, and what was asked for; or the diagnostics of a loop that is not described, or did not come to its end.
+//! In: an accepted derivation and the results to keep. Out: the errors of the estimates at the start and at the end of
+//! the run, and the requested results; or the diagnostics of a loop that is not described, or ended early.
 
 use std::ops::ControlFlow;
 
@@ -14,41 +14,41 @@ use pebo_lab::{Ensemble, Rated, Scenario, Summary, Trace, figure};
 use super::ask::{Ask, AskRun, Stage};
 use super::standing::Standing;
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Run {
-    /// When it ended, in seconds.
+    /// Its end, in seconds.
     pub end: f64,
     /// The estimator with its settings, as a file would have them.
     pub estimator: String,
     /// The error of each estimate.
     pub errors: Vec<FinalError>,
-    /// How each estimate settled and how large its error was then; samples that were lost; excitation. Of many runs, of the
-    /// first that came to its end.
+    /// The settling of each estimate and its error after; lost samples; excitation. Of many runs, those of the first
+    /// that came to its end.
     pub summary: Summary,
-    /// How estimates are spread over many runs, if these were asked for.
+    /// The spread of estimates over many runs, if these were requested.
     pub ensemble: Option<Ensemble>,
-    /// All signals over time, if they were asked for.
+    /// All signals over time, if they were requested.
     pub trace: Option<Trace>,
-    /// The figure as SVG, if it was asked for.
+    /// The figure as SVG, if it was requested.
     pub figure: Option<String>,
 }
 
-/// How far the estimate of a state is from it.
+/// The error of the estimate of a state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct FinalError {
     /// The state.
     pub state: String,
-    /// Estimate less truth when the run began.
+    /// Estimate minus truth at the start of the run.
     pub start: f64,
-    /// Estimate less truth when it ended.
+    /// Estimate minus truth at its end.
     pub end: f64,
 }
 
-/// Runs the loop; a loop that is not described well is the caller's mistake, one that fails is not. Beside it what there is
-/// to say of one that did not converge.
+/// Runs the loop; a flawed description is the caller's mistake, a failed run is not. Gives the run with diagnostics if
+/// it did not converge.
 pub(super) fn run(
     derived: &Derived,
     ask: &Ask,
@@ -78,7 +78,7 @@ pub(super) fn run(
 }
 
 impl Run {
-    /// A run of which nothing else was asked for.
+    /// A run without further requests.
     fn of(scenario: &Scenario, summary: Summary) -> Self {
         let own = summary.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
         let error = |rated: &Rated| FinalError {

@@ -1,7 +1,7 @@
 //! The transforms of a plant in one call.
 //!
-//! In: a source, and the class of cascade that is asked for. Out: what the search came to as programs and as people read
-//! it, and the model with the best transform written into it.
+//! In: a source, and the wanted class of cascade. Out: the result of the search for programs and for people, and the
+//! model with the best transform written into it.
 
 use std::path::Path;
 
@@ -18,17 +18,17 @@ use super::ask::Ask;
 use super::filled::filled;
 use super::standing::Standing;
 
-/// What there is to say of the transforms of a plant. Fields are only ever added.
+/// The answer on the transforms of a plant. Fields are only ever added.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Solution {
-    /// How the call ended: accepted if a transform was found.
+    /// The outcome of the call: accepted if a transform was found.
     pub standing: Standing,
     /// The object of `solve --format json`.
     pub report: SearchReport,
-    /// The same in a few lines for people; empty where no plant was made.
+    /// The same in a few lines for people; empty without a plant.
     pub summary: String,
-    /// What there is to tell, with places in bytes.
+    /// The diagnostics, with spans in bytes.
     pub diagnostics: Vec<Diagnostic>,
     /// The text of the model with the best transform for its own, if one was found.
     pub filled: Option<String>,
@@ -36,8 +36,8 @@ pub struct Solution {
     pub texts: Vec<Option<String>>,
 }
 
-/// Searches for transforms of a model's plant, whether or not the model has one; of one class of cascade, or of the one
-/// that the model asks for, or of any.
+/// Searches for transforms of a model's plant, whether or not the model has one; of one class of cascade, of the one
+/// that the model names, or of any.
 ///
 /// ```
 /// use pebo_gen::source::Source;
@@ -74,8 +74,8 @@ pub fn solve(source: &Source, class: Option<Class>, ask: &Ask) -> Solution {
 }
 
 impl Solution {
-    /// On a model of which no plant was made, perhaps because there is no text of it; `source` is what its diagnostics
-    /// are about.
+    /// The answer on a model without a plant, perhaps because there is no text of it; its diagnostics refer to
+    /// `source`.
     pub fn of_unread(name: &str, diagnostics: Vec<Diagnostic>, source: &Source) -> Self {
         Self {
             standing: Standing::of_unread(&diagnostics),

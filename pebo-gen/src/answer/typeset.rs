@@ -1,4 +1,4 @@
-//! What was derived, typeset: presentation `MathML` that a page shows as it is.
+//! The derivation, typeset: presentation `MathML` that a page shows as it is.
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::derived::Derived;
 use pebo_cas::{Arena, Expr};
 
-/// The functions of an observer as `MathML`, each formula a `math` element; empty where they were not derived.
+/// The functions of an observer as `MathML`, each formula a `math` element; empty if they were not derived.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Typeset {
@@ -14,7 +14,7 @@ pub struct Typeset {
     pub h: Vec<String>,
     /// The matrix of a generalised cascade, by rows.
     pub lambda: Vec<Vec<String>>,
-    /// What is known in the regression, by rows.
+    /// The known terms of the regression, by rows.
     pub phi_0: Vec<String>,
     /// The factors of the unknowns, by rows.
     pub phi_1: Vec<Vec<String>>,
@@ -23,7 +23,7 @@ pub struct Typeset {
 }
 
 impl Typeset {
-    /// What was derived, whatever the verdict.
+    /// The derived formulas, whatever the verdict.
     pub(super) fn of(derived: &Derived) -> Self {
         let (arena, derivation) = (&derived.plant.arena, &derived.derivation);
         let mut typeset = Self::default();

@@ -1,8 +1,8 @@
 //! The certificate of an accepted model: a Python script that proves its claims again with `SymPy`, and without pebo.
 //!
-//! In: the model as it was written, and what was derived of it. Out: a script of two parts, the formulas as texts in the
-//! model file's grammar and `checker.py`, which reads and proves them. The plant is restated from the author's own
-//! formulas, also where it is written by class, so that a mistake of pebo's in reading, expanding or proving it is found.
+//! In: the model as it was written, and its derivation. Out: a script of two parts, the formulas as texts in the model
+//! file's grammar and `checker.py`, which reads and proves them. The plant is restated from the author's own formulas,
+//! also where it is written by class, so that a mistake of pebo's in reading, expanding or proving it is found.
 
 mod python;
 
@@ -14,7 +14,7 @@ use pebo_design::plant::Plant;
 
 use python::Literal;
 
-/// What reads and proves the formulas.
+/// The part of the script that reads and proves the formulas.
 const CHECKER: &str = include_str!("checker.py");
 
 /// The script for a model whose claims are all proved; none for another.
@@ -42,7 +42,7 @@ pub(crate) fn certificate(model: &Model, plant: &Plant, derivation: &Derivation)
     Some(format!("{head}\n{}\n{}\n{CHECKER}", part("PLANT", &stated(model)), part("DERIVED", &derived)))
 }
 
-/// The plant in its author's words; what it does not have is left out.
+/// The plant in its author's formulas, without absent keys.
 fn stated(model: &Model) -> Literal {
     let texts = |formulas: &[Formula]| Literal::texts(formulas);
     let named =
@@ -115,7 +115,7 @@ fn matrix(name: &str, matrix: Option<&Matrix<Formula>>) -> Option<(String, Liter
     Some((name.to_owned(), literal))
 }
 
-/// What was derived, where all of it is there.
+/// The derivation, if it is complete.
 fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
     let arena = &plant.arena;
     let cascade = derivation.cascade.result.as_ref()?;
@@ -180,7 +180,7 @@ fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
     ]))
 }
 
-/// A dictionary without what is empty.
+/// A dictionary without empty values.
 fn dict(parts: Vec<(&str, Literal)>) -> Literal {
     let kept = parts.into_iter().filter(|(_, value)| !value.is_empty());
     Literal::Dict(kept.map(|(name, value)| (name.to_owned(), value)).collect())

@@ -27,7 +27,7 @@ impl Literal {
         Self::Dict(entries.into_iter().map(|(name, text)| (name.to_string(), Self::text(&text))).collect())
     }
 
-    /// Whether nothing is in it.
+    /// It has no entries.
     pub(super) fn is_empty(&self) -> bool {
         match self {
             Self::None => true,

@@ -1,4 +1,4 @@
-//! What the command line takes.
+//! The arguments of the command line.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -37,8 +37,8 @@ pub(super) struct Arguments {
     pub(super) command: Option<Command>,
     #[command(flatten)]
     pub(super) generate: GenerateOptions,
-    /// Time for each model, 10 seconds by default; what is not decided by then is undecided. Memory is limited to
-    /// 512 MB, in proportion more beyond 10 seconds. If given, `simulate` and `replay` also stop a run that takes longer
+    /// Time for each model, 10 seconds by default; what is not decided by then is undecided. Memory is limited to 512
+    /// MB, in proportion more beyond 10 seconds. If given, `simulate` and `replay` also stop a run that takes longer
     #[arg(long, global = true, value_name = "SECONDS")]
     pub(super) limit: Option<Limit>,
 }
@@ -69,7 +69,7 @@ impl FromStr for Limit {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let seconds: f64 = text.parse().map_err(|_| "a number of seconds is expected, as 60 or 0.5")?;
-        // Beyond the largest that a clock takes there is no difference to be seen.
+        // Beyond the largest value of a clock there is no visible difference.
         if seconds > 0.0 { Ok(Self(seconds.min(1e9))) } else { Err("the limit must be positive") }
     }
 }
@@ -239,8 +239,8 @@ pub(super) struct SimulateOptions {
     /// Run it so many times, with the seed and those after it, and show how the errors are spread
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub(super) runs: Option<u64>,
-    /// Set a parameter, or what stands under a key of the model file, such as `simulation.noise.v2`, as if the file said so;
-    /// can be given several times
+    /// Set a parameter, or what stands under a key of the model file, such as `simulation.noise.v2`, as if the file
+    /// said so; can be given several times
     #[arg(long, value_name = "NAME=VALUE")]
     pub(super) set: Vec<String>,
     /// Whose estimates the control law uses: observer, truth, or a baseline's name
@@ -255,8 +255,8 @@ pub(super) struct ReplayOptions {
     /// The recording: CSV with the names of the columns in its first line; `-` reads standard input
     #[arg(long, value_name = "LOG.csv")]
     pub(super) data: PathBuf,
-    /// Set a parameter, or what stands under a key of the model file, such as `simulation.noise.v2`, as if the file said so;
-    /// can be given several times
+    /// Set a parameter, or what stands under a key of the model file, such as `simulation.noise.v2`, as if the file
+    /// said so; can be given several times
     #[arg(long, value_name = "NAME=VALUE")]
     pub(super) set: Vec<String>,
     /// Write the estimates, and their errors where the state was measured, into this CSV file; `-` is standard output

@@ -1,4 +1,4 @@
-//! What a command may take for a model: `--limit`, by this machine's clock, and memory.
+//! The budget of a command for a model: `--limit`, by this machine's clock, and memory.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -12,16 +12,16 @@ use super::arguments::Limit;
 /// Bytes of memory for a limit of usual length or shorter.
 const MEMORY: f64 = 512.0 * 1024.0 * 1024.0;
 
-/// The part of the memory that is kept for what a single operation may take before the next look.
+/// The fraction of the memory that is kept for a single operation before the next look.
 const RESERVE: f64 = 0.25;
 
 impl Limit {
-    /// A question within the limit about a model that is begun now.
+    /// A request within the limit, begun now.
     pub(super) fn ask(self) -> Ask {
         Ask::new().limit(self.0).watch(self.watch())
     }
 
-    /// Ends what takes longer from now on, or more memory.
+    /// Ends a call that takes longer from now on, or more memory.
     pub(super) fn watch(self) -> impl Fn(Stage) -> ControlFlow<()> {
         let started = Instant::now();
         let time = Duration::from_secs_f64(self.0);
@@ -32,7 +32,7 @@ impl Limit {
             reason = "a float that is too large saturates"
         )]
         let memory = (MEMORY * longer * (1.0 - RESERVE)) as usize;
-        // What was taken before, for another model, is not this one's.
+        // Memory taken before, for another model, is not this one's.
         let before = resident();
         move |_| {
             let is_over = started.elapsed() >= time || resident().saturating_sub(before) >= memory;
@@ -41,7 +41,7 @@ impl Limit {
     }
 }
 
-/// The bytes that the process has in memory; none where the system does not tell.
+/// The bytes that the process has in memory; 0 if the system does not tell.
 fn resident() -> usize {
     memory_stats().map_or(0, |stats| stats.physical_mem)
 }

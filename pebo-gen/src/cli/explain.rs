@@ -1,4 +1,4 @@
-//! `pebo-gen explain`: the longer story of a diagnostic.
+//! `pebo-gen explain`: the explanation of a diagnostic.
 
 use pebo_gen::Standing;
 use pebo_gen::source::{Code, nearest};
@@ -19,7 +19,7 @@ pub(super) fn run(options: &ExplainOptions) -> Standing {
     standard::print(story(code).as_bytes())
 }
 
-/// Title, explanation, example, and where the paper speaks of it.
+/// Title, explanation, example, and reference to the paper.
 fn story(code: Code) -> String {
     let example = code.example().lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
     let paper = code.paper().map_or_else(String::new, |place| format!("\nIn Ortega et al. 2015: {place}.\n"));

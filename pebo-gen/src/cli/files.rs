@@ -1,4 +1,4 @@
-//! Reading and writing: a file is written whole or not at all; a device or a pipe is written to where it stands.
+//! Reading and writing: a file is written whole or not at all; a device or a pipe is written to directly.
 
 use std::fs::File;
 use std::io::{BufWriter, Read as _, Seek as _, Stdout, Write};
@@ -11,7 +11,7 @@ use tempfile::NamedTempFile;
 
 use super::standard::{self, reason};
 
-/// The answer on a model file, with the text that its diagnostics are about.
+/// The answer on a model file, with the text that its diagnostics refer to.
 pub(super) fn answer(path: &Path, ask: Ask) -> (Source, Answer) {
     answer_with(path, &[], ask)
 }
@@ -32,7 +32,7 @@ pub(super) fn answer_with(path: &Path, settings: &[String], ask: Ask) -> (Source
     }
 }
 
-/// The transforms of a model file's plant, with the text that its diagnostics are about.
+/// The transforms of a model file's plant, with the text that its diagnostics refer to.
 pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Solution) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read(path) {
@@ -48,7 +48,8 @@ pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Sol
     }
 }
 
-/// The answer on a model file with settings of the call, and on a recording, with the text that its diagnostics are about.
+/// The answer on a model file with settings of the call, and on a recording, with the text that its diagnostics refer
+/// to.
 pub(super) fn replay(path: &Path, settings: &[String], ask: Ask, tape: Tape<'_>) -> (Source, Answer) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read_with(path, settings) {
@@ -82,7 +83,7 @@ fn read_with(path: &Path, settings: &[String]) -> Result<Source, Box<(Source, Di
     read(path)?.set(settings).map_err(unset)
 }
 
-/// At most what a model can have, and one byte more so that the reader sees that it is too much.
+/// At most the longest model, and one byte more so that the reader sees that it is too long.
 fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let limit = u64::try_from(SIZE_LIMIT).unwrap_or(u64::MAX).saturating_add(1);
     let mut bytes = Vec::new();
@@ -94,8 +95,8 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a file beside its place and moves it there, or to standard output for `-`. What is no file, as a device or a
-/// named pipe, is written to: to put a file in the place of `/dev/null` would harm the whole system.
+/// Writes a file beside its path and moves it there, or to standard output for `-`. A device or a named pipe is written
+/// to directly: to replace `/dev/null` by a file would harm the whole system.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     if is_standard(path) {
         return standard::write(text.as_bytes());
@@ -107,7 +108,7 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     written.map_err(|error| unwritten(path, &error))
 }
 
-/// What a path leads to.
+/// The target of a path.
 enum Target {
     /// A device or a pipe, opened.
     Stream(File),
@@ -118,14 +119,14 @@ enum Target {
 fn target(path: &Path) -> std::io::Result<Target> {
     match std::fs::metadata(path) {
         Ok(old) if !old.is_file() => File::options().write(true).open(path).map(Target::Stream),
-        // A link stays one: what it leads to is replaced.
+        // A link is kept: its target is replaced.
         Ok(_) => path.canonicalize().map(Target::File),
         Err(_) => Ok(Target::File(path.to_owned())),
     }
 }
 
-/// A file that is written part by part, and is there when it is whole; or standard output for `-`. It grows where it has no
-/// name at all, so that nothing is left of it if the program is ended.
+/// A file that is written part by part, and is there when it is whole; or standard output for `-`. It has no name while
+/// it grows, so that nothing is left of it if the program is ended.
 pub(super) enum Growing {
     Named(PathBuf, BufWriter<File>),
     Stream(PathBuf, BufWriter<File>),
@@ -195,7 +196,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     put(file, path)
 }
 
-/// Gives what a file without a name holds a place.
+/// Moves the content of a file without a name to a path.
 fn name(mut file: File, path: &Path) -> std::io::Result<()> {
     file.rewind()?;
     let mut named = NamedTempFile::new_in(folder(path))?;
@@ -212,7 +213,7 @@ fn put(file: NamedTempFile, path: &Path) -> std::io::Result<()> {
     file.as_file().sync_all()?;
     #[cfg(unix)]
     {
-        // A temporary file is private; what is generated is as readable as any file its author makes.
+        // A temporary file is private; a generated one is as readable as any file its author makes.
         use std::os::unix::fs::PermissionsExt as _;
         let mode = std::fs::metadata(path).map_or(0o644, |old| old.permissions().mode());
         file.as_file().set_permissions(std::fs::Permissions::from_mode(mode))?;
@@ -221,7 +222,7 @@ fn put(file: NamedTempFile, path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// What there is to say of a name that asks for a figure in another format than SVG.
+/// The diagnostic for the name of a figure in another format than SVG.
 pub(super) fn not_a_figure(path: &Path) -> Option<Diagnostic> {
     let ending = path.extension()?.to_string_lossy().into_owned();
     if ending.eq_ignore_ascii_case("svg") {

@@ -27,7 +27,7 @@ pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {
     standings.max().unwrap_or(Standing::Malformed)
 }
 
-/// A word in the place of a model file that is none, and the command that it is nearly.
+/// A misspelt command in the position of a model file, and the command that it resembles.
 fn misspelt(path: &Path) -> Option<(&str, String)> {
     let word = path.to_str().filter(|_| !path.exists())?;
     let commands = Arguments::command();

@@ -1,4 +1,4 @@
-//! What describes the command line to shells, to `man` and to programs.
+//! Descriptions of the command line for shells, for `man` and for programs.
 
 use clap::CommandFactory as _;
 use pebo_gen::Standing;

@@ -44,7 +44,7 @@ pub(crate) fn run() -> ExitCode {
     ExitCode::from(standing as u8)
 }
 
-/// Says what the parser of arguments has to say: help and version to standard output, mistakes to standard error.
+/// Prints the parser's answer: help and version to standard output, mistakes to standard error.
 fn said(answer: &clap::Error) -> Standing {
     match answer.print() {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => standard::refuse(standard::unwritten(&error)),

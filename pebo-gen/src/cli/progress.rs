@@ -1,5 +1,5 @@
-//! A question that may run the closed loop: the proofs keep to the usual limit, a run to one that is given, and a long run
-//! shows how far it is.
+//! A request that may run the closed loop: the proofs keep to the usual limit, a run to a given one, and a long run
+//! shows its progress.
 
 use std::cell::OnceCell;
 use std::io::IsTerminal as _;
@@ -11,16 +11,16 @@ use pebo_gen::{Ask, Stage};
 
 use super::arguments::Limit;
 
-/// Runs with fewer samples are over before a bar would be seen.
+/// Runs with fewer samples end before a progress bar would be visible.
 const LONG_RUN: u64 = 200_000;
 
-/// Recordings of fewer bytes too.
+/// Recordings of fewer bytes do too.
 const LARGE: u64 = 16 << 20;
 
-/// The resolution of the bar.
+/// The resolution of the progress bar.
 const TICKS: u64 = 1000;
 
-/// A question about a model that is begun now.
+/// A request about a model, begun now.
 pub(super) fn ask(limit: Option<Limit>) -> Ask {
     let (proof, run) = (limit.unwrap_or_default().watch(), watch(limit));
     limit.unwrap_or_default().ask().watch(move |stage| match stage {
@@ -29,7 +29,7 @@ pub(super) fn ask(limit: Option<Limit>) -> Ask {
     })
 }
 
-/// A question about a model that is begun now, and a recording of this many bytes.
+/// A request about a model, begun now, and a recording of this many bytes.
 pub(super) fn replaying(limit: Option<Limit>, size: Option<u64>) -> Ask {
     let proof = limit.unwrap_or_default().watch();
     let most = limit.map(|limit| Duration::from_secs_f64(limit.0));
@@ -46,7 +46,7 @@ pub(super) fn replaying(limit: Option<Limit>, size: Option<u64>) -> Ask {
     })
 }
 
-/// Shows how far a run is, and ends it at the limit. A run that nobody limits ends by itself: its samples are counted
+/// Shows the progress of a run, and ends it at the limit. A run without a limit ends by itself: its samples are counted
 /// before it starts.
 fn watch(limit: Option<Limit>) -> impl Fn(f64, u64) -> ControlFlow<()> {
     let begun: OnceCell<(Instant, ProgressBar)> = OnceCell::new();
@@ -61,7 +61,7 @@ fn watch(limit: Option<Limit>) -> impl Fn(f64, u64) -> ControlFlow<()> {
     }
 }
 
-/// A bar for a long run at a terminal; hidden otherwise.
+/// A progress bar for a long run at a terminal; hidden otherwise.
 fn bar(is_long: bool) -> ProgressBar {
     if !is_long || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

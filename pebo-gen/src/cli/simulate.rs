@@ -24,7 +24,7 @@ pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {
     let (trace, figure) = (options.csv.is_some(), options.plot.is_some());
     let wanted = AskRun { overrides, trace, figure, runs: options.runs };
     let (source, answer) = files::answer_with(&options.model, &options.set, progress::ask(limit).run(wanted));
-    // An accepted model has nothing to say here but how it runs.
+    // An accepted model prints its run alone.
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);
     }

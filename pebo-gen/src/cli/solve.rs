@@ -13,7 +13,7 @@ use pebo_gen::{Stage, Standing};
 use super::arguments::{Format, Limit, SolveOptions};
 use super::{files, standard, terminal};
 
-/// A search that is over before shows nothing.
+/// A shorter search shows no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 pub(super) fn run(options: &SolveOptions, limit: Limit) -> Standing {
@@ -63,7 +63,7 @@ fn watch(limit: Limit) -> impl Fn(Stage) -> ControlFlow<()> {
     }
 }
 
-/// The file's layout has no place for the key.
+/// The diagnostic that the file's layout cannot take the key.
 fn unwritten(source: &Source) -> Diagnostic {
     let message = format!("phi could not be written into {}", source.name());
     Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)

@@ -16,7 +16,7 @@ pub(super) fn write(text: &[u8]) -> Result<(), Diagnostic> {
     }
 }
 
-/// Writes all of a text, and says how that ended.
+/// Writes all of a text, and gives the outcome.
 pub(super) fn print(text: &[u8]) -> Standing {
     match write(text) {
         Ok(()) => Standing::Accepted,
@@ -30,7 +30,7 @@ pub(super) fn refuse(diagnostic: Diagnostic) -> Standing {
     Standing::Malformed
 }
 
-/// What there is to say of a failed write.
+/// The diagnostic of a failed write.
 pub(super) fn unwritten(error: &io::Error) -> Diagnostic {
     let message = format!("cannot write to standard output: {}", reason(error));
     Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message)

@@ -1,4 +1,4 @@
-//! Diagnostics on the terminal: coloured where it is one and the user did not refuse, as wide as it is.
+//! Diagnostics on the terminal: coloured if it is one and the user did not refuse, as wide as it is.
 
 use std::io::Write as _;
 

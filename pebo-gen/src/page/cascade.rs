@@ -1,4 +1,4 @@
-//! Claim 1: the rate of the transform term by term, what of it holds unmeasured signals, and what is left.
+//! Claim 1: the rate of the transform term by term, its terms in unmeasured signals, and the rest.
 
 use pebo_cas::domain::zero::decide;
 use pebo_cas::{Arena, Expr, Node, Rational, Symbol};
@@ -10,7 +10,7 @@ use super::html::Html;
 use super::subject::Subject;
 use super::verdict;
 
-/// A table of more terms shows nothing.
+/// The longest table of terms that a reader follows.
 const MOST_TERMS: usize = 64;
 
 /// A term of the rate of a component: the slope of the component times a term of the rate of a signal.
@@ -19,7 +19,7 @@ struct Term {
     slope: Expr,
     rate: Expr,
     whole: Expr,
-    /// Whether it holds an unmeasured signal.
+    /// It contains an unmeasured signal.
     hidden: bool,
 }
 
@@ -161,7 +161,7 @@ fn table(html: &mut Html, setter: &Setter<'_>, plant: &Plant, terms: &[Term]) {
     });
 }
 
-/// What holds an unmeasured signal, and what becomes of it.
+/// The terms in unmeasured signals, and their sum.
 fn split(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_>, index: usize, terms: &[Term]) {
     let (plant, cascade) = (subject.plant, &subject.derivation.cascade);
     let (arena, domain) = (&plant.arena, subject.derivation.domain(plant));

@@ -1,4 +1,4 @@
-//! The code: what a step costs, how many digits it keeps, and the module itself.
+//! The code: the cost of a step, the digits that it keeps, and the module itself.
 
 use crate::emit::{Accuracy, Emitted};
 

@@ -1,4 +1,4 @@
-//! Formulas of a plant as elements of `MathML`, and how steps of a derivation stand below one another.
+//! Formulas of a plant as elements of `MathML`, and the steps of a derivation in one table.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -6,20 +6,20 @@ use std::collections::BTreeMap;
 use pebo_cas::print::mathml::escaped;
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 
-/// The length up to which a formula is set: some thousand names, which nobody reads.
+/// The length of the longest formula that is set: some thousand names, more than anybody reads.
 const MOST_OF_FORMULA: usize = 100_000;
 
-/// The length up to which formulas are set on one page, with a browser in mind.
+/// The length of all formulas of one page, with a browser in mind.
 const MOST_OF_PAGE: usize = 4_000_000;
 
-/// What stands for a formula that is longer.
+/// The text in place of a longer formula.
 pub(super) const LEFT_OUT: &str = "<mtext>(too long for a page: pebo-gen check --format json has it)</mtext>";
 
 /// Sets the formulas of one page.
 #[derive(Debug)]
 pub(super) struct Setter<'a> {
     pub(super) arena: &'a Arena,
-    /// The length that is left to formulas of this page.
+    /// The length left to formulas of this page.
     left: Cell<usize>,
 }
 
@@ -32,7 +32,7 @@ impl<'a> Setter<'a> {
         self.put(expr, &BTreeMap::new())
     }
 
-    /// A formula in which symbols are shown as others, before anything is made of it.
+    /// A formula with symbols replaced as they are, nothing simplified.
     pub(super) fn put(&self, expr: Expr, shown: &BTreeMap<Symbol, Expr>) -> String {
         if self.left.get() == 0 {
             return LEFT_OUT.to_owned();
@@ -67,7 +67,7 @@ impl<'a> Setter<'a> {
         bracketed(entries.iter().map(|entry| vec![self.expr(*entry)]))
     }
 
-    /// `known + [factor] unknown + ..`, without what is zero.
+    /// `known + [factor] unknown + ..`, without zero terms.
     pub(super) fn affine(&self, known: Expr, factors: &[Expr], unknowns: &[Symbol]) -> String {
         let terms = factors.iter().zip(unknowns).filter(|(factor, _)| !self.arena.is_zero(**factor));
         let mut parts: Vec<String> = Vec::new();
@@ -119,8 +119,8 @@ pub(super) fn sum(summands: &[String]) -> String {
     if elements.is_empty() { "<mn>0</mn>".to_owned() } else { elements }
 }
 
-/// Equations whose equals signs stand below one another. A left side that is empty goes on from the line above; what
-/// stands behind an equation says why it holds.
+/// Equations aligned at their equals signs. An empty left side continues the line above; the text behind an equation is
+/// its reason.
 #[derive(Debug, Default)]
 pub(super) struct Steps {
     rows: String,

@@ -2,7 +2,7 @@
 
 use pebo_cas::print::mathml::escaped;
 
-/// A page as it is written.
+/// A page under construction.
 #[derive(Debug, Default)]
 pub(super) struct Html {
     text: String,
@@ -130,7 +130,7 @@ impl Html {
         });
     }
 
-    /// What a reader may unfold.
+    /// Content that a reader may unfold.
     pub(super) fn folded(&mut self, summary: &str, content: impl FnOnce(&mut Self)) {
         self.block("details", &[], |html| {
             html.line("summary", &[], |html| html.prose(summary));
@@ -143,7 +143,7 @@ impl Html {
         self.text.push_str(elements);
     }
 
-    /// The whole.
+    /// The text of the page.
     pub(super) fn finish(self) -> String {
         self.text
     }

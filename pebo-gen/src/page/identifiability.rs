@@ -1,4 +1,4 @@
-//! Claim 4: the unknowns are told apart, where they are not, and what excitation it takes.
+//! Claim 4: identifiability of the unknowns, its exceptions, and the excitation that it needs.
 
 use crate::report::notes;
 use pebo_design::analysis::{Class, Derivation, Excitation, Gram, Trajectories, Verdict};
@@ -41,12 +41,12 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
     });
 }
 
-/// Whether no signal of the plant has to move.
+/// No signal of the plant has to move.
 fn at_rest(trajectories: &Trajectories) -> bool {
     trajectories.at_rest && !trajectories.is_divided()
 }
 
-/// `Phi_1' Phi_1`, whose determinant vanishes where the unknowns are not seen.
+/// `Phi_1' Phi_1`, whose determinant vanishes where the unknowns are not identifiable.
 fn determinant(html: &mut Html, setter: &Setter<'_>, derivation: &Derivation, gram: &Gram) {
     html.paragraph(
         "How strongly they are seen is the Gram matrix of the regressor; where its determinant is zero they are not:",

@@ -1,4 +1,4 @@
-//! Claim 2: the states in z and y, and the check that they are.
+//! Claim 2: the states as functions of z and y, with their check.
 
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
-//! A page that explains what was proved of a model to a reader who knows control, and not this project.
+//! A page that explains the proofs of a model to a reader who knows control, and not this project.
 //!
-//! In: a plant and what was derived of it, with its code and the figure of its closed loop where these are there. Out:
-//! one HTML page that is also well-formed XML: it needs no other file, holds no script, folds, prints, and is readable on
-//! a narrow screen and in the dark. A model that is refused has a page too, with what stands against it: a refusal needs
-//! an explanation more than a proof does. It has no code.
+//! In: a plant with its derivation, and its code and the figure of its closed loop if there are any. Out: one HTML page
+//! that is also well-formed XML: it needs no other file, holds no script, folds, prints, and is readable on a narrow
+//! screen and in the dark. A refused model has a page too, with the obstacles and without code: a refusal needs an
+//! explanation more than a proof does.
 
 mod cascade;
 mod code;
@@ -73,7 +73,7 @@ fn head(html: &mut Html, subject: &Subject<'_>) {
     html.line("style", &[], |html| html.markup(STYLE));
 }
 
-/// What the claims are for.
+/// The purpose of the claims.
 fn idea(html: &mut Html, derivation: &Derivation) {
     html.section("idea", "The idea", |html| {
         html.line("p", &[], |html| {

@@ -1,4 +1,4 @@
-//! The plant: its signals, its class with matrices, its equations, and what is assumed.
+//! The plant: its signals, its class with matrices, its equations, and its assumptions.
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::plant::{Class, Plant};
@@ -80,7 +80,7 @@ fn described(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
     comparisons(html, setter, plant);
 }
 
-/// The plant, with the file that it was read from.
+/// The plant, with its model file.
 pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_>) {
     html.section("plant", "Plant", |html| {
         described(html, setter, subject.plant);
@@ -88,7 +88,7 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
     });
 }
 
-/// The rates as a reader takes them: of a mechanical plant whose inverse of M is long, in its velocities.
+/// The rates in their shortest form: in velocities, for a mechanical plant with a long inverse of M.
 fn rates(plant: &Plant) -> Vec<(Symbol, Expr)> {
     let states = plant.x.iter().map(|state| (state.symbol, state.rate.expr));
     match &plant.class {
@@ -103,7 +103,7 @@ fn rates(plant: &Plant) -> Vec<(Symbol, Expr)> {
     }
 }
 
-/// What each name is.
+/// The names and their meanings.
 fn signals(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
     let groups: [(&str, Vec<Symbol>); 5] = [
         ("states, not measured: x", plant.x.iter().map(|state| state.symbol).collect()),
@@ -148,7 +148,7 @@ fn parameters(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
     }
 }
 
-/// What is assumed, and what is zero by physics.
+/// The assumptions and the identities.
 fn comparisons(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
     let assumed: Vec<String> = plant.assumptions.iter().map(|a| setter.compared(a.expr, a.relation)).collect();
     listed(html, "Assumed:", &assumed);

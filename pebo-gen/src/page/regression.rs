@@ -1,4 +1,4 @@
-//! Claim 3: the outputs as a regression, with z replaced by what is integrated and the unknown constant.
+//! Claim 3: the outputs as a regression, with z replaced by its integral and the unknown constant.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -108,11 +108,11 @@ fn equation(
     html.display(&steps.finish());
 }
 
-/// An equation in z, where it is read off the regression: with theta = 0 the extension is z. Of a static regression, the
-/// difference of its sides.
+/// An equation of the regression in z: with theta = 0 the extension is z. For a static regression, the difference of
+/// its sides.
 fn in_z(plant: &Plant, regression: &Regression, row: usize) -> Option<Expr> {
     let arena = &plant.arena;
-    // Functions of theta that have no value at zero, or not at every theta, cannot be read there.
+    // Functions of theta without a value at zero, or at some theta, cannot be evaluated there.
     if regression.kind == RegressionKind::Implicit
         || !arena.domain_conditions(&regression.eta, Regularity::Defined).is_empty()
     {
@@ -133,7 +133,7 @@ fn in_z(plant: &Plant, regression: &Regression, row: usize) -> Option<Expr> {
     (!arena.depends_on(in_z, &psi)).then_some(in_z)
 }
 
-/// The components of z as what is integrated and what is constant.
+/// The components of z as sums of an integral and a constant.
 fn parts_of_z(plant: &Plant, class: Class) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let theta: Vec<Expr> = plant.theta.iter().map(|theta| arena.of_symbol(*theta)).collect();

@@ -1,5 +1,5 @@
-//! The parts of the page that are about what was derived, each by itself, for a front end that shows them in its own
-//! order; with the places of the file that each is about.
+//! The sections of the page about the derivation, each by itself, for a front end with its own order; with the spans of
+//! the file that each refers to.
 
 use serde::Serialize;
 
@@ -12,22 +12,22 @@ use super::html::Html;
 use super::subject::Subject;
 use super::{cascade, code, identifiability, left_inverse, plant, regression, transform, usage};
 
-/// A part of the page.
+/// A section of the page.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Section {
-    /// What it is about, as `cascade`.
+    /// Its subject, as `cascade`.
     pub id: &'static str,
     /// The verdict, if it is about a claim.
     pub verdict: Option<&'static str>,
     /// Elements of `section` with their headings, well-formed as XML too.
     pub html: String,
-    /// What its author wrote for it.
+    /// The author's formulas for it.
     pub places: Vec<Span>,
 }
 
-/// The parts in the order of the page: plant, transform, the four claims, conditions with remarks, and the code if it
-/// was written.
+/// The sections in the order of the page: plant, transform, the four claims, conditions with remarks, and the code if
+/// there is any.
 pub(crate) fn sections(subject: &Subject<'_>) -> Vec<Section> {
     let (plant, derivation) = (subject.plant, subject.derivation);
     let setter = Setter::new(&plant.arena);
@@ -36,7 +36,7 @@ pub(crate) fn sections(subject: &Subject<'_>) -> Vec<Section> {
         write(&mut html);
         Section { id, verdict, html: html.finish(), places }
     };
-    // Of a transform that was found, its author wrote nothing.
+    // The author wrote nothing of a transform that the search found.
     let transform = if plant.origin == TransformOrigin::Found { Vec::new() } else { spans(&plant.phi) };
     let regressed = regressed(subject);
     let moved: Vec<Span> = transform.iter().copied().chain(rates(plant)).collect();
@@ -74,7 +74,7 @@ fn spans(formulas: &[Formula]) -> Vec<Span> {
     formulas.iter().map(|formula| formula.span).collect()
 }
 
-/// The rates that move the transform: those of the states, and those of outputs that it holds.
+/// The rates that enter the rate of the transform: those of the states, and those of the outputs in it.
 fn rates(plant: &Plant) -> impl Iterator<Item = Span> {
     let held = plant.arena.symbols_of(&plant.transform());
     let outputs = plant.y.iter().filter(move |output| held.contains(&output.symbol));
@@ -86,7 +86,7 @@ fn given_inverse(plant: &Plant) -> impl Iterator<Item = Span> {
     plant.phi_left.iter().flatten().map(|(_, formula)| formula.span)
 }
 
-/// What the regression is read off: rates of outputs, or the relations between signals.
+/// The formulas behind the regression: rates of outputs, or relations between signals.
 fn regressed(subject: &Subject<'_>) -> Vec<Span> {
     let plant = subject.plant;
     let rates = |rows: Vec<usize>| -> Vec<Span> {

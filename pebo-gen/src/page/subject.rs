@@ -1,11 +1,11 @@
-//! What a page is about.
+//! The subject of a page.
 
 use crate::emit::Emitted;
 use pebo_design::analysis::Derivation;
 use pebo_design::plant::Plant;
 use pebo_design::source::{Diagnostic, Source};
 
-/// What a page is about.
+/// A plant with its derivation, code and run.
 #[derive(Debug)]
 pub(crate) struct Subject<'a> {
     pub(crate) source: &'a Source,
@@ -20,21 +20,21 @@ pub(crate) struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// What the plant is, in its author's words.
+    /// The author's title of the plant.
     pub(super) fn title(&self) -> &str {
         self.plant.title.as_deref().unwrap_or(&self.plant.name)
     }
 }
 
-/// What is there of the closed loop.
+/// The state of the closed loop.
 #[cfg(feature = "simulate")]
 #[derive(Debug)]
 pub(crate) enum Run<'a> {
-    /// It was not run, as nothing asks for it.
+    /// It was not run: the model describes none.
     Not,
-    /// It did not come to its end: a diagnostic says why.
+    /// It ended early: a diagnostic says why.
     Failed,
-    /// It did.
+    /// It came to its end.
     Done(Loop<'a>),
 }
 
@@ -44,10 +44,10 @@ pub(crate) enum Run<'a> {
 pub(crate) struct Loop<'a> {
     /// The figure as SVG.
     pub(crate) figure: &'a str,
-    /// When it ended, in seconds.
+    /// Its end, in seconds.
     pub(crate) end: f64,
-    /// The table of errors with its headings: as many cells in each row.
+    /// The table of errors with its headings; all rows have the same length.
     pub(crate) errors: Vec<Vec<String>>,
-    /// What there is to say beside.
+    /// Remarks beside the table.
     pub(crate) lines: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! The transform, and where it is from.
+//! The transform and its origin.
 
 use pebo_design::plant::TransformOrigin;
 

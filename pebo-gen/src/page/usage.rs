@@ -1,4 +1,4 @@
-//! What the proofs rest on, and what to know in use.
+//! The conditions of the proofs, and remarks for use.
 
 use crate::report::remarks;
 use pebo_design::analysis::{Outcome, Verdict};

@@ -1,4 +1,4 @@
-//! The verdict on the model, and on each claim.
+//! The verdicts on the model and on each claim.
 
 use crate::report::notes;
 use pebo_design::analysis::{Outcome, Verdict};
@@ -66,7 +66,7 @@ fn contents(subject: &Subject<'_>) -> Vec<(&'static str, &'static str)> {
     contents
 }
 
-/// What there is to tell, as the command line tells it.
+/// The diagnostics, as the command line prints them.
 pub(super) fn diagnostics(html: &mut Html, subject: &Subject<'_>) {
     if subject.diagnostics.is_empty() {
         return;

@@ -1,20 +1,20 @@
-//! The plant that a class stands for: its equations, and what the class is known by.
+//! The plant that a class expands to: its equations, and the matrices or energy of the class.
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::plant::class::InVelocities;
 use pebo_design::plant::{Class, Output, Plant, TransformOrigin};
 
-/// What a class was expanded to, as formulas.
+/// The expansion of a class, as formulas.
 pub(super) struct Expansion {
     /// The key of the class.
     pub(super) class: &'static str,
-    /// What the equations come from, by name: an energy, the matrices of a transform.
+    /// The origin of the equations, by name: an energy, the matrices of a transform.
     pub(super) origin: Vec<(&'static str, String)>,
     /// States and outputs with their rates.
     pub(super) rates: Vec<(String, String)>,
     /// The components of the transform.
     pub(super) phi: Vec<String>,
-    /// Positions with the states that are their momenta, for a mechanical plant: its states are no velocities.
+    /// Positions with their momenta, which are the states of a mechanical plant.
     pub(super) momentum: Vec<(String, String)>,
     /// Positions with their velocities in z, for a mechanical plant.
     pub(super) velocity: Vec<(String, String)>,
@@ -39,7 +39,7 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
         let momenta = mechanical.q.iter().zip(&plant.x);
         momentum.extend(momenta.map(|(q, state)| (arena.name(*q), arena.name(state.symbol))));
     }
-    // The velocities are of the author's T: of another one that was found the class knows none.
+    // The velocities belong to the author's T: the class knows none for another one.
     let is_own = plant.origin != TransformOrigin::Found;
     let origin = match class {
         Class::Linear(linear) => vec![("T1", matrix(linear.t1.rows())), ("T2", matrix(linear.t2.rows()))],
@@ -65,7 +65,7 @@ pub(super) fn of(plant: &Plant) -> Option<Expansion> {
     Some(Expansion { class: class.name(), origin, rates, phi, momentum, velocity })
 }
 
-/// The rates of a mechanical plant whose inverse of M nobody would read.
+/// The rates of a mechanical plant whose inverse of M is too long to read.
 fn in_velocities(plant: &Plant, shown: &InVelocities) -> Vec<(String, String)> {
     let arena = &plant.arena;
     let momenta = plant.x.iter().zip(&shown.rates).map(|(state, rate)| (arena.name(state.symbol), arena.print(*rate)));

@@ -1,26 +1,26 @@
-//! Whether the observer's functions cost many times what the author wrote.
+//! The cost of the observer's functions beside that of the author's formulas.
 //!
-//! In: a plant and its accepted derivation. Out: the operations of both, each as one straight-line program that computes
-//! every part once, with the parameters among its inputs; and the function that most of them go to.
+//! In: a plant and its accepted derivation. Out: the operations of both, each as one straight-line program that
+//! computes every subexpression once, with the parameters among its inputs; and the function that takes most of them.
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::{Derivation, Outcome};
 use pebo_design::plant::{Class, Plant};
 use pebo_design::program::{Cost, lower};
 
-/// So many times the operations of what was written are many: all models and cases of this project stay below 4, and a left
-/// inverse that writes out a determinant of order 4 has 11.
+/// The ratio of operations that counts as large: all models and cases of this project are below 4, and a left inverse
+/// that writes out a determinant of order 4 has 11.
 const MANY: usize = 10;
 
-/// Results of so few operations are a page of code, whatever was written.
+/// Operations of a page of code, which are few at any ratio.
 const PAGE: usize = 300;
 
 /// The operations of a model and of its observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Growth {
-    /// Of the rates and the transform; of a mechanical plant, of its matrices and forces.
+    /// Operations of the rates and the transform, or of the matrices and forces of a mechanical plant.
     pub(super) written: usize,
-    /// Of the functions of the observer.
+    /// Operations of the functions of the observer.
     pub(super) derived: usize,
     /// The function that takes most of them by itself.
     pub(super) most: &'static str,
@@ -35,12 +35,12 @@ impl Growth {
         Some(Self { written: operations(plant, &written(plant))?, derived, most })
     }
 
-    /// The same, of a model whose observer takes more than a page.
+    /// The growth of a model whose observer takes more than a page.
     pub(super) fn of_long(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         (together(plant, &functions(derivation)?)? > PAGE).then(|| Self::of(plant, derivation)).flatten()
     }
 
-    /// How many times as many, where they are many.
+    /// The ratio, if it is large.
     pub(super) fn many(self) -> Option<usize> {
         let times = self.derived / self.written.max(1);
         (times >= MANY && self.derived > PAGE).then_some(times)
@@ -72,7 +72,7 @@ fn together(plant: &Plant, functions: &[(&'static str, Vec<Expr>)]) -> Option<us
     operations(plant, &all)
 }
 
-/// What the author wrote, of a class what stands for it.
+/// The author's formulas: for a class, its matrices and forces.
 fn written(plant: &Plant) -> Vec<Expr> {
     match &plant.class {
         Some(Class::Mechanical(mechanical)) => {

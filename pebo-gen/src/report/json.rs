@@ -18,12 +18,12 @@ use pebo_design::source::{Diagnostic, Located, Source};
 #[non_exhaustive]
 pub struct Report {
     schema: u32,
-    /// The model's name, or what stands for it.
+    /// The model's name, or the stem of its file.
     pub model: String,
     /// The verdict on the model.
     pub verdict: Outcome,
     class: Option<&'static str>,
-    /// The plant that a model by class stands for.
+    /// The plant that a model by class expands to.
     expansion: Option<ExpansionReport>,
     phi: Option<TransformReport>,
     /// The input that is the time in seconds, where the formulas use it without a declaration.
@@ -32,12 +32,12 @@ pub struct Report {
     left_inverse: Option<LeftInverseReport>,
     regression: Option<RegressionReport>,
     identifiability: Option<IdentifiabilityReport>,
-    /// The components of the extension that a constant bias makes run away.
+    /// The components of the extension that grow without bound under a constant bias.
     drift: Vec<String>,
     operating_point: Option<OperatingPointReport>,
-    /// What the observer's functions cost beside the model; of an accepted one.
+    /// The cost of the observer's functions beside the model's, of an accepted model.
     cost: Option<CostReport>,
-    /// What the proofs rest on besides the assumptions, as comparisons with zero.
+    /// Conditions of the proofs besides the assumptions, as comparisons with zero.
     conditions: Vec<String>,
     diagnostics: Vec<Located>,
 }
@@ -49,13 +49,13 @@ struct ExpansionReport {
     origin: IndexMap<&'static str, String>,
     rates: IndexMap<String, String>,
     phi: Vec<String>,
-    /// Positions with the states that are their momenta.
+    /// Positions with their momenta.
     momentum: IndexMap<String, String>,
     velocity: IndexMap<String, String>,
 }
 
-/// Operations of the model's own formulas and of the observer's functions; `times` where that is many times as much, and the
-/// function that most of them go to.
+/// Operations of the model's own formulas and of the observer's functions; `times` if the ratio is large, and the
+/// function that takes most of them.
 #[derive(Clone, Debug, Serialize)]
 struct CostReport {
     written: usize,
@@ -64,7 +64,7 @@ struct CostReport {
     most: &'static str,
 }
 
-/// The transform, and whether the author gave it, a class, or the search.
+/// The transform and its origin: the author, a class, or the search.
 #[derive(Clone, Debug, Serialize)]
 struct TransformReport {
     origin: &'static str,
@@ -78,7 +78,7 @@ struct CascadeReport {
     lambda: Option<Vec<Vec<String>>>,
     residual: Vec<String>,
     witness: Option<WitnessReport>,
-    /// Whether the fundamental matrix of a generalised cascade stays bounded; no part of the verdict.
+    /// Boundedness of the fundamental matrix of a generalised cascade; no part of the verdict.
     bounded: Option<&'static str>,
     /// Beside a generalised cascade, a transform with a plain one.
     mend: Option<Vec<String>>,
@@ -90,9 +90,9 @@ struct LeftInverseReport {
     x: IndexMap<String, String>,
     modulo: IndexMap<String, String>,
     origin: Option<&'static str>,
-    /// What estimates must meet for it to have a value; a step of the observer is refused where it has none.
+    /// Domain conditions on estimates; a step of the observer that violates one is refused.
     asks: Vec<String>,
-    /// Whether some states are not recovered.
+    /// Some states are not recovered.
     partial: bool,
     witness: Option<WitnessReport>,
 }
@@ -104,7 +104,7 @@ struct RegressionReport {
     parameterisation: Option<&'static str>,
     phi_0: Vec<String>,
     phi_1: Vec<Vec<String>>,
-    /// Under the derivative of an implicit regression.
+    /// The terms under the derivative of an implicit regression.
     primitive_0: Vec<String>,
     primitive_1: Vec<Vec<String>>,
     eta: Vec<String>,
@@ -116,17 +116,17 @@ struct IdentifiabilityReport {
     verdict: &'static str,
     kind: Option<&'static str>,
     singular_where: Vec<String>,
-    /// Whether the regressor was shown to have full rank everywhere else.
+    /// Full rank of the regressor is proved everywhere else.
     everywhere_else: bool,
     direction: Option<Vec<String>>,
-    /// Whether no input has to move; none where that was not decided, or the unknowns are not identified.
+    /// No input has to move; `None` if that is undecided, or the unknowns are not identifiable.
     by_itself: Option<bool>,
-    /// Motions on which the regression does not show all unknowns.
+    /// Trajectories on which not all unknowns are identifiable.
     blind: Vec<BlindReport>,
     gram: Option<GramReport>,
 }
 
-/// A motion, what is seen on it of the unknowns, and directions that are not.
+/// A trajectory, the unknowns that are observable on it, and unobservable directions.
 #[derive(Clone, Debug, Serialize)]
 struct BlindReport {
     #[serde(rename = "while")]
@@ -135,7 +135,7 @@ struct BlindReport {
     hidden: Vec<Vec<String>>,
 }
 
-/// `Phi_1' Phi_1` and its determinant; `positive` where that is proved on the whole assumed domain.
+/// `Phi_1' Phi_1` and its determinant; `positive` if that is proved on the whole assumed domain.
 #[derive(Clone, Debug, Serialize)]
 struct GramReport {
     matrix: Vec<Vec<String>>,
@@ -143,17 +143,17 @@ struct GramReport {
     positive: bool,
 }
 
-/// Where the plant rests under a constant input.
+/// The equilibrium of the plant under a constant input.
 #[derive(Clone, Debug, Serialize)]
 struct OperatingPointReport {
     verdict: &'static str,
-    /// What is determined there, in what is free.
+    /// The determined signals as functions of the free ones.
     values: IndexMap<String, String>,
-    /// Whether z' vanishes there by the cascade: `h`, of the generalised one `lambda z + h`.
+    /// z' vanishes there by the cascade: `h`, or `lambda z + h` of the generalised one.
     still: Option<bool>,
-    /// The rank of `[f; h_i]` at almost every point, and there: where it falls, Frobenius' theorem gives no transform.
+    /// The rank of `[f; h_i]` at almost every point, and there: if it falls, Frobenius' theorem gives no transform.
     rank: Option<[usize; 2]>,
-    /// Why there is none, or why that is open.
+    /// The reason for none, or for an open question.
     reason: Option<String>,
 }
 
@@ -163,11 +163,11 @@ struct WitnessReport {
     expression: String,
     point: IndexMap<String, String>,
     bounds: [f64; 2],
-    /// The points of the domain that were compared, where it took more than one.
+    /// The points of the domain that were compared, if more than one was needed.
     compared: Option<ComparisonReport>,
 }
 
-/// Points with the same y, u and parameters, and bounds of what the expression is at each.
+/// Points with the same y, u and parameters, and bounds of the expression at each.
 #[derive(Clone, Debug, Serialize)]
 struct ComparisonReport {
     expression: String,
@@ -176,7 +176,7 @@ struct ComparisonReport {
 }
 
 impl Report {
-    /// The object of a model that was read, with what there is to tell of it.
+    /// The object of a model that was read, with its diagnostics.
     pub fn of(plant: &Plant, derivation: &Derivation, diagnostics: &[Diagnostic], source: &Source) -> Self {
         let arena = &plant.arena;
         Self {
@@ -215,8 +215,8 @@ impl Report {
         }
     }
 
-    /// The object of a model of which no plant was made: rejected for the diagnostics alone, or undecided where they say
-    /// that something could not be worked out.
+    /// The object of a model without a plant: rejected for the diagnostics, or undecided if one of them says that
+    /// something could not be worked out.
     pub fn of_unread(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Self {
         Self {
             schema: 1,

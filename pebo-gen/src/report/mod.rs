@@ -1,7 +1,7 @@
-//! What was found, for programs and for people.
+//! Reports of derivations and searches, for programs and for people.
 //!
-//! In: a plant and what was derived of it. Out: one JSON object (design: schema 1), or a few lines of
-//! text. Formulas are in the model file's grammar.
+//! In: a plant and its derivation. Out: one JSON object (design: schema 1), or a few lines of text. Formulas are in the
+//! model file's grammar.
 
 mod expansion;
 mod growth;

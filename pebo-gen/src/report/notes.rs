@@ -1,4 +1,4 @@
-//! What there is to say of a claim beside its formulas, in a sentence each: the same in text and on a page.
+//! Notes on a claim beside its formulas, a sentence each: the same in text and on a page.
 
 use pebo_design::analysis::{
     Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, Verdict,
@@ -6,7 +6,7 @@ use pebo_design::analysis::{
 use pebo_design::plant::{Plant, RelationForm};
 use pebo_design::source::{counted, listed};
 
-/// Of the model: what its verdict means.
+/// The meaning of the model's verdict.
 pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
     match derivation.outcome {
         Outcome::Accepted if derivation.conditions.is_empty() => "all four claims are proved",
@@ -16,7 +16,7 @@ pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
     }
 }
 
-/// Of the left inverse: what it does not recover, and what it asks of estimates.
+/// Notes on the left inverse: the states that it does not recover, and its domain conditions on estimates.
 pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     let Some(inverse) = &derivation.left_inverse.result else { return Vec::new() };
     let arena = &plant.arena;
@@ -39,7 +39,7 @@ pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String
     lines
 }
 
-/// Of the regression: what more unknowns than theta has mean, and what other form it has.
+/// Notes on the regression: the meaning of more unknowns than theta has, and its other form.
 pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let (unknowns, components) = (regression.eta.len(), plant.theta.len());
     let more = (unknowns > components).then(|| {
@@ -59,7 +59,7 @@ pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> 
     more.into_iter().chain(other).collect()
 }
 
-/// Of identifiability: what shows the unknowns, where they are not seen, and what has to move.
+/// Notes on identifiability: its proof, its exceptions, and the signals that have to move.
 pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     let Some(result) = &derivation.identifiability.result else { return Vec::new() };
     let implicit = derivation.regression.result.as_ref().is_some_and(|r| r.kind == RegressionKind::Implicit);
@@ -85,7 +85,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     lines
 }
 
-/// Of the determinant of `Phi_1' Phi_1`: that it is positive, and what shows it.
+/// The note that the determinant of `Phi_1' Phi_1` is positive, with its proof.
 pub(crate) fn positive(derivation: &Derivation, gram: &Gram) -> Option<&'static str> {
     gram.positive.map(|positive| match positive {
         Positive::Assumed if derivation.conditions.is_empty() => {

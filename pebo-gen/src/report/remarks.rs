@@ -1,5 +1,5 @@
-//! What to know in use, in a line each: whether Psi stays bounded, where the plant rests, what drifts. What holds of every
-//! model stands in the manual.
+//! Remarks for use, a line each: boundedness of Psi, equilibria, drift. Remarks that hold for every model are in the
+//! manual.
 
 use super::growth::Growth;
 use pebo_cas::{Expr, Symbol};
@@ -45,7 +45,7 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     remarks
 }
 
-/// That the time is an input.
+/// The remark that the time is an input.
 fn told(plant: &Plant, time: Symbol) -> Vec<String> {
     let name = plant.arena.name(time);
     vec![
@@ -54,7 +54,7 @@ fn told(plant: &Plant, time: Symbol) -> Vec<String> {
     ]
 }
 
-/// Where the transform jumps, and what that does to the unknown constant.
+/// The jumps of the transform, and their effect on the unknown constant.
 fn jumps(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     let arena = &plant.arena;
     let line = |(component, border): (Symbol, Expr)| {
@@ -64,7 +64,7 @@ fn jumps(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     derivation.jumps(plant).into_iter().map(line).collect()
 }
 
-/// What becomes of a generalised cascade's fundamental matrix, what that means, and what would do without it.
+/// The fate of a generalised cascade's fundamental matrix, its meaning, and a plain cascade instead.
 fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved);
     let Some((cascade, fundamental)) = cascade.and_then(|cascade| Some((cascade, cascade.fundamental?))) else {
@@ -103,13 +103,13 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     remarks
 }
 
-/// The same where all memory can be carried over.
+/// The remedy if all memory can be carried over.
 const REBASE: &str = "remedy: `rebase: 1` under `observer`, which is set unless gains are written, makes it the identity at every sample";
 
-/// What makes the fundamental matrix the identity again.
+/// The remedy that makes the fundamental matrix the identity again.
 const RESTART: &str = "remedy: `restart` from the estimate of z with theta = 0 sets Psi back to the identity";
 
-/// On which values the verdict rests, where it is another than in general.
+/// The values that the verdict depends on, if it differs from the general one.
 fn special(plant: &Plant) -> Option<String> {
     let Some(PlantClass::Linear(linear)) = &plant.class else { return None };
     let arena = &plant.arena;
@@ -123,7 +123,7 @@ fn special(plant: &Plant) -> Option<String> {
         .then(|| format!("the verdict holds for {given}: with general values, some matrix ranks are different"))
 }
 
-/// That the observer's functions are far longer than the model, and what shortens them.
+/// The remark that the observer's functions are far longer than the model, with its remedy.
 fn long(growth: Growth) -> Option<Vec<String>> {
     let Growth { written, derived, most } = growth;
     let times = growth.many()?;
@@ -137,7 +137,7 @@ fn long(growth: Growth) -> Option<Vec<String>> {
     ])
 }
 
-/// What holds at the point.
+/// Properties of the point.
 fn rest(class: Class, point: &OperatingPoint) -> Vec<String> {
     let mut lines = Vec::new();
     if point.still {
@@ -161,7 +161,7 @@ fn grows(plant: &Plant, drift: &Drift) -> String {
     format!("a constant bias of {} makes {integrators} grow without bound", names(&drift.integrated))
 }
 
-/// What the runtime has against drift.
+/// The runtime's remedy for drift.
 fn remedy(plant: &Plant, derivation: &Derivation) -> &'static str {
     match (derivation.class, derivation.can_rebase(plant)) {
         (Class::Pebo, true) => "use `step_without_drift` and an estimator with forgetting",

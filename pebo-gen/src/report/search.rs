@@ -15,19 +15,19 @@ use pebo_design::source::{Diagnostic, Located, Source};
 #[non_exhaustive]
 pub struct SearchReport {
     schema: u32,
-    /// The model's name, or what stands for it.
+    /// The model's name, or the stem of its file.
     pub model: String,
     /// `found`, `none` or `undecided`.
     pub verdict: &'static str,
     candidates: Vec<CandidateReport>,
-    /// What would be accepted if some states were positive, where nothing is as it is.
+    /// The transform that would be accepted if some states were positive, if none is accepted as it is.
     assumed: Option<AssumedReport>,
     bound: Option<BoundReport>,
-    /// The same of transforms affine in x, where it is small.
+    /// The bound for transforms affine in x, if it is small.
     bound_affine: Option<BoundReport>,
-    /// The same of transforms affine in x with a generalised cascade.
+    /// The bound for transforms affine in x with a generalised cascade.
     bound_generalised: Option<BoundReport>,
-    /// What the bounds of a verdict `none` do not exclude.
+    /// Transforms that the bounds of a verdict `none` do not exclude.
     not_excluded: Option<&'static str>,
     tried: Vec<String>,
     diagnostics: Vec<Located>,
@@ -40,14 +40,14 @@ struct AssumedReport {
     phi: Vec<String>,
 }
 
-/// How large the rank of dphi/dx can be at a point, of transforms of a class with a plain cascade.
+/// The largest rank of dphi/dx at a point, among transforms of a class with a plain cascade.
 #[derive(Clone, Debug, Serialize)]
 struct BoundReport {
     states: usize,
     rank: usize,
     class: &'static str,
     proved: bool,
-    /// How many independent transforms of the class there are but for functions of y, where that is decided.
+    /// The number of independent transforms of the class up to functions of y, if that is decided.
     transforms: Option<usize>,
     point: IndexMap<String, String>,
     certificate: Vec<String>,
@@ -60,12 +60,12 @@ struct CandidateReport {
     h: Vec<String>,
     lambda: Option<Vec<Vec<String>>>,
     verdict: &'static str,
-    /// The parameterisation, and the kind of the regression where it is not dynamic.
+    /// The parameterisation, and the kind of the regression if it is not dynamic.
     regression: Option<&'static str>,
     kind: Option<&'static str>,
     identifiability: Option<&'static str>,
     left_inverse: IndexMap<String, String>,
-    /// What must hold and is not assumed.
+    /// Conditions that are not assumed.
     conditions: Vec<String>,
 }
 
@@ -90,7 +90,7 @@ impl SearchReport {
         }
     }
 
-    /// The object of a model of which no plant was made.
+    /// The object of a model without a plant.
     pub fn of_unread(name: &str, diagnostics: &[Diagnostic], source: &Source) -> Self {
         Self {
             schema: 1,
@@ -146,7 +146,7 @@ fn candidate(candidate: &Candidate) -> CandidateReport {
     }
 }
 
-/// A few lines for people: the verdict, then each candidate with what is proved of it.
+/// A few lines for people: the verdict, then each candidate with its proofs.
 pub fn search_summary(plant: &Plant, search: &Search) -> String {
     let mut text = format!("{}: {}\n", plant.name, search.verdict.word());
     for candidate in &search.candidates {

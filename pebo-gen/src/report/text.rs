@@ -1,4 +1,4 @@
-//! The verdict as a person reads it.
+//! The verdict as text for people.
 
 use super::notes;
 use pebo_cas::{Arena, Expr, Symbol};
@@ -8,7 +8,7 @@ use pebo_design::plant::{Plant, TransformOrigin};
 /// As wide as the columns of names and verdicts: two spaces, 16, one, and nine.
 const INDENT: &str = "                            ";
 
-/// A few lines: the verdict on the model, then each claim with what was derived.
+/// A few lines: the verdict on the model, then each claim with its formulas.
 pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     let conditions = match derivation.outcome {
         Outcome::Accepted => super::conditions(&plant.arena, &derivation.conditions),
@@ -33,7 +33,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     if !conditions.is_empty() {
         block(&mut text, "conditions", "", &conditions);
     }
-    // No verdict stands beside what is no claim.
+    // A remark is no claim and has no verdict.
     for remark in super::remarks::of(plant, derivation) {
         let value =
             |(symbol, value): &(Symbol, Expr)| format!("{} = {}", plant.arena.name(*symbol), plant.arena.print(*value));
@@ -43,7 +43,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     text
 }
 
-/// A longer matrix nobody reads in one line; JSON has it.
+/// The longest matrix that is printed in one line; JSON has the others.
 const MOST_CHARACTERS: usize = 300;
 
 /// `Phi_1' Phi_1` with its determinant.
@@ -61,7 +61,7 @@ fn excitation(plant: &Plant, derivation: &Derivation, gram: &Gram) -> Vec<String
     lines
 }
 
-/// The plant that a class stands for.
+/// The plant that a class expands to.
 fn expansion(text: &mut String, plant: &Plant) {
     let Some(expansion) = super::expansion::of(plant) else { return };
     let mut lines: Vec<String> = expansion.origin.iter().map(|(name, formula)| format!("{name} = {formula}")).collect();
@@ -146,7 +146,7 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
             RegressionKind::Dynamic | RegressionKind::Implicit => {
                 let output = match regression.primitive_0.get(index) {
                     None => format!("{}'", arena.name(plant.y[regression.rows[index]].symbol)),
-                    // Between z, y and u: nothing stands under a derivative.
+                    // A relation between z, y and u: nothing is under a derivative.
                     Some(known) if regression.primitive_1[index].iter().chain([known]).all(|e| arena.is_zero(*e)) => {
                         "0".to_owned()
                     }
@@ -165,7 +165,7 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     lines
 }
 
-/// `known + [factor]*unknown + ..`, without what is zero.
+/// `known + [factor]*unknown + ..`, without zero terms.
 fn affine(arena: &Arena, known: Expr, factors: &[Expr], unknown: &impl Fn(usize) -> String) -> String {
     let factors = factors.iter().enumerate().filter(|(_, factor)| !arena.is_zero(**factor));
     let mut terms: Vec<String> =

@@ -1,4 +1,4 @@
-//! What floating point says of a formula, independently of the algebra.
+//! A judge of formulas in floating point, independent of the algebra.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ pub(crate) type Point = BTreeMap<&'static str, f64>;
 /// The symbols of the cases.
 pub(crate) const NAMES: [&str; 10] = ["x", "y", "z", "a", "b", "p", "q", "r", "t", "w"];
 
-/// What sampling says.
+/// The verdict of sampling.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Sampled {
     /// Far from zero at some point, by much more than rounding.
@@ -61,7 +61,7 @@ pub(crate) fn sample(formula: &Formula, draw: &mut Draw) -> Sampled {
     if values >= 3 && small * 2 > values { Sampled::Vanishes } else { Sampled::Unclear }
 }
 
-/// Whether a value is no zero, by much more than its rounding error.
+/// The value is not zero, by much more than its rounding error.
 pub(crate) fn differs((value, error): (f64, f64)) -> bool {
     value.is_finite() && value.abs() > 1e3 * error + 1e-9
 }
@@ -102,7 +102,7 @@ pub(crate) fn value(formula: &Formula, point: &Point) -> (f64, f64) {
     (exact, carried + exact.abs() * 4.0 * f64::EPSILON)
 }
 
-/// How far a function moves over an error; not finite where that leaves its domain.
+/// The variation of a function over an error; not finite where that leaves its domain.
 fn spread(f: fn(f64) -> f64, a: f64, error: f64) -> f64 {
     let reach = 2.0 * error + 4.0 * f64::EPSILON * a.abs();
     (f(a + reach) - f(a)).abs().max((f(a - reach) - f(a)).abs())

@@ -4,7 +4,7 @@
 //! true one. Floating point judges every case independently: what is called true must vanish at random
 //! points, what is called false must not. A few thousand cases run by default;
 //! `PEBO_CAMPAIGN=120000` runs that many, `PEBO_CASES=path` writes the cases with their verdicts for
-//! the oracle script, and `PEBO_OPEN=1` prints the rules of which cases stay open.
+//! the oracle script, and `PEBO_OPEN=1` prints the rules whose cases remain open.
 
 mod draw;
 mod judge;
@@ -99,7 +99,7 @@ fn decided(case: &Case, formula: &Formula) -> Option<(Answer, Point)> {
     let mut point = Point::new();
     if let Answer::NonZero(witness) = &answer {
         for name in NAMES {
-            // What the formula does not depend on may have any value.
+            // Symbols that the formula does not contain may have any value.
             let value = witness.point.get(&arena.symbol(name)).and_then(|value| arena.as_number(*value));
             point.insert(name, value.map_or(0.5, |value| value.to_f64()));
         }
@@ -129,8 +129,8 @@ impl Tally {
             return;
         };
         let taken = start.elapsed();
-        // A perturbation can stay true. It can also be false on a small part of the domain alone, as where `sign` or `sat` has
-        // another value: floating point then differs at the witness, though at no point that was drawn.
+        // A perturbation can stay true. It can also be false on a small part of the domain alone, as where `sign` or
+        // `sat` has another value: floating point then differs at the witness, though at no point that was drawn.
         let differs_at_witness = matches!(answer, Answer::NonZero(_)) && judge::differs(judge::value(&formula, &point));
         let truth = sampled == Sampled::Vanishes && (intended || !differs_at_witness);
         if taken > PATIENCE / 4 {
@@ -189,7 +189,7 @@ impl Tally {
             self.wrong.push(format!("{text}\n    the enclosure [{low}, {high}] does not exclude zero"));
         }
         if value.is_nan() {
-            // Construction may enlarge the domain: what cancels is not asked for a value.
+            // Construction may enlarge the domain: cancelled terms have no domain conditions.
             self.outside += 1;
         } else if value.is_finite() && slack.is_finite() && (value < low - slack || value > high + slack) {
             self.wrong.push(format!("{text}\n    {value} is outside [{low}, {high}] at {point:?}"));
@@ -231,7 +231,7 @@ impl Tally {
 #[test]
 fn no_generated_case_gets_a_wrong_answer() {
     let number = std::env::var("PEBO_CAMPAIGN").ok().and_then(|n| n.parse().ok()).unwrap_or(FEW);
-    // The same cases in every run, unless another seed is asked for.
+    // The same cases in every run, unless another seed is given.
     let seed = std::env::var("PEBO_SEED").map_or(0, |seed| seed.parse::<u32>().expect("a seed below 2^32"));
     let mut tally = Tally::default();
     for index in 0..number.div_ceil(2) {

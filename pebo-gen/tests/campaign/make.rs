@@ -59,7 +59,7 @@ impl Case {
     }
 }
 
-/// What holds in every case: p, q and r are positive, t is between -1 and 1, w within (0, pi/2).
+/// Facts of every case: p, q and r are positive, t is between -1 and 1, w within (0, pi/2).
 pub(crate) const FACTS: &[&str] = &["p", "q", "r", "1 - t", "1 + t", "w", "pi/2 - w"];
 
 /// A true case of the class.
@@ -92,7 +92,7 @@ fn pick(class: Class, draw: &mut Draw) -> (&'static str, &'static str) {
     rules[draw.below(rules.len())]
 }
 
-/// A rule with its places filled, the same on both sides.
+/// A rule with its operands filled in, the same on both sides.
 fn plain(class: Class, draw: &mut Draw) -> Case {
     let (left, right) = pick(class, draw);
     let both = filled(&format!("{left} @ {right}"), draw);
@@ -123,7 +123,7 @@ fn embedded(case: Case, draw: &mut Draw) -> Case {
     Case { left, right, ..case }
 }
 
-/// Two identities of any classes, put together.
+/// Two identities of any classes, combined.
 fn mixed(draw: &mut Draw) -> Case {
     let (first, second) = (draw.of(&BASIC), draw.of(&BASIC));
     let (a, b) = (plain(*first, draw), plain(*second, draw));

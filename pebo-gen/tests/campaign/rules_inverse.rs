@@ -44,7 +44,7 @@ pub(crate) const INVERSE: &[(&str, &str)] = &[
     ("2*atan(A/(1 + sqrt(1 + A^2)))", "atan(A)"),
 ];
 
-/// Absolute values, and what is put together of them.
+/// Absolute values and compositions of them.
 pub(crate) const ABSOLUTE: &[(&str, &str)] = &[
     ("abs(P)", "P"),
     ("abs(-P)", "P"),

@@ -1,5 +1,5 @@
-//! Formulas that bend or jump: what is seen at a point is seen in its part of the domain, and what two parts show comes
-//! together only on a motion that passes from one into the other.
+//! Non-smooth formulas: unknowns identifiable at a point are so in its cell of the domain, and the unknowns of two
+//! cells combine only on a trajectory that passes from one into the other.
 
 use pebo_gen::source::Code;
 
@@ -83,7 +83,7 @@ pub(super) const BENT: &[Row] = &[
         "parameters: [k]\nx: [p]\ny: [q, s]\nu: [v]\nf_x: {p: 0}\nf_y: {q: v*q, s: p*(sqrt(k^2*q^2) - k*q)}\nphi: [p]",
         Undecided(Code::IdentifiabilityUndecided),
     ),
-    // Magnitudes that are written as other functions.
+    // Absolute values that are written as other functions.
     (
         "the root of a square through a logarithm, which vanishes on one side",
         "x: [p]\ny: [q, s]\nu: [v]\nassume: [q != 0]\nf_x: {p: 0}\nf_y: {q: v*q, s: p*(exp(log(q^2)/2) - q)}\nphi: [p]",

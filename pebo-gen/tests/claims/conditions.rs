@@ -1,4 +1,4 @@
-//! Where the claims hold: conditions that are listed, discharged, or met.
+//! Conditions of the claims: listed, discharged, or met.
 
 use pebo_cas::Relation;
 use pebo_cas::graph::conditions::Regularity;
@@ -41,7 +41,7 @@ fn conditions_are_discharged_by_enclosures_over_the_assumed_box() {
     assert_eq!(remaining("u > 0"), 1);
 }
 
-/// What holds of magnitudes, greatest and least values is used, and what holds of these whatever they are of.
+/// Facts about absolute values, greatest and least values are used, and those that hold for any arguments.
 #[test]
 fn conditions_are_discharged_by_what_bounds_magnitudes() {
     let remaining = |assume: &str, rate: &str| {
@@ -69,7 +69,7 @@ fn conditions_are_discharged_by_what_bounds_magnitudes() {
     assert_eq!(remaining("v > 0", "v/(2 + sign(q))"), ["q != 0"]);
 }
 
-/// A regression in several functions of an unknown divides by what the output's value does, and not by its conjugate too.
+/// A regression in several functions of an unknown has the denominator of the output's value, without its conjugate.
 #[test]
 fn a_regression_divides_by_what_the_value_of_an_output_does() {
     for (factor, listed) in [("1 + abs(q)", vec!["q != 0"]), ("1 + sqrt(q)", vec![])] {
@@ -84,7 +84,7 @@ fn a_regression_divides_by_what_the_value_of_an_output_does() {
     }
 }
 
-/// Whether equal phases identify the currents takes too long to see of five: that is said, and no condition forbids them.
+/// Identifiability of five equal phases takes too long to decide: the verdict says so, and no condition forbids them.
 #[test]
 fn values_of_parameters_that_were_not_worked_out_are_no_conditions() {
     let list = |of: &dyn Fn(usize) -> String, between: &str| (1..=5).map(of).collect::<Vec<_>>().join(between);
@@ -108,7 +108,8 @@ fn values_of_parameters_that_were_not_worked_out_are_no_conditions() {
     );
 }
 
-/// Three angular momenta of a spherical pendulum for two states: no two of them give both states everywhere, all three do.
+/// Three angular momenta of a spherical pendulum for two states: no two of them give both states everywhere, all three
+/// do.
 #[test]
 fn of_more_components_than_states_no_place_is_lost() {
     let plant = derived(
@@ -134,7 +135,7 @@ fn points_without_a_value_refute_nothing() {
     assert_eq!(conditions, ["x NonNegative"]);
 }
 
-/// A root can vanish: what is divided by it stays a condition, and with it there is a value wherever it holds.
+/// A root in a denominator can vanish: it remains a condition, and with it there is a value wherever it holds.
 #[test]
 fn a_root_below_a_fraction_bar_is_a_condition() {
     let plant = derived("x: [p]\ny: [r]\nu: [u]\nassume: [r >= 0]\nf_x: {p: u/sqrt(r)}\nf_y: {r: p}\nphi: [p]");
@@ -145,7 +146,7 @@ fn a_root_below_a_fraction_bar_is_a_condition() {
     assert_eq!(free.derivation.outcome, Outcome::Accepted, "nothing is assumed of the radicand");
 }
 
-/// Where the claims hold: what is listed, for plants whose formulas have no value, or no derivative, somewhere.
+/// Listed conditions of plants whose formulas have no value, or no derivative, somewhere.
 const LISTED: &[(&str, &str, Outcome, &[&str])] = &[
     (
         "a root is not differentiated at zero",
@@ -244,7 +245,7 @@ fn conditions_are_those_of_every_formula() {
     }
 }
 
-/// A plant does not rest where a formula of its observer has no value.
+/// A plant has no equilibrium where a formula of its observer has no value.
 #[test]
 fn an_operating_point_meets_the_conditions() {
     let found = derived("x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]");

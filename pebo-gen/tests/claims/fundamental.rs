@@ -1,10 +1,10 @@
-//! The generalised cascade: what becomes of its fundamental matrix, and which plain cascade is near.
+//! The generalised cascade: the fate of its fundamental matrix, and the nearest plain cascade.
 
 use pebo_gen::analysis::{Fundamental, Outcome};
 
 use super::derived;
 
-/// A lambda of three components, what becomes of Psi, and of what.
+/// A lambda of three components, its name, and the fate of Psi.
 const MATRICES: &[(&str, &str, Fundamental)] = &[
     // Energy, also where it is only semidefinite.
     ("0, 0, 0; 0, 0, 0; 0, 0, 0", "stands still", Fundamental::Bounded { fades: false }),
@@ -64,7 +64,7 @@ fn boundedness_of_the_fundamental_matrix_is_shown_or_not_and_never_a_reason_to_r
     }
 }
 
-/// Where a plain cascade is near, it is offered, and only there.
+/// A plain cascade is offered if one is near, and only then.
 #[test]
 fn a_mend_to_a_plain_cascade_is_offered_beside_a_generalised_one() {
     let mend = |rates: &str| {

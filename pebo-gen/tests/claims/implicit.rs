@@ -1,4 +1,4 @@
-//! Rates with the unknown below a fraction bar, and others without a form that is linear: what is accepted, and what is not
+//! Rates with the unknown in a denominator, and others without a linear form: accepted ones, and ones that are not
 //! refuted.
 
 use pebo_gen::source::Code;
@@ -7,8 +7,8 @@ use super::table::Answer::{Accepted, Undecided};
 use super::table::Row;
 
 pub(super) const IMPLICIT: &[Row] = &[
-    // With exp(2 z) + 1 and 1 + z^2 for multipliers they are linear in functions of theta under the derivative, a form that is
-    // not sought; refuted they are not.
+    // With exp(2 z) + 1 and 1 + z^2 for multipliers they are linear in functions of theta under the derivative, a form
+    // that is not sought; refuted they are not.
     ("tanh", "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: tanh(x)}\nphi: [x]", Undecided(Code::RegressionUndecided)),
     (
         "rational",

@@ -29,7 +29,7 @@ fn the_headline_speaks_of_the_claims_alone() {
     let undecided =
         said("x: [x]\ny: [y]\nu: [u]\nf_x: {x: y + sin(y) - u*y}\nf_y: {y: x + exp(y)}\nphi: [x]\nassume: [y > 0]");
     assert!(undecided.starts_with("m: accepted: all four claims are proved\n"), "{undecided}");
-    // An open remark is no open claim: it stands under no verdict.
+    // An open remark is no open claim: it has no verdict.
     assert!(undecided.contains("\n  operating point           "), "{undecided}");
     let conditional = said("x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x/u}\nphi: [x]");
     let headline = "m: accepted: all four claims are proved where the conditions below hold\n";
@@ -37,8 +37,8 @@ fn the_headline_speaks_of_the_claims_alone() {
     assert!(conditional.contains("\n  conditions                u != 0\n"), "{conditional}");
 }
 
-/// A normal form writes `tanh` with exponentials and has `m^4 - 1` below the bar where the author has `1 - abs(m)*m`: it
-/// overflows, or loses its digits at m = -1.
+/// A normal form writes `tanh` with exponentials and has `m^4 - 1` below the bar where the author has `1 - abs(m)*m`:
+/// it overflows, or loses its digits at m = -1.
 #[test]
 fn a_derived_left_inverse_keeps_the_functions_of_the_outputs() {
     for (phi, assumed, expected) in [

@@ -1,4 +1,4 @@
-//! What a refusal says: its witness, its points, its mend, and what it leaves undone.
+//! The content of refusals: witness, points, mend, and open ends.
 
 use pebo_cas::{Expr, Symbol};
 use pebo_gen::analysis::Verdict;

@@ -40,7 +40,7 @@ pub(super) const RELATIONS: &[Row] = &[
         "x: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - a, b: u - 2*b}\nphi: [a, b]\nidentities: [s - a^2 - b^2]",
         Undecided(Code::RegressionUndecided),
     ),
-    // What stands around the states in an output's value is taken away.
+    // The terms around the states in an output's value are removed.
     (
         "a share",
         "assume: [p > 0]\nx: [p]\ny: [V]\nu: [v]\nf_x: {p: v}\ng_y: {V: p/(1 + p)}\nphi: [p]",
@@ -138,7 +138,7 @@ pub(super) const RELATIONS: &[Row] = &[
          phi: [cos(q) + c, sin(q) + d]\nangles: {q: 2*pi}\nregression: static",
         Accepted("static over-parameterised excitation"),
     ),
-    // The form that is asked for, whatever the outputs' rates would give.
+    // The form that the model names, whatever the outputs' rates would give.
     (
         "a circle beside rates",
         "x: [q]\ny: [c, d]\nu: [u, v, r]\nf_x: {q: r}\nf_y: {c: u + r*sin(q), d: v - r*cos(q)}\n\

@@ -1,4 +1,4 @@
-//! What is derived keeps the author's shape, so that it computes with the digits and the range of the author's formulas.
+//! Derived formulas keep the author's form, so that they compute with the digits and the range of the author's.
 
 use pebo_gen::Derived;
 

@@ -1,4 +1,4 @@
-//! A row for each verdict: the plant, and what is expected of it.
+//! A row for each verdict: the plant, and the expected answer.
 
 use pebo_gen::Derived;
 use pebo_gen::analysis::{Class, Outcome};
@@ -10,7 +10,7 @@ use super::implicit::IMPLICIT;
 use super::relations::RELATIONS;
 use super::timed::TIMED;
 
-/// What is expected of a plant: every claim proved, or the code of the first refusal.
+/// The expected answer: every claim proved, or the code of the first refusal.
 pub(super) enum Answer {
     Accepted(&'static str),
     Rejected(Code),
@@ -28,7 +28,7 @@ fn class(derived: &Derived) -> String {
     format!("{cascade}{kind} {parameterisation} {excitation}")
 }
 
-/// What it is, the lines of the model, and what is expected of it.
+/// A name, the lines of the model, and the expected answer.
 pub(super) type Row = (&'static str, &'static str, Answer);
 
 const TABLE: &[Row] = &[
@@ -301,7 +301,7 @@ const TABLE: &[Row] = &[
         "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nphi: [a, b]\nidentities: [(a - c)^2 + (b - d)^2 - 4]",
         Accepted("static over-parameterised excitation"),
     ),
-    // Many unknowns: ranks are seen at points, not by exact elimination.
+    // Many unknowns: ranks are proved at points, not by exact elimination.
     (
         "ninth power",
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: u*x - y*x^9}\nphi: [x]",
@@ -409,7 +409,7 @@ const TABLE: &[Row] = &[
          - 2*(q*s - p*r)*J*a + 2*(r*s + p*q)*K*b + (p^2 - q^2 - r^2 + s^2)*L*c",
         Accepted("dynamic linear instant"),
     ),
-    // Refuted is what points of the domain show, with the same y, u and parameters.
+    // Points of the domain refute, with the same y, u and parameters.
     (
         "rate that varies with x where the domain is not",
         "x: [p]\ny: [q]\nu: [v]\nassume: [0 < p < 1]\nf_x: {p: v + abs(p - 2) + p}\nf_y: {q: p}\nphi: [p]",
@@ -435,7 +435,7 @@ const TABLE: &[Row] = &[
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u/x}\nf_y: {y: x^2}\nphi: [x^2/2]\nassume: [x + 1 > 0, x != 0]",
         Rejected(Code::LeftInverseRefuted),
     ),
-    // What relates the components of phi to the outputs identifies, too.
+    // Relations between the components of phi and the outputs identify, too.
     (
         "three phases",
         "x: [q]\ny: [a, b, c, w]\nu: [u, v]\nangles: {q: 2*pi}\nf_x: {q: w}\n\
@@ -453,7 +453,7 @@ const TABLE: &[Row] = &[
         "x: [p]\ny: [q]\nu: [v]\nf_x: {p: 0}\nf_y: {q: p}\nphi: [p, p^2]",
         Accepted("implicit over-parameterised instant"),
     ),
-    // Functions of the unknowns that are not told apart while the unknowns are.
+    // Functions of the unknowns that are not identifiable while the unknowns are.
     (
         "product with a state that rests",
         "x: [p, s]\ny: [q]\nu: [v]\nassume: [s > 0]\nf_x: {p: v, s: 0}\nf_y: {q: p*s}\nphi: [p, s]",

@@ -1,4 +1,4 @@
-//! One call gives the whole answer: what the command line prints and the build script writes, as a value.
+//! One call gives the whole answer: the output of the command line and of the build script, as a value.
 #![cfg(all(feature = "cli", feature = "simulate"))]
 
 use std::cell::Cell;
@@ -133,7 +133,7 @@ fn an_input_under_signals_is_sent_to_the_control_law() {
     assert!(refused.diagnostics[0].help.as_deref().is_some_and(|help| help.contains("`control: {v: v_t}`")));
 }
 
-/// What a page or an editor reads: places in bytes, labels, notes, and no more than was asked for.
+/// The value for a page or an editor: spans in bytes, labels, notes, and no more than was requested.
 #[test]
 fn the_answer_serialises_with_places_labels_and_notes() {
     let answer = asked(REFUTED, &Ask::new().emit(Scalar::F64));
@@ -210,7 +210,7 @@ fn the_caller_stops_a_proof_and_a_run() {
     });
     let answer = stopped(&ask, CUK);
     assert_eq!((answer.report.verdict, answer.run.is_none(), asked.get()), (Outcome::Accepted, true, 0.5));
-    // Long enough that somebody is asked.
+    // Long enough that the caller's function is called.
     let tangents = (0..18).fold("q".to_owned(), |inner, _| format!("tan({inner} + v)"));
     let model = format!("model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {{p: \"v*{tangents}\"}}\nf_y: {{q: p}}\nphi: [p]\n");
     let folder = tempfile::tempdir().expect("a folder");
@@ -220,7 +220,7 @@ fn the_caller_stops_a_proof_and_a_run() {
     assert_eq!(answer.report.verdict, Outcome::Undecided);
 }
 
-/// What was asked for and is not there has a diagnostic.
+/// A requested result that is missing has a diagnostic.
 #[test]
 fn what_is_not_there_is_explained() {
     let model = "model: m\nparameters: {a: 1e300}\nx: [p]\ny: [q]\nf_x: {p: a*q}\nf_y: {q: p}\nphi: [p]\n";
@@ -263,7 +263,7 @@ fn what_is_set_of_a_loop_changes_nothing_that_was_derived() {
     ] {
         assert_eq!(derived.holds_of(&model(settings)), holds, "{settings:?}");
     }
-    // Run with another section, it is what the file would do that said so.
+    // A run with another section is that of a file with the section.
     let settings = ["simulation.noise.v2=0.1", "simulation.duration=1e-3", "simulation.plant.L1=1.1*L1"];
     let anew = pebo_gen::derive(&read(&settings)).expect("a model");
     let mut again = pebo_gen::derive(&read(&[])).expect("a model");

@@ -10,7 +10,7 @@ fn certificate(text: &str) -> (Standing, Option<String>) {
     (answer.standing, answer.certificate)
 }
 
-/// What stands before the part that every script has.
+/// The script before its common part.
 fn stated(text: &str) -> String {
     let script = certificate(text).1.expect("it is accepted");
     let (stated, checker) = script.split_once("\nimport random\n").expect("a checker");

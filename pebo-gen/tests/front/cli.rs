@@ -1,4 +1,4 @@
-//! The command line: exit status, what goes to which stream, files whole or not at all, and hostile input.
+//! The command line: exit status, streams, files whole or not at all, and hostile input.
 #![cfg(all(feature = "cli", feature = "simulate"))]
 
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 const CUK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/cuk.yaml");
 
-/// What a person would call a hang, on a machine however busy.
+/// A longer call is a hang, on a machine however busy.
 const HANG: Duration = Duration::from_secs(120);
 
 /// A folder that goes with the test.
@@ -170,7 +170,7 @@ fn a_failed_write_leaves_the_old_file() {
     assert!(text(&output.stderr).contains("error[cannot-write]"), "{}", text(&output.stderr));
 }
 
-/// What is no file stays what it is: as root, a file could be put in the place of `/dev/null`.
+/// A device is not replaced: as root, a file could take the path of `/dev/null`.
 #[cfg(unix)]
 #[test]
 fn pipes_and_links_are_written_to_where_they_stand() {
@@ -222,7 +222,7 @@ fn a_full_disk_ends_in_a_diagnostic() {
     }
 }
 
-/// What the call sets is refused as the call's: no line of the model file is at fault.
+/// A setting of the call is refused as the call's: no line of the model file is at fault.
 #[test]
 fn settings_of_the_call_are_refused_without_the_file() {
     for (arguments, code, message, help) in [
@@ -350,7 +350,7 @@ fn many_runs_have_a_table_a_figure_and_quantiles() {
     }
 }
 
-/// What is written goes beside its place and is moved there when it is whole: nothing is left of a run that is ended.
+/// A file is written beside its path and moved there when it is whole: an ended run leaves nothing.
 #[test]
 fn an_interrupted_run_leaves_no_file() {
     let folder = Folder::new();
@@ -422,7 +422,7 @@ fn explains_every_code() {
     assert!(text(&output.stderr).contains("did you mean `cascade-refuted`?"));
 }
 
-/// Mistakes and attacks: what is written, the code, and what the message must name.
+/// Mistakes and attacks: the text, the code, and the words that the message must have.
 #[test]
 fn hostile_input_ends_in_a_diagnostic() {
     let folder = Folder::new();
@@ -462,7 +462,7 @@ fn hostile_input_ends_in_a_diagnostic() {
     assert!(text(&output.stderr).contains("error[cannot-read]"));
 }
 
-/// The models that take long are the library's to test (`limit.rs`): here, what the program makes of it.
+/// The library's tests have the models that take long (`limit.rs`): here is the program's behaviour.
 #[test]
 fn what_takes_too_long_is_undecided_and_names_the_phase() {
     let folder = Folder::new();
@@ -489,7 +489,7 @@ fn a_limit_may_stand_before_the_command() {
     assert_eq!(run(&["--limit=20", CUK]).stdout, run(&[CUK]).stdout);
     let short = run(&["--limit", "1e-6", "check", CUK]);
     assert_eq!(short.status.code(), Some(1), "{}", text(&short.stderr));
-    // What belongs to one command alone does not stand before another.
+    // An option of one command is refused before another.
     for option in [["--output", "file.rs"], ["--scalar", "f32"]] {
         let output = run(&[option[0], option[1], "check", CUK]);
         assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
@@ -524,7 +524,7 @@ fn a_limit_is_a_positive_number_of_seconds() {
     }
 }
 
-/// Shared parts are printed wherever they are used: what would fill the memory is not printed in full.
+/// Shared parts are printed wherever they are used: a formula that would fill the memory is not printed in full.
 #[test]
 fn a_formula_that_no_page_holds_is_not_printed_in_full() {
     let folder = Folder::new();

@@ -11,7 +11,7 @@ use proc_macro2::TokenStream;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_pebo-gen");
 
-/// What the program says to a command of a shell, on both streams.
+/// The program's output for a command of a shell, on both streams.
 fn said(command: &str, folder: &Path) -> String {
     let programs = Path::new(PROGRAM).parent().expect("a folder").display();
     let path = format!("{programs}:{}", std::env::var("PATH").unwrap_or_default());
@@ -20,7 +20,7 @@ fn said(command: &str, folder: &Path) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
-/// What is said to an example, whatever it is.
+/// The output for an example of any kind.
 fn answer(example: &str) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     if let Some(command) = example.strip_prefix("$ ") {

@@ -1,4 +1,4 @@
-//! What stands between the generator and its users: the whole answer as a value, the command line, explanations, schemas.
+//! The generator's front ends: the whole answer as a value, the command line, explanations, schemas.
 
 mod answer;
 mod certificate;

@@ -1,5 +1,5 @@
 //! Pages say all that is proved, are well-formed whatever a model says, and have a size that a browser takes. How they
-//! look, `tests/pages/check.py` asks a browser.
+//! look, `tests/pages/check.py` tests in a browser.
 
 use std::path::PathBuf;
 
@@ -126,7 +126,7 @@ fn a_refused_model_and_an_undecided_one_have_pages_that_say_why() {
     assert_eq!(asked("model: m\nx: [p]\n").page, None, "of this no plant is made");
 }
 
-/// A formula that nobody reads is left out, and what is said of it says where it is.
+/// A formula that nobody reads is left out, and the text in its stead says where it is.
 #[test]
 fn a_huge_formula_leaves_the_page_small() {
     let powers = (1..40).flat_map(|i| (1..40).map(move |j| format!("{}*v^{i}*q^{j}", 40 * i + j)));
@@ -138,7 +138,7 @@ fn a_huge_formula_leaves_the_page_small() {
     assert!(page.contains("too long for a page") && page.len() < 5_000_000, "{}", page.len());
 }
 
-/// A page without its figure says why, at the place of the figure and where the call is answered.
+/// A page without its figure says why, in place of the figure and in the answer of the call.
 #[test]
 fn a_loop_that_fails_is_not_passed_over() {
     let model = format!(
@@ -170,7 +170,7 @@ fn a_page_has_the_table_of_the_run() {
     assert!(!page.contains("e0<"), "numbers as of programs");
 }
 
-/// What the observer integrates, and how the unknown enters, depends on the cascade.
+/// The observer's integral and the role of the unknown depend on the cascade.
 #[test]
 fn the_idea_is_that_of_the_cascade() {
     let [plain, general] =

@@ -16,7 +16,7 @@ fn models() -> PathBuf {
 const CART: &str =
     "model: cart\nx: [p]\ny: [q]\nu: [u]\nf_x: {p: u}\nf_y: {q: p}\nphi: [p]\nobserver: {gain: 1, filter: 10}\n";
 
-/// A folder in which the commands that are shown can be run: the models are there.
+/// A folder with the models, in which the manual's commands can be run.
 fn bench() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::os::unix::fs::symlink(models(), folder.path().join("models")).expect("a link");

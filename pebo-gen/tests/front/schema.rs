@@ -1,4 +1,4 @@
-//! The JSON objects are what the committed schema says, and model files what the schema of their keys says.
+//! The JSON objects satisfy the committed schemas, and model files the schema of their keys.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use pebo_gen::source::{Code, Source};
 use pebo_gen::{Ask, answer, solve};
 use serde_json::Value;
 
-/// What stands against a value; for the words of JSON schema that ours use.
+/// The departures of a value from a schema, for the words of JSON schema that ours use.
 fn departures(value: &Value, schema: &Value, at: &str, found: &mut Vec<String>) {
     let mut refuse = |what: &str| found.push(format!("{at}: {what}: {value}"));
     if schema == &Value::Bool(false) {
@@ -41,7 +41,7 @@ fn departures(value: &Value, schema: &Value, at: &str, found: &mut Vec<String>) 
         departures(value, schema, at, &mut against);
         against.is_empty()
     };
-    // Of a map the alternatives are about keys that are there.
+    // The alternatives of a map require keys.
     let has = |keys: &Value| {
         keys.as_array().is_some_and(|keys| keys.iter().all(|key| !value[key.as_str().unwrap()].is_null()))
     };
@@ -137,8 +137,8 @@ fn refused_and_malformed_models_too() {
     assert_eq!(check(&self::line(&source)), [""; 0]);
 }
 
-/// A search that finds a transform, one that proves that there is none, one that would find one with other assumptions, and
-/// none at all.
+/// A search that finds a transform, one that proves that there is none, one that would find one with other assumptions,
+/// and none at all.
 #[test]
 fn searches_give_what_the_schema_says() {
     let plant = |rates: &str| format!("model: m\nx: [a]\ny: [b]\nu: [v]\n{rates}\n");
@@ -187,7 +187,7 @@ fn model_schema() -> Value {
     serde_json::from_str(&json_schema()).expect("JSON")
 }
 
-/// What stands against a model file by the schema of its keys.
+/// The departures of a model file from the schema of its keys.
 fn against_model(text: &str) -> Vec<String> {
     let value: Value = serde_yaml::from_str(text).expect("YAML");
     let mut found = Vec::new();
@@ -289,7 +289,7 @@ fn collect(schema: &Value, place: &str, records: &mut Vec<(String, Vec<String>)>
         for (key, value) in properties {
             collect(value, &format!("{place}/{key}"), records);
         }
-        // Where names are free too, nothing is an unknown key.
+        // With free names, no key is unknown.
         if !schema["additionalProperties"].is_object() {
             records.push((place.to_owned(), keys));
         }
@@ -301,7 +301,7 @@ fn collect(schema: &Value, place: &str, records: &mut Vec<(String, Vec<String>)>
     }
 }
 
-/// What an editor shows beside a key is what the reader takes.
+/// The examples that an editor shows beside a key are accepted.
 #[test]
 fn the_examples_of_the_schema_fit_it() {
     fn look(schema: &Value, seen: &mut usize) {

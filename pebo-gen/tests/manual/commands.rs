@@ -1,4 +1,4 @@
-//! Commands that a page shows, with what they say.
+//! Commands that a page shows, with their output.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,22 +13,22 @@ pub(super) const BY_HAND: &[&str] = &[
     "python3 -m http.server --directory target/site",
 ];
 
-/// A line that stands for any number of lines.
+/// A line that matches any number of lines.
 const GAP: &str = "...";
 
-/// A command with what it is shown to say, line by line.
+/// A command with its output on the page, line by line.
 pub(super) struct Shown<'a> {
     pub(super) command: &'a str,
     pub(super) lines: Vec<&'a str>,
 }
 
 impl Shown<'_> {
-    /// Whether a part of what it says is left out.
+    /// A part of the output is left out.
     pub(super) fn has_gap(&self) -> bool {
         self.lines.contains(&GAP)
     }
 
-    /// Whether this is what is said.
+    /// The output on the page is that of the command.
     pub(super) fn agrees(&self, said: &str) -> bool {
         let mut rest: Vec<&str> = said.lines().collect();
         let mut parts = self.lines.split(|line| *line == GAP);
@@ -48,7 +48,7 @@ impl Shown<'_> {
             };
             rest.drain(..at + part.len());
         }
-        // What follows the last gap is the end.
+        // The part behind the last gap is the end.
         last.is_empty() || rest.is_empty()
     }
 }
@@ -65,7 +65,7 @@ pub(super) fn commands(text: &str) -> Vec<Shown<'_>> {
     shown
 }
 
-/// What a shell says to a command in a folder, on both streams, and whether the command succeeds.
+/// The output of a shell for a command in a folder, on both streams, and the command's success.
 pub(super) fn said(command: &str, folder: &Path) -> (String, bool) {
     let programs = Path::new(env!("CARGO_BIN_EXE_pebo-gen")).parent().expect("a folder").display();
     let path = format!("{programs}:{}", std::env::var("PATH").unwrap_or_default());

@@ -1,4 +1,4 @@
-//! What pages have from the tables of the generator: keys, functions, estimators, diagnostics.
+//! Parts of pages from the tables of the generator: keys, functions, estimators, diagnostics.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ use serde_yaml::Value;
 
 use super::page::{held, manual, updates};
 
-/// What stands in the part of this name.
+/// The text of the part of this name.
 fn written(name: &str) -> Option<String> {
     match name.split_once(' ') {
         None if name == "functions" => Some(functions()),
@@ -37,7 +37,7 @@ fn keys(path: &str) -> Option<String> {
         let key = key.as_str()?;
         let listed =
             node["required"].as_sequence().is_some_and(|all| all.iter().any(|name| name.as_str() == Some(key)));
-        // Required unless a class is there, and what a class gives.
+        // Required unless a class is there, and given by a class.
         let or_class = path.is_empty() && schema["anyOf"][0]["required"][0].as_str() == Some(key);
         let barred = path.is_empty() && by_class.get(key).is_some() && value["properties"].is_null();
         let needed = match (listed, or_class, barred) {
@@ -53,7 +53,7 @@ fn keys(path: &str) -> Option<String> {
     Some(table)
 }
 
-/// What a key leads to: behind it, or in the entries of a list or of a map of any names.
+/// The schema below a key: its own, or that of the entries of a list or of a map of any names.
 fn below<'a>(node: &'a Value, key: &str) -> Option<&'a Value> {
     match key {
         "*" => node.get("items").or(node.get("additionalProperties")),
@@ -133,7 +133,7 @@ fn functions() -> String {
     table
 }
 
-/// What is asked for a value, or that nothing is.
+/// The domain conditions of a value.
 fn everywhere(arena: &Arena, asks: Conditions) -> String {
     if asks.is_empty() { "everywhere".to_owned() } else { conditions(arena, asks) }
 }
@@ -143,7 +143,7 @@ fn conditions(arena: &Arena, asks: Conditions) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// The derivative, with what it asks beyond the value.
+/// The derivative, with its conditions beyond those of the value.
 fn with_smooth(row: &FunctionRow, arena: &Arena, arguments: &[Expr], derivative: &str) -> String {
     match row.smooth {
         Some(smooth) => format!("{derivative} where {}", conditions(arena, smooth(arena, arguments))),
@@ -162,7 +162,7 @@ fn estimators() -> String {
     table
 }
 
-/// What `pebo-gen explain` says of each code.
+/// The output of `pebo-gen explain` for each code.
 fn diagnostics() -> String {
     let mut text = String::new();
     for code in Code::ALL {
@@ -238,7 +238,7 @@ fn every_key_is_in_the_manual() {
     assert!(missing.is_empty(), "{missing:?}");
 }
 
-/// The keys with a description that stands in no table.
+/// The keys with a description that is in no table.
 fn missing_keys(node: &Value, shown: &str, missing: &mut Vec<String>) {
     if let Some(keys) = node["properties"].as_mapping() {
         for (key, value) in keys {

@@ -8,7 +8,7 @@ use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
 use super::page::{Page, files, root};
 
-/// What the links of a page lead to: files, headings, addresses.
+/// The targets of a page's links: files, headings, addresses.
 fn links(text: &str) -> Vec<String> {
     let events = Parser::new_ext(text, Options::ENABLE_TABLES);
     let links = events.filter_map(|event| match event {
@@ -68,11 +68,11 @@ fn anchor(heading: &str) -> String {
     kept.replace(' ', "-")
 }
 
-/// What is wrong with the links of a page at a path.
+/// The broken links of a page at a path.
 fn broken(path: &Path, text: &str) -> String {
     let mut wrong = String::new();
     for link in links(text) {
-        // Whether the web has what it had is no test of this project.
+        // The web is not tested by this project.
         if link.starts_with("http://") || link.starts_with("https://") {
             continue;
         }

@@ -12,7 +12,7 @@ pub(super) struct Page {
     pub(super) text: String,
 }
 
-/// A fenced block: the words behind its fence, and the place of its text.
+/// A fenced block: the words behind its fence, and the range of its text.
 #[derive(Clone)]
 pub(super) struct Block {
     pub(super) words: Vec<String>,
@@ -41,7 +41,7 @@ pub(super) fn held() -> MutexGuard<'static, ()> {
     PAGES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether pages are to be written anew.
+/// Pages are to be written anew.
 pub(super) fn updates() -> bool {
     std::env::var_os("UPDATE_DOCS").is_some()
 }
@@ -64,7 +64,7 @@ impl Page {
         of_author.map(|(info, range)| block(&self.text, &info, &range)).collect()
     }
 
-    /// The parts that are generated: name and place of the text.
+    /// The generated parts: name and range of the text.
     pub(super) fn generated(&self) -> Vec<(String, Range<usize>)> {
         let mut parts = Vec::new();
         let mut from = 0;
@@ -98,7 +98,7 @@ pub(super) fn manual() -> Vec<Page> {
     paths.into_iter().map(Page::read).collect()
 }
 
-/// The files below a folder with an extension, but for what is built or hidden.
+/// The files below a folder with an extension, except for built and hidden ones.
 pub(super) fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {

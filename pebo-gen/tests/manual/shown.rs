@@ -8,11 +8,11 @@ use super::commands::{BY_HAND, commands, said};
 use super::links::{commands_in_sentences, images};
 use super::page::{Block, Page, files, held, manual, root, updates};
 
-/// What is shown of one page, run from its beginning in a folder of its own.
+/// The blocks of one page, run from its beginning in a folder of its own.
 struct Run {
     folder: tempfile::TempDir,
     page: Page,
-    /// What is not so.
+    /// The mistakes of the page.
     wrong: String,
     /// Outputs to write into the page: where, and what.
     anew: Vec<(std::ops::Range<usize>, String)>,
@@ -53,14 +53,14 @@ impl Run {
         }
     }
 
-    /// Commands and what they say.
+    /// Commands and their output.
     fn console(&mut self, block: &Block) {
         let text = self.page.of(block).to_owned();
         let refused = block.words.iter().any(|word| word == "refused");
         let mut anew = String::new();
         for shown in commands(&text) {
             let (answer, succeeds) = said(shown.command, self.folder.path());
-            // Or a mistake of ours would be written down as what is so.
+            // Or a mistake of ours would be written down as true.
             if !shown.agrees(&answer) || succeeds == refused {
                 self.complain(block, &format!("$ {}\n{answer}", shown.command));
             }
@@ -83,7 +83,7 @@ impl Run {
         }
     }
 
-    /// What is in the folders, and what the page made.
+    /// The files of the folders, and those that the page made.
     fn sources(&self, extension: &str, folders: &[PathBuf]) -> Vec<String> {
         let own = std::fs::read_dir(self.folder.path()).expect("a folder").flatten().map(|entry| entry.path());
         let own = own.filter(|path| path.extension().is_some_and(|e| e == extension));
@@ -192,12 +192,12 @@ impl Run {
     }
 }
 
-/// Lines without what they begin and end with of spaces.
+/// Lines without leading and trailing spaces.
 fn flush(text: &str) -> String {
     text.lines().flat_map(|line| [line.trim(), "\n"]).collect()
 }
 
-/// A model file whose keys of the first level are replaced by those of a part, which stands at the end.
+/// A model file whose keys of the first level are replaced by those of a part, which is put at the end.
 fn replaced(whole: &str, part: &str) -> String {
     let key =
         |line: &str| line.starts_with(|c: char| c.is_alphabetic()).then(|| line.split(':').next().map(str::to_owned));

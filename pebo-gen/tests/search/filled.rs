@@ -1,9 +1,9 @@
-//! Models by class with the transform that was found written into them.
+//! Models by class with the found transform written into them.
 
 use pebo_gen::source::Source;
 use pebo_gen::{Ask, Standing, answer, solve};
 
-/// The text with its transform, which is accepted as it stands.
+/// The text with its transform, which is accepted as it is.
 fn filled(text: &str) -> String {
     let source = Source::new("m.yaml", text).expect("a text");
     let solution = solve(&source, None, &Ask::new());

@@ -1,17 +1,17 @@
-//! Plants that were written down from the literature after the search had been: what of each is known to be true, and that
-//! the search says it.
+//! Plants from the literature that were written down after the search was: the known truth of each, which the search
+//! finds.
 
 use pebo_gen::analysis::Class;
 use pebo_gen::search::{BoundClass, Search, SearchVerdict};
 
 use super::{search, written};
 
-/// What is true of a plant.
+/// The truth of a plant.
 enum Truth {
     /// It has a transform with a plain cascade, which is to be found.
     Pebo,
-    /// It has one with a generalised cascade, which is to be found. With a plain one there is none that is smooth, or of a
-    /// plant without inputs none that is affine in x; or the outputs are not affine in it.
+    /// It has one with a generalised cascade, which is to be found. With a plain one there is none that is smooth, or
+    /// of a plant without inputs none that is affine in x; or the outputs are not affine in it.
     Gpebo,
     /// It has one with a generalised cascade, which is to be found; whether it has a plain one is not known.
     SearchVerdict,
@@ -201,7 +201,7 @@ const CASES: &[Case] = &[
 fn class(lines: &str, found: &Search) -> Class {
     let best = found.candidates.first().expect("a candidate");
     assert!(found.verdict == SearchVerdict::Found && best.is_full(), "{lines}");
-    // Beside matrices there is no place for a phi.
+    // A phi beside matrices is refused.
     if lines.contains("mechanical:") { best.derivation.class } else { written(lines, found).0 }
 }
 

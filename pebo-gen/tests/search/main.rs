@@ -1,4 +1,4 @@
-//! Transforms that are searched for: found and proved, bounded, or said to be neither.
+//! Searches for transforms: found and proved, bounded, or reported to be neither.
 #![cfg(feature = "yaml")]
 
 mod filled;
@@ -12,7 +12,7 @@ use pebo_gen::plant::Plant;
 use pebo_gen::search::{Search, SearchVerdict, solve};
 use pebo_gen::source::Source;
 
-/// The plant of these lines, and what a search for its transform came to.
+/// The plant of these lines, and the result of a search for its transform.
 fn search(lines: &str, class: Option<Class>) -> (Plant, Search) {
     let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
     let model = Model::parse(&source).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message));
@@ -21,8 +21,8 @@ fn search(lines: &str, class: Option<Class>) -> (Plant, Search) {
     (plant, search)
 }
 
-/// Says of a transform that was found what has to hold of it: every claim is proved of the model with it written in, as
-/// of any other that its author has given.
+/// Asserts the property of a found transform: with it written in, every claim of the model is proved, as with any
+/// transform of an author.
 fn written(lines: &str, search: &Search) -> (Class, usize) {
     let best = search.candidates.first().expect("a candidate");
     assert_eq!(search.verdict, SearchVerdict::Found, "{lines}");

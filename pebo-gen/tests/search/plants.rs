@@ -220,7 +220,8 @@ fn a_mechanical_plant_needs_no_frame() {
     assert_eq!(found.candidates[0].plant.phi.len(), 2);
 }
 
-/// The class knows whether the columns of its own T are Killing fields, which says nothing of a transform that was found.
+/// The class knows whether the columns of its own T are Killing fields, which says nothing of a transform that was
+/// found.
 #[test]
 fn a_frame_that_is_found_is_not_judged_by_the_authors() {
     let model = |metric: &str| {
@@ -257,7 +258,7 @@ fn coils_have_their_fluxes_where_nothing_better_is_found() {
     assert_eq!(solve(&source, None, &Ask::new()).filled.as_deref(), Some(source.text()));
 }
 
-/// With the speed measured the fluxes are a linear regression, and nothing else is looked for; the class that was asked for
+/// With the speed measured the fluxes are a linear regression, and nothing else is searched for; the class in the call
 /// is another.
 #[test]
 fn a_class_that_leaves_nothing_better_answers_alone() {
@@ -274,7 +275,7 @@ fn a_class_that_leaves_nothing_better_answers_alone() {
 
 #[test]
 fn of_more_solutions_than_states_those_that_hold_everywhere_are_taken() {
-    // Of the three momenta of a plane in polar coordinates, the two of the fixed frame.
+    // Among the three momenta of a plane in polar coordinates, the two of the fixed frame.
     let lines = "parameters: [m]\nx: [pr, pt]\ny: [r, th]\nu: [ur, ut]\nassume: [m > 0, r > 0]\n\
                  f_x: {pr: pt^2/(m*r^3) + ur, pt: ut}\nf_y: {r: pr/m, th: pt/(m*r^2)}";
     let (_, found) = search(lines, None);
@@ -284,8 +285,8 @@ fn of_more_solutions_than_states_those_that_hold_everywhere_are_taken() {
 
 #[test]
 fn a_state_is_not_replaced_by_the_output_that_measures_it() {
-    // `angle - incline` has a known rate, as it is zero: with it, or without any component for the angle, the estimate of the
-    // angle would be the sensor's sample.
+    // `angle - incline` has a known rate, as it is zero: with it, or without any component for the angle, the estimate
+    // of the angle would be the sensor's sample.
     let lines = "x: [angle, bias]\ny: [incline]\nu: [gyro]\nf_x: {angle: gyro - bias, bias: 0}\ng_y: {incline: angle}";
     let (_, found) = search(lines, None);
     assert_eq!(found.candidates[0].formulas(), ["angle", "bias"]);
@@ -303,14 +304,14 @@ fn a_transform_goes_over_where_the_rates_bend() {
         let best = &found.candidates[0];
         assert!(best.derivation.jumps(&plant).is_empty() && best.derivation.jumps(&best.plant).is_empty(), "{lines}");
     }
-    // An author may write one that does, and is told.
+    // An author may write one that does, with a remark.
     let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nf_y: {q: p}\nphi: [p + 5*sign(q) + abs(q)]\n";
     let derived = pebo_gen::derive(&pebo_gen::source::Source::new("m.yaml", text).expect("a text")).expect("a model");
     let jumps = derived.derivation.jumps(&derived.plant);
     assert_eq!(jumps.iter().map(|jump| derived.plant.arena.print(jump.1)).collect::<Vec<_>>(), ["q"]);
 }
 
-/// Many states of which each output's rate has one: products of states and outputs would be too many to look at.
+/// Many states, one in each output's rate: products of states and outputs would be too many to try.
 #[test]
 fn many_states_are_no_harder_than_few() {
     let count = 30;
@@ -326,8 +327,8 @@ fn many_states_are_no_harder_than_few() {
     assert_eq!(written(&lines, &found), (pebo_gen::analysis::Class::Pebo, count));
 }
 
-/// An output that is a sum of states tells one of them by the others: a sine of unknown frequency with a bias, and the way to
-/// an unknown level at an unknown rate.
+/// An output that is a sum of states tells one of them by the others: a sine of unknown frequency with a bias, and the
+/// way to an unknown level at an unknown rate.
 #[test]
 fn a_state_that_an_output_tells_together_with_others_is_no_unknown() {
     for (lines, class, phi) in [
@@ -359,7 +360,7 @@ fn a_state_that_an_output_tells_is_no_unknown() {
             1,
         ),
         ("x: [pos, vel]\ny: [m]\nu: [F]\nf_x: {pos: vel, vel: F - pos^3 - vel*pos^2}\ng_y: {m: pos}", 1),
-        // Biomass and its rate of growth from what it gives off: no component is zero for the value of the output.
+        // Biomass and its rate of growth from its product: no component is zero for the value of the output.
         ("x: [X, mu]\ny: [Q]\nu: [D]\nassume: [X > 0, mu > 0]\nf_x: {X: mu*X - D*X, mu: 0}\ng_y: {Q: mu*X}", 1),
     ] {
         let (_, found) = search(lines, None);

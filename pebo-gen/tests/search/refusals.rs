@@ -1,4 +1,4 @@
-//! What a search says where there is no transform, or none that is found.
+//! Searches without a transform, or without one that is found.
 
 use pebo_gen::analysis::Class;
 use pebo_gen::search::{BoundClass, SearchVerdict};
@@ -27,7 +27,7 @@ fn a_two_link_arm_has_no_transform_and_a_certificate_says_so() {
     );
 }
 
-/// Bounds of plants of which the transforms are known.
+/// Bounds of plants whose transforms are known.
 #[test]
 fn bounds_are_those_of_the_transforms_that_there_are() {
     let cuk = "parameters: {L1: 0.01, C2: 22e-6, L3: 0.01, C4: 22.9e-6, G: 0.0447, E: 12}\nx: [i1, i3, v4]\ny: [v2]\nu: [u]\n\
@@ -42,7 +42,7 @@ fn bounds_are_those_of_the_transforms_that_there_are() {
         let bound = found.bound.expect("a bound");
         assert_eq!((bound.states, bound.rank, bound.class, bound.proved), (states, rank, class, true), "{lines}");
         assert_eq!(bound.relations.len(), states - rank, "{lines}");
-        // Of affine transforms it excludes nothing else: on x > 0 the logarithms of x1 and x2 are one.
+        // It excludes no other affine transforms: on x > 0 the logarithms of x1 and x2 are one.
         let expected = if class == BoundClass::Smooth { SearchVerdict::None } else { SearchVerdict::Undecided };
         assert_eq!(found.verdict, expected, "{lines}");
     }
@@ -188,8 +188,8 @@ fn nobody_is_told_to_choose_a_phi_where_there_is_none() {
     assert_eq!(answered(&format!("model: m\n{lines}\n")).standing, Standing::Accepted);
 }
 
-/// The nearest candidate and its obstacle come first, no transform is told twice in another order, and the states are
-/// underlined, of which none was found.
+/// The nearest candidate and its obstacle come first, no transform is repeated in another order, and the states without
+/// a transform are underlined.
 #[test]
 fn a_model_without_a_transform_is_refused_in_a_few_notes() {
     let text = "model: m\nx: [a, b]\ny: [q]\nu: [v]\nf_x: {a: v - 2*a, b: 3*b}\nf_y: {q: a + sin(b)*q}\n";
@@ -212,7 +212,7 @@ fn a_model_without_a_transform_is_refused_in_a_few_notes() {
     assert!(told.len() < 2 || told[0] != told[1], "{told:#?}");
 }
 
-/// What is proved of transforms affine in x says nothing of others.
+/// Proofs about transforms affine in x say nothing about others.
 #[test]
 fn none_says_what_it_leaves_open() {
     let said = |lines: &str| {

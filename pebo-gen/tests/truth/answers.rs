@@ -1,4 +1,4 @@
-//! Plants with verified answers: what is derived, compared with them formula by formula.
+//! Plants with verified answers: derivations compared with them formula by formula.
 //!
 //! The answers stand in the comments at the head of each file of `tests/cases`; they were made with another computer
 //! algebra system and by integrating the plants.
@@ -52,14 +52,14 @@ fn values(names: &[&Formula], draw: &mut Draw) -> Values {
     values
 }
 
-/// Whether the formulas are equal, one by one, where the plant's assumptions hold.
+/// The formulas are equal, one by one, where the plant's assumptions hold.
 fn equal(plant: &Plant, found: &[Formula], wanted: &[Formula], draw: &mut Draw) -> bool {
     let same = |(a, b): (&Formula, &Formula), draw: &mut Draw| {
         let points = (0..DRAWS).map(|_| values(&[a, b], draw)).filter(|values| plant.admits(values)).take(POINTS);
         let equal: Vec<bool> = points
             .map(|values| {
                 let (a, b) = (a.at(&values), b.at(&values));
-                // Rounding of some ten operations on what was met.
+                // Rounding of some ten operations on the values met.
                 (a.value - b.value).abs() <= 1e-12 * a.size.max(b.size).max(1.0)
             })
             .collect();

@@ -1,4 +1,4 @@
-//! What accepted random models compute as compiled code, held against enclosures of what was derived.
+//! Values of accepted random models as compiled code, compared with enclosures of the derived formulas.
 //!
 //! All models are modules of one scratch crate, which prints the bits of each value. `PEBO_EMITTED` is the number of
 //! models, `PEBO_FIRST_MODEL` the first seed; without it a few are taken.
@@ -21,7 +21,7 @@ use super::formula::Values;
 use super::plant::Plant;
 use super::{make, setting};
 
-/// Models of a run that nobody asked more of.
+/// The default number of models.
 const MODELS: u64 = 12;
 
 /// Points of each model; the second half has signals at 0, 1 and -1.
@@ -30,15 +30,16 @@ const POINTS: usize = 20;
 /// Bits of the enclosures, which are absolute: values down to 1e-60 keep the digits of `f64`.
 const BITS: u32 = 256;
 
-/// The relative move of a value by which its effect is found: far above the enclosures' width, far below any bend.
+/// The relative variation of a value that measures its effect: far above the enclosures' width, far below any
+/// curvature.
 const MOVE: f64 = 1.0 / 1_073_741_824.0;
 
-/// The errors that the header states are the largest at its own places. Elsewhere one may be larger, but not beyond what an
-/// emission is refused for.
+/// The errors that the header states are the largest at its own points. Elsewhere one may be larger, but not beyond the
+/// limit at which an emission is refused.
 const MOST: f64 = 100.0;
 
-/// Below, a unit is the width of the enclosures: the value is 0 and stays so, whatever the arguments, and what is left is the
-/// rounding of numbers in the formula.
+/// Below, a unit is the width of the enclosures: the value is 0 whatever the arguments, and the rounding of numbers in
+/// the formula is left.
 const NO_UNIT: f64 = 1e-70;
 
 /// Values of the arguments of all functions, in the order of their vectors.
@@ -79,7 +80,7 @@ impl Case {
         Some(Ok(Self { seed, derived, emitted, scalar, points }))
     }
 
-    /// What the functions return, as it was derived: function of `Model`, value, entries.
+    /// The derived results of the functions: function of `Model`, value, entries.
     fn expected(&self) -> Vec<(&'static str, &'static str, Vec<Expr>)> {
         let (plant, derivation) = (&self.derived.plant, &self.derived.derivation);
         let cascade = derivation.cascade.result.as_ref().expect("a cascade");
@@ -124,7 +125,7 @@ impl Case {
         values
     }
 
-    /// Value and unit of an expression: what rounding of all that it depends on, and of the result, causes.
+    /// Value and unit of an expression: the error by rounding of its arguments and of the result.
     fn value_and_unit(&self, expr: Expr, values: &BTreeMap<Symbol, Rational>) -> Option<(Interval, f64)> {
         let arena = &self.derived.plant.arena;
         let precision = Precision::new(BITS);
@@ -158,7 +159,7 @@ impl Case {
             Scalar::F32 => loss.single.units,
             _ => loss.double.units,
         });
-        // What is not measured is a copy, or a part, of its argument.
+        // An entry that is not measured is a copy, or a part, of its argument.
         worst.unwrap_or(1.0).max(1.0).log2().ceil().exp2()
     }
 }
@@ -226,7 +227,7 @@ fn point(derived: &Derived, values: &Values, draw: &mut Draw) -> Option<Point> {
     })
 }
 
-/// Evaluates each function of a model; goes into the scratch crate as it stands.
+/// Evaluates each function of a model; goes into the scratch crate as it is.
 const DRIVER: &str = r#"
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Extension, Model, Real};
@@ -296,7 +297,7 @@ fn write_crate(cases: &[Case]) -> PathBuf {
         )
         .expect("a string");
     }
-    // Of a library what nobody calls is no dead code.
+    // Functions of a library without callers are no dead code.
     std::fs::write(source.join("lib.rs"), modules).expect("a library");
     std::fs::write(source.join("main.rs"), format!("{DRIVER}\nfn main() {{\n{calls}}}\n")).expect("a program");
     folder
@@ -324,7 +325,7 @@ fn run(cases: &[Case]) -> BTreeMap<(u64, usize, String), Vec<f64>> {
 fn compiled_code_computes_what_was_derived() {
     let (first, models) = (setting("PEBO_FIRST_MODEL", 1), setting("PEBO_EMITTED", MODELS));
     let models = usize::try_from(models).expect("a number of models");
-    // Of every four seeds one at least is accepted.
+    // At least one in four seeds is accepted.
     let seeds = first..first + 4 * u64::try_from(models).expect("a number of models") + 40;
     let mut refused = Vec::new();
     let cases = seeds.filter_map(Case::new).filter_map(|case| case.map_err(|refusal| refused.push(refusal)).ok());
@@ -337,7 +338,7 @@ fn compiled_code_computes_what_was_derived() {
             let values = case.values(point);
             for (function, name, exprs) in case.expected() {
                 let computed = &found[&(case.seed, index, name.to_owned())];
-                // Where the model has no such function, the trait's own gives zeros.
+                // Without such a function of the model, the trait's own gives zeros.
                 if exprs.is_empty() {
                     assert!(computed.iter().all(|value| *value == 0.0), "{} {name}", case.seed);
                     continue;

@@ -1,7 +1,7 @@
 //! Formulas in floating point, with slopes: a reader and an evaluator that share nothing with the algebra they judge.
 //!
 //! In: the text of a formula, values and rates of its names. Out: its value, its rate (forward differentiation), and
-//! the largest magnitude met on the way, which is what rounding is relative to.
+//! the largest absolute value met on the way, to which rounding is relative.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,7 +18,7 @@ pub(crate) enum Formula {
 /// Names with their values and rates.
 pub(crate) type Values = BTreeMap<String, (f64, f64)>;
 
-/// A value, its rate, and the largest magnitude met.
+/// A value, its rate, and the largest absolute value met.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Evaluated {
     pub(crate) value: f64,
@@ -53,12 +53,12 @@ impl Comparison {
         self.sides.iter().flat_map(Formula::names).collect()
     }
 
-    /// Whether it holds, by more than rounding.
+    /// It holds, by more than rounding.
     pub(crate) fn holds(&self, values: &Values) -> bool {
         let sides: Vec<Evaluated> = self.sides.iter().map(|side| side.at(values)).collect();
         sides.windows(2).zip(&self.relations).all(|(pair, relation)| {
             let difference = pair[0].value - pair[1].value;
-            // What is within rounding of the bound counts as outside: nothing is asserted there.
+            // A value within rounding of the bound counts as outside: nothing is asserted there.
             let close = 1e-9 * (pair[0].size + pair[1].size + 1e-3);
             match relation.as_str() {
                 "<" | "<=" => difference < -close,

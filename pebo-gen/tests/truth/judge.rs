@@ -1,4 +1,4 @@
-//! What was derived, held against the plant's own formulas at points of its domain.
+//! Compares derivations with the plant's own formulas at points of its domain.
 //!
 //! Every claim of an accepted model is evaluated in floating point where the model's own formulas have values and
 //! derivatives and no listed condition fails. A formula that has no finite value there, or another one than the claim
@@ -16,7 +16,8 @@ use super::plant::Plant;
 const POINTS: usize = 60;
 const DRAWS: usize = 4000;
 
-/// Of the largest magnitude met: rounding is about 1e-16 of it an operation, a wrong formula is off by far more.
+/// Relative to the largest absolute value met: rounding is about 1e-16 an operation, a wrong formula is off by far
+/// more.
 const TOLERANCE: f64 = 1e-8;
 
 /// The formulas of a report.
@@ -69,7 +70,7 @@ impl Claims {
     }
 }
 
-/// What an accepted model claims and its plant does not do; and at how many points that was looked at.
+/// Claims of an accepted model that its plant contradicts, and the number of points of the comparison.
 pub(crate) fn complaints(plant: &Plant, derived: &Derived, report: &Json, seed: u64) -> (Vec<String>, usize) {
     if derived.derivation.outcome != Outcome::Accepted {
         return (outside(plant, report), 0);
@@ -143,7 +144,7 @@ struct At<'a> {
     place: String,
     z: Vec<Evaluated>,
     h: Vec<Evaluated>,
-    /// The largest magnitude met in the rates.
+    /// The largest absolute value met in the rates.
     moving: f64,
     lambda: Option<Vec<Vec<Evaluated>>>,
     found: Vec<String>,
@@ -178,7 +179,7 @@ impl<'a> At<'a> {
     fn cascade(&mut self) {
         for i in 0..self.z.len() {
             let component = self.z[i];
-            // What the rates themselves are rounded to: large terms may stand beside an identity that is zero.
+            // The rounding of the rates themselves: large terms may multiply an identity that is zero.
             let along = Evaluated { value: component.slope, slope: 0.0, size: component.size.max(self.moving) };
             let claimed = match &self.lambda {
                 None => self.h[i],
@@ -236,7 +237,7 @@ impl<'a> At<'a> {
         self.extend(&theta, draw);
         let mut at_theta = self.values.clone();
         at_theta.extend((1..).zip(&theta).map(|(i, theta)| (format!("theta{i}"), (*theta, 0.0))));
-        // Functions of theta are constants: the slopes of what else is in them do not count.
+        // Functions of theta are constants: the slopes of other symbols in them do not count.
         let eta: Vec<Evaluated> = claims.eta.iter().map(|eta| still(eta.at(&at_theta).value)).collect();
         for (row, (known, factors)) in claims.phi_0.iter().zip(&claims.phi_1).enumerate() {
             let (known, factors) = (known.at(&self.values), all(factors, &self.values));

@@ -1,4 +1,4 @@
-//! Verdicts held against truth: random models whose truth is known by construction, and a judge in floating point
+//! Verdicts compared with truth: random models whose truth is known by construction, and a judge in floating point
 //! that shares no code with the algebra.
 //!
 //! `PEBO_MODELS` is the number of models, `PEBO_FIRST_MODEL` the first of them; `--nocapture` shows the counts by kind.
@@ -27,10 +27,10 @@ use pebo_gen::source::Source;
 use make::Truth;
 use plant::Plant;
 
-/// Models of a run that nobody asked more of.
+/// The default number of models.
 const MODELS: u64 = 60;
 
-/// What counts as slow.
+/// A longer derivation is slow.
 const SLOW: Duration = Duration::from_secs(2);
 
 fn setting(name: &str, default: u64) -> u64 {
@@ -46,19 +46,19 @@ struct Counts {
     points: usize,
 }
 
-/// What was seen of one model.
+/// The observations of one model.
 struct Seen {
     kind: &'static str,
     /// None where the model was malformed.
     outcome: Option<Outcome>,
-    /// Why it is undecided, and whether every claim is true.
+    /// The reason that it is undecided, and the truth of every claim.
     cause: Option<(String, bool)>,
     slow: Option<Duration>,
     points: usize,
     wrong: Vec<String>,
 }
 
-/// Checks the model of a seed, and holds what was said against its truth and its formulas.
+/// Checks the model of a seed, and compares the verdict with its truth and its formulas.
 fn look(seed: u64) -> Seen {
     let made = make::model(seed);
     let source = Source::new("m", made.text.as_str()).expect("a text");

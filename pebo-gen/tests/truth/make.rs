@@ -1,19 +1,19 @@
 //! Random models whose truth is known by construction.
 //!
 //! The transform is chosen first, `phi_i = a_i(y) g_i(x_i) + b_i(y)`, then its rate h(y, u) and the rates of the
-//! outputs; the rates of the states follow from them. What is true of the model is what the parts are known for.
+//! outputs; the rates of the states follow from them. The truth of the model is that of its parts.
 
 use super::draw::Draw;
 use super::formula::{Comparison, Evaluated, Formula, Values};
 
-/// What is true of a model.
+/// The truth of a model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Truth {
     /// Every claim holds: it must not be refuted.
     Holds,
     /// A claim fails: it must not be accepted.
     Fails,
-    /// Not known by construction: what is accepted has to stand before the judge.
+    /// Not known by construction: an accepted model has to satisfy the judge.
     Open,
 }
 
@@ -24,7 +24,7 @@ pub(crate) struct Made {
     pub(crate) kind: &'static str,
 }
 
-/// A function of one argument, written `@`: its text, its derivative, what it needs to have both.
+/// A function of one argument, written `@`: its text, its derivative, the conditions of both.
 type Part = (&'static str, &'static str);
 
 /// Functions that are never zero.
@@ -69,7 +69,7 @@ const ADDED: &[Part] = &[
     ("@/(1 + @^2)", "(1 - @^2)/(1 + @^2)^2"),
 ];
 
-/// One-to-one functions of a state with their derivatives, and what they assume of it.
+/// One-to-one functions of a state with their derivatives, and their assumptions on it.
 const ONE_TO_ONE: &[(&str, &str, &str)] = &[
     ("@", "1", ""),
     ("@", "1", "@ > -2"),
@@ -89,7 +89,7 @@ const ONE_TO_ONE: &[(&str, &str, &str)] = &[
     ("tan(@)", "(1 + tan(@)^2)", "-1 < @ < 1"),
 ];
 
-/// Functions of a state that take a value twice on what they assume.
+/// Functions of a state that are not injective under their assumptions.
 const NOT_ONE_TO_ONE: &[(&str, &str, &str)] = &[
     ("@^2", "2*@", "@ != 0"),
     ("@^2", "2*@", "-1 < @ < 2"),
@@ -284,7 +284,7 @@ impl Recipe {
 
     /// The rates of the states that give the transform its own; last that of the output in which it is singular.
     fn rates(&mut self) -> Vec<String> {
-        // Where the factor vanishes in that output, it stays: there the plant is regular, and the transform blind.
+        // If the factor vanishes in that output, it is kept: there the plant is regular, and the transform blind.
         let stays = self.pick(KNOWN);
         let mut rates = Vec::new();
         for i in 0..self.states {
@@ -306,7 +306,7 @@ impl Recipe {
         rates
     }
 
-    /// The rate that a component of the transform has, or what is added to it by the kind.
+    /// The rate of a component of the transform, or the term that the kind adds to it.
     fn known_rate(&mut self, i: usize) -> String {
         let (known, x) = (self.pick(KNOWN), self.parts[i].x.clone());
         match self.kind {
@@ -314,7 +314,7 @@ impl Recipe {
                 let term = self.pick(SUBTLE).replace('@', &x);
                 let domain = self.assume.iter().filter(|text| Comparison::read(text).names().contains(&x));
                 let (domain, g) = (domain.map(String::as_str).collect::<Vec<_>>(), at(self.parts[i].g, &x));
-                // What is affine in the transform is part of a generalised cascade.
+                // A term affine in the transform is part of a generalised cascade.
                 let affine = affine_in(&term, &g, &x, &domain);
                 if !vanishes(&term, &x, &domain) {
                     self.truth = if affine { Truth::Open } else { Truth::Fails };
@@ -360,7 +360,7 @@ impl Recipe {
     }
 }
 
-/// Values of formulas in a state where what is assumed of the state holds and all of them have a value.
+/// Values of formulas in a state where the assumptions on the state hold and all formulas have a value.
 fn sampled<const N: usize>(formulas: [&str; N], x: &str, domain: &[&str]) -> Vec<[Evaluated; N]> {
     let formulas = formulas.map(Formula::read);
     let at = |step: i32| {
@@ -373,12 +373,12 @@ fn sampled<const N: usize>(formulas: [&str; N], x: &str, domain: &[&str]) -> Vec
     (-400..400).filter_map(at).collect()
 }
 
-/// Whether a term in a state is zero throughout what is assumed of the state, as far as many points tell.
+/// A term in a state is zero under all assumptions on the state, as far as many points tell.
 fn vanishes(term: &str, x: &str, domain: &[&str]) -> bool {
     sampled([term], x, domain).iter().all(|[found]| found.value.abs() <= 1e-13 * found.size.max(1.0))
 }
 
-/// Whether a term is an affine function of another there: all points lie on one line, by more than rounding.
+/// A term is an affine function of another there: all points lie on one line, up to rounding.
 fn affine_in(term: &str, other: &str, x: &str, domain: &[&str]) -> bool {
     let points = sampled([term, other], x, domain);
     let (Some([t, g]), Some([u, k])) = (points.first(), points.last()) else { return false };

@@ -1,4 +1,4 @@
-//! What a model file says, for evaluation in floating point: its own formulas, read by [`super::formula`].
+//! A model file for evaluation in floating point: its own formulas, read by [`super::formula`].
 
 use std::collections::BTreeMap;
 
@@ -58,7 +58,7 @@ impl Plant {
 
     /// A point of the domain, with the rates of the states and outputs as slopes; none if the draw falls outside.
     ///
-    /// Parameters that are given keep their sign; zero stays zero.
+    /// Given parameters keep their sign; zero remains zero.
     pub(crate) fn point(&self, draw: &mut Draw) -> Option<Values> {
         let mut values = Values::new();
         for (name, given) in &self.parameters {
@@ -71,7 +71,7 @@ impl Plant {
         }
         let mut last = 0.0;
         for name in &self.free {
-            // Now and then two signals are equal: what is divided by their difference shows there.
+            // Now and then two signals are equal, to detect divisions by their difference.
             let value = if draw.one_in(8) { last } else { draw.value() };
             last = value;
             values.insert(name.clone(), (value, 0.0));
@@ -92,7 +92,7 @@ impl Plant {
         Some(values)
     }
 
-    /// Whether the assumptions hold where they speak of the given values alone.
+    /// The assumptions on the given values alone hold.
     pub(crate) fn admits(&self, values: &Values) -> bool {
         let known = |comparison: &&Comparison| comparison.names().iter().all(|name| values.contains_key(name));
         self.assume.iter().filter(known).all(|comparison| comparison.holds(values))
@@ -130,14 +130,14 @@ impl Plant {
                 return false;
             }
         }
-        // What was moved last may have left an earlier identity.
+        // The last change may have left an earlier identity.
         self.identities.iter().all(|identity| {
             let miss = identity.at(values);
             miss.value.abs() <= 1e-9 * miss.size.max(1.0)
         })
     }
 
-    /// Whether the plant's formulas and the transform have values and derivatives there.
+    /// The plant's formulas and the transform have values and derivatives there.
     fn is_regular(&self, values: &Values) -> bool {
         let formulas = || self.rates.values().chain(&self.phi);
         self.free.iter().all(|name| {
@@ -146,7 +146,7 @@ impl Plant {
             self.settle(&mut moved);
             formulas().all(|formula| {
                 let found = formula.at(&moved);
-                // Near the end of what floating point can tell nothing is asserted.
+                // Near the limits of floating point nothing is asserted.
                 found.value.is_finite() && found.slope.is_finite() && found.size < 1e12
             })
         })

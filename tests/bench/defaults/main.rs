@@ -1,5 +1,5 @@
-//! Observers that nobody chose a number for: of each plant, whether its estimates settle to 1 % of the state's largest
-//! magnitude, when, and why if they do not.
+//! Observers without a number from their author: for each plant, the time in which its estimates settle to 1 % of the
+//! state's largest absolute value, or the reason that they do not.
 //!
 //! Run with `cargo run --release -p tests --example defaults`; names as `models/cuk` pick out plants.
 
@@ -9,7 +9,7 @@ use pebo_gen::derive;
 use pebo_gen::simulate::Overrides;
 use pebo_gen::source::{Diagnostic, Source};
 
-/// The row of a plant: its observer, and what came of it.
+/// The row of a plant: its observer, and the result.
 fn row(text: &str) -> Result<String, Vec<Diagnostic>> {
     let derived = derive(&Source::new("model", text).map_err(|found| vec![found])?)?;
     let scenario = derived.scenario(&Overrides::default())?;

@@ -4,7 +4,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What is added to a plant that does not say how it moves.
+/// Scenarios for plants without one.
 const SCENARIOS: &[(&str, &str)] = &[
     (
         "battery",
@@ -94,7 +94,7 @@ simulation: {duration: 4, step: 1e-4, initial: {p: 0.5, q: 1}, control: {tau: 0}
 
 /// A plant with its scenario and without its observer.
 pub(crate) struct Case {
-    /// Where it is from, without its folder's beginning and its suffix.
+    /// The path of its file, without its folder's beginning and its suffix.
     pub(crate) name: String,
     /// The model file.
     pub(crate) text: String,
@@ -120,7 +120,7 @@ pub(crate) fn cases(wanted: &[&str]) -> io::Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// A model file without what it says of its observer, with a scenario if it has none.
+/// A model file without its section `observer`, with a scenario if it has none.
 fn complete(stem: &str, text: &str) -> String {
     let mut inside = false;
     let kept = text.lines().filter(|line| {

@@ -1,6 +1,7 @@
-//! What every system in Rust speaks, as `rivals/protocol.py` describes it.
+//! The protocol of every system in Rust, which `rivals/protocol.py` describes.
 //!
-//! In (JSON, one a line): `{"job": path, "recipe": name, "part": "proof" or "check"}`. Out: `{"seconds": s}` or `{"failed": why}`.
+//! In (JSON, one a line): `{"job": path, "recipe": name, "part": "proof" or "check"}`. Out: `{"seconds": s}` or
+//! `{"failed": why}`.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead as _, Write as _};
@@ -9,23 +10,22 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-/// What is this fast is done once more before it is timed, with other operands: the caches have seen
-/// other processes.
+/// A faster job is done once more before it is timed, with other operands: the caches have served other processes.
 const SHORT: f64 = 0.02;
 
-/// How a job is to be done.
+/// Options of a job.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct How {
-    /// Which of the system's ways.
+    /// The system's method.
     pub(crate) recipe: String,
-    /// Whether a proof is timed alone, without the derivatives that make what is proved.
+    /// A proof is timed alone, without the derivatives in its formula.
     pub(crate) alone: bool,
 }
 
 /// The work that is timed.
 pub(crate) type Work = Box<dyn FnOnce() -> Check>;
 
-/// What is not timed: whether the result is right, or why not.
+/// The check of the result, which is not timed.
 pub(crate) type Check = Box<dyn FnOnce() -> Result<(), String>>;
 
 /// Answers until the input ends; `prepare` makes the operands of a job, untimed.

@@ -1,4 +1,4 @@
-//! What the programs for the board share: they print by semihosting, and count in ticks of its clock.
+//! Common code of the programs for the board: they print by semihosting, and count in ticks of its clock.
 
 use core::panic::PanicInfo;
 

@@ -1,4 +1,4 @@
-//! What the programs for the host share.
+//! Common code of the programs for the host.
 
 use std::print;
 

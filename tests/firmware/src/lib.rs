@@ -1,4 +1,4 @@
-//! What board and host both run: emitted observers in `f32` on plants in `f32`, so that the two must agree to the last
+//! Programs of board and host: emitted observers in `f32` on plants in `f32`, so that the two must agree to the last
 //! bit.
 #![no_std]
 

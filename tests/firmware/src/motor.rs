@@ -22,7 +22,7 @@ pub fn run(report: &mut impl Report) -> Result<(), Fault> {
     report.name("motor");
     let parameters = Parameters::default();
     let Parameters { r, l, n_p, lambda_m } = parameters;
-    // Position, currents in phase with the motion's voltage, and the voltage that goes with both.
+    // Position, currents in phase with the induced voltage, and the voltage that goes with both.
     let position = |t: f32| Real::atan2(Real::sin(SPEED * n_p * t), Real::cos(SPEED * n_p * t)) / n_p;
     let turned = |angle: f32| Vector2::new(-Real::sin(angle), Real::cos(angle));
     let voltage = |t: f32| {
@@ -47,8 +47,8 @@ pub fn run(report: &mut impl Report) -> Result<(), Fault> {
             let whole = (turns + 12_582_912.0) - 12_582_912.0;
             let error = (turns - whole) * 2.0 * PI / n_p;
             report.estimate(&Vector2::new(q, error), &Vector2::new(q, 0.0));
-            // A voltage held at its mean misses (200/s * DT)^2/24 = 1.7e-5 of the flux, a fifth of that in position; as much
-            // again for rounding.
+            // A voltage held at its mean misses (200/s * DT)^2/24 = 1.7e-5 of the flux, a fifth of that in position; as
+            // much again for rounding.
             report.flag(Real::abs(error) < 1e-5);
         }
     }

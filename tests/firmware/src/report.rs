@@ -2,7 +2,7 @@
 
 use pebo_runtime::nalgebra::Vector2;
 
-/// Where results go.
+/// The sink of results.
 pub trait Report {
     /// Writes text.
     fn write(&mut self, text: &str);
@@ -38,7 +38,7 @@ pub trait Report {
         }
     }
 
-    /// Writes an estimate, and what it estimates.
+    /// Writes an estimate and its truth.
     fn estimate(&mut self, estimate: &Vector2<f32>, truth: &Vector2<f32>) {
         self.write(" ");
         for number in [estimate.x, estimate.y, truth.x, truth.y] {

@@ -1,4 +1,4 @@
-//! Random expressions: a formula minus itself rewritten is never refuted, and what is refuted is not zero.
+//! Random expressions: a formula minus itself rewritten is never refuted, and a refuted formula is not zero.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

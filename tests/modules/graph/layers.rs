@@ -1,10 +1,10 @@
-//! The one table of layers: which may use which.
+//! The one table of layers and their uses.
 
 /// Each layer with those that it may use.
 pub(super) const LAYERS: &[(&str, &[&str])] = &[
     ("source", &[]),
     ("cas", &[]),
-    // The parser asks the table of functions.
+    // The parser reads the table of functions.
     ("model", &["cas", "source"]),
     ("plant", &["model", "cas", "source"]),
     ("analysis", &["plant", "cas", "source"]),
@@ -13,11 +13,11 @@ pub(super) const LAYERS: &[(&str, &[&str])] = &[
     ("emit", &["program", "analysis", "plant", "cas"]),
     ("report", &["program", "search", "analysis", "plant", "cas", "source"]),
     ("certificate", &["analysis", "plant", "model", "cas"]),
-    // The settings of an observer, and what runs it.
+    // The settings of an observer, and its runs.
     ("lab", &["program", "analysis", "plant", "model", "cas", "source"]),
-    // What users of the library call of it.
+    // Its public face.
     ("simulate", &["lab"]),
-    // What is typeset for a reader: sentences are those of the report.
+    // Formulas typeset for a reader, with the sentences of the report.
     ("page", &["report", "emit", "analysis", "plant", "cas", "source"]),
     // From a source to an answer, and front ends.
     ("derived", &["emit", "lab", "search", "analysis", "plant", "model", "cas", "source"]),
@@ -42,7 +42,7 @@ pub(super) const LAYERS: &[(&str, &[&str])] = &[
     ("cli", &["answer", "emit", "report", "simulate", "analysis", "model", "cas", "source"]),
 ];
 
-/// Whether a layer may use another one; the crate's root, which has no name, declares all.
+/// A layer may use another one; the crate's root, which has no name, declares all.
 pub(super) fn may_use(layer: &str, used: &str) -> bool {
     let allowed = LAYERS.iter().find(|(name, _)| *name == layer).map_or(&[][..], |(_, uses)| uses);
     layer == used || layer.is_empty() || allowed.contains(&used)
@@ -62,7 +62,7 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("clap", &["cli"]),
 ];
 
-/// Whether a layer may use a foreign crate.
+/// A layer may use a foreign crate.
 pub(super) fn may_link(layer: &str, name: &str) -> bool {
     FOREIGN.iter().all(|(foreign, layers)| *foreign != name || layers.contains(&layer))
 }

@@ -1,9 +1,9 @@
-//! The module graph of the generator, read off its sources: which file uses which.
+//! The module graph of the generator, read off its sources: the uses among files.
 //!
-//! In: the folder of the generator, with its member crates. Out: their files, an arrow from each to every file whose items it names, and what is
-//! wrong with the arrows by the table of layers. A declaration (`mod`, `pub use`) is no use; a name that is
-//! exported again leads to the file where it is defined. What tests use does not count, and what only a method call shows
-//! is not seen.
+//! In: the folder of the generator, with its member crates. Out: their files, an arrow from each to every file whose
+//! items it names, and the arrows that the table of layers forbids. A declaration (`mod`, `pub use`) is no use; a name
+//! that is exported again leads to the file of its definition. Uses by tests do not count, and those by a method call
+//! alone are not found.
 
 mod circles;
 mod layers;
@@ -16,7 +16,7 @@ use std::path::Path;
 
 use read::Module;
 
-/// How the sentence begins that says why the files of a circle are one thing.
+/// The beginning of the sentence that says why the files of a circle are one thing.
 const REASON: &str = "One thing with ";
 
 /// The files of the generator's crates and the arrows among them.
@@ -41,13 +41,13 @@ impl Graph {
         back.map(|(from, to)| format!("{} -> {}", self.file(*from), self.file(*to))).collect()
     }
 
-    /// Sets of files each of which is reached from every other one of its set, by name.
+    /// Strongly connected sets of files, by name.
     pub(crate) fn circles(&self) -> Vec<Vec<&str>> {
         let circles = circles::circles(self.modules.len(), &self.arrows);
         circles.iter().map(|circle| circle.iter().map(|module| self.file(*module)).collect()).collect()
     }
 
-    /// Why the files of a circle are one thing: the file whose documentation says so, and its sentence.
+    /// The reason that the files of a circle are one thing: the file whose documentation has it, and the sentence.
     pub(crate) fn reason(&self, circle: &[&str]) -> Option<(&str, &str)> {
         let modules = self.modules.iter().filter(|module| circle.contains(&module.file.as_str()));
         let mut said =

@@ -1,4 +1,4 @@
-//! The files of the generator's crates as modules: what each declares, and which paths it names.
+//! The files of the generator's crates as modules: their declarations, and the paths that they name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,17 +17,17 @@ pub(super) struct Module {
     pub(super) file: String,
     /// Its module path below the layers, empty for a root.
     pub(super) path: Segments,
-    /// What `crate` stands for.
+    /// The path of `crate`.
     pub(super) root: Segments,
     /// Its lines, tests included.
     pub(super) lines: usize,
     /// Its documentation, in a line.
     pub(super) docs: String,
-    /// The names that `use` brings, with what they stand for.
+    /// The names that `use` brings, with their paths.
     pub(super) imports: BTreeMap<String, Segments>,
     /// The names that it exports again.
     pub(super) exports: BTreeSet<String>,
-    /// What `use` brings as a whole.
+    /// Modules whose items `use` brings all.
     pub(super) globs: Vec<Segments>,
     /// The items that it defines.
     pub(super) items: BTreeSet<String>,
@@ -50,7 +50,7 @@ const CRATES: [Crate; 4] = [
     Crate { folder: "lab/src", name: "pebo_lab", layer: Some("lab") },
 ];
 
-/// What the name of a crate stands for.
+/// The path of a crate by its name.
 pub(super) fn root(name: &str) -> Option<Segments> {
     let named = CRATES.iter().find(|each| each.name == name)?;
     Some(named.layer.map(str::to_owned).into_iter().collect())
@@ -112,7 +112,7 @@ fn docs(text: &str) -> String {
     lines.map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
-/// Whether an item is there for tests alone.
+/// The item is there for tests alone.
 fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         attribute.path().is_ident("cfg")

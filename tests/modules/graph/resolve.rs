@@ -1,4 +1,4 @@
-//! From the paths that a file names to the files where what they name is defined.
+//! From the paths that a file names to the files that define their items.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -32,13 +32,13 @@ impl<'a> Names<'a> {
     fn new(modules: &'a [Module]) -> Self {
         let mut places = BTreeMap::new();
         for (at, module) in modules.iter().enumerate() {
-            // The library's root stands for all: the roots of a program and of a member crate only declare layers.
+            // The library's root represents all: the roots of a program and of a member crate only declare layers.
             places.entry(module.path.as_slice()).or_insert(at);
         }
         Self { modules, places }
     }
 
-    /// The file where what a path names is defined, if it is one of these crates'.
+    /// The file that defines the item of a path, if it is one of these crates'.
     fn file(&self, from: usize, path: &[String], deep: usize) -> Option<usize> {
         let here = &self.modules[from];
         let (first, mut rest) = path.split_first()?;
@@ -61,7 +61,7 @@ impl<'a> Names<'a> {
         Some(self.below(at, rest, deep))
     }
 
-    /// What the rest of a path names, seen from the module that it has come to.
+    /// The file of the rest of a path, from the module that it has come to.
     fn below(&self, mut at: usize, mut rest: &[String], deep: usize) -> usize {
         while let Some((segment, after)) = rest.split_first() {
             if let Some(child) = self.child(&self.modules[at].path, segment) {
@@ -73,7 +73,7 @@ impl<'a> Names<'a> {
         at
     }
 
-    /// Where a name is defined that a module has: there, or where it has it from.
+    /// The file that defines a name of a module: that module, or the one that it is imported from.
     fn item(&self, at: usize, name: &str, after: &[String], deep: usize) -> usize {
         let module = &self.modules[at];
         if module.items.contains(name) || deep == 0 {
@@ -81,7 +81,7 @@ impl<'a> Names<'a> {
         }
         if let Some(target) = module.imports.get(name) {
             let target: Segments = target.iter().chain(after).cloned().collect();
-            // What a layer exports of another one is its own: the arrow from there to there is its export.
+            // A layer's export of another one's item is its own: the export has the arrow.
             let own = |found: &usize| self.layer(at).is_none() || self.layer(*found) == self.layer(at);
             return self.file(at, &target, deep - 1).filter(own).unwrap_or(at);
         }

@@ -28,7 +28,7 @@ pub struct Binary {
 pub type Binaries = BTreeMap<(&'static str, &'static str), Binary>;
 
 impl Copy {
-    /// A copy of what git knows of the project in whose root we are.
+    /// A copy of git's files of the project in the current folder.
     pub fn new() -> Result<Self, String> {
         let original = std::env::current_dir().map_err(|error| error.to_string())?;
         let folder = original.join("target/mutants");
@@ -37,7 +37,7 @@ impl Copy {
         for name in listed.split('\0').filter(|name| !name.is_empty()) {
             let to = folder.join(name);
             let Ok(text) = std::fs::read(original.join(name)) else { continue };
-            // What has not changed keeps its age, or all would be built anew.
+            // Unchanged files keep their age, or all would be built anew.
             if std::fs::read(&to).is_ok_and(|there| there == text) {
                 continue;
             }

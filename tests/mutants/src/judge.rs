@@ -13,17 +13,17 @@ use crate::copy::{Binaries, Binary};
 use crate::plan::{Module, Tests};
 use crate::sites::Fault;
 
-/// How many times longer than without a fault a test may take before it counts as hanging, and what is given besides.
+/// A test hangs if it takes this many times longer than without a fault, plus this time.
 const PATIENCE: (u32, Duration) = (4, Duration::from_secs(20));
 
-/// How the tests of a binary go without a fault.
+/// A run of the tests of a binary without a fault.
 struct Baseline {
     /// The numbers of the faults that are run through.
     reached: BTreeSet<usize>,
     took: Duration,
 }
 
-/// Prints what became of a module's faults.
+/// Prints the results of a module's faults.
 pub fn report(module: &Module, faults: &[&Fault], binaries: &Binaries, jobs: usize) -> Result<(), String> {
     let mut baselines = Vec::new();
     for tests in module.tests {
@@ -81,7 +81,7 @@ fn named(tests: &Tests) -> String {
     [tests.package.name, tests.target, tests.filter].join(" ").trim_end().to_owned()
 }
 
-/// Whether the tests pass with a fault, in time; the first that fails ends them.
+/// The tests pass with a fault, in time; the first that fails ends them.
 fn passes(binary: &Binary, filter: &str, fault: usize, reached: Option<&Path>, patience: Duration) -> bool {
     let mut command = Command::new(&binary.path);
     command

@@ -1,29 +1,29 @@
-//! A mutation run with a switch: how many small faults the tests notice.
+//! A mutation run with a switch: counts the small faults that the tests notice.
 //!
 //! ```text
 //! cargo run --release --manifest-path tests/mutants/Cargo.toml -- [MODULE..] [--sample N] [--seed N] [--jobs N]
 //! ```
 //!
-//! from the project's root. Modules are those of [`plan::MODULES`]; without one, all. The sources of a module are copied
-//! with every fault in them at once, each behind a number that `PEBO_MUTANT` selects, so they are compiled once and not
-//! once for each fault. A sample of N faults a module (40) is drawn by a seed (1); faults that overlap one that is drawn, and
-//! those that do not compile, are left out. Each is then given to the tests of the module, the quick ones first, until
-//! one fails. It prints, for each module, how many faults were tried, noticed, and by which tests first, and which were
-//! missed: those that no test ran through at all are marked.
+//! from the project's root. Modules are those of [`plan::MODULES`]; without one, all. The sources of a module are
+//! copied with every fault in them at once, each behind a number that `PEBO_MUTANT` selects, so they are compiled once
+//! and not once for each fault. A sample of N faults a module (40) is drawn by a seed (1); faults that overlap one that
+//! is drawn, and those that do not compile, are left out. Each is then given to the tests of the module, the quick ones
+//! first, until one fails. It prints, for each module, how many faults were tried, noticed, and by which tests first,
+//! and which were missed: those that no test ran through at all are marked.
 //!
 //! Two classes of fault are missed and no test is wanting: one that changes how an answer is found and not the answer
 //! (a bound on effort, an order of attempts), and one that turns an answer into *undecided*, where no test claims that
-//! it is decided. `SURVIVORS.md` lists those that were looked at, each with its reason: what is missed and not listed
-//! there wants a test.
+//! it is decided. `SURVIVORS.md` lists those that were examined, each with its reason: another missed fault wants a
+//! test.
 //!
-//! What is drawn depends on file, function and fault, not on what else there is: a seed keeps its sample when sources
-//! change elsewhere. The figures are those of the same faults before and after their survivors were killed or listed; what
-//! is missed after is listed, all of it.
+//! The sample depends on file, function and fault alone: a seed keeps it when sources change elsewhere. The figures are
+//! those of the same faults before and after their survivors were killed or listed; all that are missed after are
+//! listed.
 //!
 //! | module | faults | noticed before | after | what had no test |
 //! |---|---|---|---|---|
 //! | tower | 97 (`--sample 100 --seed 7`) | 79 | 83 | roots of products with parts in common, four times an inverse tangent, negated sums of two, ranges of inverse cosines |
-//! | analysis | 100 (`--sample 100 --seed 7`) | 82 | 91 | one-way couplings in a cycle, what estimates are asked for, the author's own terms in a regression, an identity where the rates are none, words of doubts |
+//! | analysis | 100 (`--sample 100 --seed 7`) | 82 | 91 | one-way couplings in a cycle, conditions on estimates, the author's own terms in a regression, an identity where the rates are none, words of doubts |
 //! | program | 39 (`--sample 40`) | 29 | 34 | sums and weights of costs, short decimals |
 //! | runtime | 36 (`--sample 40`) | 27 | 32 | sine and cosine together in single precision |
 

@@ -5,7 +5,7 @@ pub struct Package {
     pub name: &'static str,
     /// Below the root.
     pub folder: &'static str,
-    /// How its tests are built: without what the modules do not use.
+    /// Arguments that build its tests, without features that the modules do not use.
     pub features: &'static [&'static str],
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::sites::{Fault, ORIGINAL};
 
-/// The switch: one fault by its number, or none; and a list of those that were run through, if it is asked for.
+/// The switch: one fault by its number, or none; and a list of those that were run through, on request.
 const SWITCH: &str = r#"
 /// The faults that can be switched on.
 mod mutants {

@@ -1,4 +1,4 @@
-//! Where a small fault can be put, and what it is: an operator exchanged, a condition or a number off.
+//! Sites of small faults: an operator exchanged, a condition or a number off.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -20,9 +20,9 @@ pub struct Fault {
     pub line: usize,
     /// The function that it is in.
     pub function: String,
-    /// What is replaced, in bytes of the file.
+    /// The replaced bytes of the file.
     pub place: Range<usize>,
-    /// What stands there instead; `@` is where the switch's number goes, [`ORIGINAL`] what stood there.
+    /// The replacement; `@` stands for the switch's number, [`ORIGINAL`] for the replaced text.
     pub instead: String,
     pub what: String,
 }
@@ -32,7 +32,7 @@ pub const ORIGINAL: &str = "\u{1}";
 
 /// A sample of the faults of each module, none within another, numbered in all.
 ///
-/// Those of the least hashes are drawn, so that a seed keeps its sample but for what changes in the sources.
+/// Those of the least hashes are drawn, so that a seed keeps its sample except for changed sources.
 pub fn draw(root: &Path, modules: &[&'static Module], sample: usize, seed: u64) -> Result<Vec<Fault>, String> {
     let mut drawn: Vec<Fault> = Vec::new();
     for module in modules {
@@ -60,8 +60,7 @@ pub fn draw(root: &Path, modules: &[&'static Module], sample: usize, seed: u64) 
     Ok(drawn)
 }
 
-/// The faults by the hash of where they are: file, function, what is exchanged, and which of those that are the same
-/// in these it is.
+/// The faults by the hash of their site: file, function, exchanged text, and a count of equal ones.
 fn hashed(faults: Vec<Fault>, seed: u64) -> impl Iterator<Item = Fault> {
     let mut same: BTreeMap<String, usize> = BTreeMap::new();
     let mut all: Vec<(u64, Fault)> = Vec::new();
@@ -150,7 +149,7 @@ impl<'a> Sites<'a> {
         self.function = outer;
     }
 
-    /// What a function gives at once.
+    /// Faults that return a value at once.
     fn body(&mut self, signature: &syn::Signature, block: &syn::Block) {
         let syn::ReturnType::Type(_, output) = &signature.output else { return };
         let output = self.of(output.span());
@@ -172,7 +171,7 @@ impl<'a> Sites<'a> {
     }
 }
 
-/// Whether a condition binds names, which can stand nowhere else.
+/// The condition binds names, and cannot be moved.
 fn binds(expr: &syn::Expr) -> bool {
     match expr {
         syn::Expr::Let(_) => true,
@@ -188,7 +187,7 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
     })
 }
 
-/// What an operator is taken for.
+/// The operator in exchange for another.
 fn exchanged(operator: &syn::BinOp) -> Option<&'static str> {
     use syn::BinOp as Op;
     Some(match operator {
@@ -267,7 +266,7 @@ impl<'ast> Visit<'ast> for Sites<'_> {
         }
     }
 
-    // What has to be constant, and what is matched, can have no switch.
+    // Constants and patterns can have no switch.
     fn visit_item_const(&mut self, _: &'ast syn::ItemConst) {}
     fn visit_item_static(&mut self, _: &'ast syn::ItemStatic) {}
     fn visit_impl_item_const(&mut self, _: &'ast syn::ImplItemConst) {}

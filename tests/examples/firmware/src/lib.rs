@@ -25,7 +25,7 @@ pub fn observer() -> Result<cuk::Observer, Fault> {
     )
 }
 
-/// What the interrupt of the converter keeps from period to period.
+/// The state of the converter's interrupt from period to period.
 pub struct Task {
     observer: cuk::Observer,
     limits: Limits<f32, 2, 1>,
@@ -54,7 +54,7 @@ impl Task {
         let y = SVector::from([v2, v4]);
         let estimate = match self.limits.check(&y, &u, time) {
             Err(Fault::Gap) => {
-                // From the last estimate of z, of which nothing is unknown then.
+                // From the last estimate of z, without unknowns then.
                 let z = self.observer.extension().coordinates(&self.observer.theta());
                 self.observer.restart(z, &SVector::zeros())?;
                 self.observer.step(y, u, time)?

@@ -15,7 +15,7 @@ fn clarke([a, b, c]: [f32; 3]) -> [f32; 2] {
     [(2.0 * a - b - c) / 3.0, (b - c) * INV_SQRT_3]
 }
 
-/// What the current loop keeps from period to period.
+/// The state of the current loop from period to period.
 pub struct Position {
     observer: Tuned,
     magnet: f32,
@@ -31,8 +31,8 @@ impl Position {
         Ok(Self { observer: Servo::observer(&parameters)?, magnet: parameters.lambda_m })
     }
 
-    /// The position modulo a turn of the field, from the currents now, the voltages of the period that ends now, and its
-    /// length.
+    /// The position modulo a turn of the field, from the currents now, the voltages of the period that ends now, and
+    /// its length.
     ///
     /// # Errors
     /// The fault of a sample that is not finite.
@@ -68,8 +68,8 @@ mod tests {
     /// Samples in a turn of the field.
     const TURN: u16 = 314;
 
-    /// The largest error of the angle of the field in the last quarter of some turns at constant speed, with an offset of
-    /// the first current's sensor, and how often the extension has started again.
+    /// The largest error of the angle of the field in the last quarter of some turns at constant speed, with an offset
+    /// of the first current's sensor, and how often the extension has started again.
     fn error(turns: u16, offset: f32) -> (f32, u32) {
         let mut position = Position::new().expect("the parameters of the model");
         let (dt, increment) = (1e-4, TAU / f32::from(TURN));
@@ -105,8 +105,8 @@ mod tests {
         assert!(error < 1e-3 && restarts == 0, "{error} rad, {restarts}");
     }
 
-    /// 0.05 A in one phase are 0.033 A in the plane, 0.3 V, and with a forgetting of 40/s a lag of 7 mWb, 0.04 rad; as much
-    /// again for what the offset does to the equation itself.
+    /// 0.05 A in one phase are 0.033 A in the plane, 0.3 V, and with a forgetting of 40/s a lag of 7 mWb, 0.04 rad; as
+    /// much again for what the offset does to the equation itself.
     #[test]
     fn an_offset_makes_it_start_again() {
         let (error, restarts) = error(640, 0.05);

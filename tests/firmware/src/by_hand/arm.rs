@@ -14,15 +14,15 @@ const INV_L1_L2: f32 = 1.0 / (L1 * L2);
 const INV_M1_L1: f32 = 1.0 / (M1 * L1);
 const INV_M1_L1_L2: f32 = 1.0 / (M1 * L1 * L2);
 
-/// What depends on the angles alone.
+/// Terms of the angles alone.
 #[derive(Clone, Copy)]
 struct Posture {
     /// Cosine and sine of the first angle.
     first: [f32; 2],
-    /// Of the sum of both.
+    /// Cosine and sine of the sum of both angles.
     both: [f32; 2],
     inv_sine: f32,
-    /// What the torque of the first joint gives the momenta, times the sine, and what that of the second takes.
+    /// Factors of the torque of the first joint in the momenta, times the sine, and of that of the second.
     shoulder: [f32; 2],
     elbow: [f32; 2],
     /// By rows.

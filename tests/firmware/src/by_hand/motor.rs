@@ -26,7 +26,7 @@ struct Sample {
     y: [f32; 3],
     /// The voltages that the resistance and the turning coils take.
     taken: [f32; 2],
-    /// What friction and load take of the acceleration.
+    /// The deceleration by friction and load.
     braked: f32,
 }
 

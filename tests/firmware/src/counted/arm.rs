@@ -1,4 +1,4 @@
-//! The two-link arm. As for the motor, the signals are of the right size and no motion of the plant.
+//! The two-link arm. As for the motor, the signals are of the right size and no trajectory of the plant.
 
 use pebo_runtime::Fault;
 use pebo_runtime::nalgebra::SVector;
@@ -10,7 +10,7 @@ use crate::emitted::arm::{Arm as Model, Observer, Parameters, U, X, Y};
 /// Seconds between two samples.
 const DT: f32 = 1e-3;
 
-/// What both observers are tuned to.
+/// The settings of both observers.
 pub const TUNING: Tuning = Tuning { gains: [1.0, 2.0], alpha: 50.0 };
 
 /// Angles, then the torques of the interval before.

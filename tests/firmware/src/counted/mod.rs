@@ -1,5 +1,5 @@
-//! The steps that are counted: of an emitted observer and of the one written by hand for the same plant, each a function
-//! of its own so that counters and size figures find it.
+//! The steps that are counted: of an emitted observer and of the one written by hand for the same plant, each a
+//! function of its own so that counters and size figures find it.
 
 pub mod arm;
 pub mod cuk;
@@ -9,8 +9,9 @@ use pebo_runtime::{Fault, Filter, Gradient, Hold, Real};
 
 use crate::report::Report;
 
-/// The program that counts the steps of a plant's observers: an image of its own, as in firmware. On the host it compares
-/// the two as the board does, and with the argument `emitted` or `hand` runs that one for an instruction counter.
+/// The program that counts the steps of a plant's observers: an image of its own, as in firmware. On the host it
+/// compares the two as the board does, and with the argument `emitted` or `hand` runs that one for an instruction
+/// counter.
 #[macro_export]
 macro_rules! count {
     ($plant:ty) => {
@@ -29,7 +30,7 @@ macro_rules! count {
 
 /// A plant with both observers.
 pub trait Plant {
-    /// What heads its results.
+    /// The heading of its results.
     const NAME: &'static str;
     /// Outputs and inputs.
     type Sample: Copy;
@@ -56,7 +57,7 @@ pub trait Plant {
     fn by_hand(observer: &mut Self::ByHand, sample: &Self::Sample) -> Option<Self::Estimate>;
 }
 
-/// What both observers of a plant with two unknowns are tuned to.
+/// The settings of both observers of a plant with two unknowns.
 pub struct Tuning {
     /// The gains of the gradient estimator.
     pub gains: [f32; 2],

@@ -1,5 +1,5 @@
-//! The motor with currents and speed measured. What a step costs does not depend on what the sensors say: the signals
-//! are of the right size and no motion of the plant.
+//! The motor with currents and speed measured. The cost of a step does not depend on the values of the sensors: the
+//! signals are of the right size and no trajectory of the plant.
 
 use pebo_runtime::Fault;
 use pebo_runtime::nalgebra::SVector;
@@ -11,7 +11,7 @@ use crate::emitted::motor::{Motor as Model, Observer, Parameters, U, X, Y};
 /// Seconds between two samples.
 const DT: f32 = 1e-4;
 
-/// What both observers are tuned to.
+/// The settings of both observers.
 pub const TUNING: Tuning = Tuning { gains: [2e-5, 1e-5], alpha: 500.0 };
 
 /// Currents and speed, then the voltages of the interval before.

@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Whether the recipe turns the expression into 0.
+/// The recipe turns the expression into 0.
 fn vanishes(expr: &Ex, recipe: &str) -> bool {
     let reduced = match recipe {
         "equals" => return expr.equals(&(expr - &expr.clone())) == Some(true),
