@@ -63,11 +63,11 @@ fn the_examples_run() {
 /// The derivation and the module, step by step, as a build script may call them.
 #[test]
 fn a_build_script_may_derive_and_emit_by_itself() {
-    for model in ["../models/cuk.yaml"] {
+    for (model, name) in [("../models/cuk.yaml", "Cuk"), ("../models/motor.yaml", "Motor")] {
         let text = std::fs::read_to_string(model).expect("a model");
         let source = Source::new(model, text).expect("a text");
         let derived = pebo_gen::derive(&source).unwrap_or_else(|d| panic!("{model}: {}", d[0].message));
         let emitted = derived.emit(Scalar::F32).unwrap_or_else(|e| panic!("{model}: {e}"));
-        assert!(emitted.text.contains("pub struct Cuk"));
+        assert!(emitted.text.contains(&format!("pub struct {name}")));
     }
 }
