@@ -14,7 +14,7 @@ enum Truth {
     /// of a plant without inputs none that is affine in x; or the outputs are not affine in it.
     Gpebo,
     /// It has one with a generalised cascade, which is to be found; whether it has a plain one is not known.
-    SearchVerdict,
+    Found,
     /// No smooth transform with a plain cascade recovers its states, and none affine in x with a generalised one.
     None,
     /// A transform is found, but the outputs are no linear regression in it, or it holds on a part of the domain only.
@@ -90,7 +90,7 @@ const CASES: &[Case] = &[
         lines: "parameters: [mu, K, k]\nx: [S]\ny: [X]\nu: [D, Sin]\n\
                 assume: [mu > 0, K > 0, k > 0, S > 0, X > 0]\n\
                 f_x: {S: D*(Sin - S) - k*mu*S/(K + S)*X}\nf_y: {X: mu*S/(K + S)*X - D*X}",
-        truth: Truth::SearchVerdict,
+        truth: Truth::Found,
     },
     Case {
         from: "susceptible, exposed, infected (Anderson, May 1991)",
@@ -150,7 +150,7 @@ const CASES: &[Case] = &[
         from: "an epidemic (Kermack, McKendrick 1927) with both its rates unknown",
         lines: "x: [S, beta, gamma]\ny: [I, R]\nassume: [S > 0, I > 0, beta > 0, gamma > 0]\n\
                 f_x: {S: -beta*S*I, beta: 0, gamma: 0}\nf_y: {I: beta*S*I - gamma*I, R: gamma*I}",
-        truth: Truth::SearchVerdict,
+        truth: Truth::Found,
     },
     Case {
         from: "a bicycle with unknown tyres (Riekert, Schunck 1940)",
@@ -158,20 +158,20 @@ const CASES: &[Case] = &[
                 assume: [m > 0, Iz > 0, lf > 0, lr > 0, vx > 0, Cf > 0, Cr > 0, lr*Cr - lf*Cf > 0]\n\
                 f_x: {vy: -(Cf + Cr)*vy/(m*vx) + (lr*Cr - lf*Cf)*r/(m*vx) - vx*r + Cf*delta/m, Cf: 0, Cr: 0}\n\
                 f_y: {r: (lr*Cr - lf*Cf)*vy/(Iz*vx) - (lf^2*Cf + lr^2*Cr)*r/(Iz*vx) + lf*Cf*delta/Iz}",
-        truth: Truth::SearchVerdict,
+        truth: Truth::Found,
     },
     Case {
         from: "a motor from its speed alone, resistance, inductance and torque constant unknown",
         lines: "parameters: [J]\nx: [i, R, k, e]\ny: [w]\nu: [v]\nassume: [J > 0, R > 0, k > 0, e > 0]\n\
                 f_x: {i: (v - R*i - e*w)*k, R: 0, k: 0, e: 0}\nf_y: {w: e*i/J}",
-        truth: Truth::SearchVerdict,
+        truth: Truth::Found,
     },
     Case {
         from: "a fuel cell by its Nernst voltage: partial pressures of hydrogen and oxygen",
         lines: "parameters: {E: 1.2, a: 0.0215, k: 1, m: 0.5, t: 3, s: 6}\nx: [p, o]\ny: [V]\nu: [I, q, r]\n\
                 assume: [p > 0, o > 0]\nf_x: {p: (q - k*p - I)/t, o: (r - m*o - I/2)/s}\n\
                 identities: [exp(2*(V - E)/a) - p^2*o]",
-        truth: Truth::SearchVerdict,
+        truth: Truth::Found,
     },
     Case {
         from: "a tank (Torricelli 1644) with an unknown outlet",
@@ -221,7 +221,7 @@ fn what_is_true_of_plants_from_the_literature_is_said() {
                     _ => assert!(plain.bound.expect("a bound").excludes(), "{from}"),
                 }
             }
-            Truth::SearchVerdict => assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}"),
+            Truth::Found => assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}"),
             Truth::None => {
                 let bound = found.bound.expect("a bound");
                 assert!(bound.class == BoundClass::Smooth && bound.excludes(), "{from}");
