@@ -45,9 +45,7 @@ pub use candidate::Candidate;
 use completion::connection::Connection;
 use continuous::{continuous, is_of_states_and_outputs};
 pub use found::{Attempt, Form, Search, SearchVerdict, Start};
-pub use frame::Block;
-#[cfg(feature = "yaml")]
-pub use frame::blocks;
+pub use frame::{Block, blocks};
 use problem::Problem;
 pub use words::settles;
 
