@@ -9,7 +9,7 @@ use pebo_cas::{Arena, Budget, Rational};
 use pebo_design::analysis::{Derivation, Outcome};
 use pebo_design::model::Model;
 use pebo_design::plant::{Class, Plant, Settings, TransformOrigin};
-use pebo_design::search::{self, Found};
+use pebo_design::search::{self, SearchVerdict};
 #[cfg(feature = "yaml")]
 use pebo_design::source::Source;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
@@ -67,8 +67,8 @@ impl Derived {
             let derivation = Derivation::derive(&plant);
             return Ok(Self { model, plant, derivation });
         }
-        let mut search = search::solve(&plant, plant.asked);
-        if search.verdict == Found::Found && !search.candidates.is_empty() {
+        let mut search = search::solve(&plant, plant.cascade_class);
+        if search.verdict == SearchVerdict::Found && !search.candidates.is_empty() {
             let best = search.candidates.swap_remove(0);
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }
@@ -103,10 +103,10 @@ impl Derived {
         let mut open = diagnostics.iter_mut().filter(|d| refused && search::settles(d.code, &self.derivation));
         if let Some(first) = open.next() {
             let budget = self.plant.arena.budget();
-            let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.asked));
+            let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.cascade_class));
             *first = search.advise(&self.plant, first.clone());
             // A mend of the first mends the others.
-            if search.verdict == Found::Found {
+            if search.verdict == SearchVerdict::Found {
                 open.for_each(|other| other.help = None);
             }
         }

@@ -8,7 +8,7 @@ use pebo_cas::Relation;
 use pebo_cas::domain::zero::{Answer, decide};
 use pebo_cas::number::interval::{Interval, Precision};
 use pebo_cas::{Arena, Expr, Function, Node};
-use pebo_gen::model::formula::{Estimates, Places, parse_formula};
+use pebo_gen::model::formula::{Estimates, SpanMap, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 use proptest::prelude::*;
 
@@ -93,7 +93,7 @@ proptest! {
         let arena = Arena::new();
         let expr = build(&arena, &r);
         let text = arena.print(expr);
-        let formula = parse_formula(&text, &Places::verbatim(&text, 0), Estimates::Refused).expect("its own text");
+        let formula = parse_formula(&text, &SpanMap::verbatim(&text, 0), Estimates::Refused).expect("its own text");
         let mut scope = Scope::new();
         for name in NAMES {
             scope.define(name, arena.variable(name));
@@ -164,8 +164,8 @@ proptest! {
         };
         let width = Interval::from_rational(&(&step * &Rational::from(2)), precision).expect("a number");
         let quotient = up.sub(&down, precision).and_then(|rise| rise.div(&width, precision)).expect("a quotient");
-        // The error of a central difference is h^2/6 times the third derivative. Of numbers beyond 2^400 the difference is
-        // rounding alone, as its enclosure says.
+        // The error of a central difference is h^2/6 times the third derivative. Of numbers beyond 2^400 the difference
+        // is rounding alone, as its enclosure says.
         let size = slope.lo().abs();
         if size < 1e6 {
             let error = 1e-6 * (1.0 + size);

@@ -10,7 +10,7 @@ use pebo_cas::Arena;
 use pebo_cas::graph::function::Value;
 use pebo_cas::tower::Field;
 use pebo_cas::{Facts, Relation};
-use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
+use pebo_gen::model::formula::{Estimates, Formula, Operator, SpanMap, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
 /// The proved sign of a formula.
@@ -153,7 +153,7 @@ const TABLE: &[(&str, &[&str], Shown)] = &[
 ];
 
 fn parse(text: &str) -> Formula {
-    parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused).expect(text)
+    parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused).expect(text)
 }
 
 fn assumption(text: &str) -> (Formula, Relation) {

@@ -11,13 +11,13 @@ use pebo_cas::domain::zero::{Answer, decide};
 use pebo_cas::graph::function::{Function, Value};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Expr};
-use pebo_gen::model::formula::{Estimates, Formula, Operator, Places, Term, parse_formula};
+use pebo_gen::model::formula::{Estimates, Formula, Operator, SpanMap, Term, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
 const NAMES: [&str; 12] = ["a", "b", "c", "x", "y", "z", "p", "q", "u", "v", "n", "E"];
 
 fn parse(text: &str) -> Formula {
-    parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused).expect(text)
+    parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused).expect(text)
 }
 
 fn decided(formula: &Formula, positive: &[&str]) -> (Arena, Answer) {

@@ -3,7 +3,7 @@
 use pebo_gen::Derived;
 use pebo_gen::emit::Scalar;
 use pebo_gen::model::Model;
-use pebo_gen::model::rust::Places;
+use pebo_gen::model::rust::TokenSpans;
 use pebo_gen::source::Diagnostic;
 use proc_macro2::{Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
@@ -15,10 +15,10 @@ use crate::refusal;
 /// The module with what was derived of it, or with what is wrong with it.
 pub(crate) fn module(arguments: TokenStream, module: &ItemMod) -> TokenStream {
     let ItemMod { attrs, vis, ident, content, .. } = module;
-    let mut places = Places::new();
-    let added = match additions(arguments, module, &mut places) {
+    let mut spans = TokenSpans::new();
+    let added = match additions(arguments, module, &mut spans) {
         Ok(added) => added,
-        Err(diagnostics) => refusal::errors(&diagnostics, &places),
+        Err(diagnostics) => refusal::errors(&diagnostics, &spans),
     };
     // Also where the model is refused: what else is wrong with the module, the compiler says.
     let items = content.iter().flat_map(|(_, items)| items);
@@ -32,9 +32,9 @@ pub(crate) fn module(arguments: TokenStream, module: &ItemMod) -> TokenStream {
     }
 }
 
-fn additions(arguments: TokenStream, module: &ItemMod, places: &mut Places) -> Result<TokenStream, Vec<Diagnostic>> {
+fn additions(arguments: TokenStream, module: &ItemMod, spans: &mut TokenSpans) -> Result<TokenStream, Vec<Diagnostic>> {
     let scalar = scalar(module);
-    let derived = Derived::of(Model::read_rust(arguments, module, places)?)?;
+    let derived = Derived::of(Model::read_rust(arguments, module, spans)?)?;
     let emitted = derived.admitted(scalar)?;
     let tokens = &emitted.tokens;
     let type_name = Ident::new(&emitted.type_name, Span::call_site());

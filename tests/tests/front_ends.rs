@@ -6,7 +6,7 @@ use std::path::Path;
 use pebo_gen::analysis::Outcome;
 use pebo_gen::emit::{Emitted, Scalar};
 use pebo_gen::model::Model;
-use pebo_gen::model::rust::Places;
+use pebo_gen::model::rust::TokenSpans;
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Ask, Builder, Derived, Standing, answer};
 use pebo_runtime::nalgebra::SVector;
@@ -45,7 +45,7 @@ fn from_rust(text: &str, scalar: Scalar) -> Emitted {
         syn::Meta::List(list) => list.tokens.clone(),
         _ => proc_macro2::TokenStream::new(),
     };
-    let model = Model::read_rust(arguments, &module, &mut Places::new()).expect("a model");
+    let model = Model::read_rust(arguments, &module, &mut TokenSpans::new()).expect("a model");
     Derived::of(model).and_then(|derived| derived.admitted(scalar)).expect("accepted")
 }
 
@@ -77,7 +77,7 @@ fn the_class_that_is_asked_for_is_read() {
     let asked = |class: &str| {
         let module: syn::ItemMod = syn::parse_str(text).expect("a module");
         let arguments = format!("class = \"{class}\", assume(k > 0)").parse().expect("tokens");
-        Model::read_rust(arguments, &module, &mut Places::new())
+        Model::read_rust(arguments, &module, &mut TokenSpans::new())
     };
     assert_eq!(Derived::of(asked("gpebo").expect("a model")).expect("a plant").derivation.outcome, Outcome::Accepted);
     assert_eq!(Derived::of(asked("pebo").expect("a model")).expect("a plant").derivation.outcome, Outcome::Rejected);

@@ -5,7 +5,7 @@
 use pebo_cas::Expr;
 use pebo_cas::domain::zero::{Answer, decide};
 use pebo_gen::analysis::{Outcome, Verdict};
-use pebo_gen::model::formula::{Estimates, Places, parse_formula};
+use pebo_gen::model::formula::{Estimates, SpanMap, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Derived, derive};
@@ -21,7 +21,7 @@ fn derived(text: &str) -> Derived {
 /// A formula over the names of a derivation: states, outputs, inputs, parameters, chi and theta.
 fn expr(derived: &Derived, text: &str) -> Expr {
     let arena = &derived.plant.arena;
-    let formula = parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused).expect(text);
+    let formula = parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused).expect(text);
     let mut scope = Scope::new();
     let own: Vec<_> = derived.plant.chi.iter().chain(&derived.plant.theta).collect();
     for (name, _) in formula.names() {

@@ -11,7 +11,7 @@ use crate::report::{SearchReport, search_summary};
 use pebo_design::analysis::Class;
 use pebo_design::model::Model;
 use pebo_design::plant::Plant;
-use pebo_design::search::{self, Found};
+use pebo_design::search::{self, SearchVerdict};
 use pebo_design::source::{Diagnostic, Source};
 
 use super::ask::Ask;
@@ -59,8 +59,8 @@ pub fn solve(source: &Source, class: Option<Class>, ask: &Ask) -> Solution {
             return Solution::of_unread(&name, diagnostics, source);
         }
     };
-    let search = search::solve(&plant, class.or(plant.asked));
-    let best = search.candidates.first().filter(|_| search.verdict == Found::Found);
+    let search = search::solve(&plant, class.or(plant.cascade_class));
+    let best = search.candidates.first().filter(|_| search.verdict == SearchVerdict::Found);
     let texts: Vec<Option<String>> =
         search.candidates.iter().map(|candidate| filled(source, &model, &candidate.plant)).collect();
     Solution {

@@ -7,7 +7,7 @@
 mod python;
 
 use pebo_cas::{Expr, Symbol};
-use pebo_design::analysis::{Derivation, Excitation, Motion, RegressionKind};
+use pebo_design::analysis::{Derivation, Excitation, RegressionKind, Trajectories};
 use pebo_design::model::class::Matrix;
 use pebo_design::model::{Class, Entry, Formula, Model};
 use pebo_design::plant::Plant;
@@ -130,7 +130,9 @@ fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
         RegressionKind::Static | RegressionKind::Implicit => Literal::None,
     };
     let kind = match identifiability.kind {
-        Excitation::Excitation if identifiability.motion.as_ref().is_some_and(Motion::is_divided) => "parts",
+        Excitation::Excitation if identifiability.trajectories.as_ref().is_some_and(Trajectories::is_divided) => {
+            "parts"
+        }
         Excitation::Instant => "instant",
         Excitation::Excitation => "excitation",
         Excitation::Never => "never",

@@ -1,4 +1,4 @@
-//! Why nothing was emitted.
+//! Reasons that nothing was emitted.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub enum EmitError {
     /// The derivation is accepted, but lacks this result.
     Missing(&'static str),
     /// A function depends on a symbol that it does not get.
-    Undeclared {
+    UndeclaredSymbol {
         /// The symbol.
         symbol: String,
     },
@@ -33,14 +33,14 @@ pub enum EmitError {
     Inaccurate {
         /// The function.
         function: String,
-        /// Where.
+        /// The point.
         place: String,
-        /// The error, in units of what rounding of the arguments causes.
+        /// The error, in units of the effect of rounding the arguments.
         units: String,
         /// The type of the numbers.
         scalar: &'static str,
     },
-    /// The emitted code does not compute what was derived.
+    /// The emitted code does not compute the derived formulas.
     Differs {
         /// The function.
         function: String,
@@ -56,7 +56,7 @@ impl fmt::Display for EmitError {
         match self {
             Self::NotAccepted => f.write_str("not every claim is proved"),
             Self::Missing(what) => write!(f, "the derivation lacks its {what}"),
-            Self::Undeclared { symbol } => {
+            Self::UndeclaredSymbol { symbol } => {
                 write!(f, "`{symbol}` occurs in a function that does not receive it")
             }
             Self::OutOfRange { number } => {

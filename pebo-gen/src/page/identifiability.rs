@@ -1,7 +1,7 @@
 //! Claim 4: identifiability of the unknowns, its exceptions, and the excitation that it needs.
 
 use crate::report::notes;
-use pebo_design::analysis::{Class, Derivation, Excitation, Gram, Motion, Verdict};
+use pebo_design::analysis::{Class, Derivation, Excitation, Gram, Trajectories, Verdict};
 
 use super::formula::{Setter, Steps};
 use super::html::Html;
@@ -22,7 +22,7 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
                 "One sample of the filtered regression is enough: the columns of the regressor are independent at almost \
                  every point."
             }
-            Excitation::Excitation if derivation.class == Class::Gpebo && result.motion.as_ref().is_some_and(at_rest) => {
+            Excitation::Excitation if derivation.class == Class::Gpebo && result.trajectories.as_ref().is_some_and(at_rest) => {
                 "No single sample is enough, but samples at several times are, also while the plant rests: Ψ changes between \
                  them."
             }
@@ -42,8 +42,8 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
 }
 
 /// No signal of the plant has to move.
-fn at_rest(motion: &Motion) -> bool {
-    motion.at_rest && !motion.is_divided()
+fn at_rest(trajectories: &Trajectories) -> bool {
+    trajectories.at_rest && !trajectories.is_divided()
 }
 
 /// `Phi_1' Phi_1`, whose determinant vanishes where the unknowns are not identifiable.

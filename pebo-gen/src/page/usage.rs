@@ -15,7 +15,7 @@ pub(super) fn sections(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'
             derivation.conditions.iter().map(|(expr, relation)| setter.compared(*expr, *relation)).collect();
         match (derivation.outcome, conditions.is_empty()) {
             (Outcome::Accepted, true) => {
-                html.paragraph(if derivation.asked_of_estimates(plant).is_empty() {
+                html.paragraph(if derivation.conditions_on_estimates(plant).is_empty() {
                     "None: what the formulas ask to have values follows from the assumptions."
                 } else {
                     "None on the plant: what the formulas ask to have values follows from the assumptions. What estimates \

@@ -7,8 +7,8 @@ use super::growth::Growth;
 use super::{conditions, expansion, printed};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{
-    Blind, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome, Regression,
-    Witness,
+    BlindTrajectory, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome,
+    Regression, Witness,
 };
 use pebo_design::plant::Plant;
 use pebo_design::source::{Diagnostic, Located, Source};
@@ -290,7 +290,7 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> LeftInverseReport {
             .map(|r| r.modulo.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect())
             .unwrap_or_default(),
         origin: result.map(|r| r.origin.word()),
-        asks: conditions(arena, &derivation.asked_of_estimates(plant)),
+        asks: conditions(arena, &derivation.conditions_on_estimates(plant)),
         partial: result.is_some_and(|r| r.x.len() < plant.x.len()),
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
     }
@@ -312,10 +312,10 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
     }
 }
 
-fn blind(plant: &Plant, blind: &Blind) -> BlindReport {
+fn blind(plant: &Plant, blind: &BlindTrajectory) -> BlindReport {
     BlindReport {
-        place: blind.place(plant),
-        seen: printed(&plant.arena, &blind.seen),
+        place: blind.condition(plant),
+        seen: printed(&plant.arena, &blind.identifiable),
         hidden: matrix(&plant.arena, &blind.hidden),
     }
 }
@@ -331,12 +331,12 @@ fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> Identifiabi
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
         by_itself: result.and_then(|r| match r.kind {
             Excitation::Instant => Some(true),
-            Excitation::Excitation => r.motion.as_ref().and_then(|motion| motion.by_itself),
+            Excitation::Excitation => r.trajectories.as_ref().and_then(|trajectories| trajectories.by_itself),
             Excitation::Never => None,
         }),
         blind: result
-            .and_then(|r| r.motion.as_ref())
-            .map(|motion| motion.blind.iter().map(|blind| self::blind(plant, blind)).collect())
+            .and_then(|r| r.trajectories.as_ref())
+            .map(|trajectories| trajectories.blind.iter().map(|blind| self::blind(plant, blind)).collect())
             .unwrap_or_default(),
         gram: result.and_then(|r| r.gram.as_ref()).map(|gram| GramReport {
             matrix: matrix(arena, &gram.matrix),

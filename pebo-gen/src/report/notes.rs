@@ -1,7 +1,7 @@
 //! Notes on a claim beside its formulas, a sentence each: the same in text and on a page.
 
 use pebo_design::analysis::{
-    Derivation, Excitation, Gram, Motion, Outcome, Positive, Regression, RegressionKind, Verdict,
+    Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, Verdict,
 };
 use pebo_design::plant::{Plant, RelationForm};
 use pebo_design::source::{counted, listed};
@@ -31,7 +31,7 @@ pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String
         lines
             .push(format!("a partial observer, which does not recover {}", listed(missing.iter().map(String::as_str))));
     }
-    let asked = super::conditions(arena, &derivation.asked_of_estimates(plant));
+    let asked = super::conditions(arena, &derivation.conditions_on_estimates(plant));
     if !asked.is_empty() {
         let asked = listed(asked.iter().map(String::as_str));
         lines.push(format!("needs estimates with {asked}: `step` refuses a sample whose estimate is not finite"));
@@ -66,7 +66,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
     let mut lines = vec![match result.kind {
         Excitation::Instant => format!("{}: {regressor} has full column rank", result.kind.word()),
-        Excitation::Excitation if result.motion.as_ref().is_some_and(Motion::is_divided) => {
+        Excitation::Excitation if result.trajectories.as_ref().is_some_and(Trajectories::is_divided) => {
             format!("over time: {regressor} has full column rank over the parts of the domain together")
         }
         Excitation::Excitation => format!("over time: {regressor} and its derivatives have full column rank"),
@@ -81,7 +81,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     if result.kind == Excitation::Instant && !result.everywhere_else {
         lines.push("this holds at almost every point; the points where the rank drops were not all found".to_owned());
     }
-    lines.extend(result.motion.iter().flat_map(|motion| motion.lines(plant)));
+    lines.extend(result.trajectories.iter().flat_map(|trajectories| trajectories.lines(plant)));
     lines
 }
 

@@ -80,7 +80,7 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         Fundamental::Grows => {
             &["grows without bound: it amplifies every error of theta until numbers overflow", remedy]
         }
-        Fundamental::NotShown => &[
+        Fundamental::Undecided => &[
             "was not shown to stay bounded",
             "if it grows, it amplifies errors of theta; if it decays, later disturbances of z are not corrected",
             remedy,

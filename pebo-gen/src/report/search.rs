@@ -85,7 +85,7 @@ impl SearchReport {
             bound_affine: search.affine.as_ref().map(|found| bound(&plant.arena, found)),
             bound_generalised: search.generalised.as_ref().map(|found| bound(&plant.arena, found)),
             not_excluded: search.open(),
-            tried: search.tried.iter().map(pebo_design::search::Tried::sentence).collect(),
+            tried: search.tried.iter().map(pebo_design::search::Attempt::sentence).collect(),
             diagnostics: Vec::new(),
         }
     }
@@ -95,7 +95,7 @@ impl SearchReport {
         Self {
             schema: 1,
             model: name.to_owned(),
-            verdict: pebo_design::search::Found::Undecided.word(),
+            verdict: pebo_design::search::SearchVerdict::Undecided.word(),
             candidates: Vec::new(),
             assumed: None,
             bound: None,

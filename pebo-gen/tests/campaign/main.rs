@@ -20,7 +20,7 @@ use pebo_cas::Arena;
 use pebo_cas::Domain;
 use pebo_cas::Relation;
 use pebo_cas::domain::zero::{Answer, decide};
-use pebo_gen::model::formula::{Estimates, Formula, Places, parse_formula};
+use pebo_gen::model::formula::{Estimates, Formula, SpanMap, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
 use draw::Draw;
@@ -61,7 +61,7 @@ struct Tally {
 }
 
 fn parse(text: &str) -> Formula {
-    parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused)
+    parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused)
         .unwrap_or_else(|_| panic!("does not parse: {text}"))
 }
 

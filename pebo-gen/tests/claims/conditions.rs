@@ -102,7 +102,10 @@ fn values_of_parameters_that_were_not_worked_out_are_no_conditions() {
     assert_eq!(plant.derivation.outcome, Outcome::Accepted);
     let identifiability = plant.derivation.identifiability.result.as_ref().expect("an answer");
     assert!(identifiability.constants.is_empty() && plant.derivation.conditions.is_empty());
-    assert!(!identifiability.motion.as_ref().expect("motions").parameters, "it is said that they were not worked out");
+    assert!(
+        !identifiability.trajectories.as_ref().expect("motions").parameters,
+        "it is said that they were not worked out"
+    );
 }
 
 /// Three angular momenta of a spherical pendulum for two states: no two of them give both states everywhere, all three

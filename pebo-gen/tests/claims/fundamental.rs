@@ -21,7 +21,7 @@ const MATRICES: &[(&str, &str, Fundamental)] = &[
     ("0, 1, 0; 0, 0, 1; -1, -2, -1", "all roots to the left", Fundamental::Bounded { fades: true }),
     ("0, 1, 0; 0, 0, 1; -3, -2, -1", "a pair to the right", Fundamental::Grows),
     ("-1, -8, 0; 0, -1, 8; 8, 0, -1", "a cycle one way round", Fundamental::Grows),
-    ("m, -2*k, 0; m, -m, 0; 0, 0, 0", "signs say nothing", Fundamental::NotShown),
+    ("m, -2*k, 0; m, -m, 0; 0, 0, 0", "signs say nothing", Fundamental::Undecided),
     ("1, -2, 0; 1, -1, 0; 0, 0, 0", "an oscillation", Fundamental::Bounded { fades: false }),
     ("0, 1, 0; k, 0, 0; 0, 0, -m", "a saddle", Fundamental::Grows),
     // Blocks that feed others.
@@ -29,13 +29,13 @@ const MATRICES: &[(&str, &str, Fundamental)] = &[
     ("0, 0, 0; 0, -k, 0; 1, m, 0", "integrates a constant", Fundamental::Grows),
     ("0, k, 0; 0, -m, 0; 0, 0, 0", "integrates what dies out", Fundamental::Bounded { fades: true }),
     ("0, k, 0; 0, 0, 0; 0, 0, -m", "a double integrator", Fundamental::Grows),
-    ("-k, v, 0; 0, 0, 0; 0, 0, 0", "fed through a signal", Fundamental::NotShown),
+    ("-k, v, 0; 0, 0, 0; 0, 0, 0", "fed through a signal", Fundamental::Undecided),
     ("-v^2, 1, 0; 0, -k, 0; 0, 0, -k", "semidefinite, fed by what dies out", Fundamental::Bounded { fades: true }),
-    ("-v^2, 1, 0; 0, 0, 0; 0, 0, 0", "semidefinite, fed by a constant", Fundamental::NotShown),
+    ("-v^2, 1, 0; 0, 0, 0; 0, 0, 0", "semidefinite, fed by a constant", Fundamental::Undecided),
     // The trace.
     ("k, v, u; u, 0, v; p, v, 0", "a positive trace", Fundamental::Grows),
-    ("v, 0, 0; 0, 0, 0; 0, 0, 0", "a signal of any sign", Fundamental::NotShown),
-    ("v^2, 0, 0; 0, 0, 0; 0, 0, 0", "a signal that may vanish", Fundamental::NotShown),
+    ("v, 0, 0; 0, 0, 0; 0, 0, 0", "a signal of any sign", Fundamental::Undecided),
+    ("v^2, 0, 0; 0, 0, 0; 0, 0, 0", "a signal that may vanish", Fundamental::Undecided),
 ];
 
 #[test]

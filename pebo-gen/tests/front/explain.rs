@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use pebo_gen::model::Model;
-use pebo_gen::model::rust::Places;
+use pebo_gen::model::rust::TokenSpans;
 use pebo_gen::source::Code;
 use proc_macro2::TokenStream;
 
@@ -28,7 +28,7 @@ fn answer(example: &str) -> String {
     }
     if example.starts_with("#[pebo_model]") {
         let module: syn::ItemMod = syn::parse_str(example).expect("a module");
-        let refused = Model::read_rust(TokenStream::new(), &module, &mut Places::new()).expect_err("a mistake");
+        let refused = Model::read_rust(TokenStream::new(), &module, &mut TokenSpans::new()).expect_err("a mistake");
         return refused.iter().map(|diagnostic| format!("[{}]", diagnostic.code.name())).collect::<Vec<_>>().join("\n");
     }
     std::fs::write(folder.path().join("model.yaml"), example).expect("a file");

@@ -2,7 +2,7 @@
 //! finds.
 
 use pebo_gen::analysis::Class;
-use pebo_gen::search::{BoundClass, Found, Search};
+use pebo_gen::search::{BoundClass, Search, SearchVerdict};
 
 use super::{search, written};
 
@@ -200,7 +200,7 @@ const CASES: &[Case] = &[
 /// The class of the transform that was found, every claim being proved.
 fn class(lines: &str, found: &Search) -> Class {
     let best = found.candidates.first().expect("a candidate");
-    assert!(found.verdict == Found::Found && best.is_full(), "{lines}");
+    assert!(found.verdict == SearchVerdict::Found && best.is_full(), "{lines}");
     // A phi beside matrices is refused.
     if lines.contains("mechanical:") { best.derivation.class } else { written(lines, found).0 }
 }
@@ -217,7 +217,7 @@ fn what_is_true_of_plants_from_the_literature_is_said() {
                 assert_eq!(class(lines, &found), Class::Gpebo, "{from}: {formulas:?}");
                 let plain = search(lines, Some(Class::Pebo)).1;
                 match plain.verdict {
-                    Found::Found => assert!(!plain.candidates[0].is_linear(), "{from}"),
+                    SearchVerdict::Found => assert!(!plain.candidates[0].is_linear(), "{from}"),
                     _ => assert!(plain.bound.expect("a bound").excludes(), "{from}"),
                 }
             }
@@ -225,10 +225,10 @@ fn what_is_true_of_plants_from_the_literature_is_said() {
             Truth::None => {
                 let bound = found.bound.expect("a bound");
                 assert!(bound.class == BoundClass::Smooth && bound.excludes(), "{from}");
-                assert_eq!(found.verdict, Found::None, "{from}");
+                assert_eq!(found.verdict, SearchVerdict::None, "{from}");
             }
             Truth::Open => {
-                assert_eq!(found.verdict, Found::Undecided, "{from}");
+                assert_eq!(found.verdict, SearchVerdict::Undecided, "{from}");
                 assert!(formulas.is_some(), "{from}");
             }
         }

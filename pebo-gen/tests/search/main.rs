@@ -9,7 +9,7 @@ mod refusals;
 use pebo_gen::analysis::{Class, Outcome};
 use pebo_gen::model::Model;
 use pebo_gen::plant::Plant;
-use pebo_gen::search::{Found, Search, solve};
+use pebo_gen::search::{Search, SearchVerdict, solve};
 use pebo_gen::source::Source;
 
 /// The plant of these lines, and the result of a search for its transform.
@@ -25,7 +25,7 @@ fn search(lines: &str, class: Option<Class>) -> (Plant, Search) {
 /// transform of an author.
 fn written(lines: &str, search: &Search) -> (Class, usize) {
     let best = search.candidates.first().expect("a candidate");
-    assert_eq!(search.verdict, Found::Found, "{lines}");
+    assert_eq!(search.verdict, SearchVerdict::Found, "{lines}");
     let phi: Vec<String> = best.formulas().iter().map(|formula| format!("\"{formula}\"")).collect();
     let text = format!("model: m\n{lines}\nphi: [{}]\n", phi.join(", "));
     let derived = pebo_gen::derive(&Source::new("m.yaml", text.as_str()).expect("a text"));

@@ -1,7 +1,7 @@
 //! Plants from the literature without their transform.
 
 use pebo_gen::analysis::Class;
-use pebo_gen::search::Found;
+use pebo_gen::search::SearchVerdict;
 use pebo_gen::source::Source;
 use pebo_gen::{Ask, solve};
 
@@ -184,7 +184,7 @@ fn logarithms_of_polynomials_that_stay_zero_are_found() {
         ),
     ] {
         let (_, found) = search(lines, Some(Class::Pebo));
-        let tried: Vec<String> = found.tried.iter().map(pebo_gen::search::Tried::sentence).collect();
+        let tried: Vec<String> = found.tried.iter().map(pebo_gen::search::Attempt::sentence).collect();
         let phis: Vec<Vec<String>> = found.candidates.iter().map(pebo_gen::search::Candidate::formulas).collect();
         assert!(phis.contains(&vec![phi.to_owned()]), "{phis:?}: {}", tried.join("\n"));
     }
@@ -194,7 +194,7 @@ fn logarithms_of_polynomials_that_stay_zero_are_found() {
 fn plants_have_their_transform_found_and_proved() {
     for Case { from, lines, class, most } in CASES {
         let (_, found) = search(lines, None);
-        let tried: Vec<String> = found.tried.iter().map(pebo_gen::search::Tried::sentence).collect();
+        let tried: Vec<String> = found.tried.iter().map(pebo_gen::search::Attempt::sentence).collect();
         assert!(!found.candidates.is_empty(), "{from}: {}", tried.join("\n"));
         let (got, components) = written(lines, &found);
         assert!(components <= *most, "{from}: {:?}", found.candidates[0].formulas());
@@ -251,7 +251,7 @@ fn coils_have_their_fluxes_where_nothing_better_is_found() {
                  assume: [L > 0, m > 0, n > 0]\nangles: {q: 2*pi/n}\nelectromechanical:\n  L: [[L, 0], [0, L]]\n  \
                  mu: [m*cos(n*q), m*sin(n*q)]\n  R: [R, R]\n  speed: omega";
     let (_, found) = search(lines, None);
-    assert_eq!(found.verdict, Found::Found);
+    assert_eq!(found.verdict, SearchVerdict::Found);
     assert_eq!(found.candidates[0].formulas(), ["m*cos(n*q) + L*i1", "m*sin(n*q) + L*i2"]);
     // There is nothing to be written into the model.
     let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");

@@ -1,7 +1,7 @@
 //! Searches without a transform, or without one that is found.
 
 use pebo_gen::analysis::Class;
-use pebo_gen::search::{BoundClass, Found};
+use pebo_gen::search::{BoundClass, SearchVerdict};
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Ask, Standing, answer, solve};
 
@@ -16,7 +16,7 @@ const ARM: &str = "parameters: [c1, c2, c3]\nx: [p1, p2]\ny: [q1, q2]\nu: [u1, u
 #[test]
 fn a_two_link_arm_has_no_transform_and_a_certificate_says_so() {
     let (plant, found) = search(ARM, None);
-    assert_eq!(found.verdict, Found::None);
+    assert_eq!(found.verdict, SearchVerdict::None);
     let bound = found.bound.expect("a bound");
     assert_eq!((bound.states, bound.rank, bound.class, bound.proved), (2, 1, BoundClass::Smooth, true));
     assert!(bound.sentence(&plant.arena).ends_with("proved"));
@@ -43,7 +43,7 @@ fn bounds_are_those_of_the_transforms_that_there_are() {
         assert_eq!((bound.states, bound.rank, bound.class, bound.proved), (states, rank, class, true), "{lines}");
         assert_eq!(bound.relations.len(), states - rank, "{lines}");
         // It excludes no other affine transforms: on x > 0 the logarithms of x1 and x2 are one.
-        let expected = if class == BoundClass::Smooth { Found::None } else { Found::Undecided };
+        let expected = if class == BoundClass::Smooth { SearchVerdict::None } else { SearchVerdict::Undecided };
         assert_eq!(found.verdict, expected, "{lines}");
     }
 }
@@ -59,10 +59,10 @@ fn nothing_is_said_of_smooth_transforms_without_inputs() {
 fn a_function_of_the_states_that_jumps_is_no_component() {
     // p, |p| and sign(p) have affine rates but where p passes zero: there theta would jump with sign(p).
     let (_, found) = search("x: [p]\ny: [q]\nu: [f]\nf_x: {p: \"f*min(p, 2*p) + q\"}\nf_y: {q: p}", None);
-    assert_eq!(found.verdict, Found::Undecided);
+    assert_eq!(found.verdict, SearchVerdict::Undecided);
     let (_, found) =
         search("x: [p]\ny: [q]\nu: [f]\nassume: [p > 0]\nf_x: {p: \"f*min(p, 2*p) + q\"}\nf_y: {q: p}", None);
-    assert_eq!(found.verdict, Found::Found);
+    assert_eq!(found.verdict, SearchVerdict::Found);
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn a_transform_whose_domain_is_not_shown_is_not_found() {
         found.candidates.iter().any(|c| c.formulas().iter().any(|formula| formula.contains("log(x")))
     };
     let (_, open) = search(lines, Some(Class::Pebo));
-    assert!(open.verdict == Found::Undecided && !logarithms(&open));
+    assert!(open.verdict == SearchVerdict::Undecided && !logarithms(&open));
     let (_, signed) = search(&format!("{lines}\nassume: [x1 > 0, x2 > 0, a > 0, b > 0]"), Some(Class::Pebo));
     assert!(logarithms(&signed));
 }
@@ -82,11 +82,11 @@ fn a_transform_whose_domain_is_not_shown_is_not_found() {
 fn a_sign_that_would_do_is_named() {
     let lines = "parameters: [k]\nx: [v]\ny: [q]\nu: [F]\nf_x: {v: (F - k*q)/v - k*v}\nf_y: {q: v^2}";
     let (_, found) = search(lines, None);
-    assert_eq!(found.verdict, Found::Undecided);
+    assert_eq!(found.verdict, SearchVerdict::Undecided);
     let (candidate, signs) = found.assumed.expect("an assumption");
     assert_eq!((signs.len(), candidate.plant.phi.len()), (1, 1));
     let (_, found) = search(&format!("{lines}\nassume: [v > 0]"), None);
-    assert_eq!(found.verdict, Found::Found);
+    assert_eq!(found.verdict, SearchVerdict::Found);
 }
 
 fn answered(text: &str) -> pebo_gen::Answer {
@@ -171,7 +171,7 @@ fn a_refused_frame_is_told_how_many_killing_fields_there_are() {
     assert!(help.starts_with("M has just 1 Killing field, and T needs 2"), "{help}");
     assert!(diagnostic.notes.iter().any(|note| note.contains("no smooth phi")), "{:?}", diagnostic.notes);
     let (_, found) = search(lines, Some(Class::Pebo));
-    assert_eq!(found.verdict, Found::None);
+    assert_eq!(found.verdict, SearchVerdict::None);
     assert_eq!(found.affine.and_then(|affine| affine.transforms()), Some(1));
 }
 
@@ -233,6 +233,6 @@ fn an_unmeasured_signal_is_no_component() {
         "x: [b, p]\ny: [q]\nu: [v]\nw: [d]\nf_x: {b: 0, p: d + b*v}\nf_y: {q: p}",
     ] {
         let (_, found) = search(lines, None);
-        assert_ne!(found.verdict, Found::Found, "{lines}");
+        assert_ne!(found.verdict, SearchVerdict::Found, "{lines}");
     }
 }

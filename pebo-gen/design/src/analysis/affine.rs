@@ -1,5 +1,5 @@
-//! Formulas as affine combinations of the transform, `A(y, u) + B(y, u) phi`: the question behind the generalised cascade,
-//! the linear regression and the use of identities.
+//! Formulas as affine combinations of the transform, `A(y, u) + B(y, u) phi`. The generalised cascade, the linear
+//! regression and the use of identities depend on them.
 //!
 //! In: a formula. Out: its coefficients, free of x and proved; or points that show that there are none.
 
@@ -13,10 +13,10 @@ use pebo_cas::linear::contrast::{Contrast, contrast};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
-/// The known part, then the factor of each component.
+/// The known term, then the factor of each component.
 pub(super) type Row = Vec<Expr>;
 
-/// An expression as an affine combination of the transform with coefficients free of x, proved: the known part, then
+/// An expression as an affine combination of the transform with coefficients free of x, proved: the known term, then
 /// the factors; none where there is no such combination.
 pub(super) fn of(plant: &Plant, domain: &Domain, expr: Expr) -> Result<Option<Row>, Obstacle> {
     let mut basis = vec![plant.arena.one()];
@@ -41,8 +41,8 @@ fn over(plant: &Plant, domain: &Domain, expr: Expr, basis: &[Expr]) -> Result<Op
     }
 }
 
-/// The places of 1 and of the functions that share unmeasured signals with an expression, or with one another of these. What
-/// the others make together is free of these signals, so that 1 does as well; identities tie signals to one another.
+/// Indices of 1 and of the functions that share unmeasured signals with an expression, or with one another. The other
+/// functions are free of these signals, so that 1 is among them; identities tie signals to one another.
 fn connected(plant: &Plant, expr: Expr, basis: &[Expr]) -> Vec<usize> {
     if !plant.identities.is_empty() {
         return (0..basis.len()).collect();
@@ -67,20 +67,20 @@ fn connected(plant: &Plant, expr: Expr, basis: &[Expr]) -> Vec<usize> {
     }
 }
 
-/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values of
-/// an expression.
+/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values
+/// of an expression.
 pub(super) fn refuted(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Contrast> {
     let mut basis = vec![plant.arena.one()];
     basis.extend(independent(plant, domain));
     contrast(&plant.arena, expr, &basis, &plant.hidden(), domain)
 }
 
-/// The components of the transform that are no combination of 1 and those before them with coefficients free of x, on the
-/// domain: where an output is given by value, one may be a function of y and u.
+/// The components of the transform that are no combination of 1 and earlier components with coefficients free of x, on
+/// the domain: where an output is given by value, one may be a function of y and u.
 fn independent(plant: &Plant, domain: &Domain) -> Vec<Expr> {
     let mut basis = vec![plant.arena.one()];
     for component in plant.transform() {
-        // One that is undecided stays: what it hides is then not refuted.
+        // An undecided component is kept: then nothing that it hides is refuted.
         if !matches!(over(plant, domain, component, &basis), Ok(Some(_))) {
             basis.push(component);
         }

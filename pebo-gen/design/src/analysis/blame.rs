@@ -1,7 +1,7 @@
-//! Which summands of the author's rates a refusal comes from.
+//! Finds the summands of the author's rates that cause a refusal.
 //!
-//! In: the plant and what was refused. Out: places to point at. Nothing here decides a claim: a refusal was proved
-//! before, and without a summand that stands out it points at the whole formula.
+//! In: the plant and the refused expression. Out: spans. Nothing here decides a claim: the refusal was proved before,
+//! and without a distinct summand it points at the whole formula.
 
 use crate::plant::{Formula, Plant};
 use crate::source::Diagnostic;
@@ -10,7 +10,7 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use pebo_cas::forms::tidy::shortest;
 
-/// More places than this show nothing.
+/// More spans than this show nothing.
 const MOST_PLACES: usize = 3;
 
 /// A summand of a rate, as it enters the derivative of a component of the transform.
@@ -55,7 +55,7 @@ pub(super) fn cascade(plant: &Plant, domain: &Domain, index: usize, refusal: Dia
     })
 }
 
-/// The summands of an output's rate of which something holds; the whole rate if it is none or all of them.
+/// The summands of an output's rate that satisfy a predicate; the whole rate if none or all of them do.
 pub(super) fn summands(plant: &Plant, output: usize, holds: impl Fn(Expr) -> bool) -> Vec<Formula> {
     let output = &plant.y[output];
     let terms = plant.terms.get(&output.symbol).map_or(&[][..], Vec::as_slice);

@@ -1,8 +1,8 @@
 //! The conditions under which the formulas have values, less those that the assumptions discharge.
 //!
-//! In: what the plant's formulas ask of their parts, and those that were derived of it. Out: one list of what remains
-//! to be seen to, by factors: the proofs hold wherever these hold. What no list can mend is told apart: that a formula
-//! asks of an extension, which may have any values, or that it asks for a sign which the plant itself does not.
+//! In: the domain conditions of the plant's formulas and of the derived ones. Out: one list of the open conditions, by
+//! factors: the proofs hold wherever these hold. Two kinds cannot be listed and are reported separately: a condition on
+//! an extension, which may have any values, and a sign that the plant itself does not need.
 
 use std::collections::BTreeMap;
 
@@ -14,40 +14,46 @@ use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Relation, Symbol};
 use super::design::{Cascade, LeftInverse, Regression};
 
 /// A comparison with zero.
-pub(super) type Ask = (Expr, Relation);
+pub(super) type DomainCondition = (Expr, Relation);
 
-/// What the proofs rest on besides the assumptions, each once.
+/// The conditions of the proofs besides the assumptions, each once.
 pub(super) struct Conditions {
-    /// What is listed, in the order it was met; a key by which equal conditions are known stands with each.
-    listed: Vec<(Expr, Ask)>,
+    /// The listed conditions, in the order of their discovery, each with a key that is the same for equal ones.
+    listed: Vec<(Expr, DomainCondition)>,
     /// The assumptions, and the signs that are listed.
     known: Domain,
 }
 
 impl Conditions {
-    /// What the plant's own formulas ask.
+    /// The domain conditions of the plant's own formulas.
     pub(super) fn of(plant: &Plant) -> Self {
         let mut conditions = Self { listed: Vec::new(), known: plant.assumed() };
         // Signs first: they may show that something does not vanish.
-        let (signs, others): (Vec<_>, Vec<_>) =
-            plant.conditions.iter().map(|c| (c.expr, c.relation)).partition(|ask| ask.1 != Relation::NonZero);
-        let strict_first = |ask: &&Ask| ask.1 == Relation::Positive;
-        signs.iter().filter(strict_first).for_each(|ask| conditions.list(&plant.arena, *ask));
-        signs.iter().filter(|ask| !strict_first(ask)).for_each(|ask| conditions.list(&plant.arena, *ask));
-        for ask in others {
-            conditions.list(&plant.arena, ask);
+        let (signs, others): (Vec<_>, Vec<_>) = plant
+            .conditions
+            .iter()
+            .map(|c| (c.expr, c.relation))
+            .partition(|condition| condition.1 != Relation::NonZero);
+        let strict_first = |condition: &&DomainCondition| condition.1 == Relation::Positive;
+        signs.iter().filter(strict_first).for_each(|condition| conditions.list(&plant.arena, *condition));
+        signs
+            .iter()
+            .filter(|condition| !strict_first(condition))
+            .for_each(|condition| conditions.list(&plant.arena, *condition));
+        for condition in others {
+            conditions.list(&plant.arena, condition);
         }
         conditions
     }
 
-    /// Lists what the domain does not show: of what must not vanish, each factor. Of a magnitude or a square, which are never
-    /// negative, it is asked only that it does not vanish.
-    pub(super) fn list(&mut self, arena: &Arena, ask: Ask) {
-        let only_zero = ask.1 == Relation::Positive && is_magnitude(arena, ask.0);
-        let relation = if only_zero { Relation::NonZero } else { ask.1 };
+    /// Lists a condition that the domain does not imply: of an expression that must not vanish, each factor. An
+    /// absolute value or a square is never negative; its condition is that it does not vanish.
+    pub(super) fn list(&mut self, arena: &Arena, condition: DomainCondition) {
+        let only_zero = condition.1 == Relation::Positive && is_absolute_value(arena, condition.0);
+        let relation = if only_zero { Relation::NonZero } else { condition.1 };
         let parts = match relation {
-            Relation::NonZero => factors(arena, &self.known, ask.0),
-            _ => vec![(ask.0, ask.0)],
+            Relation::NonZero => factors(arena, &self.known, condition.0),
+            _ => vec![(condition.0, condition.0)],
         };
         for (key, part) in parts {
             let known = self.listed.iter().any(|(other, (_, listed))| *other == key && *listed == relation);
@@ -57,20 +63,20 @@ impl Conditions {
             }
         }
         if only_zero {
-            self.known.facts.assume(ask.0, ask.1);
+            self.known.facts.assume(condition.0, condition.1);
         }
     }
 
-    /// The assumptions together with what is listed.
+    /// The assumptions with the listed conditions.
     pub(super) fn domain(&self) -> &Domain {
         &self.known
     }
 
-    /// The list: of what is at least zero and must not be zero, that it is positive.
-    pub(super) fn listed(self) -> Vec<Ask> {
+    /// The list: an expression that is nonnegative and nonzero is listed as positive.
+    pub(super) fn listed(self) -> Vec<DomainCondition> {
         let has =
             |key: Expr, wanted: Relation| self.listed.iter().any(|(k, (_, relation))| (*k, *relation) == (key, wanted));
-        let merged = |(key, (part, relation)): &(Expr, Ask)| match relation {
+        let merged = |(key, (part, relation)): &(Expr, DomainCondition)| match relation {
             Relation::NonZero if has(*key, Relation::NonNegative) => None,
             Relation::NonNegative if has(*key, Relation::NonZero) => Some((*part, Relation::Positive)),
             _ => Some((*part, *relation)),
@@ -78,49 +84,56 @@ impl Conditions {
         self.listed.iter().filter_map(merged).collect()
     }
 
-    /// What the formulas of the cascade ask.
-    pub(super) fn ask_cascade(&mut self, plant: &Plant, cascade: &Cascade) -> Option<Ask> {
+    /// Lists the domain conditions of the cascade's formulas.
+    pub(super) fn list_cascade(&mut self, plant: &Plant, cascade: &Cascade) -> Option<DomainCondition> {
         let formulas: Vec<Expr> = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()).copied().collect();
-        self.ask(plant, &formulas, &BTreeMap::new())
+        self.list_formulas(plant, &formulas, &BTreeMap::new())
     }
 
-    /// What the left inverse asks of z = phi(x, y); estimates of z may lie elsewhere.
-    pub(super) fn ask_left_inverse(&mut self, plant: &Plant, inverse: &LeftInverse) -> Option<Ask> {
+    /// Lists the domain conditions of the left inverse at z = phi(x, y); estimates of z may lie elsewhere.
+    pub(super) fn list_left_inverse(&mut self, plant: &Plant, inverse: &LeftInverse) -> Option<DomainCondition> {
         let transform = plant.z.iter().copied().zip(plant.transform()).collect();
         let formulas: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
-        self.ask(plant, &formulas, &transform)
+        self.list_formulas(plant, &formulas, &transform)
     }
 
-    /// What the regression asks, for all values of the extension, and its way back to theta of the functions of theta.
-    pub(super) fn ask_regression(&mut self, plant: &Plant, regression: &Regression) -> Option<Ask> {
+    /// Lists the domain conditions of the regression, for all values of the extension, and of its way back to theta
+    /// from the functions of theta.
+    pub(super) fn list_regression(&mut self, plant: &Plant, regression: &Regression) -> Option<DomainCondition> {
         let rows = [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten();
         let formulas = rows.chain(&regression.phi_0).chain(&regression.primitive_0).chain(&regression.eta).copied();
         let back = regression.eta_symbols.iter().copied().zip(regression.eta.iter().copied()).collect();
         let formulas: Vec<Expr> = formulas.collect();
-        self.ask(plant, &formulas, &BTreeMap::new()).or_else(|| self.ask(plant, &regression.theta, &back))
+        self.list_formulas(plant, &formulas, &BTreeMap::new())
+            .or_else(|| self.list_formulas(plant, &regression.theta, &back))
     }
 
-    /// Lists what the formulas ask at these values; the first ask that cannot be listed is handed back.
+    /// Lists the domain conditions of the formulas at these values; returns the first condition that cannot be listed.
     ///
-    /// Read off the formulas as they stand: what they are at the values may simplify.
-    fn ask(&mut self, plant: &Plant, formulas: &[Expr], values: &BTreeMap<Symbol, Expr>) -> Option<Ask> {
+    /// The conditions are read off the formulas as written: at the values they may simplify.
+    fn list_formulas(
+        &mut self,
+        plant: &Plant,
+        formulas: &[Expr],
+        values: &BTreeMap<Symbol, Expr>,
+    ) -> Option<DomainCondition> {
         let arena = &plant.arena;
         for (part, relation) in arena.domain_conditions(formulas, Regularity::Defined) {
-            let ask = (arena.substitute(part, values), relation);
-            if self.known.grants(arena, ask) {
+            let condition = (arena.substitute(part, values), relation);
+            if self.known.grants(arena, condition) {
                 continue;
             }
-            let free = arena.symbols_of(&[ask.0]).iter().any(|symbol| plant.is_of_extension(*symbol));
+            let free = arena.symbols_of(&[condition.0]).iter().any(|symbol| plant.is_of_extension(*symbol));
             if free || relation != Relation::NonZero {
-                return Some(ask);
+                return Some(condition);
             }
-            self.list(arena, ask);
+            self.list(arena, condition);
         }
         None
     }
 }
 
-/// The factors of what must not vanish, each with a key that is the same for all that vanish where it does.
+/// The factors of an expression that must not vanish, each with a key that is the same for factors with the same zeros.
 fn factors(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<(Expr, Expr)> {
     let written: Vec<Expr> = match arena.node(expr) {
         Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
@@ -130,20 +143,20 @@ fn factors(arena: &Arena, domain: &Domain, expr: Expr) -> Vec<(Expr, Expr)> {
     written.flat_map(|base| split(arena, domain, base).unwrap_or_else(|_| vec![(base, base)])).collect()
 }
 
-/// Whether it is a product of magnitudes and even powers.
-fn is_magnitude(arena: &Arena, expr: Expr) -> bool {
+/// Tests whether it is a product of absolute values and even powers.
+fn is_absolute_value(arena: &Arena, expr: Expr) -> bool {
     match arena.node(expr) {
         Node::Call(Function::Abs, _) => true,
         Node::Product(product) => {
             let is_even = |exponent: &Rational| exponent.to_i64().is_some_and(|exponent| exponent % 2 == 0);
             product.coefficient.signum() > 0
-                && product.factors.iter().all(|(base, exponent)| is_even(exponent) || is_magnitude(arena, *base))
+                && product.factors.iter().all(|(base, exponent)| is_even(exponent) || is_absolute_value(arena, *base))
         }
         _ => false,
     }
 }
 
-/// What vanishes where the expression does: the argument of a magnitude.
+/// An expression with the same zeros: the argument of an absolute value.
 fn inside(arena: &Arena, expr: Expr) -> Expr {
     match arena.node(expr) {
         Node::Call(Function::Abs, arguments) => inside(arena, arguments[0]),

@@ -1,4 +1,4 @@
-//! The order of the claims: what each builds on.
+//! The claims in the order of their dependence.
 
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
@@ -6,7 +6,7 @@ use pebo_cas::domain::zero::MOST_POINTS;
 use pebo_cas::{Domain, Expr, Relation};
 
 use super::advice::remarks::Remarks;
-use super::conditions::{Ask, Conditions};
+use super::conditions::{Conditions, DomainCondition};
 use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 use super::limited::{ended, limited, unfinished};
@@ -17,9 +17,9 @@ impl Derivation {
     pub fn derive(plant: &Plant) -> Self {
         let domain = plant.domain();
         let mut found: Vec<Diagnostic> = Vec::new();
-        let standing = identities::prove(plant, &domain, &mut found);
-        if standing != Verdict::Proved {
-            return Self::without_claims(standing, found);
+        let verdict = identities::prove(plant, &domain, &mut found);
+        if verdict != Verdict::Proved {
+            return Self::without_claims(verdict, found);
         }
         let mut class = Class::Pebo;
         let mut cascade = limited(plant, "the cascade", &mut found, |found| {
@@ -44,11 +44,13 @@ impl Derivation {
             conditions.list(&plant.arena, (*constant, Relation::NonZero));
         }
         let unmet = [
-            (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.ask_cascade(plant, result))),
-            (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.ask_left_inverse(plant, r))),
-            (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.ask_regression(plant, r))),
+            (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.list_cascade(plant, result))),
+            (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.list_left_inverse(plant, r))),
+            (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.list_regression(plant, r))),
         ];
-        found.extend(unmet.into_iter().filter_map(|(code, what, ask)| Some(without_value(plant, code, what, ask?))));
+        found.extend(
+            unmet.into_iter().filter_map(|(code, what, condition)| Some(without_value(plant, code, what, condition?))),
+        );
         if !is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref()) {
             found.push(nowhere(plant));
             cascade.doubt();
@@ -57,7 +59,7 @@ impl Derivation {
             identifiability.doubt();
         }
         if plant.arena.budget().is_exhausted() {
-            // What was not shown by then may hold.
+            // An undecided claim before this may hold.
             found.truncate(settled);
         }
         if ended(plant, &found) {
@@ -78,15 +80,15 @@ impl Derivation {
         }
     }
 
-    /// What is derived of a plant without a transform: nothing.
+    /// The empty derivation of a plant without a transform.
     pub fn without_transform(diagnostics: Vec<Diagnostic>) -> Self {
         Self::without_claims(Verdict::Undecided, diagnostics)
     }
 
-    /// What is derived where the identities do not stand: nothing.
-    fn without_claims(standing: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
+    /// The empty derivation of a plant whose identities are not proved.
+    fn without_claims(verdict: Verdict, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
-            outcome: outcome(&[standing]),
+            outcome: outcome(&[verdict]),
             class: Class::Pebo,
             cascade: Claim::skipped(),
             left_inverse: Claim::skipped(),
@@ -98,25 +100,25 @@ impl Derivation {
         }
     }
 
-    /// The derivation, if every claim is proved; else what to tell the author.
+    /// The derivation, if every claim is proved; else its diagnostics.
     pub fn admit(&self) -> Result<&Self, &[Diagnostic]> {
         if self.outcome == Outcome::Accepted { Ok(self) } else { Err(&self.diagnostics) }
     }
 }
 
 impl Outcome {
-    /// The verdict on a model of which no plant was made: undecided where all that is said is that something could not
-    /// be worked out.
+    /// The verdict on a model without a plant: undecided if every diagnostic says that something could not be worked
+    /// out.
     pub fn of_unread(diagnostics: &[Diagnostic]) -> Self {
         if diagnostics.iter().all(|diagnostic| diagnostic.code.is_open()) { Self::Undecided } else { Self::Rejected }
     }
 }
 
-/// What a stronger regression settles.
+/// The codes that a stronger regression settles.
 const OPEN: [Code; 2] = [Code::NeverIdentifiable, Code::IdentifiabilityUndecided];
 
-/// What becomes of unknowns that a regression does not identify with all that the plant's equations say besides; none
-/// if that is nothing.
+/// The claims for unknowns that a regression does not identify, by all other equations of the plant; none if there are
+/// no others.
 fn strengthened(
     plant: &Plant,
     domain: &Domain,
@@ -125,29 +127,30 @@ fn strengthened(
     found: &mut Vec<Diagnostic>,
 ) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
     let mut said = Vec::new();
-    let together = regression::together(plant, domain, cascade, inverse, regression, &mut said);
+    let combined = regression::combined(plant, domain, cascade, inverse, regression, &mut said);
     let mut last = None;
     let class = if cascade.lambda.is_some() { Class::Gpebo } else { Class::Pebo };
-    for claim in together.regressions {
+    for claim in combined.regressions {
         let claim = permitted::regression(plant, class, claim, &mut said);
         let Some(more) = claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved) else { continue };
         let mut others = Vec::new();
-        let seen = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
-        let proved = seen.verdict == Verdict::Proved;
-        last = Some((claim, seen, others));
+        let identifiability = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
+        let proved = identifiability.verdict == Verdict::Proved;
+        last = Some((claim, identifiability, others));
         if proved {
             break;
         }
     }
-    if let Some((claim, seen, others)) = last {
-        let said_more = verdict == Verdict::Refuted && (seen.verdict == Verdict::Undecided || together.complete);
-        if seen.verdict == Verdict::Proved || said_more {
+    if let Some((claim, identifiability, others)) = last {
+        let said_more =
+            verdict == Verdict::Refuted && (identifiability.verdict == Verdict::Undecided || combined.complete);
+        if identifiability.verdict == Verdict::Proved || said_more {
             found.retain(|d| !OPEN.contains(&d.code));
             found.extend(said.into_iter().chain(others));
-            return Some((claim, seen));
+            return Some((claim, identifiability));
         }
     }
-    if together.complete || verdict == Verdict::Undecided {
+    if combined.complete || verdict == Verdict::Undecided {
         return None;
     }
     found.retain(|d| !OPEN.contains(&d.code));
@@ -161,15 +164,16 @@ impl<T> Claim<T> {
         Self { verdict: Verdict::Skipped, result: None }
     }
 
-    /// What a proved claim's formulas ask that can be neither shown nor listed: then it is not proved.
-    fn settle(&mut self, ask: impl FnOnce(&T) -> Option<Ask>) -> Option<Ask> {
+    /// Makes a proved claim undecided if a domain condition of its formulas is neither implied nor listed; returns the
+    /// condition.
+    fn settle(&mut self, condition: impl FnOnce(&T) -> Option<DomainCondition>) -> Option<DomainCondition> {
         let result = self.result.as_ref().filter(|_| self.verdict == Verdict::Proved)?;
-        let unmet = ask(result)?;
+        let unmet = condition(result)?;
         self.doubt();
         Some(unmet)
     }
 
-    /// Makes what is proved undecided.
+    /// Makes a proved claim undecided.
     fn doubt(&mut self) {
         if self.verdict == Verdict::Proved {
             self.verdict = Verdict::Undecided;
@@ -187,8 +191,8 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     }
 }
 
-/// The claims on regression and identifiability under a proved cascade: of the first of the forms of the regression that
-/// identifies the unknowns, or of the one that is asked for.
+/// The claims on regression and identifiability under a proved cascade: with the first form of the regression that
+/// identifies the unknowns, or with the form that the author chose.
 fn regressed(
     plant: &Plant,
     domain: &Domain,
@@ -218,11 +222,11 @@ fn regressed(
     {
         given = more;
     }
-    forms::standing(plant, domain, claims, given, found, before)
+    forms::static_form(plant, domain, claims, given, found, before)
 }
 
-/// Outputs that are given by their value stand by it wherever that identifies as much as their rates; else the given.
-/// Of the diagnostics, those from `before` on are of these claims.
+/// The claims with outputs by their values wherever that identifies as much as their rates; else the given. Of the
+/// diagnostics, those from `before` on are of these claims.
 fn by_values(
     plant: &Plant,
     domain: &Domain,
@@ -244,8 +248,7 @@ fn by_values(
     }
 }
 
-/// Where a rate has no usable form, those that are affine in phi may do, or those that are made of functions of theta: else
-/// the given.
+/// The claims without a rate that has no usable form: with rates affine in phi, or functions of theta; else the given.
 fn without_others(
     plant: &Plant,
     domain: &Domain,
@@ -275,7 +278,7 @@ fn without_others(
     given
 }
 
-/// What the outputs' rates do not show, an identity may: then its regression and what that identifies, else the given.
+/// The claims from an identity, where the outputs' rates do not identify the unknowns; else the given.
 fn from_identities(
     plant: &Plant,
     domain: &Domain,
@@ -295,12 +298,12 @@ fn from_identities(
 }
 
 /// Formulas that have no value where the claim is made.
-fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -> Diagnostic {
+fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): DomainCondition) -> Diagnostic {
     let arena = &plant.arena;
-    let ask = format!("{} {}", arena.print(part), relation.sign());
+    let condition = format!("{} {}", arena.print(part), relation.sign());
     let diagnostic =
         Diagnostic::error(code, at_phi(plant), format!("{what} was not shown to have a value throughout the domain"))
-            .label(format!("this needs `{ask}`"));
+            .label(format!("this needs `{condition}`"));
     if arena.symbols_of(&[part]).iter().any(|symbol| plant.is_of_extension(*symbol)) {
         return diagnostic
             .note(
@@ -308,10 +311,10 @@ fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Ask) -
             )
             .help("choose a phi in which the rates of the outputs are polynomials, exponentials, sines and cosines");
     }
-    diagnostic.help(format!("if it holds, write `{ask}` under `assume`"))
+    diagnostic.help(format!("if it holds, write `{condition}` under `assume`"))
 }
 
-/// Whether a point of the domain was found at which all formulas have values together.
+/// Tests whether a point of the domain was found at which all formulas have values.
 fn is_somewhere(plant: &Plant, domain: &Domain, cascade: Option<&Cascade>, regression: Option<&Regression>) -> bool {
     let arena = &plant.arena;
     let mut formulas: Vec<Expr> = plant.transform();

@@ -1,4 +1,4 @@
-//! What was derived of a plant: each claim with its verdict.
+//! The result of the analysis of a plant: each claim with its verdict.
 
 pub use crate::plant::CascadeClass as Class;
 use crate::plant::{Plant, RelationForm};
@@ -16,7 +16,7 @@ pub enum Verdict {
     Proved,
     /// A point exists where it fails.
     Refuted,
-    /// Neither could be shown.
+    /// Neither proved nor refuted.
     Undecided,
     /// Not looked at, because a claim it builds on is not proved.
     Skipped,
@@ -33,44 +33,44 @@ pub enum Outcome {
     Undecided,
 }
 
-/// A claim: its verdict, and what was derived where anything was.
+/// A claim: its verdict and its result, where there is one.
 #[derive(Clone, Debug)]
 pub struct Claim<T> {
     /// The verdict.
     pub verdict: Verdict,
-    /// What was derived.
+    /// The derived result.
     pub result: Option<T>,
 }
 
 /// Claim 1: the transform moves by known signals.
 #[derive(Clone, Debug, Default)]
 pub struct Cascade {
-    /// The known part of z', free of x, a component each.
+    /// The known term of z', free of x, a component each.
     pub h: Vec<Expr>,
     /// The matrix Lambda(y, u) by rows, for the generalised cascade.
     pub lambda: Option<Vec<Vec<Expr>>>,
-    /// What keeps z' from being free of x, a component each; empty where the claim is proved.
+    /// The terms of z' that depend on x, a component each; empty where the claim is proved.
     pub residual: Vec<Expr>,
     /// A point at which a residual is bounded away from zero.
     pub witness: Option<Witness>,
-    /// What becomes of the fundamental matrix of a generalised cascade: no part of the claim.
+    /// The behaviour of the fundamental matrix of a generalised cascade: not part of the claim.
     pub fundamental: Option<Fundamental>,
     /// Beside a generalised cascade, a transform with a plain one: phi with multiples of the outputs added.
     pub mend: Option<Vec<Expr>>,
 }
 
-/// What becomes of `Psi' = Lambda(y, u) Psi`, `Psi(0) = I`, along every trajectory.
+/// The behaviour of `Psi' = Lambda(y, u) Psi`, `Psi(0) = I`, along every trajectory.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Fundamental {
-    /// It stays bounded.
+    /// Bounded.
     Bounded {
-        /// Whether its determinant dies out at a constant rate: directions of theta are then forgotten.
+        /// True if its determinant dies out at a constant rate: directions of theta are then forgotten.
         fades: bool,
     },
     /// It grows without bound.
     Grows,
-    /// Neither was shown.
-    NotShown,
+    /// Undecided.
+    Undecided,
 }
 
 /// A point at which an expression provably is not zero.
@@ -89,13 +89,13 @@ pub struct Witness {
 /// Points of the domain with the same y, u and parameters, and the values that an expression has there.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// The expression as it is shown.
+    /// The expression as printed.
     pub expr: Expr,
-    /// The expression whose values were compared: it may read more than is shown of it.
+    /// The expression whose values were compared: it may read more than the printed one.
     pub read: Expr,
     /// The unmeasured states and signals at each point.
     pub points: Vec<Vec<(Symbol, Expr)>>,
-    /// What all points share.
+    /// The values that all points share.
     pub known: Vec<(Symbol, Expr)>,
     /// Bounds of the expression's value at each point, outward rounded.
     pub values: Vec<(f64, f64)>,
@@ -108,13 +108,13 @@ pub struct LeftInverse {
     pub x: Vec<(Symbol, Expr)>,
     /// Periods of the states that are recovered as angles.
     pub modulo: Vec<(Symbol, Expr)>,
-    /// Whether the author gave it.
+    /// The origin: the author or the generator.
     pub origin: Origin,
     /// A point at which the author's formula fails.
     pub witness: Option<Witness>,
 }
 
-/// Where a left inverse is from.
+/// The origin of a left inverse.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Origin {
     /// The model file gives it.
@@ -123,7 +123,7 @@ pub enum Origin {
     Derived,
 }
 
-/// What the regression's left side is.
+/// The left side of the regression.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum RegressionKind {
     /// y' = `Phi_0` + `Phi_1` eta.
@@ -137,7 +137,7 @@ pub enum RegressionKind {
 /// Claim 3: the unknowns enter linearly.
 #[derive(Clone, Debug)]
 pub struct Regression {
-    /// What stands on the left.
+    /// The left side.
     pub kind: RegressionKind,
     /// Positions in the plant's outputs of the rows, for a dynamic regression.
     pub rows: Vec<usize>,
@@ -155,29 +155,30 @@ pub struct Regression {
     pub theta: Vec<Expr>,
     /// The symbols eta1..
     pub eta_symbols: Vec<Symbol>,
-    /// States that the outputs show only up to multiples of a constant, with that constant, without being declared angles.
+    /// States that the outputs show only up to multiples of a constant, with that constant, without being declared
+    /// angles.
     pub steps: Vec<(Symbol, Expr)>,
     /// The other form of the relation that the regression is made of, if it has one.
     pub alternative: Option<Alternative>,
 }
 
-/// A form of the regression that a model may ask for instead.
+/// An alternative form of the regression that a model may choose.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Alternative {
-    /// Which.
+    /// The form.
     pub form: RelationForm,
-    /// How many unknowns it has.
+    /// The number of its unknowns.
     pub unknowns: usize,
 }
 
 impl Regression {
-    /// Whether the unknowns are theta itself.
+    /// Tests whether the unknowns are theta itself.
     pub fn is_linear(&self, plant: &Plant) -> bool {
         self.eta.len() == plant.theta.len()
             && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
     }
 
-    /// Positions of the equations that tell the estimator nothing: of known rates, in which no unknown stands.
+    /// Indices of the equations without an unknown: of known rates.
     pub fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
         if self.kind == RegressionKind::Static {
             return Vec::new();
@@ -188,7 +189,7 @@ impl Regression {
     }
 
     /// The equations that an observer runs: all of them where each `serves`, else those with an unknown. An equation
-    /// without one serves a gate, which looks at the sample of its output, and the output form, in which the output
+    /// without one serves a gate, which checks the sample of its output, and the output form, in which the output
     /// itself is estimated.
     #[must_use]
     pub fn computed(&self, arena: &Arena, serves: bool) -> Self {
@@ -212,94 +213,94 @@ fn retain<T>(rows: &mut Vec<T>, left_out: &[usize]) {
     rows.retain(|_| row.next().is_none_or(|row| !left_out.contains(&row)));
 }
 
-/// Claim 4: the unknowns can be told apart.
+/// Claim 4: the unknowns are identifiable.
 #[derive(Clone, Debug)]
 pub struct Identifiability {
-    /// How.
+    /// The kind of excitation.
     pub kind: Excitation,
-    /// Where the regressor loses rank, each as a readable condition.
+    /// The conditions under which the regressor loses rank, for a reader.
     pub singular_where: Vec<String>,
-    /// Whether the regressor was shown to have full rank everywhere else.
+    /// True if the regressor provably has full rank everywhere else.
     pub everywhere_else: bool,
-    /// Combinations of parameters without a known sign that must not vanish for the rank to be what it is.
+    /// Combinations of parameters without a known sign whose zeros lower the rank.
     pub constants: Vec<Expr>,
-    /// A direction of eta that no trajectory shows, where there is one.
+    /// A direction of eta that no trajectory makes observable, where there is one.
     pub direction: Option<Vec<Expr>>,
-    /// What has to move, where one moment does not show the unknowns.
-    pub motion: Option<Motion>,
+    /// The motion that the unknowns need, where one instant does not identify them.
+    pub trajectories: Option<Trajectories>,
     /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
     pub gram: Option<Gram>,
 }
 
-/// What has to move for unknowns to be seen that one moment does not show.
+/// The motion that makes unknowns identifiable which one instant does not identify.
 #[derive(Clone, Debug)]
-pub struct Motion {
-    /// Whether no input has to: with all of them constant the rank over time is full on almost every motion. None where
-    /// that was not decided.
+pub struct Trajectories {
+    /// True if no input has to move: with all of them constant the rank over time is full on almost every trajectory.
+    /// None if undecided.
     pub by_itself: Option<bool>,
-    /// Whether nothing has to: with outputs that are constant too it is full.
+    /// True if nothing has to move: the rank is full even with constant outputs.
     pub at_rest: bool,
-    /// Motions on which it is not full.
-    pub blind: Vec<Blind>,
-    /// Whether there are no others, of those with constant inputs.
+    /// Trajectories on which the rank is not full.
+    pub blind: Vec<BlindTrajectory>,
+    /// True if there are no others with constant inputs.
     pub everywhere: bool,
-    /// Whether the combinations of the parameters were worked out at which the rank is full on no motion.
+    /// True if all combinations of the parameters are known at which the rank is full on no trajectory.
     pub parameters: bool,
 }
 
-/// Motions on which the regression does not show all unknowns: proved.
+/// Trajectories on which the regression does not identify all unknowns: proved.
 #[derive(Clone, Debug)]
-pub struct Blind {
-    /// Which motions.
-    pub place: Place,
-    /// What is seen of the unknowns: of z1.. where they are theta, else of eta1..
-    pub seen: Vec<Expr>,
-    /// Directions that are not seen.
+pub struct BlindTrajectory {
+    /// The condition that defines the trajectories.
+    pub condition: TrajectoryCondition,
+    /// The identifiable combinations of the unknowns: of z1.. where they are theta, else of eta1..
+    pub identifiable: Vec<Expr>,
+    /// Unobservable directions.
     pub hidden: Vec<Vec<Expr>>,
 }
 
-/// What holds at all times.
+/// A condition that holds at all times.
 #[derive(Clone, Debug)]
-pub enum Place {
+pub enum TrajectoryCondition {
     /// All inputs and outputs are constant.
-    Rest,
+    Equilibrium,
     /// These inputs are constant.
     Constant(Vec<Symbol>),
     /// The input has this value.
     Value(Symbol, Expr),
     /// All inputs are constant, and the input or parameter has this value.
     Steady(Symbol, Expr),
-    /// This stays zero, where rows with all their derivatives may be of a lower rank: what is seen then was not decided.
-    Unshown(Expr),
-    /// The plant rests and this stays zero: likewise.
-    UnshownAtRest(Expr),
-    /// These keep their signs: the regressor bends where one changes.
-    Part(Vec<(Expr, Side)>),
+    /// This is zero at all times, and rows with all their derivatives may be of a lower rank: undecided.
+    Undecided(Expr),
+    /// At an equilibrium this is zero: likewise.
+    UndecidedAtRest(Expr),
+    /// The cell on which these keep their signs: the regressor is non-smooth where one changes.
+    Cell(Vec<(Expr, Side)>),
     /// These keep their signs, and the other holds.
-    Within(Vec<(Expr, Side)>, Box<Place>),
+    Within(Vec<(Expr, Side)>, Box<TrajectoryCondition>),
 }
 
-/// `Phi_1' Phi_1`: how strongly the unknowns are seen at a point.
+/// `Phi_1' Phi_1`: the strength of the excitation at a point.
 #[derive(Clone, Debug)]
 pub struct Gram {
     /// By rows.
     pub matrix: Vec<Vec<Expr>>,
     /// Its determinant.
     pub determinant: Expr,
-    /// What shows that the determinant is positive throughout the assumed domain, if anything does.
+    /// The proof that the determinant is positive throughout the assumed domain, if there is one.
     pub positive: Option<Positive>,
 }
 
-/// What shows that a determinant is positive.
+/// A proof that a determinant is positive.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Positive {
     /// Its factors have signs by the assumptions.
     Assumed,
-    /// Enclosures on the parts of the closed box that the assumptions bound, at the values of the parameters.
+    /// Enclosures on the cells of the closed box that the assumptions bound, at the values of the parameters.
     Divided,
 }
 
-/// What identifying the unknowns takes.
+/// The excitation that identifies the unknowns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Excitation {
     /// `Phi_1` has full column rank at almost every point.
@@ -311,9 +312,9 @@ pub enum Excitation {
 }
 
 impl Derivation {
-    /// What the way from estimates back to x asks of them to have a value, beside what is assumed of y: an estimate
-    /// of z (or, where the regression has functions of theta, of these) may lie where the true one cannot.
-    pub fn asked_of_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
+    /// The domain conditions of the way from estimates back to x, beside the assumptions on y: an estimate of z (or,
+    /// where the regression has functions of theta, of these) may lie where the true one cannot.
+    pub fn conditions_on_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
         let arena = &plant.arena;
         let (mut formulas, mut estimates) = (Vec::new(), plant.z.clone());
         formulas.extend(self.left_inverse.result.iter().flat_map(|inverse| &inverse.x).map(|(_, formula)| *formula));
@@ -322,15 +323,15 @@ impl Derivation {
             estimates.extend(&regression.eta_symbols);
         }
         let domain = self.domain(plant);
-        let mut asked = arena.domain_conditions(&formulas, Regularity::Defined);
-        asked.retain(|(part, relation)| {
+        let mut conditions = arena.domain_conditions(&formulas, Regularity::Defined);
+        conditions.retain(|(part, relation)| {
             let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
             free && !domain.implies(arena, *part, *relation)
         });
-        asked
+        conditions
     }
 
-    /// Where the proofs hold: the plant's domain, without what the conditions exclude.
+    /// The domain of the proofs: the plant's domain, without the points that the conditions exclude.
     pub fn domain(&self, plant: &Plant) -> Domain {
         let mut domain = plant.domain();
         self.conditions.iter().for_each(|(expr, relation)| domain.facts.assume(*expr, *relation));
@@ -338,12 +339,12 @@ impl Derivation {
     }
 }
 
-/// What was derived of a plant.
+/// The result of the analysis of a plant.
 #[derive(Debug)]
 pub struct Derivation {
     /// The verdict on the model.
     pub outcome: Outcome,
-    /// How the transform moves.
+    /// The class of the cascade.
     pub class: Class,
     /// Claim 1.
     pub cascade: Claim<Cascade>,
@@ -353,11 +354,11 @@ pub struct Derivation {
     pub regression: Claim<Regression>,
     /// Claim 4.
     pub identifiability: Claim<Identifiability>,
-    /// What the proofs rest on besides the assumptions: expressions that must compare so with zero for
-    /// the formulas to have values.
+    /// The conditions of the proofs besides the assumptions: expressions with the comparison with zero that gives the
+    /// formulas values.
     pub conditions: Vec<(Expr, Relation)>,
-    /// What to tell the author.
+    /// The diagnostics for the author.
     pub diagnostics: Vec<Diagnostic>,
-    /// What no claim rests on.
+    /// Remarks on which no claim depends.
     pub remarks: Remarks,
 }

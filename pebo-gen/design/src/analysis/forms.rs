@@ -1,8 +1,8 @@
-//! Which form a relation between the components of the transform takes.
+//! The form of a relation between the components of the transform.
 //!
-//! In: the regression and its identifiability as they were proved of the plant's equations as they stand. Out: the same,
-//! or those of a relation under the derivative, where these are to be preferred; and whatever there is, a regression of the
-//! form that the model asks for, or a refusal.
+//! In: the regression and its identifiability, proved of the plant's equations as given. Out: the same, or those of a
+//! relation under the derivative where these are preferable; in any case a regression of the form that the model
+//! chooses, or a refusal.
 
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
@@ -13,22 +13,22 @@ use super::design::{
 };
 use super::{identifiability, permitted, regression};
 
-/// The two claims in the form to be preferred. Of the diagnostics, those from `before` on are of these claims.
+/// The two claims in the preferable form. Of the diagnostics, those from `before` on are of these claims.
 pub(super) fn preferred(
     plant: &Plant,
     domain: &Domain,
     (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
-    (mut given, seen): (Claim<Regression>, Claim<Identifiability>),
+    (mut given, identifiability): (Claim<Regression>, Claim<Identifiability>),
     found: &mut Vec<Diagnostic>,
     before: usize,
 ) -> (Claim<Regression>, Claim<Identifiability>) {
     let is_static = given.result.as_ref().is_none_or(|result| result.kind == RegressionKind::Static);
-    let asks = plant.asks_for(RelationForm::Differentiated);
-    if plant.arena.budget().is_exhausted() || !(is_static || asks) {
-        return (given, seen);
+    let is_wanted = plant.wants(RelationForm::Differentiated);
+    if plant.arena.budget().is_exhausted() || !(is_static || is_wanted) {
+        return (given, identifiability);
     }
     let Some(mut other) = regression::differentiated(plant, domain, cascade, inverse, &given) else {
-        return if asks { refused(plant, found) } else { (given, seen) };
+        return if is_wanted { refused(plant, found) } else { (given, identifiability) };
     };
     let unknowns = |claim: &Claim<Regression>| claim.result.as_ref().map(|result| result.eta.len());
     let (of_given, of_other) = (unknowns(&given), unknowns(&other));
@@ -39,35 +39,35 @@ pub(super) fn preferred(
     };
     // An author's own identity is used as it is written.
     let wanted = match plant.relation_form {
-        Some(_) => asks,
+        Some(_) => is_wanted,
         None => plant.identities.is_empty() || given.verdict != Verdict::Proved,
     };
     if wanted {
         let mut said = Vec::new();
         offer(&mut other, RelationForm::Static, of_given.filter(|_| is_static));
         match proved(plant, domain, (class, cascade, inverse), other, &mut said) {
-            Some((other, shown)) if asks || !at_once(&seen) || at_once(&shown) => {
+            Some((other, identified)) if is_wanted || !at_once(&identifiability) || at_once(&identified) => {
                 found.truncate(before);
                 found.extend(said);
-                return (other, shown);
+                return (other, identified);
             }
-            _ if asks => return refused(plant, found),
+            _ if is_wanted => return refused(plant, found),
             _ => {}
         }
     } else {
         offer(&mut given, RelationForm::Differentiated, of_other);
     }
-    (given, seen)
+    (given, identifiability)
 }
 
-/// Whether one moment shows all unknowns.
+/// Tests whether one instant identifies all unknowns.
 pub(super) fn at_once(claim: &Claim<Identifiability>) -> bool {
     claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
 }
 
-/// The two claims with a relation as it holds at every instant, where the model asks for that and the given regression has
-/// none. Of the diagnostics, those from `before` on are of these claims.
-pub(super) fn standing(
+/// The two claims with a relation as it holds at every instant, where the model chooses that and the given regression
+/// has none. Of the diagnostics, those from `before` on are of these claims.
+pub(super) fn static_form(
     plant: &Plant,
     domain: &Domain,
     (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
@@ -84,7 +84,7 @@ pub(super) fn standing(
             held.into_iter().any(|(known, factor)| nothing(known) && factor.iter().all(nothing))
         }
     };
-    if !plant.asks_for(RelationForm::Static) || given.0.result.as_ref().is_none_or(stands) {
+    if !plant.wants(RelationForm::Static) || given.0.result.as_ref().is_none_or(stands) {
         return given;
     }
     let mut said = Vec::new();
@@ -97,7 +97,7 @@ pub(super) fn standing(
     both
 }
 
-/// A regression with its identifiability, where both claims are proved, and what is to be said of them.
+/// A regression with its identifiability, where both claims are proved, and its diagnostics.
 pub(super) fn proved(
     plant: &Plant,
     domain: &Domain,
@@ -107,12 +107,12 @@ pub(super) fn proved(
 ) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
     let regression = permitted::regression(plant, class, regression, said);
     let result = regression.result.as_ref().filter(|_| regression.verdict == Verdict::Proved)?;
-    let shown = identifiability::prove(plant, domain, cascade, result, inverse, said);
-    (shown.verdict == Verdict::Proved).then_some((regression, shown))
+    let identified = identifiability::prove(plant, domain, cascade, result, inverse, said);
+    (identified.verdict == Verdict::Proved).then_some((regression, identified))
 }
 
-/// The claims where a form is asked for that there is not.
+/// The claims where the chosen form does not exist.
 fn refused(plant: &Plant, found: &mut Vec<Diagnostic>) -> (Claim<Regression>, Claim<Identifiability>) {
-    found.extend(plant.relation_form.map(|asked| regression::no_such_form(plant, asked)));
+    found.extend(plant.relation_form.map(|wanted| regression::no_such_form(plant, wanted)));
     (Claim { verdict: Verdict::Undecided, result: None }, Claim::skipped())
 }

@@ -1,7 +1,7 @@
-//! The author's identities: whether they can hold, and keep holding along the plant.
+//! The author's identities: consistency, and invariance along the plant.
 //!
-//! In: the plant. Out: the verdict. All other claims are made on the manifold of the identities, so they say nothing if it
-//! has no point, and nothing of the plant if its trajectories leave it.
+//! In: the plant. Out: the verdict. All other claims are made on the manifold of the identities, so they are void if it
+//! has no point, and do not concern the plant if its trajectories leave it.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::design::{Verdict, Witness};
 
-/// Proves or refutes that the identities have a common point, and that the plant stays where they hold.
+/// Proves or refutes that the identities have a common point and are invariant.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Verdict {
     let arena = &plant.arena;
     let Some(first) = plant.identities.first() else { return Verdict::Proved };
@@ -62,7 +62,7 @@ fn derivative(plant: &Plant, domain: &Domain, identity: &Formula) -> Option<Expr
     let rates = plant.rates();
     let unruled = |symbol: &Symbol| {
         let constant = plant.parameters.iter().any(|parameter| parameter.symbol == *symbol);
-        // What the identity does not vary with on its manifold may have any rate.
+        // A signal on which the identity does not depend on its manifold may have any rate.
         !constant
             && !rates.contains_key(symbol)
             && !decide(arena, arena.derivative(identity.expr, *symbol), domain).is_zero()
@@ -71,7 +71,7 @@ fn derivative(plant: &Plant, domain: &Domain, identity: &Formula) -> Option<Expr
     (!symbols.iter().any(unruled)).then(|| arena.directional(identity.expr, &rates))
 }
 
-/// Whether the identity keeps holding. Where it binds a signal without a rate, it says what that rate is.
+/// Decides whether the identity is invariant. Where it binds a signal without a rate, it determines that rate.
 fn kept(plant: &Plant, domain: &Domain, identity: &Formula) -> (Verdict, Option<Diagnostic>) {
     let arena = &plant.arena;
     let Some(rate) = derivative(plant, domain, identity) else { return (Verdict::Proved, None) };
@@ -92,7 +92,7 @@ fn kept(plant: &Plant, domain: &Domain, identity: &Formula) -> (Verdict, Option<
     }
 }
 
-/// An identity that does not keep holding, in the words of what the author wrote: the value of an output is an identity too.
+/// Refuses an identity that is not invariant, in the author's terms: the value of an output is an identity too.
 fn refused(plant: &Plant, identity: &Formula, rate: Expr, witness: &Witness) -> Diagnostic {
     let arena = &plant.arena;
     let by_value = |output: &&Output| output.value.is_some_and(|value| value.span == identity.span);
@@ -140,7 +140,7 @@ mod tests {
     use crate::plant::Plant;
     use crate::source::{Code, Source};
 
-    /// What the help says of a plant that is refused for its one identity, after the message.
+    /// The help of the diagnostic that refuses a plant's one identity, after the message.
     fn said(lines: &str) -> [String; 2] {
         let text = format!("model: m\nx: [a]\ny: [p]\nf_x: {{a: -a}}\nphi: [a]\n{lines}\n");
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();

@@ -1,7 +1,7 @@
-//! A claim within what the command may take.
+//! A claim within the budget of the command.
 //!
-//! What was derived when the budget ended may lack what had not been looked at yet: a condition, another class of
-//! cascade, an output that shows the unknowns. So a claim in whose time it ended is undecided, whatever it came to.
+//! When the budget ends, a derivation may lack a condition, another class of cascade, or an output that identifies the
+//! unknowns. The claim in whose time it ended is therefore undecided, whatever its result.
 
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
@@ -28,7 +28,7 @@ pub(super) fn limited<T>(
     unfinished(plant, phase, found)
 }
 
-/// Whether the budget ended since the last claim was proved or refuted in time.
+/// Tests whether the budget ended since the last claim was proved or refuted in time.
 pub(super) fn ended(plant: &Plant, found: &[Diagnostic]) -> bool {
     plant.arena.budget().is_exhausted() && !is_said(found)
 }

@@ -4,19 +4,20 @@
 //! Plant -> identities -> cascade -> left inverse -> regression -> identifiability -> Derivation
 //! ```
 //!
-//! Holds after: what is called proved was shown by exact algebra, what is called refuted by rational points of the
-//! domain, with the same y, u and parameters and rigorous enclosures, or by an exact null vector; everything else is
-//! undecided and says why. No input and no trajectory identifies the unknowns (`never`) is said where no rate, no
-//! combination of rates, no relation of the transform with the outputs and no identity shows a direction of theta.
+//! Holds after: a proved claim was shown by exact algebra, a refuted one by rational points of the domain, with the
+//! same y, u and parameters and rigorous enclosures, or by an exact null vector; every other claim is undecided and
+//! gives a reason. `never` (no input and no trajectory identifies the unknowns) means that no rate, no combination of
+//! rates, no relation of the transform with the outputs and no identity makes a direction of theta observable.
 //!
-//! The domain D of a model: where its assumptions and identities hold, for all values of the parameters that keep
-//! the signs of those given (one given as 0 is 0, one not given is any), and `f_x`, `f_y` and phi have values, phi also
+//! The domain D of a model: where its assumptions and identities hold, for all values of the parameters that keep the
+//! signs of those given (one given as 0 is 0, one not given is any), and `f_x`, `f_y` and phi have values, phi also
 //! derivatives. Proved: true at every point of D but for those that the listed conditions exclude. Refuted: shown by
 //! points of D. The states of the extension and theta are any reals: only the left inverse, and the way back from
-//! functions of theta, may ask something of an estimate, and say what. Where no point of D is found, nothing is proved.
+//! functions of theta, may have domain conditions on an estimate, and list them. Where no point of D is found, nothing
+//! is proved.
 //!
-//! What formulas ask is read off the one table of operations ([`pebo_cas::graph::conditions`], [`pebo_cas::graph::function`]), and
-//! listed in one place, after all claims (`conditions`).
+//! Domain conditions of formulas are read off the one table of operations ([`pebo_cas::graph::conditions`],
+//! [`pebo_cas::graph::function`]), and listed in one place, after all claims (`conditions`).
 
 mod advice;
 mod affine;
@@ -44,8 +45,9 @@ pub use advice::drift::Drift;
 pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 pub use advice::remarks::Remarks;
 pub use design::{
-    Blind, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability, LeftInverse,
-    Motion, Origin, Outcome, Place, Positive, Regression, RegressionKind, Verdict, Witness,
+    BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability,
+    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Trajectories, TrajectoryCondition, Verdict,
+    Witness,
 };
 pub use parameters::Sign;
 pub use pebo_cas::domain::cells::Side;

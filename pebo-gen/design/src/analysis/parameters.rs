@@ -1,14 +1,14 @@
-//! What the proofs assume of the parameters alone, for whoever gives them other values.
+//! The assumptions of the proofs on the parameters alone, for users who give them other values.
 //!
-//! In: a plant, and the conditions that its derivation lists. Out: comparisons with zero over parameters: a row for each
-//! parameter in their order, then what is assumed of several together and does not follow from these rows.
+//! In: a plant, and the conditions that its derivation lists. Out: comparisons with zero over parameters: a row for
+//! each parameter in their order, then assumptions on several parameters that do not follow from these rows.
 
 use crate::plant::Plant;
 use pebo_cas::{Arena, Domain, Expr, Relation};
 
 use super::Derivation;
 
-/// How a value compares with zero where the proofs hold.
+/// The comparison of a value with zero in the domain of the proofs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Sign {
     /// In any way.
@@ -22,8 +22,8 @@ pub enum Sign {
 }
 
 impl Derivation {
-    /// What must hold of the parameters' values for the proofs to be about them.
-    pub fn asked_of_parameters(&self, plant: &Plant) -> Vec<(Expr, Sign)> {
+    /// The conditions on the parameters' values under which the proofs hold.
+    pub fn conditions_on_parameters(&self, plant: &Plant) -> Vec<(Expr, Sign)> {
         let arena = &plant.arena;
         let constants: Vec<_> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
         let assumed = plant.assumptions.iter().map(|assumption| (assumption.expr, assumption.relation));
@@ -33,7 +33,7 @@ impl Derivation {
             !symbols.is_empty() && symbols.iter().all(|symbol| constants.contains(symbol))
         });
 
-        let mut asked = Vec::new();
+        let mut conditions = Vec::new();
         let mut domain = Domain::default();
         for parameter in &plant.parameters {
             let symbol = arena.of_symbol(parameter.symbol);
@@ -48,15 +48,15 @@ impl Derivation {
                 Sign::Opposite(relation) => domain.facts.assume(arena.neg(symbol), relation),
                 Sign::Any | Sign::Zero => {}
             }
-            asked.push((symbol, sign));
+            conditions.push((symbol, sign));
         }
         for (expr, relation) in facts {
             if !domain.implies(arena, expr, relation) {
                 domain.facts.assume(expr, relation);
-                asked.push((expr, Sign::Is(relation)));
+                conditions.push((expr, Sign::Is(relation)));
             }
         }
-        asked
+        conditions
     }
 }
 

@@ -1,9 +1,8 @@
-//! Linear plants: observability, and why there is no transform where there is none.
+//! Linear plants: observability, and the reason for a missing transform.
 //!
-//! The test of Popov, Belevitch and Hautus asks for full column rank of `[s I - A11; A21]` at every s.
-//! Its kernels over all s are the eigenvectors within the largest subspace of ker A21 that A11 maps into
-//! itself; that subspace is the kernel of `A21, A21 A11, .., A21 A11^(n-1)`, which takes no eigenvalues to
-//! compute, so the answer is exact.
+//! The test of Popov, Belevitch and Hautus requires full column rank of `[s I - A11; A21]` at every s. Its kernels over
+//! all s are the eigenvectors within the largest subspace of ker A21 that A11 maps into itself; that subspace is the
+//! kernel of `A21, A21 A11, .., A21 A11^(n-1)`, which takes no eigenvalues to compute, so the answer is exact.
 
 use crate::plant::class::Linear;
 use crate::plant::matrix::Matrix;
@@ -30,7 +29,7 @@ pub(super) fn unobservable(plant: &Plant, domain: &Domain, linear: &Linear) -> R
     Matrix::new(stack).null_space(arena, &domain.facts)
 }
 
-/// What the outputs do not show, as a sentence; none if the plant is observable.
+/// The unobservable directions, as a sentence; none if the plant is observable.
 pub(super) fn blindness(plant: &Plant, domain: &Domain, linear: &Linear) -> Result<Option<String>, Obstacle> {
     let arena = &plant.arena;
     let basis = unobservable(plant, domain, linear)?;
@@ -106,7 +105,7 @@ fn witnessed(
     Err(Obstacle::NoWitness)
 }
 
-/// What keeps the rate of a component from being free of x, with the T2 that is left.
+/// The dependence of a component's rate on x, with the T2 that is left.
 fn remainder(plant: &Plant, linear: &Linear, row: usize) -> Expr {
     let arena = &plant.arena;
     if !linear.unsolved.contains(&row) {
@@ -139,7 +138,7 @@ fn refused(
         "along x = ({}) the rates of the outputs do not depend on x (A21 x = 0), but A11 x is not zero",
         entries.join(", ")
     ));
-    // Of a number there is nothing to show.
+    // A number needs no witness.
     let refusal = if arena.as_number(witness.expr).is_some() { refusal } else { refusal.note(witness.sentence(arena)) };
     Ok(refusal.note(observability).help("measure more outputs, until every row of A11 is a combination of rows of A21"))
 }

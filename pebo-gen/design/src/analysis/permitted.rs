@@ -1,8 +1,8 @@
-//! The last gate: each formula contains only what its function knows.
+//! Checks that each formula contains only the arguments of its function.
 //!
-//! In: a claim. Out: the same, undecided where a formula of a proved one holds a symbol that the emitted
-//! function does not get. The claims see to this each on its own; that none of them forgets a symbol, or
-//! takes one for another, is seen here, in one place, before anything builds on them or is called accepted.
+//! In: a claim. Out: the same, undecided where a formula of a proved one holds a symbol that the emitted function does
+//! not get. Each claim takes care of this on its own; this check finds a forgotten or confused symbol in one place,
+//! before anything builds on the claim or is accepted.
 
 use std::collections::BTreeSet;
 
@@ -12,18 +12,18 @@ use pebo_cas::{Expr, Symbol};
 
 use super::design::{Cascade, Claim, Class, LeftInverse, Regression, Verdict};
 
-/// A function: its name, its entries, and what it may contain besides the parameters.
+/// A function: its name, its entries, and its arguments besides the parameters.
 type Function = (&'static str, Vec<Expr>, Vec<Symbol>);
 
-/// The transform is of what has a rate; `h` and `Lambda` know outputs and inputs.
+/// Arguments of the transform have rates; arguments of `h` and `Lambda` are outputs and inputs.
 pub(super) fn cascade(plant: &Plant, claim: Claim<Cascade>, found: &mut Vec<Diagnostic>) -> Claim<Cascade> {
     let signals = [outputs(plant), plant.u.clone()].concat();
-    // What has none would count as a constant.
-    let moving: Vec<Symbol> = plant.rates().into_keys().collect();
+    // A symbol without a rate would count as a constant.
+    let with_inputs: Vec<Symbol> = plant.rates().into_keys().collect();
     confined(plant, claim, Code::CascadeUndecided, found, |cascade| {
         let lambda = cascade.lambda.iter().flatten().flatten().copied().collect();
         vec![
-            ("phi", plant.transform(), moving.clone()),
+            ("phi", plant.transform(), with_inputs.clone()),
             ("h", cascade.h.clone(), signals.clone()),
             ("Lambda", lambda, signals.clone()),
         ]
@@ -43,8 +43,8 @@ pub(super) fn left_inverse(
     })
 }
 
-/// `phi_0` and `phi_1` know the extension, outputs and inputs; what stands under a time derivative no inputs,
-/// which the runtime does not hand it; `eta` and `theta` know each other.
+/// `phi_0` and `phi_1` have the extension, outputs and inputs as arguments; functions under a time derivative no
+/// inputs, which the runtime does not pass; `eta` and `theta` have each other.
 pub(super) fn regression(
     plant: &Plant,
     class: Class,
@@ -55,14 +55,14 @@ pub(super) fn regression(
         Class::Pebo => plant.chi.clone(),
         Class::Gpebo => plant.xi.iter().chain(plant.psi.iter().flatten()).copied().collect(),
     };
-    let standing = [extension, outputs(plant)].concat();
-    let moving = [standing.clone(), plant.u.clone()].concat();
+    let without_inputs = [extension, outputs(plant)].concat();
+    let with_inputs = [without_inputs.clone(), plant.u.clone()].concat();
     confined(plant, claim, Code::RegressionUndecided, found, |regression| {
         vec![
-            ("phi_0", regression.phi_0.clone(), moving.clone()),
-            ("phi_1", regression.phi_1.concat(), moving.clone()),
-            ("primitive_0", regression.primitive_0.clone(), standing.clone()),
-            ("primitive_1", regression.primitive_1.concat(), standing.clone()),
+            ("phi_0", regression.phi_0.clone(), with_inputs.clone()),
+            ("phi_1", regression.phi_1.concat(), with_inputs.clone()),
+            ("primitive_0", regression.primitive_0.clone(), without_inputs.clone()),
+            ("primitive_1", regression.primitive_1.concat(), without_inputs.clone()),
             ("eta", regression.eta.clone(), plant.theta.clone()),
             ("theta", regression.theta.clone(), regression.eta_symbols.clone()),
         ]
@@ -73,7 +73,7 @@ fn outputs(plant: &Plant) -> Vec<Symbol> {
     plant.y.iter().map(|output| output.symbol).collect()
 }
 
-/// The claim, or an undecided one if a function of what it proves holds what it cannot know.
+/// The claim, or an undecided one if a function of its result holds more than its arguments.
 fn confined<T>(
     plant: &Plant,
     claim: Claim<T>,
@@ -117,7 +117,7 @@ mod tests {
         Plant::resolve(&Model::parse(&Source::new("m", PLANT).unwrap()).unwrap()).unwrap()
     }
 
-    /// What the gate makes of a claim whose result was changed: the function that it names, if it stops it.
+    /// The function that the check names in a claim whose result was changed.
     fn stopped<T: Clone>(
         claim: &Claim<T>,
         change: impl Fn(&mut T),

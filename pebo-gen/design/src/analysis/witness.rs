@@ -8,7 +8,7 @@ use pebo_cas::{Arena, Expr, Symbol};
 
 use super::design::{Comparison, Witness};
 
-/// A longer formula is cut in a sentence: its value is what counts there.
+/// A longer formula is cut in a sentence: its value counts there.
 const MOST_CHARACTERS: usize = 300;
 
 impl Witness {
@@ -18,7 +18,7 @@ impl Witness {
         Self { expr, point: coordinates(&witness.point), bounds, compared: None }
     }
 
-    /// What the witness shows, as a reader would say it: `-G*v4/C4` is about 9 where C4 = 1, ..
+    /// The witness as a sentence for a reader: `-G*v4/C4` is about 9 where C4 = 1, ..
     pub fn sentence(&self, arena: &Arena) -> String {
         let printed = arena.print(self.expr);
         let start: String = printed.chars().take(MOST_CHARACTERS).collect();
@@ -45,7 +45,7 @@ impl Comparison {
         Self { expr, read, points, known, values }
     }
 
-    /// z1' is about 2 at p = 1, 0 at p = 0, with the same u = 1; what is compared is called as given.
+    /// z1' is about 2 at p = 1, 0 at p = 0, with the same u = 1; `what` names the compared value.
     pub(super) fn sentence(&self, arena: &Arena, what: &str) -> String {
         let places: Vec<String> =
             self.places(arena).zip(&self.values).map(|(at, v)| format!("{} {at}", about(*v))).collect();
@@ -56,7 +56,7 @@ impl Comparison {
         self.points.iter().map(|point| format!("at {}", values(arena, point)))
     }
 
-    /// What the points share of what the expression reads.
+    /// The shared values of the symbols that the expression reads.
     fn with_the_same(&self, arena: &Arena) -> String {
         let read = arena.symbols_of(&[self.read]);
         let shared: Vec<_> = self.known.iter().filter(|(symbol, _)| read.contains(symbol)).copied().collect();
@@ -74,7 +74,7 @@ fn values(arena: &Arena, point: &[(Symbol, Expr)]) -> String {
     point.iter().map(entry).collect::<Vec<_>>().join(", ")
 }
 
-/// What bounds say of a value: bounds that agree to nine digits read better as one number.
+/// The bounds of a value in words: bounds that agree to nine digits read better as one number.
 fn about((low, high): (f64, f64)) -> String {
     if low == 0.0 && high == 0.0 {
         "0".to_owned()

@@ -1,9 +1,8 @@
 //! The words of verdicts and kinds: one for each case, the same in JSON, text and the header of emitted code.
 //!
-//! In: a case. Out: its word, which programs compare and people read. A sentence around a word is its author's own.
-//! The other tables of words stand beside their enumerations, as readers of input need them too:
-//! [`Class::name`](super::Class::name), [`Relation::sign`](pebo_cas::Relation::sign) and
-//! [`Code::name`](crate::source::Code::name).
+//! In: a case. Out: its word, for programs and people. A sentence around a word is its author's own. The other tables
+//! of words stand beside their enumerations, as readers of input need them too: [`Class::name`](super::Class::name),
+//! [`Relation::sign`](pebo_cas::Relation::sign) and [`Code::name`](crate::source::Code::name).
 
 use crate::plant::Plant;
 
@@ -41,7 +40,7 @@ impl serde::Serialize for Outcome {
 }
 
 impl Origin {
-    /// Where a left inverse is from, in a word.
+    /// The origin of a left inverse, in a word.
     pub fn word(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -73,18 +72,18 @@ impl Excitation {
 }
 
 impl Fundamental {
-    /// Whether it stays bounded, as the verdict on that; what was not shown is no claim that is left undecided.
+    /// Boundedness as a verdict, in a word; an undecided one is no open claim.
     pub fn word(self) -> &'static str {
         match self {
             Self::Bounded { .. } => Verdict::Proved.word(),
             Self::Grows => Verdict::Refuted.word(),
-            Self::NotShown => "not shown",
+            Self::Undecided => "not shown",
         }
     }
 }
 
 impl Equilibrium {
-    /// Whether there is one.
+    /// The existence of an equilibrium, as a verdict.
     pub fn verdict(&self) -> Verdict {
         match self {
             Self::At(_) => Verdict::Proved,

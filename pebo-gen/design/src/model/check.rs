@@ -1,4 +1,4 @@
-//! What a model declares, held against itself.
+//! Checks the declarations of a model.
 //!
 //! In: a model of any front end. After this pass, if it found nothing: declared names are names and
 //! declared once; entries belong to what they are for, and `f_x` has one for each state; settings
@@ -88,7 +88,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
 /// Entries for no name of the model whose names are compared with those that miss one: of more, nobody misspelt each.
 const MOST_STRANGERS: usize = 20;
 
-/// Names declared in one place of the model, with their places in the file.
+/// Names declared in one section of the model, with their spans in the file.
 type Scope<'a> = HashMap<&'a str, Span>;
 
 /// Names that entries may be for.
@@ -96,7 +96,7 @@ struct Group<'a> {
     /// In the order of the file, for messages.
     names: Vec<&'a str>,
     set: HashSet<&'a str>,
-    /// What each of them is.
+    /// The kind of each.
     what: &'static str,
 }
 
@@ -117,7 +117,7 @@ struct Pass<'a> {
     diagnostics: &'a mut Diagnostics,
     /// Names among the states and the outputs.
     both: HashSet<&'a str>,
-    /// Whether `t` is time: where there is a simulation or a recording.
+    /// True if `t` is time: where there is a simulation or a recording.
     simulated: bool,
 }
 
@@ -195,7 +195,7 @@ impl Pass<'_> {
         }
     }
 
-    /// A left inverse is of a transform. What is wrong with a transform that is there has been told.
+    /// Checks that a left inverse has a transform. A mistake in a given transform has been reported.
     fn inverted(&mut self, model: &Model) {
         if self.diagnostics.has_errors() {
             return;
@@ -218,7 +218,7 @@ impl Pass<'_> {
         let known: HashSet<&str> = names.iter().map(|name| name.value.as_str()).collect();
         let strangers = entries.iter().map(|entry| entry.name.value.as_str());
         let strangers = strangers.filter(|name| !known.contains(name)).take(MOST_STRANGERS);
-        // What an entry of another name was meant for is told there, and of an output among the states that it is one.
+        // Such an entry has a hint of its own; so does an output among the states.
         let meant: HashSet<&str> = strangers.filter_map(|name| meant(name, &missing)).collect();
         let missing: HashSet<&str> =
             missing.into_iter().filter(|name| !meant.contains(name) && !self.both.contains(name)).collect();
@@ -365,7 +365,7 @@ impl Pass<'_> {
         }
     }
 
-    /// What sensors do to samples is possible.
+    /// Checks the effects of sensors on samples.
     fn sensors(&mut self, simulation: &Simulation) {
         for deviation in &simulation.noise {
             self.not_negative(&deviation.value, "a standard deviation");
@@ -459,7 +459,7 @@ impl Pass<'_> {
     }
 }
 
-/// Which of the names an entry was meant for that is for none.
+/// The missing name that a stray entry is probably meant for.
 fn meant<'a>(name: &str, missing: &[&'a str]) -> Option<&'a str> {
     derivative_of(name, missing.iter().copied()).or_else(|| nearest(name, missing.iter().copied()))
 }

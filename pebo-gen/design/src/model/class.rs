@@ -1,6 +1,6 @@
 //! Plants that are written by their class: a few matrices in place of equations.
 //!
-//! The types are generic in what an entry is: a text as it is read, a [`Formula`] as it is meant.
+//! The types are generic in the entry: a text as read, a [`Formula`] after parsing.
 
 #[cfg(feature = "yaml")]
 use serde::Deserialize;
@@ -25,9 +25,9 @@ pub enum Class {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
 pub struct Matrix<F> {
-    /// Where it stands.
+    /// The span.
     pub span: Span,
-    /// How deep its lists are: 0 for a single entry, 1 for a plain list, 2 for a list of rows.
+    /// The depth of its lists: 0 for a single entry, 1 for a plain list, 2 for a list of rows.
     pub depth: usize,
     /// The entries; one row unless the depth is 2, and all rows of one length.
     pub rows: Vec<Vec<F>>,
@@ -68,7 +68,7 @@ pub struct Mechanical<F> {
     pub m: Option<Matrix<F>>,
     /// The potential energy in the positions.
     pub v: Option<F>,
-    /// How the inputs act on the momenta.
+    /// The action of the inputs on the momenta.
     pub g: Option<Matrix<F>>,
     /// The frame: the transform is `T(q)' p`; searched for where it is absent.
     pub t: Option<Matrix<F>>,
@@ -81,7 +81,7 @@ pub struct Mechanical<F> {
 #[cfg_attr(feature = "yaml", serde(bound(deserialize = "F: Deserialize<'de>")))]
 #[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
 pub struct Electromechanical<F> {
-    /// The number of coils, to be held against the rest.
+    /// The number of coils, checked against the rest.
     pub coils: Option<Spanned<Decimal>>,
     /// Inductances in the position.
     #[cfg_attr(feature = "yaml", serde(rename = "L"))]
@@ -91,7 +91,7 @@ pub struct Electromechanical<F> {
     /// Resistances.
     #[cfg_attr(feature = "yaml", serde(rename = "R"))]
     pub resistance: Option<Matrix<F>>,
-    /// How voltages act on coils.
+    /// The action of voltages on coils.
     #[cfg_attr(feature = "yaml", serde(rename = "B"))]
     pub voltages: Option<Matrix<F>>,
     /// The declared name of the speed: an output, an input or an unmeasured signal.
@@ -106,7 +106,7 @@ pub struct Electromechanical<F> {
 
 #[cfg(feature = "yaml")]
 impl<F> Matrix<F> {
-    /// The matrix of what `change` makes of the entries.
+    /// The matrix of the changed entries.
     fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Matrix<G> {
         let rows = self.rows.into_iter().map(|row| row.into_iter().map(&mut *change).collect()).collect();
         Matrix { span: self.span, depth: self.depth, rows }
@@ -178,7 +178,7 @@ impl Class {
         }
     }
 
-    /// The formulas of the class, for what they ask of their parts.
+    /// The formulas of the class, for their domain conditions.
     pub fn formulas(&self) -> Vec<&Formula> {
         match self {
             Self::Lti(c) => entries([&c.a11, &c.a12, &c.a21, &c.a22, &c.b1, &c.b2, &c.t1, &c.t2]).collect(),
@@ -190,7 +190,7 @@ impl Class {
     }
 }
 
-/// The entries of those matrices that are there.
+/// The entries of the matrices that are given.
 fn entries<const N: usize>(matrices: [&Option<Matrix<Formula>>; N]) -> impl Iterator<Item = &Formula> {
     matrices.into_iter().flatten().flat_map(|matrix| matrix.rows.iter().flatten())
 }

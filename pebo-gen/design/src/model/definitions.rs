@@ -1,7 +1,7 @@
-//! Definitions in the order of their use: each after those that it needs.
+//! Definitions in the order of their use: each after the ones that it needs.
 //!
-//! In: named formulas in any order. Out: their order, or the circles in which they need one another. A
-//! file may name a part before the parts that it consists of, as a text does.
+//! In: named formulas in any order. Out: their order, or the circles in which they need one another. A file may name a
+//! formula before the formulas in it, as a text does.
 
 use std::collections::HashMap;
 
@@ -9,20 +9,20 @@ use super::formula::Formula;
 use super::spanned::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, listed, quoted};
 
-/// More places of a circle than these make its diagnostic unreadable.
+/// More spans of a circle than these make its diagnostic unreadable.
 const MOST_PLACES: usize = 8;
 
-/// An order in which each definition stands after those it uses, and the circles that have none.
+/// An order of definitions, each after the ones that it uses, and the circles that have none.
 ///
 /// Definitions that do not depend on one another keep their order.
 pub(super) struct Order {
-    /// Positions in the list; those of a circle are among them.
+    /// Indices in the list, including the definitions of a circle.
     pub(super) positions: Vec<usize>,
     /// Each circle once, each definition of it before the one that it uses.
     pub(super) circles: Vec<Vec<usize>>,
 }
 
-/// How far the search has come with a definition.
+/// The progress of the search at a definition.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mark {
     New,
@@ -72,7 +72,7 @@ impl Order {
     }
 }
 
-/// The definitions in an order in which each uses only those before it, if there is one.
+/// The definitions in an order in which each uses only earlier ones, if there is one.
 pub(super) fn sorted(definitions: Vec<Entry<Formula>>) -> Vec<Entry<Formula>> {
     let order = Order::of(&definitions);
     let mut waiting: Vec<Option<Entry<Formula>>> = definitions.into_iter().map(Some).collect();

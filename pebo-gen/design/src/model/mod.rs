@@ -1,14 +1,11 @@
-//! What the author wrote, with the place of every part.
+//! The model as written, with the span of every part.
 //!
 //! In: a [`Source`] or a module's tokens. Out: a [`Model`], or every independent mistake in it. After this layer the
-//! file has the right shape, its formulas are parsed and bounded, every declared name is declared
-//! once, maps that belong to declared names have entries for these and no others, and a definition uses only those
-//! before it. Names
-//! *inside* formulas are not looked up here: that is what the plant layer does ([`unknown_name`]
-//! words its diagnostic).
+//! file has the right shape, its formulas are parsed and bounded, every declared name is declared once, maps that
+//! belong to declared names have entries for these and no others, and a definition uses only those before it. Names
+//! *inside* formulas are not looked up here but in the plant layer ([`unknown_name`] words its diagnostic).
 //!
-//! The passes: `yaml` reads text, [`rust`] reads tokens, and [`check()`] holds what was declared against itself,
-//! whichever of the two it is from.
+//! The passes: `yaml` reads text, [`rust`] reads tokens, and [`check()`] checks the declarations of either.
 
 mod check;
 pub mod class;
@@ -43,9 +40,9 @@ pub use written::{
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};
 
-/// The JSON schema of model files (draft 2020-12), for editors that complete and check them: keys and the shapes of their
-/// values, from the table by which [`Model::parse`] reads. What else makes a model, as names and formulas, only the
-/// reader says.
+/// The JSON schema of model files (draft 2020-12), for editors that complete and check them: keys and the shapes of
+/// their values, from the table by which [`Model::parse`] reads. Only the reader checks the rest, as names and
+/// formulas.
 ///
 /// ```
 /// let schema: serde_json::Value = serde_json::from_str(&pebo_design::model::json_schema()).expect("JSON");

@@ -1,4 +1,4 @@
-//! Names: which texts are names, which names are taken, and what to say about unknown ones.
+//! Names: their syntax, reserved ones, and hints for unknown ones.
 
 use super::formula::greek;
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
@@ -6,7 +6,8 @@ use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 /// The name of time in formulas.
 pub(super) const TIME: &str = "t";
 
-/// Whether `text` can be declared as a name; `simulated` if there is a simulation or a recording, in which `t` is time.
+/// Checks that `text` can be declared as a name; `simulated` if there is a simulation or a recording, in which `t` is
+/// time.
 pub(super) fn admit(text: &str, span: Span, simulated: bool) -> Result<(), Diagnostic> {
     if !is_identifier(text) {
         return Err(invalid(text, span));
@@ -69,7 +70,7 @@ pub(crate) fn derivative_of<'a>(name: &str, candidates: impl IntoIterator<Item =
     })
 }
 
-/// What the generator itself calls by this name.
+/// The generator's own meaning of a name.
 fn coordinate(name: &str) -> Option<&'static str> {
     let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
     if letters.len() == name.len() {
@@ -77,7 +78,7 @@ fn coordinate(name: &str) -> Option<&'static str> {
     }
     match letters {
         "z" => Some("a coordinate"),
-        // Beyond nine components a mark parts the row from the column.
+        // Beyond nine components a mark separates the row from the column.
         _ if is_entry(letters) => Some("the generalised cascade"),
         "chi" => Some("the dynamic extension"),
         "theta" => Some("an unknown parameter"),
@@ -86,13 +87,13 @@ fn coordinate(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Whether the text, without the column's number, is an entry of the fundamental matrix: `Psi10_`.
+/// Tests whether the text, without the column's number, is an entry of the fundamental matrix: `Psi10_`.
 fn is_entry(text: &str) -> bool {
     let row = text.strip_prefix("Psi").and_then(|rest| rest.strip_suffix('_'));
     row.is_some_and(|row| !row.is_empty() && row.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// The diagnostic of a name that is not among the `candidates`, which are known in its place.
+/// The diagnostic of a name that is not among the `candidates`, which are known at its span.
 pub fn unknown_name<'a>(name: &str, span: Span, candidates: impl IntoIterator<Item = &'a str>) -> Diagnostic {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     let message = format!("unknown name {}", quoted(name));

@@ -7,18 +7,18 @@ use super::formula::Decimal;
 use super::spanned::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
-/// How the observer is built; what is left out, the generator chooses.
+/// The construction of the observer; the generator chooses absent settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Observer {
-    /// What the regressand is made of; chosen for the settings that there are if absent.
+    /// The form of the regressand; chosen by the other settings if absent.
     pub form: Option<Spanned<Form>>,
     /// The standard deviation of the samples of each output.
     pub sensors: Vec<Entry<Spanned<Decimal>>>,
-    /// How wrong each state is at the start, a standard deviation.
+    /// The initial error of each state, a standard deviation.
     pub start: Vec<Entry<Spanned<Decimal>>>,
-    /// By how much states and outputs drift besides their rates, in their units per root second.
+    /// The drift of states and outputs besides their rates, in their units per root second.
     pub disturbance: Vec<Entry<Spanned<Decimal>>>,
     /// The estimator; if absent, least squares of known numbers, or a gradient where gains are written.
     pub estimator: Option<Spanned<Estimator>>,
@@ -30,7 +30,7 @@ pub struct Observer {
     pub regressor_gain: Vec<Spanned<Decimal>>,
     /// The rate at which the past is forgotten, in 1/s; zero if absent.
     pub forgetting: Option<Spanned<Decimal>>,
-    /// By how much the covariance of least squares grows in a second: one for each unknown, or one for all.
+    /// The growth of the covariance of least squares in a second: one for each unknown, or one for all.
     pub process_noise: Vec<Spanned<Decimal>>,
     /// `mu` of a gradient divided by `1 + mu |Phi|^2`.
     pub normalisation: Option<Spanned<Decimal>>,
@@ -38,23 +38,23 @@ pub struct Observer {
     pub clip: Option<Spanned<Decimal>>,
     /// Seconds after which finite-time DREM counts from a new instant, which makes it track; it never does if absent.
     pub period: Option<Spanned<Decimal>>,
-    /// Between what the unknowns are known to be.
+    /// Known bounds of the unknowns.
     pub bounds: Bounds,
-    /// Between what the recovered states are known to be: their estimates are kept there.
+    /// Known bounds of the recovered states: their estimates are kept there.
     pub within: Bounds,
     /// The filters' corner frequency in rad/s.
     pub filter: Option<Spanned<Decimal>>,
-    /// In place of the filter, the samples of the window of the integral form.
+    /// The samples of the window of the integral form, in place of the filter.
     pub window: Option<Spanned<Decimal>>,
-    /// How samples are joined to signals.
+    /// The interpolation between samples.
     pub hold: Option<Spanned<Hold>>,
-    /// When the extension starts again from the estimate; never if none of it is there.
+    /// The restarts of the extension from the estimate; never if it is empty.
     pub rebase: Rebase,
     /// The normalised square of an innovation beyond which a sample is an outlier; none if absent.
     pub gate: Option<Spanned<Decimal>>,
     /// The standard error that is wanted of each state.
     pub wanted: Vec<Entry<Spanned<Decimal>>>,
-    /// Between what the samples of outputs and inputs are: two numbers each.
+    /// Known bounds of the samples of outputs and inputs: two numbers each.
     pub limits: Vec<Entry<Vec<Spanned<Decimal>>>>,
     /// The longest time in seconds between two accepted samples; any if absent.
     pub gap: Option<Spanned<Decimal>>,
@@ -62,7 +62,7 @@ pub struct Observer {
     pub extension: Vec<Spanned<Decimal>>,
 }
 
-/// Between what unknowns or states are known to be: one number for each, or one for all; empty where there is no bound.
+/// Known bounds of unknowns or states: one number for each, or one for all; empty where there is no bound.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
@@ -73,26 +73,26 @@ pub struct Bounds {
     pub upper: Vec<Spanned<Decimal>>,
 }
 
-/// When the extension starts again from the estimate: one of these, or never.
+/// The restarts of the extension from the estimate: one of these, or never.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Rebase {
     /// After so many samples.
     pub samples: Option<Spanned<Decimal>>,
-    /// When a component of it exceeds this, in units of phi.
+    /// The bound on its components above which it restarts, in units of phi.
     pub above: Option<Spanned<Decimal>>,
     /// All the time, at this rate in 1/s.
     pub leak: Option<Spanned<Decimal>>,
 }
 
 impl Rebase {
-    /// Where it is written.
+    /// The span.
     pub fn place(&self) -> Option<Span> {
         self.written().next().map(|(_, number)| number.span)
     }
 
-    /// What is written, with its key.
+    /// The written settings, with their keys.
     fn written(&self) -> impl Iterator<Item = (&'static str, &Spanned<Decimal>)> {
         let keys = [("samples", &self.samples), ("above", &self.above), ("leak", &self.leak)];
         keys.into_iter().filter_map(|(key, number)| Some((key, number.as_ref()?)))
@@ -111,7 +111,7 @@ impl Rebase {
     }
 }
 
-/// How samples are joined to signals.
+/// The interpolation between samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
@@ -122,7 +122,7 @@ pub enum Hold {
     FirstOrder,
 }
 
-/// What the regressand of a regression of rates is made of.
+/// The form of the regressand of a regression of rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "kebab-case"))]
@@ -226,13 +226,13 @@ impl Observer {
         self.estimator.as_ref().map_or(otherwise, |estimator| estimator.value)
     }
 
-    /// Whether the author chose the numbers of an estimator, and not what is known of sensors, start and disturbances.
+    /// Tests whether the author chose the numbers of an estimator, beside data on sensors, start and disturbances.
     pub fn has_gains(&self) -> bool {
         let written = self.filter.is_some() || self.window.is_some() || self.estimator.is_some();
         self.known().is_none() && (written || SETTINGS.iter().any(|key| self.place(key).is_some()))
     }
 
-    /// The first of the keys that ask for an observer of known numbers, with its place.
+    /// The first of the keys that need an observer of known numbers, with its span.
     pub fn known(&self) -> Option<(&'static str, Span)> {
         let first = |key, entries: &[Entry<Spanned<Decimal>>]| Some((key, entries.first()?.name.span));
         let output = self.form.as_ref().filter(|form| form.value == Form::Output).map(|form| ("form", form.span));
@@ -242,7 +242,7 @@ impl Observer {
             .or(output)
     }
 
-    /// Where a setting of estimators is, if it is written.
+    /// The span of a setting of estimators, if it is written.
     pub fn place(&self, key: &str) -> Option<Span> {
         let all = |values: &[Spanned<Decimal>]| Some(values.first()?.span.to(values.last()?.span));
         let one = |value: &Option<Spanned<Decimal>>| value.as_ref().map(|value| value.span);
@@ -259,9 +259,9 @@ impl Observer {
         }
     }
 
-    /// Reports settings out of their range, and those that do not go together.
+    /// Reports settings out of their range, and conflicting ones.
     pub(super) fn check(&self, diagnostics: &mut Diagnostics) {
-        // An estimator that was misspelt is absent, and nobody knows what it has.
+        // A misspelt estimator is absent, and its settings are unknown.
         let known = self.estimator.is_some() || !diagnostics.has_errors();
         self.contradictions(diagnostics);
         for key in SETTINGS.iter().copied().filter(|_| self.known().is_none()) {

@@ -1,4 +1,4 @@
-//! The section `recording`: what the columns of recorded data mean.
+//! The section `recording`: the meaning of the columns of recorded data.
 
 use super::formula::Formula;
 use super::spanned::Entry;
@@ -7,7 +7,7 @@ use crate::source::Span;
 /// Formulas over the columns of a recording and the parameters. A signal that has none is the column of its own name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// When a row was recorded, in seconds; excludes the next.
+    /// The time of a row, in seconds; excludes the next.
     pub t: Option<Entry<Formula>>,
     /// The period of rows that are equally far apart, in parameters.
     pub step: Option<Entry<Formula>>,

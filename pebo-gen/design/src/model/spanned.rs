@@ -1,17 +1,17 @@
-//! Values with their places.
+//! Values with their spans.
 
 #[cfg(feature = "yaml")]
 use serde::Deserialize;
 
 use crate::source::Span;
 
-/// A value and where it stands.
+/// A value and its span.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Its place.
+    /// Its span.
     pub span: Span,
 }
 

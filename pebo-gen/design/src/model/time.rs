@@ -16,7 +16,7 @@ impl Model {
     /// The model with time among its inputs, where its formulas use it.
     #[must_use]
     pub(super) fn timed(mut self) -> Self {
-        // `B1` and `B2`, and `G`, have a column for each input: what the author did not declare has none.
+        // `B1` and `B2`, and `G`, have a column for each input: an undeclared input has none.
         let by_columns = matches!(self.class, Some(Class::Lti(_) | Class::Mechanical(_)));
         if by_columns || self.names().any(|name| name.value == TIME) {
             return self;

@@ -23,7 +23,7 @@ pub struct Model {
     pub name: Spanned<String>,
     /// One line for people.
     pub title: Option<Spanned<String>>,
-    /// Where the model is from.
+    /// The source of the model.
     pub reference: Option<Spanned<String>>,
     /// Parameters, with their values where these are given already.
     pub parameters: Vec<Entry<Option<Spanned<Decimal>>>>,
@@ -33,23 +33,23 @@ pub struct Model {
     pub y: Vec<Spanned<String>>,
     /// Inputs.
     pub u: Vec<Spanned<String>>,
-    /// Where the formulas use the time `t` first, if no declaration has that name: then it is the last input.
+    /// The first use of the time `t` in the formulas, if no declaration has that name: then it is the last input.
     pub time: Option<Span>,
     /// Unmeasured signals that are not estimated: no result may depend on them.
     pub w: Vec<Spanned<String>>,
-    /// Named sub-expressions, each of which uses only those before it.
+    /// Named sub-expressions, each of which uses only earlier ones.
     pub define: Vec<Entry<Formula>>,
-    /// The cascade that is asked for; without it either will do.
-    pub asked: Option<Spanned<CascadeClass>>,
-    /// How a relation between the components of the transform is to become a regression.
+    /// The class of cascade that the author wants; either if absent.
+    pub cascade_class: Option<Spanned<CascadeClass>>,
+    /// The form of a regression made of a relation between the components of the transform.
     pub relation_form: Option<Spanned<RelationForm>>,
     /// Inequalities that hold where the plant operates.
     pub assume: Vec<Comparison>,
-    /// The class that the plant is written by, which gives what is empty below.
+    /// The class that the plant is written by, which fills the empty fields below.
     pub class: Option<Class>,
     /// Rates of x: one for each, in the order of `x`.
     pub f_x: Vec<Entry<Formula>>,
-    /// Rates of y, in the order of `y`; those that nothing needs may be absent.
+    /// Rates of y, in the order of `y`; unneeded ones may be absent.
     pub f_y: Vec<Entry<Formula>>,
     /// Values of outputs that are functions of the other signals, in the order of `y`.
     pub g_y: Vec<Entry<Formula>>,
@@ -64,18 +64,18 @@ pub struct Model {
     pub angles: Vec<Entry<Formula>>,
     /// Units of parameters and signals.
     pub units: Vec<Entry<Spanned<String>>>,
-    /// How the observer is built.
+    /// The construction of the observer.
     pub observer: Observer,
-    /// What to simulate.
+    /// The simulation.
     pub simulation: Option<Simulation>,
-    /// What recorded data mean.
+    /// The meaning of recorded data.
     pub recording: Option<Recording>,
 }
 
 /// A closed loop to simulate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
-    /// How long, in seconds.
+    /// The duration, in seconds.
     pub duration: Option<Spanned<Decimal>>,
     /// Sampling period of observer and control, in seconds.
     pub step: Option<Spanned<Decimal>>,
@@ -87,30 +87,28 @@ pub struct Simulation {
     pub noise: Vec<Entry<Spanned<Decimal>>>,
     /// Constant offsets of the outputs' sensors, in the units of the outputs; none where absent.
     pub bias: Vec<Entry<Spanned<Decimal>>>,
-    /// Steps of which a sensor shows multiples, in the units of the outputs; none where absent or 0.
+    /// Steps of the values of a sensor, in the units of the outputs; none where absent or 0.
     pub quantisation: Vec<Entry<Spanned<Decimal>>>,
-    /// How old what a sensor shows is, in seconds.
+    /// The age of a sensor's values, in seconds.
     pub delay: Delay,
-    /// How far an instant of the loop is from where it is meant to be, at most, as a share of the step.
+    /// The largest distance of an instant of the loop from its nominal time, as a share of the step.
     pub jitter: Option<Spanned<Decimal>>,
     /// The probability that a sample never arrives.
     pub dropped: Option<Spanned<Decimal>>,
-    /// Of some outputs, how many samples there are to one that arrives; one where absent.
+    /// The number of samples of an output to one that arrives; one where absent.
     pub every: Vec<Entry<Spanned<Decimal>>>,
     /// True values in time of parameters, and of states whose rate is 0, in `t` and the model's parameters: where they
-    /// differ from what the model says.
+    /// differ from the model.
     pub plant: Vec<Entry<Vec<Piece>>>,
-    /// Named sub-expressions for the control law, each of which uses only those before it
-    /// and those of the model.
+    /// Named sub-expressions for the control law, each of which uses only earlier ones and those of the model.
     pub define: Vec<Entry<Formula>>,
     /// The control law: inputs in outputs, estimates, signals, parameters and `t`.
     pub control: Vec<Entry<Formula>>,
-    /// Whose estimates the control law sees: `observer` (so also if absent), `truth`, or a
-    /// baseline.
+    /// The source of the control law's estimates: `observer` (so also if absent), `truth`, or a baseline.
     pub feedback: Option<Spanned<String>>,
     /// Other observers to compare with.
     pub baselines: Vec<Entry<Baseline>>,
-    /// The parts of the figure.
+    /// The panels of the figure.
     pub panels: Vec<Panel>,
 }
 
@@ -119,9 +117,9 @@ pub struct Simulation {
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Delay {
-    /// That of all outputs.
+    /// The delay of all outputs.
     pub all: Option<Spanned<Decimal>>,
-    /// Those of outputs by name.
+    /// The delays of outputs by name.
     pub each: Vec<Entry<Spanned<Decimal>>>,
 }
 
@@ -150,7 +148,7 @@ pub struct Piece {
 /// An observer to compare with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Baseline {
-    /// Given by its equations, under any name but those of the others.
+    /// An observer given by its equations, under any name but the reserved ones.
     Equations(Equations),
     /// A Kalman filter of the plant, under its own name.
     Kalman(Kalman),
@@ -174,23 +172,23 @@ impl Baseline {
     }
 }
 
-/// A Kalman filter of the states and outputs, fed the same samples; standard deviations of what is not named are those
-/// that the keys of the file say.
+/// A Kalman filter of the states and outputs, with the same samples; standard deviations that are not given here are
+/// those of the file's keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kalman {
-    /// Whether it is the extended one, of the plant as linearised at its estimate.
+    /// True for the extended one, of the plant as linearised at its estimate.
     pub extended: bool,
     /// Standard deviations of the outputs' samples.
     pub sensors: Vec<Entry<Spanned<Decimal>>>,
     /// Standard deviations of the unmeasured states at the start.
     pub start: Vec<Entry<Spanned<Decimal>>>,
-    /// By how much a state or an output drifts besides its rate, in its unit per root second.
+    /// The drift of a state or an output besides its rate, in its unit per root second.
     pub disturbance: Vec<Entry<Spanned<Decimal>>>,
     /// Its estimates at the start, zero where absent.
     pub initial: Vec<Entry<Formula>>,
 }
 
-/// Luenberger's observer of the states and outputs: the error has these poles while the inputs rest.
+/// Luenberger's observer of the states and outputs: the error has these poles while the inputs are zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Luenberger {
     /// The poles of continuous time, in 1/s: one for each state and each output that has a rate.
@@ -210,14 +208,14 @@ pub struct Equations {
     pub estimate: Vec<Entry<Formula>>,
 }
 
-/// A part of the figure: curves over time on one axis.
+/// A panel of the figure: curves over time on one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Its heading.
     pub title: Spanned<String>,
     /// The unit of the axis.
     pub unit: Option<Spanned<String>>,
-    /// What to draw.
+    /// The curves.
     pub curves: Vec<Formula>,
     /// The axis.
     pub scale: Scale,
@@ -231,11 +229,11 @@ pub enum Scale {
     /// Equal differences are equally far apart.
     #[default]
     Linear,
-    /// Equal quotients are equally far apart; of the curves, magnitudes are drawn.
+    /// Equal quotients are equally far apart; the absolute values of the curves are drawn.
     Log,
 }
 
-/// How the transform moves.
+/// The class of a cascade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
@@ -264,7 +262,7 @@ impl CascadeClass {
     }
 }
 
-/// How a relation between the components of the transform becomes a regression.
+/// The form of a regression made of a relation between the components of the transform.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
@@ -300,13 +298,13 @@ impl Simulation {
     /// For `feedback`: the unmeasured states themselves, as the control law may see them in a simulation.
     pub const TRUTH: &str = "truth";
 
-    /// Whether a sample may be other than the output that it is of, or not be there.
+    /// Tests whether a sample may differ from its output, or be missing.
     pub fn is_imperfect(&self) -> bool {
         let lists = [&self.noise, &self.bias, &self.quantisation].iter().any(|entries| !entries.is_empty());
         lists || self.delay.written().next().is_some() || self.dropped.is_some() || !self.every.is_empty()
     }
 
-    /// The keys that make the plant and its sensors differ from what the model says.
+    /// The keys that make the plant and its sensors differ from the model.
     pub fn departures(&self) -> Vec<&'static str> {
         let acts = |number: &Spanned<Decimal>| number.value.to_f64() != 0.0;
         let any = |entries: &[Entry<Spanned<Decimal>>]| entries.iter().any(|entry| acts(&entry.value));
@@ -323,7 +321,7 @@ impl Simulation {
         keys.into_iter().filter_map(|(key, is_there)| is_there.then_some(key)).collect()
     }
 
-    /// Whose estimates the control law may see.
+    /// The possible sources of the control law's estimates.
     pub fn feedbacks(&self) -> Vec<&str> {
         let baselines = self.baselines.iter().map(|entry| entry.name.value.as_str());
         [Self::OBSERVER, Self::TRUTH].into_iter().chain(baselines).collect()
@@ -332,7 +330,7 @@ impl Simulation {
 
 impl Model {
     /// The model with the entries of `f_x`, `f_y`, `g_y` and `phi_left` in the order of their states, and definitions
-    /// after those that they use.
+    /// after the ones that they use.
     #[must_use]
     pub(super) fn ordered(mut self) -> Self {
         let order = |entries: &mut Vec<Entry<Formula>>, states: &[Spanned<String>]| {
@@ -354,7 +352,7 @@ impl Model {
         self.declared().chain(self.define.iter().map(|entry| &entry.name))
     }
 
-    /// The names that stand for themselves: parameters, x, y, u and w, in this order.
+    /// The names of symbols: parameters, x, y, u and w, in this order.
     pub fn declared(&self) -> impl Iterator<Item = &Spanned<String>> {
         let parameters = self.parameters.iter().map(|entry| &entry.name);
         let signals = [&self.x, &self.y, &self.u, &self.w].into_iter().flatten();

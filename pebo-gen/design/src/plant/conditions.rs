@@ -1,8 +1,7 @@
-//! Where a formula has a value at all, and where it is differentiable: what its author wrote under roots and
-//! logarithms and below fraction bars.
+//! Domain conditions of formulas as written: arguments of roots and logarithms, denominators, and differentiability.
 //!
-//! In: formulas as written. Out: what the algebra's tables say that each operation asks of its operands. They are
-//! read off the text because construction simplifies (`x/x` is 1) and would forget.
+//! In: formulas as written. Out: the conditions of each operation on its operands, by the algebra's tables. They are
+//! read off the text because construction simplifies (`x/x` is 1) and would forget them.
 
 use crate::model::formula::{Formula, Operator, Term};
 use crate::source::Diagnostic;
@@ -11,7 +10,7 @@ use pebo_cas::{Arena, Expr, Relation};
 
 use super::{Assumption, Scope, lower};
 
-/// Adds what the formula asks of its parts.
+/// Adds the domain conditions of the formula.
 pub(super) fn collect(
     arena: &Arena,
     scope: &Scope,
@@ -19,25 +18,25 @@ pub(super) fn collect(
     want: Regularity,
     found: &mut Vec<Assumption>,
 ) -> Result<(), Diagnostic> {
-    let mut ask = |part: &Formula, asks: Vec<(Expr, Relation)>| {
-        let open = asks.into_iter().filter(|ask| !arena.holds_of_number(*ask));
+    let mut add = |part: &Formula, conditions: Vec<(Expr, Relation)>| {
+        let open = conditions.into_iter().filter(|condition| !arena.holds_of_number(*condition));
         found.extend(open.map(|(expr, relation)| Assumption { expr, relation, span: part.span }));
     };
     match &formula.term {
         Term::Binary(Operator::Divide, _, below) => {
-            ask(below, arena.division_conditions(lower(arena, scope, below)?));
+            add(below, arena.division_conditions(lower(arena, scope, below)?));
         }
         Term::Binary(Operator::Power, base, exponent) => {
             let (value, exponent) = (lower(arena, scope, base)?, lower(arena, scope, exponent)?);
-            let asked = match arena.as_number(exponent) {
+            let conditions = match arena.as_number(exponent) {
                 Some(power) => arena.power_condition(value, &power, want),
                 None => Some(arena.symbolic_power_condition(value)),
             };
-            ask(base, asked.into_iter().collect());
+            add(base, conditions.into_iter().collect());
         }
         Term::Call(function, arguments) => {
             let values = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;
-            ask(&arguments[0], arena.call_conditions(*function, &values, want));
+            add(&arguments[0], arena.call_conditions(*function, &values, want));
         }
         _ => {}
     }
@@ -45,7 +44,7 @@ pub(super) fn collect(
     formula.parts().into_iter().try_for_each(|part| collect(arena, scope, part, want, found))
 }
 
-/// Whether the formula uses the name.
+/// Tests whether the formula uses the name.
 pub(super) fn uses(formula: &Formula, name: &str) -> bool {
     match &formula.term {
         Term::Name(used) => used == name,

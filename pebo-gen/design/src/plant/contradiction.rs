@@ -2,8 +2,8 @@
 //!
 //! In: assumptions, and the values of parameters. Out: a diagnostic for an assumption that those values violate, for
 //! two of which one bounds a quantity from below where the other bounds it from above, and for one whose opposite the
-//! algebra shows of the others. What contradicts itself in ways that it does not see leaves the claims without a point
-//! of their domain, and undecided.
+//! algebra derives from the others. Undetected contradictions leave the claims without a point of their domain, and
+//! undecided.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
 use super::plant::{Assumption, Parameter};
 
-/// For ordering bounds; what is said of them is decided by an enclosure as fine as it takes.
+/// Precision of the order of bounds; the reported comparison is decided by an enclosure as fine as necessary.
 const PRECISION: u32 = 64;
 
 /// A bound of a quantity: `quantity > value` or `quantity < value`, perhaps with equality.
@@ -68,7 +68,7 @@ pub(super) fn find(arena: &Arena, assumptions: &[Assumption], parameters: &[Para
     }
 }
 
-/// An assumption of which the others show the opposite, as of `p^2 + q^2 < -1`.
+/// An assumption whose opposite follows from the others, as `p^2 + q^2 < -1`.
 fn excluded<'a>(
     arena: &Arena,
     assumptions: &'a [Assumption],
@@ -91,7 +91,7 @@ fn excluded<'a>(
         .map(|index| &assumptions[index])
 }
 
-/// Whether the expression is zero throughout the domain by its normal form.
+/// Tests whether the expression is zero throughout the domain by its normal form.
 fn vanishes(arena: &Arena, domain: &Domain, expr: Expr) -> bool {
     let field = Field::over(arena, &domain.facts, &[expr]);
     field.and_then(|field| field.fraction(expr)).is_ok_and(|fraction| fraction.is_zero())

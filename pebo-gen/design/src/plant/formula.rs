@@ -1,7 +1,7 @@
-//! Written formulas to expressions.
+//! Lowers written formulas to expressions.
 //!
-//! In: a formula of the model and the names it may use. Out: the expression, or one diagnostic at the
-//! part that has no meaning: an unknown name, a division by zero, an exponent out of range.
+//! In: a formula of the model and the names it may use. Out: the expression, or one diagnostic at the subformula that
+//! has no meaning: an unknown name, a division by zero, an exponent out of range.
 
 use crate::model::formula::{Decimal, EXPONENT_LIMIT, Formula, Operator, PI, Term};
 use crate::source::{Code, Diagnostic, Span};
@@ -10,7 +10,7 @@ use pebo_cas::{Arena, Expr, Function, Rational};
 
 use super::Scope;
 
-/// The expression that a formula stands for.
+/// The expression of a formula.
 pub fn lower(arena: &Arena, scope: &Scope, formula: &Formula) -> Result<Expr, Diagnostic> {
     // The parser bounds the depth, so recursion is safe here.
     match &formula.term {
@@ -88,10 +88,10 @@ fn division_by_zero(span: Span) -> Diagnostic {
         .help("correct the denominator")
 }
 
-/// Whether constant arguments are where the function has a real value.
+/// Checks that constant arguments are where the function has a real value.
 fn in_domain(arena: &Arena, function: Function, arguments: &[Expr], span: Span) -> Result<(), Diagnostic> {
-    let asked = arena.call_conditions(function, arguments, Regularity::Defined);
-    if asked.into_iter().any(|ask| arena.fails_of_number(ask)) {
+    let conditions = arena.call_conditions(function, arguments, Regularity::Defined);
+    if conditions.into_iter().any(|ask| arena.fails_of_number(ask)) {
         let name = function.row().name;
         let values: Vec<String> = arguments.iter().map(|argument| arena.print(*argument)).collect();
         return Err(Diagnostic::error(

@@ -1,12 +1,12 @@
-//! What a model means.
+//! The meaning of a model.
 //!
 //! ```text
 //! Model -> names resolved, numbers exact, formulas in one arena -> Plant
 //! ```
 //!
-//! Holds after: every name in a formula is declared where it may stand, every formula has a value as far
-//! as its constants tell, and each equation keeps the span of its source. A model by class has become
-//! the same equations, with the spans of the class's fields.
+//! Holds after: every name in a formula is declared and permitted there, every formula has a value as far as its
+//! constants decide, and each equation keeps the span of its source. A model by class has become the same equations,
+//! with the spans of the class's fields.
 
 pub mod class;
 mod conditions;

@@ -1,13 +1,13 @@
 //! The generator's own symbols: coordinates, extension, unknowns.
 //!
-//! They are none of the author's, whatever these are called, and each family is shown so that no two
-//! symbols of a plant look alike: `z1`, `chi1`, `theta1`, `xi1` and `Psi11` are names that no model may
-//! declare, and `eta1` gives way to a declared name.
+//! They differ from the author's, whatever these are called, and each family is printed so that no two symbols of a
+//! plant look alike: `z1`, `chi1`, `theta1`, `xi1` and `Psi11` are names that no model may declare, and `eta1` gives
+//! way to a declared name.
 
 use crate::model::Model;
 use pebo_cas::{Arena, Symbol};
 
-/// The largest index of which two in a row can be told apart without a mark between them.
+/// The largest index for which two in a row are distinct without a mark between them.
 const LARGEST_DIGIT: usize = 9;
 
 /// The symbols that a transform of so many components brings with it.
@@ -40,7 +40,7 @@ impl Own {
     }
 }
 
-/// What the unknowns of a regression are called before their number: `eta`, or `eta_` in a model with a name as `eta1`.
+/// The name of a regression's unknowns without their number: `eta`, or `eta_` in a model with a name as `eta1`.
 pub(super) fn letter_of_unknowns(model: &Model) -> String {
     let simulation = model.simulation.iter();
     let outside = simulation.flat_map(|s| s.signals.iter().map(|e| &e.name).chain(s.define.iter().map(|e| &e.name)));

@@ -1,7 +1,6 @@
 //! Periods of angles: positive constants.
 //!
-//! Knowing a state up to a period that is zero is knowing it, and a period without a sign says nothing of what is
-//! known of the state: neither is let through.
+//! A period that is zero is no ambiguity, and a period without a sign is meaningless: both are refused.
 
 use crate::source::{Code, Diagnostic};
 use pebo_cas::{Arena, Domain, Relation};

@@ -1,7 +1,7 @@
-//! What a model means: names resolved, numbers exact.
+//! The meaning of a model: names resolved, numbers exact.
 //!
-//! One thing with `class`, `resolve` and the passes that `resolve` calls: a plant holds what its class expanded to, a class
-//! expands to a plant's equations, and each pass adds to the plant what it has found.
+//! One thing with `class`, `resolve` and the passes that `resolve` calls: a plant holds what its class expanded to, a
+//! class expands to a plant's equations, and each pass adds its result to the plant.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -21,19 +21,20 @@ use super::own::Own;
 pub struct Plant {
     /// The identifier of the model.
     pub name: String,
-    /// What the plant is, in words.
+    /// The title.
     pub title: Option<String>,
-    /// Where it is from.
+    /// The source of the model.
     pub reference: Option<String>,
-    /// Where all expressions of this plant live, and of the same plant with other transforms.
+    /// The arena of all expressions of this plant, and of the same plant with other transforms.
     pub arena: Rc<Arena>,
-    /// The class that it was written by, with what the class knows of it.
+    /// The class that it was written by, with its matrices.
     pub class: Option<Class>,
-    /// What the class proposes; proved like anything else.
+    /// The proposals of the class; proved like anything else.
     pub proposal: Proposal,
-    /// The cascade that the author asks for; without it either will do.
-    pub asked: Option<CascadeClass>,
-    /// How the author wants a relation between the components of the transform to become a regression, and where that is said.
+    /// The class of cascade that the author wants; either if absent.
+    pub cascade_class: Option<CascadeClass>,
+    /// The form of a regression of relations between the components of the transform that the author wants, with the
+    /// span.
     pub relation_form: Option<(RelationForm, Span)>,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
@@ -49,12 +50,12 @@ pub struct Plant {
     pub w: Vec<Symbol>,
     /// The candidate transform z = phi(x, y), one formula a component; none where it is to be searched for.
     pub phi: Vec<Formula>,
-    /// Where the transform is from.
+    /// The origin of the transform.
     pub origin: TransformOrigin,
     /// The left inverse as the author gave it: states with formulas in z and y.
     pub phi_left: Option<Vec<(Symbol, Formula)>>,
-    /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of the
-    /// two.
+    /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of
+    /// the two.
     pub identities: Vec<Formula>,
     /// States that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,
@@ -62,9 +63,9 @@ pub struct Plant {
     pub units: BTreeMap<Symbol, String>,
     /// The domain that the author assumes.
     pub assumptions: Vec<Assumption>,
-    /// The summands of the rates as they are written, each where it stands.
+    /// The summands of the rates as written, each with its span.
     pub terms: BTreeMap<Symbol, Vec<Formula>>,
-    /// What the formulas ask of their parts to have values: denominators, radicands and the like.
+    /// The domain conditions of the formulas: denominators, radicands and the like.
     pub conditions: Vec<Assumption>,
     /// The coordinates z1.. of the transform.
     pub z: Vec<Symbol>,
@@ -76,11 +77,11 @@ pub struct Plant {
     pub psi: Vec<Vec<Symbol>>,
     /// The unknown constants theta1..
     pub theta: Vec<Symbol>,
-    /// What stands before the number of an unknown of the regression, where these are functions of theta.
+    /// The prefix of the number of a regression's unknown, where these are functions of theta.
     pub eta: String,
 }
 
-/// Where a transform is from.
+/// The origin of a transform.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum TransformOrigin {
     /// The author gave it, or nobody has yet.
@@ -111,7 +112,7 @@ pub struct Parameter {
     pub value: Option<Rational>,
     /// The value as it is written in the model.
     pub text: Option<String>,
-    /// Where it is declared.
+    /// The span of the declaration.
     pub span: Span,
 }
 
@@ -134,12 +135,12 @@ pub struct Output {
     pub rate: Option<Formula>,
     /// Its value `g_y` in the other signals, where it is given by that.
     pub value: Option<Formula>,
-    /// Where it is declared.
+    /// The span of the declaration.
     pub span: Span,
 }
 
 impl Output {
-    /// Whether its rate is that of its value, rather than one that its author gave.
+    /// Tests whether its rate is that of its value, rather than one that its author gave.
     pub fn moves_with_value(&self) -> bool {
         self.rate.zip(self.value).is_some_and(|(rate, value)| rate.span == value.span)
     }
@@ -150,25 +151,25 @@ impl Output {
 pub struct Formula {
     /// The expression.
     pub expr: Expr,
-    /// Where it stands.
+    /// The span.
     pub span: Span,
 }
 
 /// One inequality of the assumed domain: `expr > 0`, `>= 0` or `!= 0`.
 #[derive(Clone, Copy, Debug)]
 pub struct Assumption {
-    /// What is compared with zero.
+    /// The expression to compare with zero.
     pub expr: Expr,
-    /// How.
+    /// The comparison.
     pub relation: Relation,
-    /// Where it stands.
+    /// The span.
     pub span: Span,
 }
 
 impl Plant {
-    /// Whether the author asks for this form of a relation between the components of the transform.
-    pub fn asks_for(&self, form: RelationForm) -> bool {
-        self.relation_form.is_some_and(|asked| asked.0 == form)
+    /// Tests whether the author wants this form of a relation between the components of the transform.
+    pub fn wants(&self, form: RelationForm) -> bool {
+        self.relation_form.is_some_and(|wanted| wanted.0 == form)
     }
 
     /// The same plant with another transform, which was searched for: a component that fails is pointed at where the
@@ -209,12 +210,12 @@ impl Plant {
         self.u.iter().copied().filter(|input| self.time != Some(*input))
     }
 
-    /// What no result may depend on: unmeasured states and signals.
+    /// The unmeasured states and signals: no result may depend on them.
     pub fn hidden(&self) -> BTreeSet<Symbol> {
         self.x.iter().map(|s| s.symbol).chain(self.w.iter().copied()).collect()
     }
 
-    /// Whether the symbol may have any value: of the dynamic extension, or an unknown constant.
+    /// Tests whether the symbol may have any value: of the dynamic extension, or an unknown constant.
     pub fn is_of_extension(&self, symbol: Symbol) -> bool {
         let extension = self.chi.iter().chain(&self.xi).chain(&self.theta).chain(self.psi.iter().flatten());
         extension.into_iter().any(|own| *own == symbol)
@@ -243,10 +244,10 @@ impl Plant {
         (1..=count).map(|i| self.arena.generated(&format!("{}{i}", self.eta))).collect()
     }
 
-    /// Where the claims are made: the assumed values at which the formulas as written have values.
+    /// The domain of the claims: the assumed values at which the formulas as written have values.
     ///
-    /// Without the second part a point where the author's `sqrt(x)` does not exist could count against
-    /// a claim, since construction makes `x` of its square.
+    /// Without the second condition a point where the author's `sqrt(x)` does not exist could count against a claim,
+    /// since construction makes `x` of its square.
     pub fn domain(&self) -> Domain {
         let mut domain = self.assumed();
         for condition in &self.conditions {
@@ -257,7 +258,7 @@ impl Plant {
         domain
     }
 
-    /// What is assumed of values: the author's inequalities and identities, and the values of the parameters.
+    /// The assumptions on values: the author's inequalities and identities, and the values of the parameters.
     pub fn assumed(&self) -> Domain {
         let mut domain = assumed(&self.arena, &self.assumptions, &self.parameters);
         if !self.identities.is_empty() {

@@ -1,7 +1,7 @@
-//! A written model to a plant.
+//! Resolves a written model to a plant.
 //!
-//! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every name and formula in it that
-//! has no meaning.
+//! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every
+//! name and formula in it that has no meaning.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -18,12 +18,12 @@ use super::scope::Scope;
 use super::{class, terms, values};
 
 impl Plant {
-    /// Resolves the names and numbers of a model; what is asked of the plant then has the usual budget.
+    /// Resolves the names and numbers of a model; later computations on the plant have the usual budget.
     pub fn resolve(model: &Model) -> Result<Self, Vec<Diagnostic>> {
         Self::resolve_within(model, Budget::default())
     }
 
-    /// Resolves the names and numbers of a model; what is asked of the plant then draws from the budget, as the
+    /// Resolves the names and numbers of a model; later computations on the plant draw from the budget, as the
     /// expansion of a class does.
     pub fn resolve_within(model: &Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
         let mut problems = Diagnostics::new();
@@ -58,7 +58,7 @@ impl Plant {
                 within(formula, &on_states, "phi(x, y)")
             }),
             Some(class) => {
-                let place = class::Place { arena: &arena, scope: &scope, model, domain: &domain, z: &own.z };
+                let place = class::ClassContext { arena: &arena, scope: &scope, model, domain: &domain, z: &own.z };
                 let names = class::Names { x: &x, y: &y, u: &u, w: &w, constants: &constants };
                 place.expand(class, &names, &mut problems).unwrap_or_default()
             }
@@ -88,11 +88,11 @@ impl Plant {
         }));
         let units =
             model.units.iter().map(|entry| (arena.symbol(&entry.name.value), entry.value.value.clone())).collect();
-        let conditions = asked(&arena, &scope, model, conditions);
+        let conditions = domain_conditions(&arena, &scope, model, conditions);
         let terms = terms::of_rates(&arena, &scope, model);
         rates_of_transform(&arena, &phi, &outputs, &mut problems);
         if arena.budget().is_exhausted() {
-            // What was found besides may be no mistake, but something that there was no time to show.
+            // Other findings may be no mistakes, but something that there was no time to prove.
             let phase = if model.class.is_some() { "the expansion of the class" } else { "the reading of the model" };
             return Err(vec![Diagnostic::limit_reached(phase, model.name.span)]);
         }
@@ -102,7 +102,7 @@ impl Plant {
             title: model.title.as_ref().map(|t| t.value.clone()),
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
-            asked: model.asked.as_ref().map(|asked| asked.value),
+            cascade_class: model.cascade_class.as_ref().map(|class| class.value),
             relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
             proposal,
             parameters,
@@ -131,33 +131,32 @@ impl Plant {
     }
 }
 
-/// The names of a model with what they stand for: a symbol, zero for a parameter that is given so, or what a definition
-/// says.
+/// The names of a model with their meanings: a symbol, zero for a parameter that is given as zero, or a definition.
 fn names_of(arena: &Arena, model: &Model, parameters: &[Parameter], problems: &mut Diagnostics) -> Scope {
     let mut scope = Scope::new();
     for name in model.declared() {
         scope.define(&name.value, arena.variable(&name.value));
     }
-    // One that is given as zero is zero, wherever it stands.
+    // A parameter given as zero is zero everywhere.
     for parameter in parameters.iter().filter(|p| p.value.as_ref().is_some_and(Rational::is_zero)) {
         scope.define(arena.name(parameter.symbol), arena.zero());
     }
-    // Each uses only those before it: no definition is a symbol.
+    // Each uses only earlier ones: no definition is a symbol.
     for definition in &model.define {
         let meaning = problems.keep(lower(arena, &scope, &definition.value));
-        // One that fails was reported, and there will be no plant; what uses it is looked at all the same.
+        // A failure was reported, and there will be no plant; formulas that use it are checked all the same.
         let meaning = meaning.unwrap_or_else(|| arena.variable(&definition.name.value));
         scope.define(&definition.name.value, meaning);
     }
     scope
 }
 
-/// What the formulas ask of their parts to have values, and the transform to have derivatives, beside what a class
-/// asks already: of its formulas some are differentiated.
-fn asked(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
+/// The domain conditions of the formulas, and the conditions for the transform to have derivatives, beside those of a
+/// class: some of its formulas are differentiated.
+fn domain_conditions(arena: &Arena, scope: &Scope, model: &Model, of_class: Vec<Assumption>) -> Vec<Assumption> {
     let mut conditions = of_class;
     let mut collect = |formula: &model::Formula, want: Regularity| {
-        // What fails here was reported where the formula itself was lowered.
+        // A failure was reported where the formula itself was lowered.
         let _ = super::conditions::collect(arena, scope, formula, want, &mut conditions);
     };
     let of_class: Vec<_> = model.class.iter().flat_map(model::Class::formulas).collect();
@@ -232,7 +231,7 @@ fn resolved(arena: &Arena, scope: &Scope, formula: &model::Formula) -> Result<Fo
     Ok(Formula { expr: lower(arena, scope, formula)?, span: formula.span })
 }
 
-/// The formula, if it depends on nothing but what its place allows.
+/// The formula, if it depends only on the allowed symbols.
 pub(super) fn confined(
     arena: &Arena,
     expr: Expr,

@@ -1,4 +1,4 @@
-//! Which names a formula may use, and what they stand for.
+//! Names that a formula may use, with their meanings.
 
 use std::collections::BTreeMap;
 
@@ -6,12 +6,12 @@ use crate::model::derivative_of;
 use crate::source::{Code, Diagnostic, Span, nearest};
 use pebo_cas::Expr;
 
-/// Names with their meaning, in one place of the model.
+/// Names with their meaning, in one section of the model.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
     names: BTreeMap<String, Expr>,
     estimates: BTreeMap<String, Expr>,
-    /// Names that are declared but may not stand here, with the reason.
+    /// Declared names that are not permitted here, with the reason.
     barred: BTreeMap<String, String>,
 }
 
@@ -41,7 +41,7 @@ impl Scope {
         self.names.keys().map(String::as_str)
     }
 
-    /// What the name stands for.
+    /// The meaning of the name.
     pub fn look_up(&self, name: &str, span: Span) -> Result<Expr, Diagnostic> {
         if let Some(&meaning) = self.names.get(name) {
             return Ok(meaning);
@@ -54,7 +54,7 @@ impl Scope {
         Err(unknown(name, span, self.names()))
     }
 
-    /// What `hat(name)` stands for.
+    /// The meaning of `hat(name)`.
     pub fn look_up_estimate(&self, name: &str, span: Span) -> Result<Expr, Diagnostic> {
         match self.estimates.get(name) {
             Some(&meaning) => Ok(meaning),
@@ -68,7 +68,7 @@ fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>
     let diagnostic = Diagnostic::error(Code::UnknownName, span, format!("unknown name `{name}`"))
         .label("not declared in this model");
     let candidates: Vec<&str> = candidates.collect();
-    // What is near its name is another quantity.
+    // A similar name is another quantity.
     if let Some(of) = derivative_of(name, candidates.iter().copied()) {
         return diagnostic.help(format!(
             "if it is the derivative of `{of}`, write the formula of that derivative in its place; if not, declare it under \
@@ -77,7 +77,7 @@ fn unknown<'a>(name: &str, span: Span, candidates: impl Iterator<Item = &'a str>
     }
     match nearest(name, candidates) {
         Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-        // What varies with time on its own the observer has to be told at each sample: that is an input.
+        // A function of time alone has to be measured at each sample: it is an input.
         None if name == "t" => diagnostic.help(
             "the observer knows of time what it is told at each sample, and that is an input: add `time` to `u`, write `time` \
              for `t` in this formula, and `time: t` under `control` of the simulation; the application hands it over with the \

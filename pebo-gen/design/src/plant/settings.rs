@@ -1,6 +1,7 @@
 //! The section `observer`, resolved: a value for each unknown, of the estimator that is named and of nothing else.
 //!
-//! In: what was written, the sizes of the regression, and how a number is read: exactly for code, rounded for a run.
+//! In: the section as written, the sizes of the regression, and the reading of numbers: exactly for code, rounded for a
+//! run.
 
 use crate::model::{self, Bounds, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
@@ -8,39 +9,40 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 /// Settings with which an observer can be built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings<N> {
-    /// What the regression goes through.
+    /// The operator on the regression.
     pub operator: Operator<N>,
-    /// Whether the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
-    /// those of the outputs whose rates are used, and behind them those of the coordinates.
+    /// True if the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
+    /// those of the outputs whose rates are used, followed by those of the coordinates.
     pub output: bool,
-    /// Of the output form: the places of the outputs in y, where estimates are made of the outputs that the observer expects.
+    /// In the output form: the indices of the outputs in y, where estimates are made of the outputs that the observer
+    /// expects.
     pub expected: Option<Vec<usize>>,
-    /// Whether samples are joined by straight lines; else each is held.
+    /// True if samples are joined by straight lines; else each is held.
     pub straight: bool,
-    /// What estimates the unknowns.
+    /// The estimator of the unknowns.
     pub estimator: Estimator<N>,
-    /// What each unknown is not below.
+    /// Lower bounds of the unknowns.
     pub lower: Option<Vec<N>>,
-    /// What each unknown is not above.
+    /// Upper bounds of the unknowns.
     pub upper: Option<Vec<N>>,
-    /// Between what each recovered state is, from below and from above.
+    /// Lower and upper bounds of the recovered states.
     pub within: [Option<Vec<N>>; 2],
-    /// When the extension starts again from the estimate, if it does.
+    /// The restarts of the extension from the estimate, if any.
     pub rebase: Option<Rebase<N>>,
     /// The extension at the start.
     pub chi_0: Vec<N>,
     /// The normalised square of an innovation beyond which a sample is an outlier, if any is.
     pub gate: Option<N>,
-    /// What samples may be beside numbers, if that is known.
+    /// The bounds of samples, if they are known.
     pub limits: Option<Limits<N>>,
 }
 
-/// When the extension starts again from the estimate.
+/// The restarts of the extension from the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rebase<N> {
     /// After so many samples, a whole number.
     Samples(N),
-    /// When a component of it exceeds this (`Drift::Above` of the runtime).
+    /// A restart when a component of it exceeds this (`Drift::Above` of the runtime).
     Above(N),
     /// All the time, at this rate in 1/s (`Drift::Leak` of the runtime).
     Leak(N),
@@ -64,14 +66,14 @@ impl<N> Rebase<N> {
 }
 
 impl<N> Settings<N> {
-    /// Whether an equation of the regression without an unknown serves: a gate looks at the samples of all equations, and
-    /// in the output form each has the output at the start as its unknown.
+    /// Tests whether an equation of the regression without an unknown serves: a gate checks the samples of all
+    /// equations, and in the output form each has the output at the start as its unknown.
     pub fn uses_all_rates(&self) -> bool {
         self.output || self.gate.is_some()
     }
 }
 
-/// What samples may be.
+/// The bounds of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits<N> {
     /// The least and the greatest sample of each output that has limits; empty where none has.
@@ -106,7 +108,7 @@ impl<N> Limits<N> {
 /// Outliers in a row that a gate refuses.
 pub const PATIENCE: u32 = 20;
 
-/// What the regression goes through.
+/// The operator on the regression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operator<N> {
     /// A filter of this bandwidth, in rad/s.
@@ -135,7 +137,7 @@ pub enum Estimator<N> {
     Drem {
         /// The gains of these.
         gain: Vec<N>,
-        /// What makes the equations square.
+        /// The extension that makes the equations square.
         extension: Extension<N>,
     },
 }
@@ -150,14 +152,14 @@ impl<N> Estimator<N> {
     }
 }
 
-/// What least squares need.
+/// The settings of least squares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariance<N> {
     /// The diagonal of the covariance at the start.
     pub start: Vec<N>,
     /// The rate of forgetting in 1/s.
     pub forgetting: N,
-    /// By how much the covariance grows in a second, where it does.
+    /// The growth of the covariance in a second, if any.
     pub process_noise: Option<Vec<N>>,
 }
 
@@ -170,7 +172,7 @@ pub enum Extension<N> {
         gain: Vec<N>,
         /// The rate of forgetting in 1/s.
         forgetting: N,
-        /// Whether the estimate is exact after a finite time.
+        /// The settings of a finite-time estimate, if it is one.
         finite_time: Option<FiniteTime<N>>,
     },
     /// The response of a gradient.
@@ -189,9 +191,9 @@ pub struct FiniteTime<N> {
 }
 
 impl<N: Clone + PartialOrd> Settings<N> {
-    /// The settings that a section gives an observer of so many unknowns, coordinates and recovered states. There are none where the
-    /// section lacks something, and where a number cannot be read; lists of wrong lengths and bounds that exclude each
-    /// other are reported.
+    /// The settings that a section gives an observer of so many unknowns, coordinates and recovered states. There are
+    /// none where the section lacks something, and where a number cannot be read; lists of wrong lengths and bounds
+    /// that exclude each other are reported.
     pub fn resolve(
         written: &Observer,
         (unknowns, coordinates, states): (usize, usize, usize),
@@ -226,27 +228,28 @@ impl<N: Clone + PartialOrd> Settings<N> {
     }
 }
 
-/// What a section says besides the kind of its estimator.
+/// The settings of a section besides those of its estimator.
 #[derive(Clone, Debug)]
 pub struct Frame<N> {
     /// The diagonal of the covariance of the coordinates at the start, if it is written.
     pub covariance: Option<Vec<N>>,
-    /// By how much it grows in a second, if that is written.
+    /// The growth of the covariance in a second, if given.
     pub process_noise: Option<Vec<N>>,
-    /// Between what each recovered state is, from below and from above.
+    /// Lower and upper bounds of the recovered states.
     pub within: [Option<Vec<N>>; 2],
-    /// When the extension starts again, if that is written.
+    /// The restarts of the extension, if given.
     pub rebase: Option<Rebase<N>>,
     /// The limit of the gate.
     pub gate: Option<N>,
-    /// Whether samples are joined by straight lines.
+    /// True if samples are joined by straight lines.
     pub straight: bool,
     /// The extension at the start, if it is written.
     pub chi_0: Option<Vec<N>>,
 }
 
 impl<N: Clone + PartialOrd> Frame<N> {
-    /// The same of so many coordinates and recovered states, with what is wrong reported as by [`Settings::resolve`].
+    /// The same for these numbers of coordinates and recovered states, with mistakes reported as by
+    /// [`Settings::resolve`].
     pub fn resolve(
         written: &Observer,
         (coordinates, states): (usize, usize),
@@ -282,7 +285,7 @@ pub fn cannot_rebase(name: &str, rebase: Span) -> Diagnostic {
 }
 
 /// A list that has no value for each unknown, or a number that cannot be read.
-struct Unusable;
+struct RefusedSetting;
 
 struct Section<'a, F> {
     written: &'a Observer,
@@ -341,13 +344,13 @@ impl<F> Section<'_, F> {
         Some(Estimator::Drem { gain: gain?, extension })
     }
 
-    /// When the extension starts again, if it does.
-    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, Unusable>
+    /// The restarts of the extension, if any.
+    fn rebase<N>(&self) -> Result<Option<Rebase<N>>, RefusedSetting>
     where
         F: Fn(&Decimal) -> Option<N>,
     {
         let model::Rebase { samples, above, leak, .. } = &self.written.rebase;
-        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(Unusable);
+        let number = |written: &Spanned<Decimal>| self.number(written).ok_or(RefusedSetting);
         Ok(match (samples, above, leak) {
             (Some(samples), ..) => Some(Rebase::Samples(number(samples)?)),
             (None, Some(bound), _) => Some(Rebase::Above(number(bound)?)),
@@ -391,16 +394,18 @@ impl<F> Section<'_, F> {
         written: &[Spanned<Decimal>],
         count: usize,
         what: &str,
-    ) -> Result<Option<Vec<N>>, Unusable>
+    ) -> Result<Option<Vec<N>>, RefusedSetting>
     where
         F: Fn(&Decimal) -> Option<N>,
     {
         match written {
             [] => Ok(None),
-            [one] => Ok(Some(vec![self.number(one).ok_or(Unusable)?; count])),
-            all if all.len() == count => {
-                all.iter().map(|value| self.number(value).ok_or(Unusable)).collect::<Result<Vec<N>, _>>().map(Some)
-            }
+            [one] => Ok(Some(vec![self.number(one).ok_or(RefusedSetting)?; count])),
+            all if all.len() == count => all
+                .iter()
+                .map(|value| self.number(value).ok_or(RefusedSetting))
+                .collect::<Result<Vec<N>, _>>()
+                .map(Some),
             all => {
                 let message = format!("{} values are given, where the observer takes {count}: {what}", all.len());
                 self.problems.push(
@@ -412,7 +417,7 @@ impl<F> Section<'_, F> {
                         },
                     ),
                 );
-                Err(Unusable)
+                Err(RefusedSetting)
             }
         }
     }

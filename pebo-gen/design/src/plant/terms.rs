@@ -1,4 +1,4 @@
-//! The summands of a rate, each with its own place: what a refusal points at.
+//! The summands of a rate, each with its own span for a refusal to point at.
 
 use std::collections::BTreeMap;
 
@@ -20,9 +20,9 @@ pub(super) fn of_rates(arena: &Arena, scope: &Scope, model: &Model) -> BTreeMap<
     rates.map(|rate| (arena.symbol(&rate.name.value), of(arena, scope, &rate.value))).collect()
 }
 
-/// The summands of a formula as it is written: `(a - b)/c` has `a/c` where `a` stands, and `-b/c` where `b` stands.
+/// The summands of a formula as written: `(a - b)/c` has `a/c` at the span of `a`, and `-b/c` at that of `b`.
 ///
-/// None if the formula has no meaning; they add up to it otherwise.
+/// None if the formula has no meaning; otherwise they add up to it.
 fn of(arena: &Arena, scope: &Scope, formula: &formula::Formula) -> Vec<Formula> {
     let mut terms = Vec::new();
     let complete = split(arena, scope, formula, arena.one(), &mut terms);
@@ -33,7 +33,7 @@ fn of(arena: &Arena, scope: &Scope, formula: &formula::Formula) -> Vec<Formula> 
     }
 }
 
-/// Adds the summands of `factor * formula`; nothing if a part has no meaning.
+/// Adds the summands of `factor * formula`; nothing if a subformula has no meaning.
 fn split(
     arena: &Arena,
     scope: &Scope,

@@ -1,7 +1,7 @@
-//! Outputs that are given by their value: `V = g(x, y, u)` in place of `V' = f_y`.
+//! Outputs given by value: `V = g(x, y, u)` in place of `V' = f_y`.
 //!
 //! In: outputs with their values. Out: the identities `V - g = 0`, and the rates that follow from the values along the
-//! plant. Of a value that an input moves there is none: the rate of an input is not known.
+//! plant. A value that depends on an input has none: the rate of an input is not known.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use pebo_cas::{Arena, Expr, Symbol};
 use super::plant::{Formula, Output, State};
 use super::resolve::confined;
 
-/// Refuses a value that depends on the output itself, or on what is not allowed.
+/// Refuses a value that depends on the output itself, or on a symbol that is not allowed.
 pub(super) fn confine(arena: &Arena, outputs: &[Output], allowed: &BTreeSet<Symbol>, problems: &mut Diagnostics) {
     for output in outputs {
         let Some(value) = output.value else { continue };
@@ -32,7 +32,7 @@ pub(super) fn confine(arena: &Arena, outputs: &[Output], allowed: &BTreeSet<Symb
     }
 }
 
-/// What vanishes by the values that are given.
+/// The identities of the given values.
 pub(super) fn identities(arena: &Arena, outputs: &[Output]) -> Vec<Formula> {
     let difference = |output: &Output| {
         let value = output.value?;
@@ -94,11 +94,11 @@ mod tests {
             ("y: [p]\ng_y: {p: k*b}", text(&["p - k*b"]), rates(&[Some("k*a")])),
             // The rate of an input is not known.
             ("y: [p]\ng_y: {p: b + v}", text(&["p - b - v"]), rates(&[None])),
-            // By way of another output, whichever stands first.
+            // By way of another output, in either order.
             ("y: [p, q]\ng_y: {p: 2*q, q: b}", text(&["p - 2*q", "q - b"]), rates(&[Some("2*a"), Some("a")])),
             ("y: [p, q]\ng_y: {p: q}\nf_y: {q: b}", text(&["p - q"]), rates(&[Some("b"), Some("b")])),
             ("y: [p, q]\ng_y: {p: q}", text(&["p - q"]), rates(&[None, None])),
-            // A rate that the author gives stays.
+            // A rate that the author gives is kept.
             ("y: [p]\ng_y: {p: b}\nf_y: {p: a + 0}", text(&["p - b"]), rates(&[Some("a")])),
         ] {
             assert_eq!(meaning(lines), (identities, expected), "{lines}");

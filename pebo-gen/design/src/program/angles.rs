@@ -1,8 +1,8 @@
 //! Sines and cosines of sums, from those of the summands: six operations instead of two calls.
 //!
-//! In: the expressions that are lowered together. Out: which arguments of sines and cosines are the
-//! sum or difference of two others, so that only the rest is called for. Near a zero of the value the
-//! error is a rounding of the two angles, which is what the sum of the angles has lost already.
+//! In: the expressions that are lowered together. Out: the arguments of sines and cosines that are the sum or
+//! difference of two others, so that only the rest needs calls. Near a zero of the value the error is a rounding of the
+//! two angles, which the sum of the angles has lost already.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -15,15 +15,15 @@ use pebo_cas::{Arena, Expr, Function, Node, Rational};
 pub(super) struct Parts {
     first: Expr,
     second: Expr,
-    /// Whether the second is taken away.
+    /// True if the second is subtracted.
     minus: bool,
 }
 
-/// How each angle is made up; one that is not here is called for.
+/// The composition of each angle; an absent one needs a call.
 #[derive(Debug, Default)]
 pub(super) struct Angles {
     parts: FxHashMap<Expr, Parts>,
-    /// What was worked out: each angle is a part of many others.
+    /// Computed values: each angle is a part of many others.
     known: FxHashMap<(Function, Expr), Operand>,
 }
 
@@ -49,7 +49,7 @@ impl Angles {
         angles.sort_by_key(|&angle| summands(arena, angle));
         let mut parts: FxHashMap<Expr, Parts> = FxHashMap::default();
         let mut known: FxHashSet<Expr> = FxHashSet::default();
-        // All that is made up of what is there, before another is called for.
+        // All angles composed of known ones, before another call.
         while !angles.is_empty() {
             let place = angles.iter().position(|angle| parts.contains_key(angle)).unwrap_or(0);
             let newest = angles.remove(place);
@@ -66,8 +66,8 @@ impl Angles {
     }
 }
 
-/// The expressions with the sine of a doubled angle as a product, where the single angle is called for: its number joins
-/// others.
+/// The expressions with the sine of a doubled angle as a product, where the single angle is called for: its number
+/// joins others.
 pub(super) fn halved(arena: &Arena, roots: &[Expr]) -> Vec<Expr> {
     let two = Rational::from(2);
     let parts = arena.postorder(roots);
@@ -97,7 +97,7 @@ fn made_of(arena: &Arena, angle: Expr, newest: Expr, known: &FxHashSet<Expr>) ->
     known.contains(&more).then_some(Parts { first: more, second: newest, minus: true })
 }
 
-/// How many summands an angle has.
+/// The number of an angle's summands.
 fn summands(arena: &Arena, angle: Expr) -> usize {
     match arena.node(angle) {
         Node::Sum(sum) => sum.terms.len() + usize::from(!sum.constant.is_zero()),

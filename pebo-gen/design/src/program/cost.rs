@@ -1,4 +1,4 @@
-//! What a program costs: its operations, counted.
+//! The cost of a program: its operations, counted.
 
 use std::fmt;
 use std::ops::Add;
@@ -54,7 +54,7 @@ impl Cost {
         self.sums + self.products + 8 * (self.quotients + self.roots) + 40 * self.calls
     }
 
-    /// All operations together.
+    /// The number of all operations.
     pub fn total(self) -> usize {
         self.sums + self.products + self.quotients + self.roots + self.calls
     }

@@ -18,8 +18,8 @@ struct Term {
     factors: Vec<(Expr, Rational)>,
 }
 
-/// Takes common factors out of every sum, as far as `may_leave` lets a base go. A number beside a base that `is_stored`,
-/// as it stands in so many places, costs nothing.
+/// Takes common factors out of every sum, as far as `may_leave` lets a base go. A number beside a base that
+/// `is_stored`, for the number of its occurrences, costs nothing.
 pub(super) fn factor(
     arena: &Arena,
     exprs: &[Expr],

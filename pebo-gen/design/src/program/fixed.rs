@@ -1,6 +1,4 @@
-//! What depends on nothing but given symbols.
-//!
-//! In: expressions, and symbols. Out: every part of them that these symbols determine.
+//! Subexpressions that depend on given symbols alone.
 
 use rustc_hash::FxHashSet;
 

@@ -1,68 +1,69 @@
-//! What a program divides by and takes roots and logarithms of, as it is rounded.
+//! Rounded denominators and arguments of roots and logarithms in a program.
 //!
-//! In: the program from the parameters to the constants, those that the constants go into, and a program whose outputs are
-//! compared with zero. Out: that program with the values that have to be compared besides. Two forms of a value, as
-//! `a - b/c` and `a*c - b`, differ in floating point: one can be positive where the other is zero. A product of what is
-//! not zero vanishes below the range of the numbers alone: it is asked for only where no constant tells, by not being
-//! finite.
+//! In: the program from the parameters to the constants, those that the constants go into, and a program whose outputs
+//! are compared with zero. Out: that program with the further values that have to be compared. Two forms of a value, as
+//! `a - b/c` and `a*c - b`, differ in floating point: one can be positive where the other is zero. A product of nonzero
+//! values vanishes below the range of the numbers alone: it is compared only where no constant reveals that, by not
+//! being finite.
 
 use super::straight::{Constant, Operand, Operation, Program};
 use pebo_cas::{Arena, Expr, Function, Relation};
 
-/// What is known of a value as it is computed.
+/// Facts about a value as it is computed.
 #[derive(Clone, Copy)]
-struct Known {
+struct ValueFacts {
     relation: Relation,
-    /// Whether it is zero all the same where it is too small for its type.
+    /// True if underflow may make it zero.
     may_vanish: bool,
 }
 
-impl Known {
+impl ValueFacts {
     fn sure(relation: Relation) -> Self {
         Self { relation, may_vanish: false }
     }
 
-    /// Whether it is as asked; `is_told` if a constant is not finite where it is too small.
-    fn meets(self, asked: Relation, is_told: bool) -> bool {
-        match asked {
+    /// Tests whether it satisfies the relation; `is_revealed` if a constant is not finite where it underflows.
+    fn meets(self, wanted: Relation, is_revealed: bool) -> bool {
+        match wanted {
             Relation::NonNegative => self.relation != Relation::NonZero,
-            Relation::Positive => self.relation == Relation::Positive && (is_told || !self.may_vanish),
-            Relation::NonZero => self.relation != Relation::NonNegative && (is_told || !self.may_vanish),
+            Relation::Positive => self.relation == Relation::Positive && (is_revealed || !self.may_vanish),
+            Relation::NonZero => self.relation != Relation::NonNegative && (is_revealed || !self.may_vanish),
         }
     }
 }
 
-/// A program that compares, and what it compares behind its own outputs.
+/// A program that compares, and the compared values after its own outputs.
 #[derive(Clone, Debug)]
-pub struct Guarded {
+pub struct GuardedProgram {
     /// From the arguments to the outputs, and behind these to the guarded values.
     pub program: Program,
     /// The guarded values, each with its comparison.
     pub guards: Vec<(Expr, Relation)>,
 }
 
-/// `checked`, whose outputs compare so with zero, with what `setup` and the users of its outputs ask of its values besides.
+/// `checked`, whose outputs compare so with zero, with the conditions of `setup` and the users of its outputs on its
+/// values.
 pub(super) fn guarded(
     arena: &Arena,
     setup: &Program,
     users: &[&Program],
-    (checked, asked): (&Program, &[Option<Relation>]),
-) -> Guarded {
+    (checked, wanted): (&Program, &[Option<Relation>]),
+) -> GuardedProgram {
     let (mut program, places) = checked.joined(setup);
     let place = |operand| match operand {
         Operand::Result(index) => places[index],
         Operand::Constant(_) | Operand::Input(_) => operand,
     };
     let compared = |operand: Operand| {
-        let mut same = checked.outputs.iter().zip(asked).filter(|(output, _)| **output == place(operand));
-        same.find_map(|(_, relation)| *relation).map(Known::sure)
+        let mut same = checked.outputs.iter().zip(wanted).filter(|(output, _)| **output == place(operand));
+        same.find_map(|(_, relation)| *relation).map(ValueFacts::sure)
     };
     let formulas = setup.formulas(arena);
     let mut values = Values { setup, of_inputs: Vec::new(), of_results: Vec::new() };
     values.of_inputs = (0..setup.inputs.len()).map(|input| compared(Operand::Input(input))).collect();
     let mut guards = Vec::new();
-    let mut guard = |values: &mut Values, value: Operand, asked: Relation, is_told: bool| {
-        if values.known(value).is_some_and(|known| known.meets(asked, is_told)) {
+    let mut guard = |values: &mut Values, value: Operand, wanted: Relation, is_revealed: bool| {
+        if values.known(value).is_some_and(|known| known.meets(wanted, is_revealed)) {
             return;
         }
         let formula = match value {
@@ -70,14 +71,14 @@ pub(super) fn guarded(
             Operand::Input(input) => arena.of_symbol(setup.inputs[input]),
             Operand::Constant(_) => return,
         };
-        values.learn(value, Known::sure(asked));
+        values.learn(value, ValueFacts::sure(wanted));
         program.outputs.push(place(value));
-        guards.push((formula, asked));
+        guards.push((formula, wanted));
     };
-    let told = setup.told();
+    let revealed = setup.revealed();
     for (index, &operation) in setup.operations.iter().enumerate() {
-        if let Some((value, asked)) = operation.demand(setup) {
-            guard(&mut values, value, asked, told[index]);
+        if let Some((value, wanted)) = operation.demand(setup) {
+            guard(&mut values, value, wanted, revealed[index]);
         }
         let known = compared(Operand::Result(index)).or_else(|| values.of(operation));
         values.of_results.push(known);
@@ -85,17 +86,17 @@ pub(super) fn guarded(
     for (user, operation) in
         users.iter().flat_map(|user| user.operations.iter().map(move |operation| (user, operation)))
     {
-        if let Some((Operand::Input(input), asked)) = operation.demand(user)
+        if let Some((Operand::Input(input), wanted)) = operation.demand(user)
             && let Some(&value) = setup.outputs.get(input)
         {
-            guard(&mut values, value, asked, false);
+            guard(&mut values, value, wanted, false);
         }
     }
-    Guarded { program: program.pruned(), guards }
+    GuardedProgram { program: program.pruned(), guards }
 }
 
 impl Operation {
-    /// The value that must not be zero or negative, and what it has to be.
+    /// The value that must not be zero or negative, and its relation to zero.
     fn demand(self, program: &Program) -> Option<(Operand, Relation)> {
         match self {
             Self::Div(_, divisor) => Some((divisor, Relation::NonZero)),
@@ -109,7 +110,7 @@ impl Operation {
         }
     }
 
-    /// Whether the result is not finite where this operand is not.
+    /// Tests whether the result is not finite where this operand is not.
     fn passes_on(self, operand: Operand) -> bool {
         match self {
             Self::Neg(_) | Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Unary(Function::Sqrt, _) => true,
@@ -120,40 +121,40 @@ impl Operation {
 }
 
 impl Program {
-    /// Of each operation, whether some output is not finite where its result is not.
-    fn told(&self) -> Vec<bool> {
-        let mut told = vec![false; self.operations.len()];
-        let tell = |told: &mut Vec<bool>, operand: Operand| {
+    /// For each operation, true if some output is not finite where its result is not.
+    fn revealed(&self) -> Vec<bool> {
+        let mut revealed = vec![false; self.operations.len()];
+        let mark = |revealed: &mut Vec<bool>, operand: Operand| {
             if let Operand::Result(index) = operand {
-                told[index] = true;
+                revealed[index] = true;
             }
         };
         for &output in &self.outputs {
-            tell(&mut told, output);
+            mark(&mut revealed, output);
         }
         for (index, operation) in self.operations.iter().enumerate().rev() {
-            if told[index] {
+            if revealed[index] {
                 let passing = operation.operands().filter(|operand| operation.passes_on(*operand));
-                passing.for_each(|operand| tell(&mut told, operand));
+                passing.for_each(|operand| mark(&mut revealed, operand));
             }
         }
-        told
+        revealed
     }
 }
 
-/// What is known of the values of a program, as far as it was looked at.
+/// Facts about the values of a program, as far as computed.
 struct Values<'a> {
     setup: &'a Program,
-    of_inputs: Vec<Option<Known>>,
-    of_results: Vec<Option<Known>>,
+    of_inputs: Vec<Option<ValueFacts>>,
+    of_results: Vec<Option<ValueFacts>>,
 }
 
 impl Values<'_> {
-    fn known(&self, operand: Operand) -> Option<Known> {
+    fn known(&self, operand: Operand) -> Option<ValueFacts> {
         match operand {
             Operand::Input(input) => self.of_inputs[input],
             Operand::Result(index) => self.of_results[index],
-            Operand::Constant(index) => Some(Known::sure(match &self.setup.constants[index] {
+            Operand::Constant(index) => Some(ValueFacts::sure(match &self.setup.constants[index] {
                 Constant::Number(number) if number.is_zero() => Relation::NonNegative,
                 Constant::Number(number) if number.is_negative() => Relation::NonZero,
                 Constant::Number(_) | Constant::Pi => Relation::Positive,
@@ -161,7 +162,7 @@ impl Values<'_> {
         }
     }
 
-    fn learn(&mut self, operand: Operand, known: Known) {
+    fn learn(&mut self, operand: Operand, known: ValueFacts) {
         match operand {
             Operand::Input(input) => self.of_inputs[input] = Some(known),
             Operand::Result(index) => self.of_results[index] = Some(known),
@@ -169,28 +170,28 @@ impl Values<'_> {
         }
     }
 
-    /// What follows for the result of an operation.
-    fn of(&self, operation: Operation) -> Option<Known> {
+    /// The facts about the result of an operation.
+    fn of(&self, operation: Operation) -> Option<ValueFacts> {
         use Relation::{NonNegative, NonZero, Positive};
         match operation {
             Operation::Neg(value) => self
                 .known(value)
                 .filter(|known| known.relation != NonNegative)
-                .map(|known| Known { relation: NonZero, ..known }),
+                .map(|known| ValueFacts { relation: NonZero, ..known }),
             Operation::Add(a, b) => {
                 let (a, b) = (self.known(a)?, self.known(b)?);
-                let is_sure = |known: Known| known.relation == Positive && !known.may_vanish;
+                let is_sure = |known: ValueFacts| known.relation == Positive && !known.may_vanish;
                 match (a.relation, b.relation) {
                     (NonZero, _) | (_, NonZero) => None,
-                    (NonNegative, NonNegative) => Some(Known::sure(NonNegative)),
-                    _ => Some(Known { relation: Positive, may_vanish: !is_sure(a) && !is_sure(b) }),
+                    (NonNegative, NonNegative) => Some(ValueFacts::sure(NonNegative)),
+                    _ => Some(ValueFacts { relation: Positive, may_vanish: !is_sure(a) && !is_sure(b) }),
                 }
             }
             Operation::Mul(a, b) | Operation::Div(a, b) => {
                 let is_square = a == b && matches!(operation, Operation::Mul(..));
                 let (a, b) = match (self.known(a), self.known(b)) {
                     (Some(a), Some(b)) => (a.relation, b.relation),
-                    _ if is_square => return Some(Known::sure(NonNegative)),
+                    _ if is_square => return Some(ValueFacts::sure(NonNegative)),
                     _ => return None,
                 };
                 let relation = match (a, b) {
@@ -200,14 +201,14 @@ impl Values<'_> {
                     (NonZero, NonZero | Positive) | (Positive, NonZero) => NonZero,
                     (NonNegative, NonZero) | (NonZero, NonNegative) => return None,
                 };
-                Some(Known { relation, may_vanish: true })
+                Some(ValueFacts { relation, may_vanish: true })
             }
             Operation::Unary(Function::Sqrt, value) => self.known(value).filter(|known| known.relation != NonZero),
-            Operation::Unary(Function::Exp, _) => Some(Known { relation: Positive, may_vanish: true }),
+            Operation::Unary(Function::Exp, _) => Some(ValueFacts { relation: Positive, may_vanish: true }),
             Operation::Power(value, _) => self
                 .known(value)
                 .filter(|known| known.relation == Positive)
-                .map(|known| Known { may_vanish: true, ..known }),
+                .map(|known| ValueFacts { may_vanish: true, ..known }),
             _ => None,
         }
     }

@@ -1,13 +1,13 @@
 //! The reference interpreter: a program and numbers in, numbers out.
 //!
-//! One flat table of values, filled in order: of the inputs those that are read, then constants, then results. A run
-//! neither allocates nor branches on anything but the kind of operation.
+//! One flat table of values, filled in order: the inputs that are read, then constants, then results. A run neither
+//! allocates nor branches on anything but the kind of operation.
 
 use super::straight::{Operand, Operation, Program};
 use pebo_cas::Function;
 use pebo_cas::graph::function::Value;
 
-/// Runs one program at `f64`, as often as asked.
+/// Runs one program at `f64`, repeatedly.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     values: Vec<f64>,
@@ -79,7 +79,7 @@ impl Interpreter {
         }
     }
 
-    /// The outputs in their order, for inputs that are asked for by their positions where they are read.
+    /// The outputs in their order, for inputs given by their positions where they are read.
     pub fn evaluate(&mut self, input: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let values = self.values.as_mut_slice();
         for (place, &read) in self.read.iter().enumerate() {

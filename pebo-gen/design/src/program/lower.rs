@@ -1,11 +1,11 @@
-//! Expressions in, operations out.
+//! Lowers expressions to operations.
 //!
-//! Every value is computed once, sines and cosines of sums from those of the summands
-//! ([`super::angles`]). Signs travel with the values and end in subtractions; of the negations that are
-//! left, [`super::signs`] takes what it can. Products are in [`super::product`].
+//! Every value is computed once, sines and cosines of sums from those of the summands ([`super::angles`]). Signs travel
+//! with the values and end in subtractions; [`super::signs`] removes what it can of the remaining negations. Products
+//! are in [`super::product`].
 //!
-//! One thing with `product`, `angles` and `sharing`: a product is lowered factor by factor, an angle by its
-//! parts, and what sharing counts is what that lowering computes.
+//! One thing with `product`, `angles` and `sharing`: a product is lowered factor by factor, an angle by its summands,
+//! and sharing counts the products of that lowering.
 
 use std::fmt;
 
@@ -19,21 +19,21 @@ use pebo_cas::{Arena, Expr, Function, Node, Product, Rational, Sum, Symbol};
 
 /// An output depends on a symbol that is not an input.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Undeclared(pub Symbol);
+pub struct UndeclaredSymbol(pub Symbol);
 
-impl fmt::Display for Undeclared {
+impl fmt::Display for UndeclaredSymbol {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "an output depends on symbol {}, which is not an input", self.0.index())
     }
 }
 
-impl std::error::Error for Undeclared {}
+impl std::error::Error for UndeclaredSymbol {}
 
 /// Lowers expressions to a program from the inputs' values to theirs.
 ///
 /// # Errors
-/// [`Undeclared`] if an output depends on a symbol that is not an input.
-pub fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> Result<Program, Undeclared> {
+/// [`UndeclaredSymbol`] if an output depends on a symbol that is not an input.
+pub fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> Result<Program, UndeclaredSymbol> {
     lower_with(arena, inputs, &[], outputs)
 }
 
@@ -43,7 +43,7 @@ pub(super) fn lower_with(
     inputs: &[Symbol],
     parts: &[(Symbol, Expr)],
     outputs: &[Expr],
-) -> Result<Program, Undeclared> {
+) -> Result<Program, UndeclaredSymbol> {
     let declared: FxHashMap<Symbol, usize> =
         inputs.iter().enumerate().map(|(position, &symbol)| (symbol, position)).collect();
     let values: Vec<Expr> = parts.iter().map(|part| part.1).collect();
@@ -52,7 +52,7 @@ pub(super) fn lower_with(
         arena.symbols_of(exprs).into_iter().find(|symbol| !known(symbol))
     };
     if let Some(symbol) = undeclared(&values, &[]).or_else(|| undeclared(outputs, parts)) {
-        return Err(Undeclared(symbol));
+        return Err(UndeclaredSymbol(symbol));
     }
     let all = factor(arena, &[&values, outputs].concat(), |_| true, |_, _| false);
     let (values, outputs) = all.split_at(parts.len());

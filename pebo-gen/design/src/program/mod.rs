@@ -1,4 +1,4 @@
-//! Straight-line code: how the derived formulas are computed.
+//! Straight-line code: the computation of the derived formulas.
 //!
 //! ```text
 //! Expr -> stage (what depends on parameters alone, apart) -> factor -> lower -> Program -> cost, interpret, emit
@@ -28,8 +28,8 @@ mod straight;
 mod tests;
 
 pub use cost::Cost;
-pub use guards::Guarded;
+pub use guards::GuardedProgram;
 pub use interpret::Interpreter;
-pub use lower::{Undeclared, lower};
-pub use stage::{Staged, Task, stage};
+pub use lower::{UndeclaredSymbol, lower};
+pub use stage::{StagedPrograms, Task, stage};
 pub use straight::{Constant, Operand, Operation, Program};

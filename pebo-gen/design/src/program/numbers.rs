@@ -1,20 +1,20 @@
-//! Numbers where they cost the fewest multiplications: `(2*a + 2*b - c*p)*p/2` becomes `(a + b - c*p/2)*p`.
+//! Numbers at the positions of the fewest multiplications: `(2*a + 2*b - c*p)*p/2` becomes `(a + b - c*p/2)*p`.
 //!
-//! In: a sum, or a product with sums in it. Out: an equal one. A sum may be divided by a number that then multiplies the
-//! whole. Beside something stored, as a parameter, a number is a part of what is stored: it costs nothing, unless the same
-//! is stored without it too. Of equal costs a product has its
-//! sum with whole numbers that have no divisor in common, so that `y*(10 - 2*x)` and `2*y*(5 - x)` are one.
+//! In: a sum, or a product with sums in it. Out: an equal one. A sum may be divided by a number that then multiplies
+//! the whole. Beside something stored, as a parameter, a number is a part of the stored value: it costs nothing, unless
+//! the same is stored without it too. Among equal costs a product has its sum with whole numbers that have no divisor
+//! in common, so that `y*(10 - 2*x)` and `2*y*(5 - x)` are one.
 
 use rustc_hash::FxHashMap;
 
 use pebo_cas::forms::scaled::{divided, is_short};
 use pebo_cas::{Arena, Expr, Node, Product, Rational, Sum};
 
-/// The arrangement, with what is stored for an expression that stands in so many places.
+/// The arrangement, with the stored value of an expression for the number of its occurrences.
 pub(super) struct Numbers<'a, S> {
     pub(super) arena: &'a Arena,
     pub(super) is_stored: S,
-    /// In how many places an expression stands; in one, if it is not known.
+    /// The number of occurrences of an expression; one, if unknown.
     pub(super) uses: FxHashMap<Expr, usize>,
 }
 
@@ -53,9 +53,9 @@ impl<S: Fn(Expr, usize) -> bool> Numbers<'_, S> {
         arena.multiply(&coefficient, factors)
     }
 
-    /// The number by which the sum is to be divided, if any: beside it stands this coefficient.
+    /// The number that divides the sum, if any: beside it is this coefficient.
     fn share(&self, sum: &Sum, coefficient: &Rational, is_factor: bool, is_free: bool) -> Option<Rational> {
-        // What it costs, and how many numbers there are, with those that are a part of what is stored.
+        // The cost, and the count of numbers, with those that are part of a stored value.
         let cost = |share: &Rational| -> Option<(usize, usize)> {
             let outer = &coefficient.abs() * share;
             let mut cost = usize::from(!is_free && !outer.is_one());
@@ -93,7 +93,7 @@ impl<S: Fn(Expr, usize) -> bool> Numbers<'_, S> {
         best.map(|(_, share)| share)
     }
 
-    /// Whether a number beside it is a part of what is stored.
+    /// Tests whether a number beside it is part of a stored value.
     fn has_stored(&self, term: Expr) -> bool {
         self.takes_numbers(term)
             || matches!(self.arena.node(term), Node::Product(product)
@@ -105,7 +105,7 @@ impl<S: Fn(Expr, usize) -> bool> Numbers<'_, S> {
     }
 }
 
-/// Whether the denominator is a power of two.
+/// Tests whether the denominator is a power of two.
 fn is_dyadic(value: &Rational) -> bool {
     let denominator = value.denominator();
     denominator.bits() == u64::from(denominator.trailing_zeros()) + 1
@@ -145,7 +145,7 @@ mod tests {
         let beside = |arena: &Arena, e: [Expr; 5], other: Expr| arena.scale(arena.mul(other, doubled(arena, e)), &half);
         assert_eq!(arranged(|arena, e| beside(arena, e, e[3])), "d*(a + b - c/2)");
         assert_eq!(arranged(|arena, e| beside(arena, e, e[4])), "p*(a + b - c/2)");
-        // Beside a parameter a third is a part of what is stored.
+        // Beside a parameter a third is part of a stored value.
         let third = Rational::new(1, 3).unwrap();
         let stored = arranged(|arena, [a, _, c, d, p]| {
             arena.scale(arena.mul(d, sum(arena, 0, [(a, 3), (arena.mul(c, p), -1)])), &third)

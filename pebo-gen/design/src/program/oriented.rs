@@ -1,10 +1,10 @@
-//! Signs outside of what is named, so that a value and its opposite have one name.
+//! Takes signs out of named values, so that a value and its opposite have one name.
 //!
-//! In: an expression. Out: the same without the minus that it bears as a whole.
+//! In: an expression. Out: the same without its overall minus.
 
 use pebo_cas::{Arena, Expr, Node, Rational};
 
-/// A value without the minus that it bears as a whole, and whether it bears one: of a product, those of all its factors.
+/// A value without its overall minus, and true if it has one: of a product, those of all its factors.
 pub(super) fn oriented(arena: &Arena, value: Expr) -> (bool, Expr) {
     let minus = Rational::from(-1);
     let all_negative = |expr: Expr| match arena.node(expr) {

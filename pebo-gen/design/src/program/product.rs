@@ -1,9 +1,9 @@
-//! Products in, operations out.
+//! Lowers products to operations.
 //!
-//! An integer power is a chain of multiplications, a half-integer one takes a square root, any other
-//! is a general power. Factors of one magnitude of exponent are raised together: `(q/K)^10` has a value in single precision
-//! where `q^10` and `K^10` overflow. The denominators of a product are multiplied and divided by once; denominators
-//! that several products share become a reciprocal.
+//! An integer power is a chain of multiplications, a half-integer one takes a square root, any other is a general
+//! power. Factors whose exponents have one absolute value are raised as one base: `(q/K)^10` has a value in single
+//! precision where `q^10` and `K^10` overflow. The denominators of a product are multiplied and divided by once;
+//! denominators that several products share become a reciprocal.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use pebo_cas::{Expr, Function, Product, Rational};
 /// Longer chains of multiplications lose to a general power.
 const LONGEST_CHAIN: u32 = 1 << 10;
 
-/// The factors that make up a power, and the side of the fraction on which they stand.
+/// The factors of a power, and their side of the fraction.
 enum Power {
     Above(Vec<Operand>),
     Below(Vec<Operand>),
@@ -27,7 +27,7 @@ impl Lowering<'_> {
         let mut negative = product.coefficient.is_negative();
         let mut numerator: Vec<Operand> = Vec::new();
         let mut denominator: Vec<Operand> = Vec::new();
-        let (together, apart) = raised_together(product);
+        let (combined, apart) = combined_powers(product);
         let below = denominators(&apart);
         let shared = self.sharing.is_shared(&below);
         let mut factor = apart.coefficient.abs();
@@ -41,7 +41,7 @@ impl Lowering<'_> {
             let coefficient = self.number(&factor);
             numerator.push(coefficient);
         }
-        for power in &together {
+        for power in &combined {
             let (value, is_below) = self.raised(power);
             negative ^= value.negative;
             if is_below { &mut denominator } else { &mut numerator }.push(value.operand);
@@ -69,8 +69,8 @@ impl Lowering<'_> {
         Signed { negative, operand }
     }
 
-    /// The power of a quotient; whether it is one below the bar.
-    fn raised(&mut self, power: &Together) -> (Signed, bool) {
+    /// The power of a quotient; true if it is a denominator.
+    fn raised(&mut self, power: &CombinedPower) -> (Signed, bool) {
         let mut negative = false;
         let mut sides = [Vec::new(), Vec::new()];
         if !power.coefficient.is_one() {
@@ -142,37 +142,37 @@ impl Lowering<'_> {
     }
 }
 
-/// The smallest exponent of what is raised together: squares leave the range of single precision beyond 1e19 alone.
-const SMALLEST_TOGETHER: u32 = 3;
+/// The smallest exponent of a combined base: squares leave the range of single precision beyond 1e19 alone.
+const SMALLEST_COMBINED: u32 = 3;
 
-/// Bits of the magnitude of a coefficient, or of its reciprocal, that single precision just holds.
+/// Bits of a coefficient, or of its reciprocal, that single precision just holds.
 const MOST_BITS: u64 = 100;
 
 /// A power of a product.
-struct Together {
+struct CombinedPower {
     coefficient: Rational,
     /// The factors of the base, and whether they divide.
     bases: Vec<(Expr, bool)>,
     exponent: u32,
 }
 
-/// The exponent's magnitude, if what has the same may be raised together with it.
-pub(super) fn magnitude_together(exponent: &Rational) -> Option<u32> {
+/// The exponent's absolute value, if factors with the same may be combined.
+pub(super) fn combined_exponent(exponent: &Rational) -> Option<u32> {
     let magnitude = exponent.is_integer().then(|| u32::try_from(exponent.abs().to_i64()?).ok())??;
-    (SMALLEST_TOGETHER..=LONGEST_CHAIN).contains(&magnitude).then_some(magnitude)
+    (SMALLEST_COMBINED..=LONGEST_CHAIN).contains(&magnitude).then_some(magnitude)
 }
 
 /// The powers of products, and the product of the other factors.
-fn raised_together(product: &Product) -> (Vec<Together>, Product) {
+fn combined_powers(product: &Product) -> (Vec<CombinedPower>, Product) {
     let mut groups: BTreeMap<u32, Vec<(Expr, bool)>> = BTreeMap::new();
     for (base, exponent) in &product.factors {
-        if let Some(magnitude) = magnitude_together(exponent) {
+        if let Some(magnitude) = combined_exponent(exponent) {
             groups.entry(magnitude).or_default().push((*base, exponent.is_negative()));
         }
     }
     let mut coefficient = product.coefficient.clone();
     let is_far = |number: &Rational| number.numerator().bits().abs_diff(number.denominator().bits()) > MOST_BITS;
-    let mut together = Vec::new();
+    let mut combined = Vec::new();
     for (exponent, bases) in groups {
         // `(q/10)^40` where 1e-40 has no value in single precision.
         let root = is_far(&coefficient).then(|| coefficient.abs().root_exact(exponent)).flatten();
@@ -182,13 +182,13 @@ fn raised_together(product: &Product) -> (Vec<Together>, Product) {
         if root.is_some() {
             coefficient = Rational::from(coefficient.signum());
         }
-        together.push(Together { coefficient: root.unwrap_or(Rational::ONE), bases, exponent });
+        combined.push(CombinedPower { coefficient: root.unwrap_or(Rational::ONE), bases, exponent });
     }
     let raised = |exponent: &Rational| {
-        magnitude_together(exponent).is_some_and(|magnitude| together.iter().any(|power| power.exponent == magnitude))
+        combined_exponent(exponent).is_some_and(|magnitude| combined.iter().any(|power| power.exponent == magnitude))
     };
     let factors = product.factors.iter().filter(|(_, exponent)| !raised(exponent)).cloned().collect();
-    (together, Product { coefficient, factors })
+    (combined, Product { coefficient, factors })
 }
 
 pub(super) fn is_half(fraction: &Rational) -> bool {

@@ -1,7 +1,7 @@
-//! Expressions by the values that are there already.
+//! Rewrites expressions in terms of named values.
 //!
-//! In: expressions, and values with their names. Out: equal expressions in which each value that stands in them as a
-//! whole, with the opposite sign, or as a part of a product, is its name. Nothing new is named.
+//! In: expressions, and values with their names. Out: equal expressions in which each value that occurs as a whole,
+//! with the opposite sign, or as part of a product, is its name. Nothing new is named.
 
 use std::rc::Rc;
 
@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use super::oriented::oriented;
 use pebo_cas::{Arena, Expr, Node, Product, Rational, Symbol};
 
-/// The expressions with what they have of the values.
+/// The expressions in terms of the values.
 pub(super) fn with_values(arena: &Arena, exprs: &[Expr], values: &[(Symbol, Expr)]) -> Vec<Expr> {
     let minus = Rational::from(-1);
     let mut whole: FxHashMap<Expr, Expr> = FxHashMap::default();
@@ -25,7 +25,7 @@ pub(super) fn with_values(arena: &Arena, exprs: &[Expr], values: &[(Symbol, Expr
             products.push((name, product));
         }
     }
-    // What holds most comes first.
+    // The largest product comes first.
     products.sort_by_key(|(_, product)| std::cmp::Reverse(product.factors.len()));
     let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
     for expr in arena.postorder(exprs) {

@@ -1,4 +1,4 @@
-//! What several products have in common: denominators, and pairs of factors.
+//! Common denominators and pairs of factors of several products.
 //!
 //! In: the expressions that are lowered together. Out: an order of the factors of each product in
 //! which a pair that others have too comes first. Common pairs are then one value.
@@ -11,7 +11,7 @@ use pebo_cas::{Arena, Expr, Node, Product, Rational};
 /// A base and its exponent.
 type Factor = (Expr, Rational);
 
-/// How many products have a denominator, and how many a pair of factors.
+/// The number of products with a denominator, and with a pair of factors.
 #[derive(Debug, Default)]
 pub(super) struct Sharing {
     denominators: BTreeMap<Vec<Factor>, usize>,
@@ -46,7 +46,7 @@ impl Sharing {
         sharing
     }
 
-    /// Whether more than one product divides by these powers.
+    /// Tests whether more than one product divides by these powers.
     pub(super) fn is_shared(&self, denominators: &[Factor]) -> bool {
         self.denominators.get(denominators).is_some_and(|&products| products > 1)
     }

@@ -1,11 +1,11 @@
 //! Negations that cost nothing: `-(a - b)` is `b - a`, `-(2*x)` is `(-2)*x`.
 //!
-//! In: a program. Out: a program of the same value with fewer negations. Only what
-//! is used once changes its sign: nothing is computed twice.
+//! In: a program. Out: a program of the same value with fewer negations. Only values that are used once change their
+//! sign: nothing is computed twice.
 
 use super::straight::{Constant, Operand, Operation, Program};
 
-/// How far a sign is carried into a product.
+/// The depth to which a sign is carried into a product.
 const DEEPEST: usize = 16;
 
 impl Program {

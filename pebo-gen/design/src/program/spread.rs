@@ -1,8 +1,8 @@
 //! Parameters into sums whose summands all have parameters: `K*(a*x + b*y)` becomes `K*a*x + K*b*y`, where `K*a` and
 //! `K*b` are stored.
 //!
-//! In: expressions, and the symbols that seldom change. Out: equal expressions with one multiplication less for each such
-//! sum. What is used in more than one place stays as it is.
+//! In: expressions, and the symbols that seldom change. Out: equal expressions with one multiplication less for each
+//! such sum. Values with more than one use are left as they are.
 
 use rustc_hash::FxHashMap;
 
@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(spread(arena.mul(k, sum)), both);
         let with_number = arena.add(arena.product([a, k, x]), arena.mul(b, k));
         assert_eq!(spread(arena.mul(k, arena.add(arena.mul(a, x), b))), with_number);
-        // `y` alone would have to be multiplied; what stands in two places would be computed twice.
+        // `y` alone would have to be multiplied; a value with two uses would be computed twice.
         let plain = arena.mul(k, arena.add(arena.mul(a, x), y));
         let twice = arena.add(arena.mul(k, sum), arena.power(sum, &Rational::from(2)));
         for stays in [plain, twice] {

@@ -1,4 +1,4 @@
-//! What changes seldom, apart from what changes with every call.
+//! Separates values that change seldom from those that change with every call.
 //!
 //! In: the functions of a model. Out: constants, which depend on parameters alone; terms, which depend on
 //! parameters and the sampled outputs and are worth being kept for all functions and for both ends of an
@@ -14,10 +14,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::angles::halved;
 use super::factor::factor;
 use super::fixed::fixed;
-use super::guards::{Guarded, guarded};
-use super::lower::{Undeclared, lower, lower_with};
+use super::guards::{GuardedProgram, guarded};
+use super::lower::{UndeclaredSymbol, lower, lower_with};
 use super::oriented::oriented;
-use super::product::magnitude_together;
+use super::product::combined_exponent;
 use super::reuse::with_values;
 use super::spread::spread;
 use super::straight::{Operand, Operation, Program};
@@ -32,13 +32,13 @@ pub struct Task {
     pub parts: Vec<(Symbol, Expr)>,
     /// The values.
     pub outputs: Vec<Expr>,
-    /// Whether it runs with every sample. What only others need is computed where they need it.
+    /// True if it runs with every sample. Values that only others need are computed where they need them.
     pub is_regular: bool,
 }
 
 /// Functions that share constants and terms.
 #[derive(Clone, Debug)]
-pub struct Staged {
+pub struct StagedPrograms {
     /// The constants: each a formula in the parameters, the output of `setup` at the same position.
     pub constants: Vec<(Symbol, Expr)>,
     /// From the parameters to the constants.
@@ -47,15 +47,21 @@ pub struct Staged {
     pub terms: Vec<(Symbol, Expr)>,
     /// From the constants and the sampled symbols to the terms.
     pub sample: Program,
-    /// A program for each task; its inputs are the constants, the sampled symbols, the terms, then the task's arguments.
+    /// A program for each task; its inputs are the constants, the sampled symbols, the terms, then the task's
+    /// arguments.
     pub programs: Vec<Program>,
 }
 
-/// Lowers functions together, with constants computed once and terms once a sample.
+/// Lowers several functions, with constants computed once and terms once a sample.
 ///
 /// # Errors
-/// [`Undeclared`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
-pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[Task]) -> Result<Staged, Undeclared> {
+/// [`UndeclaredSymbol`] if an output depends on a symbol that is neither a parameter, sampled, nor an argument.
+pub fn stage(
+    arena: &Arena,
+    parameters: &[Symbol],
+    sampled: &[Symbol],
+    tasks: &[Task],
+) -> Result<StagedPrograms, UndeclaredSymbol> {
     let values = |task: &Task| task.parts.iter().map(|part| part.1).chain(task.outputs.clone()).collect::<Vec<_>>();
     let roots: Vec<Expr> = tasks.iter().flat_map(values).collect();
     let roots = spread(arena, &prepared(arena, &halved(arena, &roots), parameters, parameters), parameters);
@@ -97,15 +103,15 @@ pub fn stage(arena: &Arena, parameters: &[Symbol], sampled: &[Symbol], tasks: &[
     split.with_fewest_signs(arena, parameters, sampled, tasks)
 }
 
-/// More signs are chosen together, not one by one.
+/// More signs are chosen at once, not one by one.
 const MOST_SIGNS: usize = 12;
 
-/// What is computed when, as expressions.
+/// The expressions of each stage.
 #[derive(Clone)]
 struct Stages {
     constants: Vec<(Symbol, Expr)>,
     terms: Vec<(Symbol, Expr)>,
-    /// Of each task its parts, then its outputs.
+    /// The parts of each task, then its outputs.
     varying: Vec<Expr>,
 }
 
@@ -116,7 +122,7 @@ impl Stages {
         parameters: &[Symbol],
         sampled: &[Symbol],
         tasks: &[Task],
-    ) -> Result<Staged, Undeclared> {
+    ) -> Result<StagedPrograms, UndeclaredSymbol> {
         let formulas = |named: &[(Symbol, Expr)]| named.iter().map(|part| part.1).collect::<Vec<Expr>>();
         let setup = lower(arena, parameters, &formulas(&self.constants))?;
         let mut inputs: Vec<Symbol> = self.constants.iter().map(|constant| constant.0).collect();
@@ -133,7 +139,7 @@ impl Stages {
             let parts: Vec<(Symbol, Expr)> = task.parts.iter().map(|part| part.0).zip(parts.iter().copied()).collect();
             programs.push(lower_with(arena, &[inputs.as_slice(), &task.arguments].concat(), &parts, outputs)?);
         }
-        Ok(Staged { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
+        Ok(StagedPrograms { constants: self.constants.clone(), setup, terms: self.terms.clone(), sample, programs })
     }
 
     /// The programs, with the opposites of constants and terms kept where that leaves fewer negations.
@@ -143,10 +149,10 @@ impl Stages {
         parameters: &[Symbol],
         sampled: &[Symbol],
         tasks: &[Task],
-    ) -> Result<Staged, Undeclared> {
-        let negations = |staged: &Staged| {
+    ) -> Result<StagedPrograms, UndeclaredSymbol> {
+        let negations = |staged: &StagedPrograms| {
             let of = |program: &Program| program.operations.iter().filter(|o| matches!(o, Operation::Neg(_))).count();
-            // What runs at both ends of an interval counts twice.
+            // A function that runs at both ends of an interval counts twice.
             let often = |task: &Task| if task.is_regular { 2 } else { 1 };
             of(&staged.sample) + tasks.iter().zip(&staged.programs).map(|(task, p)| often(task) * of(p)).sum::<usize>()
         };
@@ -185,11 +191,11 @@ impl Stages {
     }
 }
 
-impl Staged {
-    /// A program that compares parameters with zero, with what the constants and the functions ask of them besides.
-    pub fn guarded(&self, arena: &Arena, checked: &Program, asked: &[Option<Relation>]) -> Guarded {
+impl StagedPrograms {
+    /// A program that compares parameters with zero, with the conditions of the constants and the functions on them.
+    pub fn guarded(&self, arena: &Arena, checked: &Program, wanted: &[Option<Relation>]) -> GuardedProgram {
         let users: Vec<&Program> = self.programs.iter().chain([&self.sample]).collect();
-        guarded(arena, &self.setup, &users, (checked, asked))
+        guarded(arena, &self.setup, &users, (checked, wanted))
     }
 
     /// The constants and terms whose opposite is used, or that of a product with them.
@@ -220,14 +226,14 @@ impl Staged {
     }
 }
 
-/// The functions and terms with constants that meet as one: a factor that left a sum stands beside others.
+/// The functions and terms with constants that meet as one: a factor that left a sum is beside others.
 fn merged(
     arena: &Arena,
     varying: Vec<Expr>,
     terms: &mut [(Symbol, Expr)],
     constants: &mut Vec<(Symbol, Expr)>,
 ) -> Vec<Expr> {
-    /// What leaves a sum may leave the next one too.
+    /// A factor that leaves a sum may leave the next one too.
     const ROUNDS: usize = 4;
     let formulas = terms.iter().map(|term| term.1);
     let mut all =
@@ -250,15 +256,19 @@ fn merged(
     varying
 }
 
-/// Whether an expression is one of the constants.
+/// Tests whether an expression is one of the constants.
 fn is_constant(arena: &Arena, constants: &[(Symbol, Expr)]) -> impl Fn(Expr, usize) -> bool {
     let stored: FxHashSet<Expr> = constants.iter().map(|constant| arena.of_symbol(constant.0)).collect();
     move |expr, _| stored.contains(&expr)
 }
 
-/// Terms that are computed as another before them, or as its opposite, and what they are then: two shapes of a formula
-/// may come to the same operations.
-fn same(arena: &Arena, inputs: &[Symbol], terms: &[(Symbol, Expr)]) -> Result<BTreeMap<Symbol, Expr>, Undeclared> {
+/// Terms that are computed as an earlier one, or as its opposite, and their values then: two shapes of a formula may
+/// come to the same operations.
+fn same(
+    arena: &Arena,
+    inputs: &[Symbol],
+    terms: &[(Symbol, Expr)],
+) -> Result<BTreeMap<Symbol, Expr>, UndeclaredSymbol> {
     let formulas: Vec<Expr> = terms.iter().map(|term| term.1).collect();
     let program = lower(arena, inputs, &formulas)?;
     let opposite = |operand: Operand| {
@@ -299,9 +309,9 @@ fn split(
     (split.split(&factored), split.found)
 }
 
-/// The expressions without what varies in the sums: what that leaves behind may be a sum of the given symbols. A number
-/// beside what is of `constants` alone is a part of another constant. Beside other formulas of the symbols it is a part of
-/// these where they stand in no other place.
+/// The expressions without varying factors in the sums: the rest may be a sum of the given symbols. A number beside a
+/// value of `constants` alone is part of another constant. Beside other formulas of the symbols it is part of these
+/// where they have no other use.
 fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol], constants: &[Symbol]) -> Vec<Expr> {
     let known = fixed(arena, roots, symbols);
     let stored = fixed(arena, roots, constants);
@@ -309,7 +319,7 @@ fn prepared(arena: &Arena, roots: &[Expr], symbols: &[Symbol], constants: &[Symb
     factor(arena, roots, |base| !known.contains(&base), |base, uses| stored.contains(&base) || is_own(base, uses))
 }
 
-/// Whether computing the value takes more than a few operations.
+/// Tests whether computing the value takes more than a few operations.
 fn is_dear(arena: &Arena, expr: Expr) -> bool {
     /// A multiplication or two cost as much as a number that is kept.
     const FEW: usize = 3;
@@ -392,8 +402,8 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
             factors.iter().cloned().partition(|factor| self.fixed.contains(&factor.0));
         // In a power of a quotient the parameters are a power of one constant: `K^10` alone may overflow.
         let is_raised = |(_, exponent): &(Expr, Rational)| {
-            let magnitude = magnitude_together(exponent);
-            magnitude.is_some() && rest.iter().any(|(_, moving)| magnitude_together(moving) == magnitude)
+            let magnitude = combined_exponent(exponent);
+            magnitude.is_some() && rest.iter().any(|(_, moving)| combined_exponent(moving) == magnitude)
         };
         let (raised, fixed): (Vec<_>, Vec<_>) = fixed.into_iter().partition(is_raised);
         let mut factors: Vec<_> = rest.into_iter().map(|(base, e)| (known[&base], e)).collect();
@@ -414,7 +424,7 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
         arena.multiply(&Rational::ONE, factors)
     }
 
-    /// The constant that holds the value; a sign stays outside, so that both signs share one.
+    /// The constant that holds the value; a sign is left outside, so that both signs share one.
     fn constant(&mut self, value: Expr) -> Expr {
         let arena = self.arena;
         if matches!(arena.node(value), Node::Number(_) | Node::Pi) || !(self.worth)(value) {

@@ -5,7 +5,7 @@
 
 use pebo_cas::{Arena, Expr, Function, Rational, Symbol};
 
-/// Where a value comes from.
+/// The source of a value.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Operand {
     /// The input at this position.
@@ -61,7 +61,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// What the operation uses, in order.
+    /// The operands of the operation, in order.
     pub(crate) fn operands(self) -> impl Iterator<Item = Operand> {
         let (first, second) = match self {
             Self::Neg(a) | Self::ExpM1(a) | Self::Ln1P(a) | Self::Unary(_, a) => (a, None),
@@ -108,14 +108,14 @@ pub struct Program {
     pub inputs: Vec<Symbol>,
     /// The numbers that the operations use.
     pub constants: Vec<Constant>,
-    /// What is computed, in order.
+    /// The operations, in order.
     pub operations: Vec<Operation>,
-    /// Where the outputs are found.
+    /// The outputs.
     pub outputs: Vec<Operand>,
 }
 
 impl Program {
-    /// How often each operation's result is used, outputs included.
+    /// The number of uses of each operation's result, outputs included.
     pub fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.operations.len()];
         let operands = self.operations.iter().flat_map(|operation| operation.operands());
@@ -178,13 +178,13 @@ impl Program {
         (joined, places)
     }
 
-    /// Whether the value of the input matters.
+    /// Tests whether the value of the input matters.
     pub fn reads(&self, input: usize) -> bool {
         let operands = self.operations.iter().flat_map(|operation| operation.operands());
         operands.chain(self.outputs.iter().copied()).any(|operand| operand == Operand::Input(input))
     }
 
-    /// The program without what no output needs.
+    /// The program without operations that no output needs.
     pub(super) fn pruned(self) -> Self {
         let mut needed = vec![false; self.operations.len()];
         let mut used = vec![false; self.constants.len()];
@@ -216,7 +216,7 @@ impl Program {
     }
 }
 
-/// The place of an entry, which is added if it is not there.
+/// The index of an entry, which is added if it is not there.
 fn position<T: PartialEq>(entries: &mut Vec<T>, entry: T) -> usize {
     entries.iter().position(|other| *other == entry).unwrap_or_else(|| {
         entries.push(entry);

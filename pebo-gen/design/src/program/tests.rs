@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Symbol};
 
-/// A value and a bound of what rounding in any order of the same operations can change.
+/// A value and a bound on the effect of rounding in any order of the same operations.
 #[derive(Clone, Copy, Debug)]
 struct Rounded {
     value: f64,
@@ -72,7 +72,7 @@ fn evaluate(arena: &Arena, expr: Expr, point: &BTreeMap<Symbol, f64>) -> Rounded
     known[&expr]
 }
 
-/// One construction step: what to do, and with which expressions of the pool.
+/// One construction step: the operation, and its expressions in the pool.
 type Step = (u8, u8, u8);
 
 const NAMES: [&str; 5] = ["p", "q", "x", "y", "E"];
@@ -120,8 +120,8 @@ fn run(program: &Program, point: &BTreeMap<Symbol, f64>) -> Vec<f64> {
     outputs
 }
 
-/// Factors are regrouped and divisions turned into multiplications by reciprocals: each adds roundings
-/// of the size of those that the running error counts already.
+/// Factors are regrouped and divisions turned into multiplications by reciprocals: each adds roundings of the size that
+/// the running error counts already.
 const REGROUPED: f64 = 8.0;
 
 fn assert_close(arena: &Arena, exprs: &[Expr], values: &[f64], point: &BTreeMap<Symbol, f64>) {
@@ -187,7 +187,7 @@ proptest! {
 }
 
 /// The cost of lowering one formula in x, y, d (arguments) and L, C (parameters).
-fn staged(build: impl FnOnce(&Arena) -> Vec<Expr>) -> (Arena, Staged) {
+fn staged(build: impl FnOnce(&Arena) -> Vec<Expr>) -> (Arena, StagedPrograms) {
     let arena = Arena::new();
     let parameters = ["L", "C"].map(|name| arena.symbol(name));
     let arguments = ["x", "y", "d"].map(|name| arena.symbol(name)).to_vec();
@@ -259,7 +259,7 @@ fn constants_that_meet_are_one() {
         let sum = a.add(a.div(x, l), a.div(y, l));
         vec![a.div(sum, c), a.add(d, sum)]
     };
-    // What leaves the sum, 1/L, meets 1/C in the first: no product of both is computed with each call.
+    // The factor 1/L leaves the sum and meets 1/C in the first: no product of both is computed with each call.
     assert_eq!(formulas(build), ["1/L", "1/(L*C)"]);
     assert_eq!(cost(build), "2 add, 2 mul");
 }
@@ -327,7 +327,7 @@ fn factors_of_several_summands_leave_the_sum() {
     assert_eq!(cost(build), "1 add, 1 mul");
 }
 
-/// Of x^2*y + x*d the smaller power leaves: the larger would leave y + d/x.
+/// The smaller power leaves x^2*y + x*d: the larger would leave y + d/x.
 #[test]
 fn the_smallest_power_leaves_a_sum() {
     let square = |a: &Arena| {
@@ -394,8 +394,8 @@ fn irrational_numbers_are_computed_once() {
     assert_eq!(formulas(build), ["sqrt(2)"]);
 }
 
-/// What is kept of a sample of q and r, and the cost of computing it and of the rest, for formulas that run with every
-/// sample and for one that does not.
+/// The stored values of a sample of q and r, and the cost of computing them and of the rest, for formulas that run with
+/// every sample and for one that does not.
 fn sampled(regular: &[&str], seldom: &str, name: impl Fn(&Arena, &str) -> Expr) -> (Vec<String>, [String; 3]) {
     let arena = Arena::new();
     let [q, r, u, l] = ["q", "r", "u", "L"].map(|name| arena.symbol(name));
@@ -448,7 +448,7 @@ fn what_a_sample_decides_is_kept_if_it_takes_more_than_a_few_operations() {
     let (terms, cost) = kept(&["u*sin(q)", "u/(1 + r)"], "u + cos(r)");
     assert_eq!(terms, ["sin(q)", "1/(r + 1)"]);
     assert_eq!(cost, costs(["1 add, 1 div, 1 call", "2 mul", "1 add, 1 call"]));
-    // What runs seldom takes what is kept anyway.
+    // A rare function uses values that are stored anyway.
     let (terms, cost) = kept(&["u + cos(r)"], "u + cos(r)");
     assert_eq!(terms, ["cos(r)"]);
     assert_eq!(cost, costs(["1 call", "1 add", "1 add"]));
@@ -480,7 +480,7 @@ fn an_angle_that_others_make_up_is_not_called_for() {
     assert_eq!(angles(&[(Sin, &[("q", 1)]), (Cos, &[("q", 2)])]), "1 add, 2 mul, 1 call");
     // Neither summand is needed by itself.
     assert_eq!(angles(&[(Sin, &[("q", 1), ("r", 1)]), (Sin, &[("s", 1)])]), "1 add, 2 call");
-    // Of q + r, q + s and q + r + s one is called for, whatever the others have in common with it.
+    // One of q + r, q + s and q + r + s needs calls, whatever the others have in common with it.
     let sums: [&[(&str, i64)]; 3] = [&[("q", 1), ("r", 1)], &[("q", 1), ("s", 1)], &[("q", 1), ("r", 1), ("s", 1)]];
     let [first, second, both] = sums.map(|sum| (Cos, sum));
     assert_eq!(angles(&[(Sin, &[("r", 1)]), (Sin, &[("s", 1)]), first, second, both]), "4 add, 6 mul, 3 call");
@@ -501,7 +501,7 @@ fn a_part_is_computed_once_as_it_is_written() {
     assert_eq!(run(&staged.programs[0], &point), [3.75, 11.25, 18.75]);
     let unknown = arena.symbol("w");
     let strange = stage(&arena, &[], &[], &[task(vec![(part, arena.of_symbol(unknown))], vec![named])]);
-    assert_eq!(strange.unwrap_err(), Undeclared(unknown));
+    assert_eq!(strange.unwrap_err(), UndeclaredSymbol(unknown));
 }
 
 #[test]
@@ -509,7 +509,7 @@ fn an_undeclared_symbol_is_an_error() {
     let arena = Arena::new();
     let (x, w) = (arena.symbol("x"), arena.symbol("w"));
     let sum = arena.add(arena.of_symbol(x), arena.of_symbol(w));
-    assert_eq!(lower(&arena, &[x], &[sum]), Err(Undeclared(w)));
+    assert_eq!(lower(&arena, &[x], &[sum]), Err(UndeclaredSymbol(w)));
 }
 
 #[test]
@@ -524,7 +524,7 @@ fn an_exponential_less_one_keeps_its_digits() {
     assert_eq!((exponentials.count(), program.operations.len()), (1, 3), "{program:?}");
     let mut values = [0.0; 3];
     Interpreter::new(&program).run(&[1e-9, 2.0], &mut values);
-    // Of exp(1e-9) - 1 = 1e-9 + 5e-19 the difference has 7 digits; a few roundings are allowed.
+    // The difference exp(1e-9) - 1 = 1e-9 + 5e-19 has 7 digits; a few roundings are allowed.
     for (value, exact) in values.into_iter().zip([1.000_000_000_5e-9, -1.000_000_000_5e-9, 2.000_000_001e-9]) {
         assert!((value / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{value:e}");
     }
@@ -541,7 +541,7 @@ fn a_logarithm_beside_one_keeps_its_digits() {
     assert_eq!((beside.count(), program.operations.len()), (1, 3), "{program:?}");
     let mut values = [0.0; 2];
     Interpreter::new(&program).run(&[1e-9], &mut values);
-    // ln(1 + 1e-9) = 1e-9 - 5e-19, of which the logarithm of the sum has 7 digits.
+    // The logarithm of the sum has 7 digits of ln(1 + 1e-9) = 1e-9 - 5e-19.
     assert!((values[0] / 9.999_999_995e-10 - 1.0).abs() < 4.0 * f64::EPSILON, "{:e}", values[0]);
 }
 

@@ -1,46 +1,46 @@
-//! A transform that was found, with what is proved of it.
+//! A transform that was found, with its derivation.
 
 use crate::analysis::{Class, Derivation, Excitation, Outcome};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::{Arena, Expr};
 
-use super::problem::Question;
+use super::problem::Problem;
 
 /// A transform with the verdicts on its claims.
 #[derive(Debug)]
 pub struct Candidate {
     /// The plant with this transform.
     pub plant: Plant,
-    /// What is proved of it.
+    /// The derivation.
     pub derivation: Derivation,
 }
 
 impl Candidate {
-    /// Proves what can be proved of a transform.
-    pub(super) fn of(question: &Question<'_>, phi: &[Expr]) -> Self {
-        let plant = question.plant.with_transform(phi);
+    /// Derives the claims of a transform.
+    pub(super) fn of(problem: &Problem<'_>, phi: &[Expr]) -> Self {
+        let plant = problem.plant.with_transform(phi);
         let derivation = Derivation::derive(&plant);
         Self { plant, derivation }
     }
 
-    /// Whether every claim is proved and every state is recovered.
+    /// Tests whether every claim is proved and every state is recovered.
     pub fn is_full(&self) -> bool {
         self.derivation.outcome == Outcome::Accepted && self.recovered() == self.plant.x.len()
     }
 
-    /// Whether the rates of the outputs are a linear regression for theta itself.
+    /// Tests whether the rates of the outputs are a linear regression for theta itself.
     pub fn is_linear(&self) -> bool {
         self.derivation.regression.result.as_ref().is_some_and(|regression| regression.is_linear(&self.plant))
     }
 
-    /// How many states are recovered.
+    /// The number of recovered states.
     pub fn recovered(&self) -> usize {
         self.derivation.left_inverse.result.as_ref().map_or(0, |inverse| inverse.x.len())
     }
 
-    /// What comes first among candidates: what is accepted, recovers all states, filters what outputs tell, has outputs affine
-    /// in z, a plain cascade, few components, unknowns that are seen at once, and is short.
+    /// The order of candidates: an accepted one, that recovers all states, filters all measured states, has outputs
+    /// affine in z, a plain cascade, few components, unknowns identifiable at once, and is short.
     pub(super) fn merit(&self) -> impl Ord + use<> {
         let accepted = match self.derivation.outcome {
             Outcome::Accepted => 0,
@@ -60,8 +60,8 @@ impl Candidate {
         )
     }
 
-    /// Whether a state is recovered with all the noise of an output that tells it: by a component that is zero by the
-    /// identities, as a state less the output that measures it, or by that output alone.
+    /// Tests whether a state is recovered with all the noise of an output that determines it: by a component that is
+    /// zero by the identities, as a state less the output that measures it, or by that output alone.
     pub(super) fn copies_an_output(&self) -> bool {
         let arena = &self.plant.arena;
         if self.plant.identities.is_empty() {
@@ -76,7 +76,7 @@ impl Candidate {
     }
 }
 
-/// How long a transform is to read.
+/// The printed length of a transform.
 pub(super) fn size(arena: &Arena, phi: &[Expr]) -> usize {
     phi.iter().map(|component| arena.print(*component).len()).sum()
 }

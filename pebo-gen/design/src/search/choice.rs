@@ -1,13 +1,13 @@
-//! Which of the transforms of one form to take.
+//! The choice among transforms of one form.
 //!
-//! In: all solutions of an ansatz, simple ones first. Out: few of them whose gradients by x have full rank, and whose span
-//! holds the rates of the outputs if that of all does.
+//! In: all solutions of an ansatz, simple ones first. Out: few of them whose gradients by x have full rank, and whose
+//! span holds the rates of the outputs if the span of all does.
 
 use crate::plant::Matrix;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Relation};
 
-use super::problem::Question;
+use super::problem::Problem;
 use super::sample::{is_affine_in, rank_of_gradients};
 
 /// So many solutions beyond the number of states are chosen among.
@@ -24,38 +24,38 @@ const MOST_SUBSETS: usize = 40;
 pub(super) struct Choice {
     pub(super) transforms: Vec<Vec<Expr>>,
     pub(super) rank: usize,
-    /// Whether the rates of the outputs are affine in the first of them.
+    /// True if the rates of the outputs are affine in the first of them.
     pub(super) affine: bool,
 }
 
 /// All of the solutions as one transform.
-pub(super) fn whole(question: &Question<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
-    let rank = rank_of_gradients(question, solutions)?;
-    let affine = is_affine_in(question, &question.output_rates(), solutions)?;
+pub(super) fn whole(problem: &Problem<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
+    let rank = rank_of_gradients(problem, solutions)?;
+    let affine = is_affine_in(problem, &problem.output_rates(), solutions)?;
     Ok(Choice { transforms: vec![solutions.to_vec()], rank, affine })
 }
 
 /// Chooses among solutions.
-pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
-    let all = &solutions[..solutions.len().min(question.x.len() + MOST_BEYOND)];
+pub(super) fn choose(problem: &Problem<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
+    let all = &solutions[..solutions.len().min(problem.x.len() + MOST_BEYOND)];
     let mut few: Vec<Expr> = Vec::new();
     for solution in all {
         let more = [few.as_slice(), &[*solution]].concat();
-        if rank_of_gradients(question, &more)? == more.len() {
+        if rank_of_gradients(problem, &more)? == more.len() {
             few = more;
         }
-        if few.len() == question.x.len() {
+        if few.len() == problem.x.len() {
             break;
         }
     }
     let rank = few.len();
-    let outputs = question.output_rates();
-    let affine = |phi: &[Expr]| is_affine_in(question, &outputs, phi);
-    if rank == question.x.len() && rank < all.len() && !is_everywhere(question, &few) {
+    let outputs = problem.output_rates();
+    let affine = |phi: &[Expr]| is_affine_in(problem, &outputs, phi);
+    if rank == problem.x.len() && rank < all.len() && !is_everywhere(problem, &few) {
         // Perhaps there are others whose gradients are independent everywhere.
         for subset in subsets(&all[..all.len().min(MOST_IN_SUBSETS)], rank).take(MOST_SUBSETS) {
             let linear = affine(&subset)? || !affine(&few)?;
-            if linear && rank_of_gradients(question, &subset)? == rank && is_everywhere(question, &subset) {
+            if linear && rank_of_gradients(problem, &subset)? == rank && is_everywhere(problem, &subset) {
                 few = subset;
                 break;
             }
@@ -66,30 +66,30 @@ pub(super) fn choose(question: &Question<'_>, solutions: &[Expr]) -> Result<Choi
         return Ok(Choice { transforms: vec![few], rank, affine });
     }
     if !affine(all)? {
-        // Together they may be related, which is a regression as well.
+        // All of them may be related, which is a regression as well.
         let together = (all.len() <= MOST_IN_SUBSETS).then(|| all.to_vec());
         return Ok(Choice { transforms: [few].into_iter().chain(together).collect(), rank, affine: false });
     }
-    // The longest first: what is left are the shortest that will do.
+    // The longest is dropped first: the shortest that suffice are left.
     let mut kept = all.to_vec();
     for solution in all.iter().rev() {
         let without: Vec<Expr> = kept.iter().copied().filter(|e| e != solution).collect();
-        if without.len() >= rank && rank_of_gradients(question, &without)? == rank && affine(&without)? {
+        if without.len() >= rank && rank_of_gradients(problem, &without)? == rank && affine(&without)? {
             kept = without;
         }
     }
     Ok(Choice { transforms: vec![kept, few], rank, affine: true })
 }
 
-/// Whether the gradients by x are shown to be independent on the whole domain.
-fn is_everywhere(question: &Question<'_>, phi: &[Expr]) -> bool {
-    let (arena, domain) = (question.arena, &question.domain);
-    let slopes = Matrix::build(phi.len(), phi.len(), |row, column| arena.derivative(phi[row], question.x[column]));
+/// Tests whether the gradients by x are provably independent on the whole domain.
+fn is_everywhere(problem: &Problem<'_>, phi: &[Expr]) -> bool {
+    let (arena, domain) = (problem.arena, &problem.domain);
+    let slopes = Matrix::build(phi.len(), phi.len(), |row, column| arena.derivative(phi[row], problem.x[column]));
     let volume = slopes.determinant(arena, &domain.facts);
     volume.is_ok_and(|volume| domain.implies(arena, volume, Relation::NonZero))
 }
 
-/// The subsets with so many elements, those of the first elements first.
+/// The subsets of this size, those of the first elements first.
 fn subsets(all: &[Expr], size: usize) -> impl Iterator<Item = Vec<Expr>> {
     let chosen = move |mask: u32| {
         let kept = all.iter().enumerate().filter(move |(index, _)| (mask >> index) & 1 == 1);

@@ -1,4 +1,4 @@
-//! What a search came to, as values.
+//! The result of a search, as values.
 
 use pebo_cas::Symbol;
 use pebo_cas::tower::Obstacle;
@@ -6,35 +6,35 @@ use pebo_cas::tower::Obstacle;
 use super::bounds::Bound;
 use super::candidate::Candidate;
 
-/// What a search came to.
+/// The result of a search.
 #[derive(Debug)]
 pub struct Search {
-    /// What it came to, in a word.
-    pub verdict: Found,
+    /// The verdict, in a word.
+    pub verdict: SearchVerdict,
     /// The transforms that were proved or refuted, in order of merit.
     pub candidates: Vec<Candidate>,
     /// A transform that would be accepted if these states were positive, where none is accepted as it is.
     pub assumed: Option<(Candidate, Vec<Symbol>)>,
-    /// How large the rank of dphi/dx can be, of transforms with a plain cascade: where the search looked at that. Of smooth
-    /// ones; where that says nothing, as of every plant without inputs, of those affine in x.
+    /// The bound on the rank of dphi/dx for transforms with a plain cascade, where the search computed it: for smooth
+    /// ones; where that says nothing, as of every plant without inputs, for those affine in x.
     pub bound: Option<Bound>,
-    /// The same of those affine in x, where it is small.
+    /// The same for those affine in x, where it is small.
     pub affine: Option<Bound>,
     /// The same of transforms affine in x with a generalised cascade, where the first is small.
     pub generalised: Option<Bound>,
-    /// What was tried, in order.
-    pub tried: Vec<Tried>,
+    /// The attempts, in order.
+    pub tried: Vec<Attempt>,
 }
 
-/// Whether a transform was found.
+/// The verdict of a search.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Found {
+pub enum SearchVerdict {
     /// There is one whose claims are all proved, and which recovers all states.
     Found,
-    /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if a
-    /// generalised one would do, none that is affine in x. Other generalised ones were looked for and not found; where
-    /// rates are no polynomials in the states, or a state is an unknown constant, which suggests other functions, the
-    /// search is undecided instead.
+    /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if
+    /// a generalised one would do, none that is affine in x. Other generalised ones were looked for and not found;
+    /// where rates are no polynomials in the states, or a state is an unknown constant, which suggests other functions,
+    /// the search is undecided instead.
     None,
     /// Neither.
     Undecided,
@@ -42,16 +42,16 @@ pub enum Found {
 
 /// A form of transforms that was tried.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Tried {
+pub struct Attempt {
     /// The form.
     pub form: Form,
     /// The functions among which a null space was looked for, where there was one.
     pub columns: usize,
-    /// How many solutions there are, as far as they were worked out.
+    /// The number of solutions, as far as they were worked out.
     pub solutions: usize,
     /// The rank of their gradients by x.
     pub rank: usize,
-    /// Why it was given up, if it was.
+    /// The reason for giving it up, if it was.
     pub obstacle: Option<Obstacle>,
 }
 
@@ -74,7 +74,7 @@ pub enum Form {
     Closure(Start),
 }
 
-/// What a closure begins with.
+/// The formulas with which a closure begins.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Start {
     /// The outputs' rates.
@@ -91,6 +91,6 @@ pub enum Start {
     Quotients,
     /// The outputs' rates, where unknown constants are taken for known.
     Constants,
-    /// The outputs' rates, where what unknown constants multiply is integrated by parts.
+    /// The outputs' rates, with the factors of unknown constants integrated by parts.
     Parts,
 }

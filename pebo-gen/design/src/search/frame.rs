@@ -35,7 +35,7 @@ pub fn blocks(plant: &Plant, class: &str) -> Option<Vec<Block>> {
     }
 }
 
-/// The rows of factors with which phi is linear in these symbols, if it is, and the factors are free of what moves.
+/// The rows of factors with which phi is linear in these symbols, if it is, and the factors are free of moving symbols.
 fn factors(plant: &Plant, of: &[Symbol], moving: &BTreeSet<Symbol>) -> Option<Vec<Vec<Expr>>> {
     let (arena, domain) = (&plant.arena, plant.domain());
     plant

@@ -1,4 +1,4 @@
-//! The functions that a transform may be made of: those that the plant's own formulas hold, and their neighbours.
+//! The functions of an ansatz for a transform: functions in the plant's own formulas, and their neighbours.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Function, Node, Rational, Relation, Symbol};
 
 use super::integral::logarithm::logarithm;
-use super::problem::Question;
+use super::problem::Problem;
 use super::sample::independent;
 
 /// More products than this are not made of one pool.
@@ -17,43 +17,43 @@ const MOST_PRODUCTS: usize = 80;
 /// Nor more power products than this of the outputs alone: the null space of as many columns is found in no time.
 const MOST_MONOMIALS: usize = 290;
 
-/// Functions of outputs and constants alone: the outputs, what the rates hold of them, and derivatives of it.
-pub(super) fn of_outputs(question: &Question<'_>) -> Vec<Expr> {
-    let outputs: BTreeSet<Symbol> = question.y.iter().copied().collect();
-    let mut found: Vec<Expr> = question.y.iter().map(|symbol| question.arena.of_symbol(*symbol)).collect();
+/// Functions of outputs and constants alone: the outputs, such functions in the rates, and their derivatives.
+pub(super) fn of_outputs(problem: &Problem<'_>) -> Vec<Expr> {
+    let outputs: BTreeSet<Symbol> = problem.y.iter().copied().collect();
+    let mut found: Vec<Expr> = problem.y.iter().map(|symbol| problem.arena.of_symbol(*symbol)).collect();
     let is_of_outputs = |e: Expr| {
-        let symbols = question.arena.symbols_of(&[e]);
-        !symbols.is_disjoint(&outputs) && symbols.iter().all(|s| outputs.contains(s) || !question.signals.contains(s))
+        let symbols = problem.arena.symbols_of(&[e]);
+        !symbols.is_disjoint(&outputs) && symbols.iter().all(|s| outputs.contains(s) || !problem.signals.contains(s))
     };
-    let rates: Vec<Expr> = question.rates.values().copied().collect();
-    add_atoms(question, &rates, &is_of_outputs, &mut found);
+    let rates: Vec<Expr> = problem.rates.values().copied().collect();
+    add_atoms(problem, &rates, &is_of_outputs, &mut found);
     let slopes: Vec<Expr> =
-        found.iter().flat_map(|e| question.y.iter().map(|y| question.arena.derivative(*e, *y))).collect();
-    add_atoms(question, &slopes, &is_of_outputs, &mut found);
-    found.retain(|e| question.exists(*e));
+        found.iter().flat_map(|e| problem.y.iter().map(|y| problem.arena.derivative(*e, *y))).collect();
+    add_atoms(problem, &slopes, &is_of_outputs, &mut found);
+    found.retain(|e| problem.exists(*e));
     found
 }
 
-/// Functions of states, and perhaps outputs: the states, and what the rates hold of them.
-pub(super) fn of_states(question: &Question<'_>) -> Vec<Expr> {
-    let arena = question.arena;
-    let states = question.states();
-    let known: BTreeSet<Symbol> = question.y.iter().copied().collect();
-    let mut found: Vec<Expr> = question.x.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
+/// Functions of states, and perhaps outputs: the states, and such functions in the rates.
+pub(super) fn of_states(problem: &Problem<'_>) -> Vec<Expr> {
+    let arena = problem.arena;
+    let states = problem.states();
+    let known: BTreeSet<Symbol> = problem.y.iter().copied().collect();
+    let mut found: Vec<Expr> = problem.x.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
     let is_of_states = |e: Expr| {
         let symbols = arena.symbols_of(&[e]);
-        let admitted = |s: &Symbol| states.contains(s) || known.contains(s) || !question.signals.contains(s);
+        let admitted = |s: &Symbol| states.contains(s) || known.contains(s) || !problem.signals.contains(s);
         !symbols.is_disjoint(&states) && symbols.iter().all(admitted)
     };
-    let rates: Vec<Expr> = question.rates.values().copied().collect();
-    add_atoms(question, &rates, &is_of_states, &mut found);
-    found.retain(|e| question.exists(*e) && !question.bends_in_states(*e));
+    let rates: Vec<Expr> = problem.rates.values().copied().collect();
+    add_atoms(problem, &rates, &is_of_states, &mut found);
+    found.retain(|e| problem.exists(*e) && !problem.is_non_smooth_in_states(*e));
     found
 }
 
-/// Square roots of what the functions divide by, and their reciprocals, where it is positive.
-pub(super) fn roots(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
-    let arena = question.arena;
+/// Square roots of positive denominators of the functions, and their reciprocals.
+pub(super) fn roots(problem: &Problem<'_>, of: &[Expr]) -> Vec<Expr> {
+    let arena = problem.arena;
     let bases = of.iter().filter_map(|e| match arena.node(*e) {
         Node::Product(product) => match product.factors.as_slice() {
             [(base, exponent)] if exponent.is_integer() && exponent.is_negative() => Some(*base),
@@ -61,23 +61,23 @@ pub(super) fn roots(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
         },
         _ => None,
     });
-    let positive = bases.filter(|base| question.domain.implies(arena, *base, Relation::Positive));
+    let positive = bases.filter(|base| problem.domain.implies(arena, *base, Relation::Positive));
     positive.flat_map(|base| [half(), -&half()].map(|exponent| arena.power(base, &exponent))).collect()
 }
 
-/// Sine and cosine of the outputs that stand in no rate: equations that do not change along one have solutions that turn
-/// with it.
-pub(super) fn waves(question: &Question<'_>) -> Vec<Expr> {
-    let arena = question.arena;
-    let rates: Vec<Expr> = question.rates.values().copied().collect();
+/// Sine and cosine of the outputs that occur in no rate: equations that do not change along one have solutions that
+/// turn with it.
+pub(super) fn waves(problem: &Problem<'_>) -> Vec<Expr> {
+    let arena = problem.arena;
+    let rates: Vec<Expr> = problem.rates.values().copied().collect();
     let known = arena.symbols_of(&rates);
-    let cyclic = question.y.iter().filter(|symbol| !known.contains(symbol));
+    let cyclic = problem.y.iter().filter(|symbol| !known.contains(symbol));
     cyclic.flat_map(|y| [Function::Sin, Function::Cos].map(|f| arena.call(f, &[arena.of_symbol(*y)]))).collect()
 }
 
 /// Logarithms of signals, of sums, and of factors: of states where their sign is known.
-pub(super) fn logarithms(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
-    let arena = question.arena;
+pub(super) fn logarithms(problem: &Problem<'_>, of: &[Expr]) -> Vec<Expr> {
+    let arena = problem.arena;
     let bases = of.iter().flat_map(|e| match arena.node(*e) {
         Node::Symbol(_) | Node::Sum(_) => vec![*e],
         Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
@@ -85,13 +85,13 @@ pub(super) fn logarithms(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
     });
     let mut found = Vec::new();
     for base in bases {
-        let moves = arena.depends_on(base, &question.signals);
-        let logarithm = logarithm(arena, &question.domain, base);
+        let moves = arena.depends_on(base, &problem.signals);
+        let logarithm = logarithm(arena, &problem.domain, base);
         let signed = arena
             .domain_conditions(&[logarithm], Regularity::Differentiable)
             .iter()
             .all(|(_, relation)| *relation != Relation::NonZero);
-        if moves && !found.contains(&logarithm) && (signed || !arena.depends_on(base, &question.hidden)) {
+        if moves && !found.contains(&logarithm) && (signed || !arena.depends_on(base, &problem.hidden)) {
             found.push(logarithm);
         }
     }
@@ -99,8 +99,8 @@ pub(super) fn logarithms(question: &Question<'_>, of: &[Expr]) -> Vec<Expr> {
 }
 
 /// Adds the calls, roots and reciprocals in formulas, with the functions that their derivatives lead to.
-fn add_atoms(question: &Question<'_>, formulas: &[Expr], admits: &impl Fn(Expr) -> bool, found: &mut Vec<Expr>) {
-    let arena = question.arena;
+fn add_atoms(problem: &Problem<'_>, formulas: &[Expr], admits: &impl Fn(Expr) -> bool, found: &mut Vec<Expr>) {
+    let arena = problem.arena;
     let mut add = |e: Expr| {
         if !found.contains(&e) && arena.as_number(e).is_none() && admits(e) {
             found.push(e);
@@ -139,12 +139,12 @@ fn add_atoms(question: &Question<'_>, formulas: &[Expr], admits: &impl Fn(Expr) 
     }
 }
 
-/// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are too
-/// many, or where a rate is no polynomial in the outputs as it is written: `(q - q0)^4` loses digits as a sum.
-pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize) -> Option<Vec<(Expr, usize)>> {
-    let arena = question.arena;
-    let moving: BTreeSet<Symbol> = question.y.iter().copied().collect();
-    let rates: Vec<Expr> = question.rates.values().copied().collect();
+/// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are
+/// too many, or where a rate is no polynomial in the outputs as it is written: `(q - q0)^4` loses digits as a sum.
+pub(super) fn monomials(problem: &Problem<'_>, outputs: &[Expr], degree: usize) -> Option<Vec<(Expr, usize)>> {
+    let arena = problem.arena;
+    let moving: BTreeSet<Symbol> = problem.y.iter().copied().collect();
+    let rates: Vec<Expr> = problem.rates.values().copied().collect();
     let is_whole = |part: Expr| match arena.node(part) {
         Node::Call(..) => !arena.depends_on(part, &moving),
         Node::Product(product) => product.factors.iter().all(|(base, exponent)| {
@@ -172,14 +172,14 @@ pub(super) fn monomials(question: &Question<'_>, outputs: &[Expr], degree: usize
     Some(found)
 }
 
-/// The products of at most so many of the functions, each with that number as its weight, beginning with 1; without those
-/// that are combinations of others.
+/// The products of at most so many of the functions, each with that number as its weight, beginning with 1; without
+/// combinations of others.
 pub(super) fn products(
-    question: &Question<'_>,
+    problem: &Problem<'_>,
     functions: &[Expr],
     degree: usize,
 ) -> Result<Vec<(Expr, usize)>, Obstacle> {
-    let arena = question.arena;
+    let arena = problem.arena;
     let mut found = vec![(arena.one(), 0)];
     let mut last: Vec<(Expr, usize)> = vec![(arena.one(), 0)];
     for weight in 1..=degree {
@@ -200,7 +200,7 @@ pub(super) fn products(
         last = next;
     }
     let kept: BTreeSet<Expr> =
-        independent(question, &found.iter().map(|(e, _)| *e).collect::<Vec<_>>())?.into_iter().collect();
+        independent(problem, &found.iter().map(|(e, _)| *e).collect::<Vec<_>>())?.into_iter().collect();
     found.retain(|(e, _)| kept.contains(e));
     Ok(found)
 }

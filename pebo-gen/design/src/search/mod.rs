@@ -4,13 +4,13 @@
 //! Plant, class -> candidates -> claims, proved by `analysis` -> Search
 //! ```
 //!
-//! In: a plant; a transform that it has is not looked at. Out: the transforms that were found, in order of merit, each with
-//! all that is proved of it, and what was tried. Holds after: *found* is said only of a transform whose claims are all
-//! proved. Everything before that proof only directs the search: values modulo a prime, null spaces, rules for integrals.
+//! In: a plant; its own transform, if any, is ignored. Out: the transforms that were found, in order of merit, each
+//! with its derivation, and the attempts. Holds after: *found* is said only of a transform whose claims are all proved.
+//! Everything before that proof only directs the search: values modulo a prime, null spaces, rules for integrals.
 //!
 //! It is linear: the rate of `phi = sum of c_k b_k` is linear in the `c_k`, and in dphi, however nonlinear the plant is
-//! (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015, eq. 3). Attempts go from simple forms to large ones; the first whose outputs
-//! are affine in z ends the search.
+//! (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015, eq. 3). Attempts go from simple forms to large ones; the first whose
+//! outputs are affine in z ends the search.
 
 mod bounds;
 mod integral;
@@ -44,45 +44,45 @@ pub use bounds::{Bound, BoundClass, Evidence};
 pub use candidate::Candidate;
 use completion::connection::Connection;
 use continuous::{continuous, is_of_states_and_outputs};
-pub use found::{Form, Found, Search, Start, Tried};
+pub use found::{Attempt, Form, Search, SearchVerdict, Start};
 pub use frame::Block;
 #[cfg(feature = "yaml")]
 pub use frame::blocks;
-use problem::Question;
+use problem::Problem;
 pub use words::settles;
 
 /// Searches for a transform of the plant, of one class of cascade or of any.
 ///
 /// ```
-/// use pebo_design::model::Model;
-/// use pebo_design::plant::Plant;
-/// use pebo_design::search::{Found, solve};
-/// use pebo_design::source::Source;
+/// use pebo_gen::model::Model;
+/// use pebo_gen::plant::Plant;
+/// use pebo_gen::search::{SearchVerdict, solve};
+/// use pebo_gen::source::Source;
 ///
 /// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\n";
 /// let model = Model::parse(&Source::new("m.yaml", text).expect("a short text")).expect("a model");
 /// let search = solve(&Plant::resolve(&model).expect("a plant"), None);
-/// assert_eq!(search.verdict, Found::Found);
+/// assert_eq!(search.verdict, SearchVerdict::Found);
 /// assert_eq!(search.candidates[0].formulas(), ["p"]);
 /// ```
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
-    let question = Question::of(plant);
-    let mut hunt = Hunt::new(&question);
-    // What the plant's class gives may leave nothing better to be expected.
+    let problem = Problem::of(plant);
+    let mut attempts = Attempts::new(&problem);
+    // The transform of the plant's class may leave nothing better to be expected.
     let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
-    hunt.candidates.extend(own);
-    hunt.run(class);
-    // An output may tell a state, with all of its noise: what filters it was looked for first.
-    for told in Question::with_told_states(plant) {
-        if hunt.is_full() || !told.goes_on() {
+    attempts.candidates.extend(own);
+    attempts.run(class);
+    // An output may determine a state, with all of its noise: transforms that filter it were looked for first.
+    for reduced in Problem::with_measured_states(plant) {
+        if attempts.is_full() || !reduced.goes_on() {
             break;
         }
-        let mut others = Hunt::new(&told);
+        let mut others = Attempts::new(&reduced);
         others.run(class);
-        hunt.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
+        attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
     }
-    let (mut candidates, tried) = (std::mem::take(&mut hunt.candidates), std::mem::take(&mut hunt.tried));
+    let (mut candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
     if let Some(class) = class {
         candidates.retain(|candidate| candidate.derivation.class == class);
     }
@@ -92,8 +92,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let (affine, bound) = if plain || class == Some(Class::Gpebo) {
         (None, None)
     } else {
-        let affine = hunt.affine.take().or_else(|| bounds::largest::affine(&question, 0));
-        (affine, hunt.bound.take().or_else(|| bounds::largest::smooth_to(&question, LARGEST_ORDER, 0)))
+        let affine = attempts.affine.take().or_else(|| bounds::largest::affine(&problem, 0));
+        (affine, attempts.bound.take().or_else(|| bounds::largest::smooth_to(&problem, LARGEST_ORDER, 0)))
     };
     let affine = affine.filter(|affine| affine.rank < affine.states);
     let bound = match bound {
@@ -104,27 +104,27 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let generalised = if found || !smooth || class.is_some() {
         None
     } else {
-        hunt.generalised.take().or_else(|| affine_rates(&question, 0)).filter(|bound| bound.rank < bound.states)
+        attempts.generalised.take().or_else(|| affine_rates(&problem, 0)).filter(|bound| bound.rank < bound.states)
     };
     let excluded = smooth
         && (class == Some(Class::Pebo)
-            || (generalised.as_ref().is_some_and(Bound::excludes) && question.suggests_affine_transforms()));
+            || (generalised.as_ref().is_some_and(Bound::excludes) && problem.suggests_affine_transforms()));
     // A transform may fail at single points, which are then listed: two points that were drawn are not both of them.
     let again = || {
-        let smooth = bounds::largest::smooth(&question, bounds::largest::affine(&question, 1).as_ref(), 1)
+        let smooth = bounds::largest::smooth(&problem, bounds::largest::affine(&problem, 1).as_ref(), 1)
             .filter(Bound::excludes)
-            .or_else(|| bounds::largest::smooth_to(&question, LARGEST_ORDER, 1));
-        let generalised = || affine_rates(&question, 1);
+            .or_else(|| bounds::largest::smooth_to(&problem, LARGEST_ORDER, 1));
+        let generalised = || affine_rates(&problem, 1);
         smooth.is_some_and(|bound| bound.excludes())
             && (class.is_some() || generalised().is_some_and(|bound| bound.excludes()))
     };
     let excluded = excluded && again();
     let verdict = match (found, excluded) {
-        (true, _) => Found::Found,
-        (false, true) => Found::None,
-        (false, false) => Found::Undecided,
+        (true, _) => SearchVerdict::Found,
+        (false, true) => SearchVerdict::None,
+        (false, false) => SearchVerdict::Undecided,
     };
-    let assumed = if found { None } else { with_signs(&question, &candidates) };
+    let assumed = if found { None } else { with_signs(&problem, &candidates) };
     Search { verdict, candidates, assumed, bound, affine, generalised, tried }
 }
 
@@ -135,27 +135,27 @@ fn of_class(plant: &Plant) -> Option<Candidate> {
 }
 
 /// The bound of the transforms affine in x with a plain or generalised cascade, at a point that is found after so many.
-fn affine_rates(question: &Question<'_>, others: usize) -> Option<Bound> {
-    bounds::bound(question, BoundClass::AffineRate, (LARGEST_ORDER, others))
+fn affine_rates(problem: &Problem<'_>, others: usize) -> Option<Bound> {
+    bounds::bound(problem, BoundClass::AffineRate, (LARGEST_ORDER, others))
 }
 
-/// The first transform that recovers the states if those without a known sign are positive.
-fn with_signs(question: &Question<'_>, candidates: &[Candidate]) -> Option<(Candidate, Vec<Symbol>)> {
-    let arena = question.arena;
+/// The first transform that recovers the states if states without a known sign are positive.
+fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candidate, Vec<Symbol>)> {
+    let arena = problem.arena;
     let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
     let candidate = candidates.iter().filter(|c| c.derivation.cascade.verdict == Verdict::Proved).find(lost)?;
     let unknown = |state: &Symbol| {
         let state = arena.of_symbol(*state);
-        ![state, arena.neg(state)].iter().any(|e| question.domain.implies(arena, *e, Relation::Positive))
+        ![state, arena.neg(state)].iter().any(|e| problem.domain.implies(arena, *e, Relation::Positive))
     };
-    let signs: Vec<Symbol> = question.x.iter().copied().filter(unknown).collect();
-    if signs.is_empty() || !question.goes_on() {
+    let signs: Vec<Symbol> = problem.x.iter().copied().filter(unknown).collect();
+    if signs.is_empty() || !problem.goes_on() {
         return None;
     }
-    let plant = question.plant.with_positive(&signs);
-    let question = Question::of(&plant);
+    let plant = problem.plant.with_positive(&signs);
+    let problem = Problem::of(&plant);
     let budget = arena.budget();
-    let candidate = budget.share(2, || Candidate::of(&question, &candidate.plant.transform()));
+    let candidate = budget.share(2, || Candidate::of(&problem, &candidate.plant.transform()));
     candidate.is_full().then_some((candidate, signs))
 }
 
@@ -168,18 +168,18 @@ const MOST_PRODUCTS: usize = 100;
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;
 
-/// The part of what is left that polynomials with undetermined coefficients may take.
+/// The share of the remaining budget for polynomials with undetermined coefficients.
 const FOR_INVARIANT: u64 = 8;
 
-struct Hunt<'a> {
-    question: &'a Question<'a>,
+struct Attempts<'a> {
+    problem: &'a Problem<'a>,
     candidates: Vec<Candidate>,
-    tried: Vec<Tried>,
-    /// What is decided of the transforms affine in x with a plain cascade.
+    tried: Vec<Attempt>,
+    /// The decision on transforms affine in x with a plain cascade.
     affine: Option<Bound>,
-    /// What excludes further transforms with a plain cascade.
+    /// The bound that excludes further transforms with a plain cascade.
     bound: Option<Bound>,
-    /// What excludes further transforms that are affine in x.
+    /// The bound that excludes further transforms that are affine in x.
     generalised: Option<Bound>,
     /// Transforms in which the outputs are not affine: they are proved if nothing better is found.
     later: Vec<Vec<Expr>>,
@@ -189,10 +189,10 @@ struct Hunt<'a> {
     invariant: Option<Vec<Expr>>,
 }
 
-impl<'a> Hunt<'a> {
-    fn new(question: &'a Question<'a>) -> Self {
+impl<'a> Attempts<'a> {
+    fn new(problem: &'a Problem<'a>) -> Self {
         Self {
-            question,
+            problem,
             candidates: Vec::new(),
             tried: Vec::new(),
             affine: None,
@@ -216,40 +216,39 @@ impl<'a> Hunt<'a> {
     }
 }
 
-impl Hunt<'_> {
-    /// Whether there is nothing better to be expected.
+impl Attempts<'_> {
+    /// Tests whether there is nothing better to be expected.
     fn is_over(&self) -> bool {
-        !self.question.goes_on()
-            || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.copies_an_output())
+        !self.problem.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.copies_an_output())
     }
 
-    /// Whether a transform was found.
+    /// Tests whether a transform was found.
     fn is_full(&self) -> bool {
         self.candidates.iter().any(Candidate::is_full)
     }
 
-    /// Whether a look at transforms affine in x, or at series of low order, shows that no smooth transform has a plain
-    /// cascade and a left inverse.
+    /// Tests whether transforms affine in x, or series of low order, prove that no smooth transform has a plain cascade
+    /// and a left inverse.
     fn is_excluded(&mut self) -> bool {
-        self.affine = bounds::largest::affine(self.question, 0);
-        self.bound = bounds::largest::smooth(self.question, self.affine.as_ref(), 0)
+        self.affine = bounds::largest::affine(self.problem, 0);
+        self.bound = bounds::largest::smooth(self.problem, self.affine.as_ref(), 0)
             .filter(Bound::excludes)
-            .or_else(|| bounds::largest::smooth_to(self.question, LOW_ORDER, 0))
+            .or_else(|| bounds::largest::smooth_to(self.problem, LOW_ORDER, 0))
             .filter(Bound::excludes);
         self.bound.is_some()
     }
 
     /// Transforms with a plain cascade.
     fn plain(&mut self) {
-        let question = self.question;
-        let arena = question.arena;
-        let states: Vec<(Expr, usize)> = question.x.iter().map(|x| (arena.of_symbol(*x), 1)).collect();
+        let problem = self.problem;
+        let arena = problem.arena;
+        let states: Vec<(Expr, usize)> = problem.x.iter().map(|x| (arena.of_symbol(*x), 1)).collect();
         let affine = [&[(arena.one(), 0)], states.as_slice()].concat();
-        let mut outputs = functions::of_outputs(question);
+        let mut outputs = functions::of_outputs(problem);
         self.attempt(Form::Affine(0), |_| Ok(Ansatz { of_x: states.clone(), of_y: vec![(arena.one(), 0)], weight: 1 }));
         // With many signals there are too many products; combinations with constant coefficients there are not.
-        if states.len() * question.y.len() > MOST_PRODUCTS && !self.is_over() {
-            let of_y = question.y.iter().map(|y| (arena.of_symbol(*y), 1));
+        if states.len() * problem.y.len() > MOST_PRODUCTS && !self.is_over() {
+            let of_y = problem.y.iter().map(|y| (arena.of_symbol(*y), 1));
             let of_y = std::iter::once((arena.one(), 0)).chain(of_y).collect();
             self.attempt(Form::Affine(0), |_| Ok(Ansatz { of_x: affine.clone(), of_y, weight: 1 }));
         }
@@ -264,28 +263,28 @@ impl Hunt<'_> {
             if self.affine.as_ref().is_some_and(Bound::excludes) {
                 break;
             }
-            // Products of the functions in the formulas read better than what is integrated.
+            // Products of the functions in the formulas read better than integrals.
             if degree == 3 {
-                let integrated = arena.budget().share(3, || completion::integration::integrated(question));
+                let integrated = arena.budget().share(3, || completion::integration::integrated(problem));
                 self.judge(Form::Integrals, 0, integrated);
                 if self.is_over() {
                     return;
                 }
             }
-            // What the formulas do not hold comes in where they were not enough.
+            // Functions outside the formulas come in where those were not enough.
             if degree == 2 {
-                let roots = functions::roots(question, &outputs);
+                let roots = functions::roots(problem, &outputs);
                 outputs.extend(roots);
-                // There are transforms, perhaps of what turns with an angle that no formula holds.
+                // There are transforms, perhaps of functions that turn with an angle that no formula holds.
                 if self.affine.as_ref().is_some_and(|affine| affine.transforms().is_some()) {
-                    outputs.extend(functions::waves(question));
+                    outputs.extend(functions::waves(problem));
                 }
             }
             if degree == 2
-                && let Ok(connection) = Connection::of(question, Rate::Free)
+                && let Ok(connection) = Connection::of(problem, Rate::Free)
             {
-                let factors = connection.factors(question);
-                let shifts = connection.shifts(question, &[&[arena.one()], factors.as_slice(), &outputs].concat());
+                let factors = connection.factors(problem);
+                let shifts = connection.shifts(problem, &[&[arena.one()], factors.as_slice(), &outputs].concat());
                 for function in factors.into_iter().chain(shifts) {
                     if !outputs.contains(&function) {
                         outputs.push(function);
@@ -293,16 +292,16 @@ impl Hunt<'_> {
                 }
             }
             let pool = outputs.clone();
-            self.attempt(Form::Affine(degree), |question| {
-                let of_y = functions::products(question, &pool, degree + usize::from(degree == 1))?;
+            self.attempt(Form::Affine(degree), |problem| {
+                let of_y = functions::products(problem, &pool, degree + usize::from(degree == 1))?;
                 Ok(Ansatz { of_x: affine.clone(), of_y, weight: degree + 1 })
             });
         }
-        let mut of_states = functions::of_states(question);
+        let mut of_states = functions::of_states(problem);
         let bases = [of_states.as_slice(), &outputs, self.invariant()].concat();
-        let logarithms = functions::logarithms(question, &bases);
+        let logarithms = functions::logarithms(problem, &bases);
         for logarithm in logarithms {
-            let list = if arena.depends_on(logarithm, &question.hidden) { &mut of_states } else { &mut outputs };
+            let list = if arena.depends_on(logarithm, &problem.hidden) { &mut of_states } else { &mut outputs };
             if !list.contains(&logarithm) {
                 list.push(logarithm);
             }
@@ -312,23 +311,23 @@ impl Hunt<'_> {
                 return;
             }
             let (of_x, of_y) = (of_states.clone(), outputs.clone());
-            self.attempt(Form::Nonlinear(first, second), |question| {
-                let of_x = functions::products(question, &of_x, first)?;
-                let of_y = functions::products(question, &of_y, second)?;
+            self.attempt(Form::Nonlinear(first, second), |problem| {
+                let of_x = functions::products(problem, &of_x, first)?;
+                let of_y = functions::products(problem, &of_y, second)?;
                 Ok(Ansatz { of_x, of_y, weight: first + second })
             });
         }
     }
 
-    /// Constant combinations of the states with polynomials in the outputs, where the formulas are polynomials in all that
-    /// moves: of a few columns for a state, up to a high degree.
+    /// Constant combinations of the states with polynomials in the outputs, where the formulas are polynomials in all
+    /// that moves: of a few columns for a state, up to a high degree.
     fn shifted(&mut self) {
-        let question = self.question;
-        let arena = question.arena;
-        let symbols: Vec<Expr> = question.y.iter().map(|y| arena.of_symbol(*y)).collect();
+        let problem = self.problem;
+        let arena = problem.arena;
+        let symbols: Vec<Expr> = problem.y.iter().map(|y| arena.of_symbol(*y)).collect();
         for degree in 3..=MOST_SHIFTED {
-            let Some(of_y) = functions::monomials(question, &symbols, degree) else { return };
-            let states = question.x.iter().map(|x| (arena.of_symbol(*x), degree));
+            let Some(of_y) = functions::monomials(problem, &symbols, degree) else { return };
+            let states = problem.x.iter().map(|x| (arena.of_symbol(*x), degree));
             let of_x = [(arena.one(), 0)].into_iter().chain(states).collect();
             self.attempt(Form::Shifted(degree), |_| Ok(Ansatz { of_x, of_y, weight: degree }));
             if self.is_over() {
@@ -339,30 +338,30 @@ impl Hunt<'_> {
 
     /// Transforms with a generalised cascade.
     fn generalised(&mut self) {
-        let question = self.question;
-        let arena = question.arena;
-        let states: Vec<Expr> = question.x.iter().map(|x| arena.of_symbol(*x)).collect();
-        let rates: Vec<Expr> = question.x.iter().filter_map(|x| question.rates.get(x).copied()).collect();
-        if matches!(sample::is_affine_in(question, &rates, &states), Ok(true)) {
+        let problem = self.problem;
+        let arena = problem.arena;
+        let states: Vec<Expr> = problem.x.iter().map(|x| arena.of_symbol(*x)).collect();
+        let rates: Vec<Expr> = problem.x.iter().filter_map(|x| problem.rates.get(x).copied()).collect();
+        if matches!(sample::is_affine_in(problem, &rates, &states), Ok(true)) {
             self.judge(Form::States, 0, Ok(states.clone()));
         }
-        let rates = question.output_rates();
+        let rates = problem.output_rates();
         let both = [rates.as_slice(), &states].concat();
-        let identities: Vec<Expr> = question.plant.identities.iter().map(|identity| identity.expr).collect();
-        let told = if identities.is_empty() { Vec::new() } else { [identities.as_slice(), &states].concat() };
+        let identities: Vec<Expr> = problem.plant.identities.iter().map(|identity| identity.expr).collect();
+        let bound = if identities.is_empty() { Vec::new() } else { [identities.as_slice(), &states].concat() };
         let starts =
-            [(Start::Outputs, &rates), (Start::Both, &both), (Start::States, &states), (Start::Identities, &told)];
+            [(Start::Outputs, &rates), (Start::Both, &both), (Start::States, &states), (Start::Identities, &bound)];
         for (start, formulas) in starts.into_iter().filter(|(_, formulas)| !formulas.is_empty()) {
             if self.is_over() {
                 return;
             }
-            let closed = closure::closure(question, formulas).map(Option::unwrap_or_default);
+            let closed = closure::closure(problem, formulas).map(Option::unwrap_or_default);
             self.judge(Form::Closure(start), 0, closed);
         }
         if self.is_over() {
             return;
         }
-        let closed = closure::of_rows(question).map(Option::unwrap_or_default);
+        let closed = closure::of_rows(problem).map(Option::unwrap_or_default);
         self.judge(Form::Closure(Start::Rows), 0, closed);
         if self.is_over() {
             return;
@@ -377,14 +376,14 @@ impl Hunt<'_> {
         }
         // The bound of transforms affine in x is looked at where that of all plain cascades is small.
         if self.bound.is_some() {
-            self.generalised = affine_rates(question, 0);
+            self.generalised = affine_rates(problem, 0);
             if self.generalised.as_ref().is_some_and(Bound::excludes) {
                 return;
             }
         }
-        let mut outputs = functions::of_outputs(question);
-        if let Ok(connection) = Connection::of(question, Rate::Affine) {
-            outputs.extend(connection.factors(question));
+        let mut outputs = functions::of_outputs(problem);
+        if let Ok(connection) = Connection::of(problem, Rate::Affine) {
+            outputs.extend(connection.factors(problem));
         }
         for degree in 1..=2 {
             if self.is_over() {
@@ -392,22 +391,22 @@ impl Hunt<'_> {
             }
             let ansatz = || {
                 let of_x = [(arena.one(), 0)].into_iter().chain(states.iter().map(|x| (*x, 1))).collect();
-                Ok(Ansatz { of_x, of_y: functions::products(question, &outputs, degree)?, weight: degree + 1 })
+                Ok(Ansatz { of_x, of_y: functions::products(problem, &outputs, degree)?, weight: degree + 1 })
             };
             self.attempt_with(Form::Frame(degree), Rate::Affine, ansatz());
         }
     }
 
-    /// Quotients of the states by a polynomial that divides its own rate: in these the rates may be affine, as that of `1/p`
-    /// is for `p' = a*p + b*p^2`.
+    /// Quotients of the states by a polynomial that divides its own rate: the rates of these may be affine, as that of
+    /// `1/p` is for `p' = a*p + b*p^2`.
     fn of_quotients(&mut self) {
-        let question = self.question;
-        let arena = question.arena;
+        let problem = self.problem;
+        let arena = problem.arena;
         for polynomial in self.invariant().to_vec() {
-            let states = question.x.iter().map(|x| arena.of_symbol(*x));
+            let states = problem.x.iter().map(|x| arena.of_symbol(*x));
             // The last is begun with: of functions of one span the reciprocal is the plainest.
             let quotients: Vec<Expr> = states.chain([arena.one()]).map(|above| arena.div(above, polynomial)).collect();
-            let closed = closure::closure(question, &quotients).map(Option::unwrap_or_default);
+            let closed = closure::closure(problem, &quotients).map(Option::unwrap_or_default);
             self.judge(Form::Closure(Start::Quotients), 0, closed);
             if self.is_over() {
                 return;
@@ -417,64 +416,64 @@ impl Hunt<'_> {
 
     /// The polynomials in the states that divide their own rates.
     fn invariant(&mut self) -> &[Expr] {
-        let question = self.question;
+        let problem = self.problem;
         self.invariant.get_or_insert_with(|| {
-            let found = question.arena.budget().share(FOR_INVARIANT, || closure::darboux::invariant(question));
+            let found = problem.arena.budget().share(FOR_INVARIANT, || closure::darboux::invariant(problem));
             found.unwrap_or_default()
         })
     }
 
     /// A transform by way of one that there is if the unknown constants are measured.
     fn with_constants(&mut self) {
-        let question = self.question;
-        let unknown = closure::constants::constants(question);
+        let problem = self.problem;
+        let unknown = closure::constants::constants(problem);
         if !unknown.is_empty() {
-            let by_parts = closure::by_parts::by_parts(question, &unknown).map(Option::unwrap_or_default);
-            let by_parts = by_parts.and_then(|functions| closure::observable::observable(question, &functions));
+            let by_parts = closure::by_parts::by_parts(problem, &unknown).map(Option::unwrap_or_default);
+            let by_parts = by_parts.and_then(|functions| closure::observable::observable(problem, &functions));
             self.judge(Form::Closure(Start::Parts), 0, by_parts);
         }
         if self.is_over() {
             return;
         }
-        let Some(measured) = closure::constants::measured(question) else { return };
-        let search = question.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
+        let Some(measured) = closure::constants::measured(problem) else { return };
+        let search = problem.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
         let proved = |candidate: &&Candidate| {
             let derivation = &candidate.derivation;
             derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
         };
         if let Some(candidate) = search.candidates.iter().find(proved) {
-            let closed = closure::constants::closure(question, candidate).map(Option::unwrap_or_default);
-            let closed = closed.and_then(|functions| closure::observable::observable(question, &functions));
+            let closed = closure::constants::closure(problem, candidate).map(Option::unwrap_or_default);
+            let closed = closed.and_then(|functions| closure::observable::observable(problem, &functions));
             self.judge(Form::Closure(Start::Constants), 0, closed);
         }
     }
 
-    fn attempt(&mut self, form: Form, ansatz: impl FnOnce(&Question<'_>) -> Result<Ansatz, Obstacle>) {
-        let ansatz = ansatz(self.question);
+    fn attempt(&mut self, form: Form, ansatz: impl FnOnce(&Problem<'_>) -> Result<Ansatz, Obstacle>) {
+        let ansatz = ansatz(self.problem);
         self.attempt_with(form, Rate::Free, ansatz);
     }
 
     fn attempt_with(&mut self, form: Form, rate: Rate, ansatz: Result<Ansatz, Obstacle>) {
-        let question = self.question;
-        let columns = ansatz.as_ref().map_or(0, |ansatz| ansatz.width(question));
+        let problem = self.problem;
+        let columns = ansatz.as_ref().map_or(0, |ansatz| ansatz.width(problem));
         // A large null space does not keep other forms from being tried.
-        let of = |ansatz: Ansatz| question.arena.budget().share(2, || ansatz.solutions(question, rate));
+        let of = |ansatz: Ansatz| problem.arena.budget().share(2, || ansatz.solutions(problem, rate));
         let solutions = ansatz.and_then(of);
         self.judge(form, columns, solutions);
     }
 
-    /// Has the claims of what was found proved or refuted.
+    /// Derives the claims of the transforms that were found.
     fn judge(&mut self, form: Form, columns: usize, solutions: Result<Vec<Expr>, Obstacle>) {
         let count = solutions.as_ref().map_or(0, Vec::len);
-        // A closure is one transform, which would not close without a part of it.
+        // A closure is one transform, which would not close without one of its components.
         let choose = if matches!(form, Form::Closure(_)) { choice::whole } else { choice::choose };
-        let choice = solutions.and_then(|solutions| choose(self.question, &solutions));
+        let choice = solutions.and_then(|solutions| choose(self.problem, &solutions));
         let (choice, obstacle) = match choice {
             Ok(choice) => (choice, None),
             Err(obstacle) => (choice::Choice::default(), Some(obstacle)),
         };
-        self.tried.push(Tried { form, columns, solutions: count, rank: choice.rank, obstacle });
-        if choice.rank < self.question.x.len() {
+        self.tried.push(Attempt { form, columns, solutions: count, rank: choice.rank, obstacle });
+        if choice.rank < self.problem.x.len() {
             return;
         }
         for (index, phi) in choice.transforms.into_iter().enumerate() {
@@ -489,43 +488,42 @@ impl Hunt<'_> {
         }
     }
 
-    /// Proves what was put off: transforms in which the outputs do not look affine.
+    /// Proves deferred transforms: those in which the outputs do not look affine.
     fn rest(&mut self) {
         for phi in std::mem::take(&mut self.later) {
-            if self.is_full() || !self.question.goes_on() {
+            if self.is_full() || !self.problem.goes_on() {
                 return;
             }
             self.prove(&phi);
         }
     }
 
-    /// Has the claims proved or refuted, with a third of what is left: what is open then does not end the search.
+    /// Derives the claims with a third of the remaining budget: an undecided one then does not end the search.
     fn prove(&mut self, phi: &[Expr]) {
-        let question = self.question;
-        let may_stand =
-            |component: &Expr| question.exists(*component) && is_of_states_and_outputs(question, *component);
+        let problem = self.problem;
+        let may_stand = |component: &Expr| problem.exists(*component) && is_of_states_and_outputs(problem, *component);
         if !phi.iter().all(may_stand) {
             return;
         }
-        let Some(phi) = phi.iter().map(|component| continuous(question, *component)).collect::<Option<Vec<_>>>() else {
+        let Some(phi) = phi.iter().map(|component| continuous(problem, *component)).collect::<Option<Vec<_>>>() else {
             return;
         };
-        // What the values of outputs make zero filters nothing; the rest may do alone.
-        let domain = &question.domain;
-        let is_zero = |component: &Expr| decide(question.arena, *component, domain).is_zero();
-        let rest: Vec<Expr> = match question.plant.identities.as_slice() {
+        // Components that vanish by the values of outputs filter nothing; the rest may do alone.
+        let domain = &problem.domain;
+        let is_zero = |component: &Expr| decide(problem.arena, *component, domain).is_zero();
+        let rest: Vec<Expr> = match problem.plant.identities.as_slice() {
             [] => phi.clone(),
             _ => phi.iter().copied().filter(|component| !is_zero(component)).collect(),
         };
         if !rest.is_empty() && rest.len() < phi.len() {
-            let candidate = question.arena.budget().share(3, || Candidate::of(question, &rest));
+            let candidate = problem.arena.budget().share(3, || Candidate::of(problem, &rest));
             let is_full = candidate.is_full();
             self.candidates.push(candidate);
             if is_full {
                 return;
             }
         }
-        let candidate = question.arena.budget().share(3, || Candidate::of(question, &phi));
+        let candidate = problem.arena.budget().share(3, || Candidate::of(problem, &phi));
         self.candidates.push(candidate);
     }
 }

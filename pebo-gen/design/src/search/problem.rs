@@ -1,4 +1,4 @@
-//! What a search is about: a plant without its transform, and how its signals are told apart.
+//! The search problem: a plant without its transform, and the kinds of its signals.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use pebo_cas::{Arena, Domain, Expr, Node, Relation, Symbol};
 
 /// A plant whose transform is looked for.
 #[derive(Debug)]
-pub(super) struct Question<'a> {
+pub(super) struct Problem<'a> {
     pub(super) plant: &'a Plant,
     pub(super) arena: &'a Arena,
     /// The domain of the model: where its own formulas have values.
@@ -18,44 +18,45 @@ pub(super) struct Question<'a> {
     pub(super) x: Vec<Symbol>,
     /// The outputs that a transform may hold: those with a rate.
     pub(super) y: Vec<Symbol>,
-    /// What no rate of a transform may depend on: the states, and unmeasured signals.
+    /// The states and unmeasured signals: no rate of a transform may depend on them.
     pub(super) hidden: BTreeSet<Symbol>,
     /// All that is no constant.
     pub(super) signals: BTreeSet<Symbol>,
 }
 
-impl<'a> Question<'a> {
+impl<'a> Problem<'a> {
     pub(super) fn of(plant: &'a Plant) -> Self {
         Self::knowing(plant, &BTreeMap::new())
     }
 
-    /// The questions for the other states where outputs tell some by their value, alone or together with states that stay
-    /// unmeasured. An output that is a function of several states tells one of them; which, differs between the questions.
-    pub(super) fn with_told_states(plant: &'a Plant) -> Vec<Self> {
+    /// The problems for the other states where outputs determine some by their value, alone or with states that remain
+    /// unmeasured. An output that is a function of several states determines one of them; which, differs between the
+    /// problems.
+    pub(super) fn with_measured_states(plant: &'a Plant) -> Vec<Self> {
         let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let values = plant.y.iter().filter_map(|output| output.value.as_ref());
         let count = |value: Expr| plant.arena.symbols_of(&[value]).intersection(&states).count();
         let turns = values.map(|value| count(value.expr)).max().unwrap_or(0);
         let mut known: Vec<BTreeMap<Symbol, Expr>> = Vec::new();
         for turn in 0..turns {
-            let told = told(plant, turn);
-            if !told.is_empty() && told.len() < plant.x.len() && !known.contains(&told) {
-                known.push(told);
+            let measured = measured(plant, turn);
+            if !measured.is_empty() && measured.len() < plant.x.len() && !known.contains(&measured) {
+                known.push(measured);
             }
         }
-        known.iter().map(|told| Self::knowing(plant, told)).collect()
+        known.iter().map(|measured| Self::knowing(plant, measured)).collect()
     }
 
-    /// The question where some states are functions of outputs and of the other states.
-    fn knowing(plant: &'a Plant, told: &BTreeMap<Symbol, Expr>) -> Self {
+    /// The problem where some states are functions of outputs and of the other states.
+    fn knowing(plant: &'a Plant, measured: &BTreeMap<Symbol, Expr>) -> Self {
         let states = plant.x.iter().map(|state| state.symbol);
-        let x: Vec<Symbol> = states.filter(|state| !told.contains_key(state)).collect();
+        let x: Vec<Symbol> = states.filter(|state| !measured.contains_key(state)).collect();
         let moving = plant.y.iter().filter(|output| output.rate.is_some());
         let mut hidden = plant.hidden();
-        hidden.retain(|symbol| !told.contains_key(symbol));
+        hidden.retain(|symbol| !measured.contains_key(symbol));
         let outputs = plant.y.iter().map(|output| output.symbol);
         let signals = plant.hidden().into_iter().chain(outputs).chain(plant.u.iter().copied()).collect();
-        let rates = plant.rates().into_iter().map(|(symbol, rate)| (symbol, plant.arena.substitute(rate, told)));
+        let rates = plant.rates().into_iter().map(|(symbol, rate)| (symbol, plant.arena.substitute(rate, measured)));
         Self {
             plant,
             arena: &plant.arena,
@@ -83,29 +84,29 @@ impl<'a> Question<'a> {
         self.x.iter().copied().collect()
     }
 
-    /// Whether a function has values and derivatives on the whole domain, but perhaps for the zeros of some formulas,
-    /// which the proof of the claims then lists.
+    /// Tests whether a function has values and derivatives on the whole domain, except perhaps at the zeros of some
+    /// formulas, which the proof of the claims then lists.
     pub(super) fn exists(&self, expr: Expr) -> bool {
-        let asked = self.arena.domain_conditions(&[expr], Regularity::Differentiable);
-        asked.into_iter().all(|(part, relation)| match relation {
+        let conditions = self.arena.domain_conditions(&[expr], Regularity::Differentiable);
+        conditions.into_iter().all(|(part, relation)| match relation {
             Relation::NonZero => !self.arena.is_zero(part),
             Relation::NonNegative => self.domain.implies(self.arena, part, relation),
-            // What is nowhere negative is positive but for its zeros.
+            // A nonnegative expression is positive except at its zeros.
             Relation::Positive => {
                 !self.arena.is_zero(part) && self.domain.implies(self.arena, part, Relation::NonNegative)
             }
         })
     }
 
-    /// Whether a function bends or jumps where a combination of the unmeasured states passes zero: theta would be another
-    /// behind a jump, and no proof that leaves the place out tells so.
-    pub(super) fn bends_in_states(&self, expr: Expr) -> bool {
+    /// Tests whether a function is non-smooth or jumps where a combination of the unmeasured states passes zero: theta
+    /// would be another constant behind a jump, and no proof that omits the point reveals it.
+    pub(super) fn is_non_smooth_in_states(&self, expr: Expr) -> bool {
         let hidden = |part: Expr| self.arena.depends_on(part, &self.hidden);
         self.arena.dividers(&[expr]).into_iter().any(hidden)
     }
 
-    /// Whether nothing suggests components that are not affine in x: the rates are written as polynomials in what is hidden,
-    /// and no state is an unknown constant, which may multiply others.
+    /// Tests whether nothing suggests components that are not affine in x: the rates are written as polynomials in
+    /// hidden symbols, and no state is an unknown constant, which may multiply others.
     pub(super) fn suggests_affine_transforms(&self) -> bool {
         let is_constant = |state: &Symbol| self.rates.get(state).is_some_and(|rate| self.arena.is_zero(*rate));
         if self.x.len() > 1 && self.x.iter().any(is_constant) {
@@ -121,16 +122,16 @@ impl<'a> Question<'a> {
         })
     }
 
-    /// Whether there is something left to take.
+    /// Tests whether some budget is left.
     pub(super) fn goes_on(&self) -> bool {
         !self.arena.budget().is_exhausted()
     }
 }
 
-/// States that outputs with a rate tell by their value, as functions of these and of the states that are left: `th` by
-/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. Of the states
-/// of an output one is told, in the first turn the first that moves, in each further turn the next.
-fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
+/// States that outputs with a rate determine by their value, as functions of these and of the remaining states: `th` by
+/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. An output determines one of its states, in the
+/// first turn the first that moves, in each further turn the next.
+fn measured(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
     let domain = plant.domain();
     let states: BTreeSet<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
@@ -139,7 +140,7 @@ fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let is_constant = |state: &Symbol| rates.get(state).is_some_and(|rate| arena.is_zero(*rate));
     let values = plant.y.iter().filter(|output| output.rate.is_some());
     let mut values: Vec<(Symbol, Expr)> = values.filter_map(|y| Some((y.symbol, y.value.as_ref()?.expr))).collect();
-    // What an output tells alone is known in those of several states.
+    // A state determined by an output alone is known in the values of outputs of several states.
     values.sort_by_key(|(_, value)| arena.symbols_of(&[*value]).intersection(&states).count());
     let mut found: BTreeMap<Symbol, Expr> = BTreeMap::new();
     for (output, value) in values {
@@ -156,10 +157,10 @@ fn told(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
             let is_free = !arena.depends_on(slope, &states) && !arena.is_zero(slope);
             is_free && domain.implies(arena, slope, Relation::NonZero)
         };
-        let mut told: Vec<Symbol> = plant.x.iter().map(|x| x.symbol).filter(|x| symbols.contains(x)).collect();
-        told.retain(is_steep);
-        told.sort_by_key(is_constant);
-        let Some(state) = (!told.is_empty()).then(|| told[turn % told.len()]) else { continue };
+        let mut measured: Vec<Symbol> = plant.x.iter().map(|x| x.symbol).filter(|x| symbols.contains(x)).collect();
+        measured.retain(is_steep);
+        measured.sort_by_key(is_constant);
+        let Some(state) = (!measured.is_empty()).then(|| measured[turn % measured.len()]) else { continue };
         let rest = arena.substitute(value, &BTreeMap::from([(state, arena.zero())]));
         let difference = arena.sub(arena.of_symbol(output), rest);
         let by_output = arena.div(difference, arena.derivative(value, state));

@@ -1,4 +1,4 @@
-//! Values modulo a prime at random points: what is likely, before anything is proved.
+//! Values modulo a prime at random points: heuristics before a proof.
 //!
 //! In: formulas. Out: their residues at points that share the parameters, or all but the unmeasured states and signals.
 
@@ -11,18 +11,19 @@ use pebo_cas::tower::residue::{Words, prime_of_kernels};
 use pebo_cas::tower::straight_line::StraightLineProgram;
 use pebo_cas::{Budget, Expr};
 
-use super::problem::Question;
+use super::problem::Problem;
 
 /// Points that are given up because a denominator vanishes there.
 const MOST_POLES: usize = 50;
 
-/// Primes that are tried where kernels have no values modulo the first: a root of a root has one modulo every fourth or so.
+/// Primes that are tried where kernels have no values modulo the first: a root of a root has one modulo every fourth or
+/// so.
 const MOST_PRIMES: usize = 16;
 
 /// Rows that bring nothing new, after which no more are looked at.
 const IDLE: usize = 3;
 
-/// Formulas with what is needed to evaluate them.
+/// Formulas with the data to evaluate them.
 #[derive(Debug)]
 pub(super) struct Sample<'a> {
     pub(super) prime: PrimeField,
@@ -38,9 +39,9 @@ pub(super) struct Sample<'a> {
 pub(super) type Values = Vec<Residue>;
 
 impl<'a> Sample<'a> {
-    pub(super) fn of(question: &Question<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
+    pub(super) fn of(problem: &Problem<'a>, formulas: &[Expr]) -> Result<Self, Obstacle> {
         let mut words = Words::new(0x5eed);
-        let of = |prime: &PrimeField| StraightLineProgram::of(question.arena, &question.domain.facts, prime, formulas);
+        let of = |prime: &PrimeField| StraightLineProgram::of(problem.arena, &problem.domain.facts, prime, formulas);
         let first_prime = prime_of_kernels().ok_or(Obstacle::TooLarge)?;
         let mut straight = of(&first_prime)?;
         let mut found = straight.field().draw(&first_prime, &mut words, |_| None).map(|values| (first_prime, values));
@@ -54,11 +55,11 @@ impl<'a> Sample<'a> {
         let (prime, first) = found.ok_or(Obstacle::NoResidue)?;
         let formulas = straight;
         let field = formulas.field();
-        let hidden = field.kernels_of(&question.hidden);
-        let moving = field.kernels_of(&question.signals);
+        let hidden = field.kernels_of(&problem.hidden);
+        let moving = field.kernels_of(&problem.signals);
         let constant = |(number, value): (u32, Residue)| (!moving.contains(&number)).then_some(value);
         let constants = (0..).zip(first).map(constant).collect();
-        Ok(Self { prime, formulas, hidden, constants, words, budget: question.arena.budget().clone() })
+        Ok(Self { prime, formulas, hidden, constants, words, budget: problem.arena.budget().clone() })
     }
 
     /// The values at so many points that differ in the unmeasured states and signals alone; the parameters are those of
@@ -103,10 +104,9 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// Those of the functions that are, as far as random points tell, no combinations with constant coefficients of those
-/// before them.
-pub(super) fn independent(question: &Question<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
-    let mut sample = Sample::of(question, functions)?;
+/// The functions that, according to random points, are no combinations of earlier ones with constant coefficients.
+pub(super) fn independent(problem: &Problem<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let mut sample = Sample::of(problem, functions)?;
     let columns = functions.len();
     let dependent = sample.rows(columns, 1, |_, fibre| fibre.first().cloned()).ok_or(Obstacle::OutOfBudget)?;
     let is_free = |column: &usize| dependent.iter().all(|(free, _)| free != column);
@@ -115,11 +115,10 @@ pub(super) fn independent(question: &Question<'_>, functions: &[Expr]) -> Result
 
 /// The rank over the functions of y and u of the gradients of these functions by the states, as far as a random point
 /// tells.
-pub(super) fn rank_of_gradients(question: &Question<'_>, functions: &[Expr]) -> Result<usize, Obstacle> {
-    let (arena, width) = (question.arena, question.x.len());
-    let slopes: Vec<Expr> =
-        functions.iter().flat_map(|e| question.x.iter().map(|x| arena.derivative(*e, *x))).collect();
-    let mut sample = Sample::of(question, &slopes)?;
+pub(super) fn rank_of_gradients(problem: &Problem<'_>, functions: &[Expr]) -> Result<usize, Obstacle> {
+    let (arena, width) = (problem.arena, problem.x.len());
+    let slopes: Vec<Expr> = functions.iter().flat_map(|e| problem.x.iter().map(|x| arena.derivative(*e, *x))).collect();
+    let mut sample = Sample::of(problem, &slopes)?;
     let fibre = sample.fibre(1).ok_or(Obstacle::NoPoint)?;
     let prime = &sample.prime;
     let mut rows = ResidueRows::new(prime, width);
@@ -129,18 +128,18 @@ pub(super) fn rank_of_gradients(question: &Question<'_>, functions: &[Expr]) -> 
     Ok(rows.rank())
 }
 
-/// Whether, as far as random points tell, each of the targets is an affine combination of the functions with
-/// coefficients free of what is hidden.
-pub(super) fn is_affine_in(question: &Question<'_>, targets: &[Expr], functions: &[Expr]) -> Result<bool, Obstacle> {
+/// Tests whether, according to random points, each of the targets is an affine combination of the functions with
+/// coefficients free of hidden symbols.
+pub(super) fn is_affine_in(problem: &Problem<'_>, targets: &[Expr], functions: &[Expr]) -> Result<bool, Obstacle> {
     let count = functions.len();
-    let mut sample = Sample::of(question, &[functions, targets].concat())?;
+    let mut sample = Sample::of(problem, &[functions, targets].concat())?;
     let fibre = sample.fibre(count + targets.len() + 2).ok_or(Obstacle::NoPoint)?;
     let prime = &sample.prime;
     let mut rows = ResidueRows::new(prime, 1 + count + targets.len());
     for values in &fibre {
         rows.insert([&[prime.one()], values.as_slice()].concat());
     }
-    // A target that is a combination of what stands left of it, none of them a target.
+    // A target that is a combination of the columns left of it, none of them a target.
     let vectors = rows.null_space();
     Ok((0..targets.len()).all(|target| {
         let column = 1 + count + target;

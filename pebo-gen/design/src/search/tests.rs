@@ -1,4 +1,4 @@
-//! What is decided of plants that are made from their transforms: none of them may be excluded.
+//! Decisions on plants that are made from their transforms: none of them may be excluded.
 
 use proptest::prelude::*;
 
@@ -7,7 +7,7 @@ use super::closure::closure;
 use super::closure::darboux::invariant;
 use super::closure::observable::observable;
 use super::completion::decision::decided;
-use super::problem::Question;
+use super::problem::Problem;
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::source::Source;
@@ -18,11 +18,11 @@ fn plant(lines: &str) -> Plant {
     Plant::resolve(&model).unwrap_or_else(|d| panic!("{lines}: {}", d[0].message))
 }
 
-/// What is decided of one class, for two values of the parameters.
+/// The decision on one class, for two values of the parameters.
 fn both(lines: &str, class: BoundClass) -> Vec<Bound> {
     let plant = plant(lines);
-    let question = Question::of(&plant);
-    (0..2).filter_map(|others| decided(&question, class, others)).collect()
+    let problem = Problem::of(&plant);
+    (0..2).filter_map(|others| decided(&problem, class, others)).collect()
 }
 
 /// A function of these, with small coefficients.
@@ -81,8 +81,8 @@ proptest! {
             }
         }
         let plant = plant(&lines);
-        let question = Question::of(&plant);
-        let smooth = largest::smooth(&question, largest::affine(&question, 0).as_ref(), 0);
+        let problem = Problem::of(&plant);
+        let smooth = largest::smooth(&problem, largest::affine(&problem, 0).as_ref(), 0);
         prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
     }
 
@@ -102,14 +102,14 @@ proptest! {
             prop_assert_eq!(bound.rank, 2, "{}", lines);
         }
         let plant = plant(&lines);
-        let question = Question::of(&plant);
-        let smooth = largest::smooth(&question, largest::affine(&question, 0).as_ref(), 0)
-            .or_else(|| largest::smooth_to(&question, 2, 0));
+        let problem = Problem::of(&plant);
+        let smooth = largest::smooth(&problem, largest::affine(&problem, 0).as_ref(), 0)
+            .or_else(|| largest::smooth_to(&problem, 2, 0));
         prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
     }
 }
 
-/// Surfaces of which the Killing fields are known: of constant curvature three, of revolution one.
+/// Surfaces with known Killing fields: three on constant curvature, one on a surface of revolution.
 #[test]
 fn the_number_of_killing_fields_is_that_of_the_surface() {
     let surfaces = [
@@ -164,7 +164,7 @@ fn polynomials_that_divide_their_own_rates_are_found() {
         ("x: [p]\ny: [q]\nu: [v]\nf_x: {p: v*sin(p)}\nf_y: {q: p}", &[]),
     ] {
         let plant = plant(lines);
-        let found = invariant(&Question::of(&plant)).expect("no obstacle");
+        let found = invariant(&Problem::of(&plant)).expect("no obstacle");
         assert_eq!(printed(&plant, &found), expected, "{lines}");
     }
 }
@@ -180,12 +180,12 @@ fn closures_take_what_formulas_show_and_leave_it_as_it_is() {
             Some(&["exp(p) + 1/exp(p)"]),
         ),
         ("f_x: {p: v*p*(1 + p), s: 0}\nf_y: {q: 1/(1 + p)}", Some(&["1/(p + 1)"])),
-        // x and y together below the bar.
+        // Both x and y in the denominator.
         ("f_x: {p: v, s: 0}\nf_y: {q: 1/(q + p)}", None),
     ] {
         let plant = plant(&format!("x: [p, s]\ny: [q]\nu: [v]\n{lines}"));
-        let question = Question::of(&plant);
-        let found = closure(&question, &question.output_rates()).expect("no obstacle");
+        let problem = Problem::of(&plant);
+        let found = closure(&problem, &problem.output_rates()).expect("no obstacle");
         let expected = expected.map(|formulas| formulas.iter().map(|f| (*f).to_owned()).collect::<Vec<_>>());
         assert_eq!(found.map(|found| printed(&plant, &found)), expected, "{lines}");
     }
@@ -196,10 +196,10 @@ fn what_no_output_sees_is_left_out() {
     let plant = plant(
         "x: [S, b, g]\ny: [I]\nf_x: {S: -b*S*I, b: 0, g: 0}\nf_y: {I: b*S*I - g*I}\nphi: [b*S + b*I, b, g, b*g, S]",
     );
-    let question = Question::of(&plant);
+    let problem = Problem::of(&plant);
     let all = plant.transform();
-    let seen = observable(&question, &all[..4]).expect("no obstacle");
+    let seen = observable(&problem, &all[..4]).expect("no obstacle");
     assert_eq!(printed(&plant, &seen), ["S*b - g + I*b", "b", "b*g"]);
     // The rate of S is not affine in these.
-    assert_eq!(observable(&question, &all[1..]).expect("no obstacle"), all[1..]);
+    assert_eq!(observable(&problem, &all[1..]).expect("no obstacle"), all[1..]);
 }

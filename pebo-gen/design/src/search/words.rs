@@ -1,4 +1,4 @@
-//! What a search came to, in words.
+//! The result of a search, in words.
 
 use std::collections::BTreeSet;
 
@@ -9,10 +9,10 @@ use pebo_cas::{Arena, Expr, Symbol};
 
 use super::bounds::{Bound, BoundClass, Evidence};
 use super::candidate::Candidate;
-use super::found::{Form, Found, Search, Start, Tried};
+use super::found::{Attempt, Form, Search, SearchVerdict, Start};
 use super::frame::{Block, blocks};
 
-impl Found {
+impl SearchVerdict {
     /// The verdict in a word.
     pub fn word(self) -> &'static str {
         match self {
@@ -81,7 +81,7 @@ impl BoundClass {
 }
 
 impl Bound {
-    /// What is said of the rank, in a line.
+    /// The bound on the rank, in a line.
     pub fn sentence(&self, arena: &Arena) -> String {
         let values: Vec<String> =
             self.point.iter().map(|(s, e)| format!("{} = {}", arena.name(*s), arena.print(*e))).collect();
@@ -124,7 +124,7 @@ impl Bound {
     }
 }
 
-impl Tried {
+impl Attempt {
     /// The attempt in a line.
     pub fn sentence(&self) -> String {
         let form = self.form.words();
@@ -173,7 +173,7 @@ impl Candidate {
 }
 
 impl Search {
-    /// What is said of ranks, each once.
+    /// The bounds on ranks, each once.
     pub fn bounds(&self) -> impl Iterator<Item = &Bound> {
         let affine = self.affine.iter().filter(|affine| {
             self.bound.as_ref().is_none_or(|bound| (bound.rank, bound.class) != (affine.rank, affine.class))
@@ -181,7 +181,7 @@ impl Search {
         self.bound.iter().chain(affine).chain(&self.generalised)
     }
 
-    /// Of a mechanical plant, that M has too few Killing fields for a frame of them.
+    /// For a mechanical plant, the sentence that M has too few Killing fields for a frame of them.
     fn killing_fields(&self, plant: &Plant) -> Option<String> {
         let Some(plant::Class::Mechanical(_)) = &plant.class else { return None };
         let affine = self.affine.as_ref().filter(|affine| affine.excludes())?;
@@ -204,15 +204,16 @@ impl Search {
         })
     }
 
-    /// What a search that found none leaves open, where it does.
+    /// The open possibilities after a search that found none.
     pub fn open(&self) -> Option<&'static str> {
         let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
-        (self.verdict == Found::None && excluded).then_some(
+        (self.verdict == SearchVerdict::None && excluded).then_some(
             "a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
         )
     }
 
-    /// That no transform was found, for the author of a model without one; `span` is where it declares its states.
+    /// The refusal of a model without a transform, after a search that found none; `span` is where it declares its
+    /// states.
     pub fn refusal(&self, plant: &Plant, span: Span) -> Diagnostic {
         if plant.arena.budget().is_exhausted() {
             return Diagnostic::limit_reached("the search for phi", span);
@@ -227,7 +228,7 @@ impl Search {
         if let Some((candidate, signs)) = &self.assumed {
             diagnostic = diagnostic.note(assumed(candidate, signs));
         }
-        // What is said of all smooth ones is said of those affine in x too.
+        // A statement on all smooth ones holds for those affine in x too.
         let smooth = self.bounds().find(|bound| bound.excludes() && bound.class == BoundClass::Smooth);
         let implied =
             |bound: &Bound| bound.class == BoundClass::Affine && smooth.is_some_and(|smooth| smooth.rank <= bound.rank);
@@ -238,9 +239,9 @@ impl Search {
         diagnostic.help("measure another signal, assume the signs of what is positive, or write a phi of your own")
     }
 
-    /// The refusal of a given transform, with what the search found in its place.
+    /// The refusal of a given transform, with the search's result in its place.
     pub fn advise(&self, plant: &Plant, refusal: Diagnostic) -> Diagnostic {
-        if let Some(best) = self.candidates.first().filter(|_| self.verdict == Found::Found) {
+        if let Some(best) = self.candidates.first().filter(|_| self.verdict == SearchVerdict::Found) {
             let class = best.derivation.class.name();
             if let Some(keys) = best.keys() {
                 return refusal.help(format!("use {keys}, which is accepted ({class})"));
@@ -256,7 +257,7 @@ impl Search {
             Some(bound) => {
                 let noted = refusal.note(bound.sentence(&plant.arena));
                 // To choose a phi is no advice where there is none.
-                let help = match (self.killing_fields(plant), plant.asked) {
+                let help = match (self.killing_fields(plant), plant.cascade_class) {
                     (Some(help), _) => help,
                     (None, _) if bound.class != BoundClass::Smooth => return noted,
                     (None, Some(Class::Pebo)) => "leave out `class: pebo`, or measure another signal".to_owned(),
@@ -269,14 +270,14 @@ impl Search {
     }
 }
 
-/// That a transform is accepted where states have signs.
+/// The sentence that a transform is accepted where states have signs.
 pub fn assumed(candidate: &Candidate, signs: &[Symbol]) -> String {
     let arena = &candidate.plant.arena;
     let signs: Vec<String> = signs.iter().map(|state| format!("{} > 0", arena.name(*state))).collect();
     format!("with `assume: [{}]`, phi = [{}] is accepted", signs.join(", "), candidate.formulas().join(", "))
 }
 
-/// Whether another transform settles a refusal.
+/// Tests whether another transform settles a refusal.
 pub fn settles(code: Code, derivation: &Derivation) -> bool {
     match code {
         Code::CascadeRefuted

@@ -1,13 +1,12 @@
 //! The one table of diagnostic codes.
 //!
-//! A row is a variant, the name that programs and people see, a title, the explanation that
-//! `pebo-gen explain CODE` prints, and the place in the paper that it is about, where there is one. Each has an input
-//! that provokes it, with its mend, in `examples`, which tests run. To add a code is to add a row and an example; a
-//! code that was released keeps its name.
+//! A row is a variant, the name that programs and people see, a title, the explanation that `pebo-gen explain CODE`
+//! prints, and the section of the paper, where there is one. Each has an input that provokes it, with its mend, in
+//! `examples`, which tests run. To add a code is to add a row and an example; a code that was released keeps its name.
 
 macro_rules! codes {
     ($($(#[$group:meta])* $variant:ident $name:literal $title:literal $explanation:literal $(=> $paper:literal)?)*) => {
-        /// What kind of mistake or finding a diagnostic is about.
+        /// The kind of mistake or finding of a diagnostic.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
         pub enum Code {
@@ -43,12 +42,12 @@ macro_rules! codes {
                 match self { $(Self::$variant => include_str!(concat!("examples/", $name, ".txt"))),* }
             }
 
-            /// The place in Ortega et al. 2015 that it is about, where there is one.
+            /// The section in Ortega et al. 2015, where there is one.
             pub fn paper(self) -> Option<&'static str> {
                 match self { $(Self::$variant => None$(.or(Some($paper)))?),* }
             }
 
-            /// Whether it says that something could not be worked out, and not that the input is wrong.
+            /// Tests whether it means that something could not be worked out, and not that the input is wrong.
             pub fn is_open(self) -> bool {
                 matches!(self, Self::LimitReached | Self::ClassUnresolved)
             }

@@ -1,8 +1,8 @@
-//! What there is to say about a place, as data.
+//! Diagnostics, as data.
 
 use super::{Code, Span};
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Severity {
@@ -14,14 +14,14 @@ pub enum Severity {
     Note,
 }
 
-/// A place and what to write beside it.
+/// A span and the text beside it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 pub struct Label {
-    /// The place; serialises to the range of bytes, or null where there is none.
+    /// The span; serialises to the range of bytes, or null where there is none.
     #[cfg_attr(feature = "yaml", serde(serialize_with = "place"))]
     pub span: Span,
-    /// What stands beside it; may be empty.
+    /// The text beside it; may be empty.
     pub text: Box<str>,
 }
 
@@ -32,30 +32,30 @@ fn place<S: serde::Serializer>(span: &Span, serializer: S) -> Result<S::Ok, S::E
 
 /// One mistake, or one finding.
 ///
-/// Texts are lower case without a full stop. The message says what is wrong, `help` what to do
-/// about it.
+/// Texts are lower case without a full stop. The message states the mistake, `help` the remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 pub struct Diagnostic {
     /// Its row in the table of codes.
     pub code: Code,
-    /// How bad it is.
+    /// The severity.
     pub severity: Severity,
-    /// What is wrong.
+    /// The mistake or finding.
     pub message: Box<str>,
-    /// Where.
+    /// The main span.
     pub primary: Label,
-    /// Other places that matter, as the first of two declarations.
+    /// Other relevant spans, as the first of two declarations.
     pub secondary: Vec<Label>,
     /// Facts that explain it.
     pub notes: Vec<String>,
-    /// What to do.
+    /// The remedy.
     pub help: Option<Box<str>>,
-    /// Whether the primary place is a name that is nearly right, and the help says which is: a change that takes no thought.
+    /// True if the primary span is a name that is nearly right, and the help says which is: a change that takes no
+    /// thought.
     pub misspelt: bool,
 }
 
-/// What stands before the nearest name.
+/// The text before the nearest name.
 const DID_YOU_MEAN: &str = "did you mean `";
 
 impl Diagnostic {
@@ -69,7 +69,7 @@ impl Diagnostic {
         Self::new(Severity::Warning, code, span, message)
     }
 
-    /// That the budget of the command ended in this phase of it.
+    /// Reports that the budget of the command ended in this phase of it.
     pub fn limit_reached(phase: &str, span: Span) -> Self {
         Self::error(Code::LimitReached, span, format!("the limit on time or memory was reached in {phase}"))
             .note("what was not decided by then is undecided: nothing is known to be wrong")
@@ -82,14 +82,14 @@ impl Diagnostic {
         Self { code, severity, message, primary, secondary: Vec::new(), notes: Vec::new(), help: None, misspelt: false }
     }
 
-    /// With `text` beside the primary place.
+    /// With `text` beside the primary span.
     #[must_use]
     pub fn label(mut self, text: impl Into<Box<str>>) -> Self {
         self.primary.text = text.into();
         self
     }
 
-    /// With another place that matters.
+    /// With another relevant span.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<Box<str>>) -> Self {
         self.secondary.push(Label { span, text: text.into() });
@@ -103,20 +103,20 @@ impl Diagnostic {
         self
     }
 
-    /// With what to do about it.
+    /// With a remedy.
     #[must_use]
     pub fn help(mut self, text: impl Into<Box<str>>) -> Self {
         self.help = Some(text.into());
         self
     }
 
-    /// What to write at the primary place, where that is all there is to do.
+    /// The replacement for the primary span, where that is the whole remedy.
     pub fn replacement(&self) -> Option<&str> {
         let help = self.help.as_deref().filter(|_| self.misspelt)?;
         help.strip_prefix(DID_YOU_MEAN)?.strip_suffix("`?")
     }
 
-    /// With "did you mean" for help, where there is a nearest name for what stands at the primary place.
+    /// With "did you mean" for help, where there is a nearest name for the text at the primary span.
     #[must_use]
     pub fn suggest(self, name: Option<&str>) -> Self {
         match name {
@@ -149,8 +149,8 @@ impl Diagnostics {
         self.push_with(|| diagnostic);
     }
 
-    /// Adds one that is only worded if it will be shown: a search for a nearest name takes time,
-    /// and hostile input may have ten thousand names that are wrong.
+    /// Adds one that is only worded if it will be printed: a search for a nearest name takes time, and hostile input
+    /// may have ten thousand names that are wrong.
     pub fn push_with(&mut self, word: impl FnOnce() -> Diagnostic) {
         if self.found.len() < LIMIT {
             self.found.push(word());
@@ -165,7 +165,7 @@ impl Diagnostics {
         result.map_err(|diagnostic| self.push(diagnostic)).ok()
     }
 
-    /// Whether there is an error among them.
+    /// Tests whether there is an error among them.
     pub fn has_errors(&self) -> bool {
         self.found.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
     }

@@ -1,9 +1,8 @@
-//! Texts, places in them, and what there is to say about them.
+//! Texts, spans in them, and diagnostics.
 //!
-//! In: bytes. Out: a [`Source`], a UTF-8 text of bounded size with a name; and [`Diagnostic`]s,
-//! which are data with a [`Span`] into that text. After this layer a place is a byte range: lines
-//! and columns exist only where a diagnostic is printed, as a picture ([`render()`]) or as a JSON
-//! object ([`Located`]).
+//! In: bytes. Out: a [`Source`], a UTF-8 text of bounded size with a name; and [`Diagnostic`]s, which are data with a
+//! [`Span`] into that text. After this layer a span is a byte range: lines and columns exist only where a diagnostic is
+//! printed, as a picture ([`render()`]) or as a JSON object ([`Located`]).
 //!
 //! This layer knows neither model files nor formulas; it holds the one table of [`Code`]s that
 //! every layer uses.

@@ -6,7 +6,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snip
 
 use super::{Diagnostic, Label, Severity, Source, Span};
 
-/// Whether to mark the parts of a rendering with terminal colours.
+/// Permission for terminal colours in a rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
     /// Plain text.
@@ -58,7 +58,7 @@ fn picture<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
     let snippet = |text, path, annotations: Vec<_>| {
         (!annotations.is_empty()).then(|| Snippet::source(text).path(path).annotations(annotations))
     };
-    // What is to blame comes first.
+    // The cause comes first.
     let mut snippets = [snippet(source.text(), source.name(), of_file), snippet(call, "the call", of_call)];
     if source.call(diagnostic.primary.span).is_some() {
         snippets.reverse();
@@ -76,7 +76,7 @@ fn annotation<'a>((kind, label): (AnnotationKind, &'a Label), source: &Source, s
     kind.span(span.start - start..span.end - start).label(text)
 }
 
-/// A span over many lines hides what it means to show: its first line says where to look.
+/// A span over many lines hides the cause: its first line is enough.
 fn first_line(span: Span, source: &Source) -> Span {
     let span = source.fit(span);
     let line = source.slice(span).lines().next().unwrap_or_default();
@@ -90,28 +90,28 @@ pub struct Located {
     pub code: &'static str,
     /// `error`, `warning` or `note`.
     pub severity: Severity,
-    /// What is wrong.
+    /// The mistake or finding.
     pub message: Box<str>,
-    /// Line of the primary place, from 1; 1 where there is none.
+    /// Line of the primary span, from 1; 1 where there is none.
     pub line: usize,
-    /// Column in characters, from 1; 1 where there is no place.
+    /// Column in characters, from 1; 1 where there is no span.
     pub column: usize,
-    /// What to do, or null.
+    /// The remedy, or null.
     pub help: Option<Box<str>>,
-    /// The range of bytes of the primary place; none where there is no place.
+    /// The range of bytes of the primary span; none where there is no span.
     pub span: Option<Span>,
-    /// What stands beside the primary place; may be empty.
+    /// The text beside the primary span; may be empty.
     pub label: Box<str>,
-    /// Other places that matter, with what stands beside them.
+    /// Other relevant spans, with the text beside them.
     pub labels: Vec<Label>,
     /// Facts that explain it.
     pub notes: Vec<String>,
-    /// What to write at the primary place, where that is all there is to do.
+    /// The replacement for the primary span, where that is the whole remedy.
     pub replacement: Option<String>,
 }
 
 impl Located {
-    /// The diagnostic with its place counted in `source`.
+    /// The diagnostic with its spans counted in `source`.
     pub fn new(diagnostic: &Diagnostic, source: &Source) -> Self {
         let start = if diagnostic.primary.span == Span::NOWHERE { 0 } else { diagnostic.primary.span.start };
         let position = source.position(start);

@@ -1,4 +1,4 @@
-//! A place in a text.
+//! A range of bytes in a text.
 
 use std::ops::Range;
 
@@ -15,8 +15,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// No place in the text: what a diagnostic is about was said elsewhere, as in the call, or concerns a file as a
-    /// whole. It is rendered without an excerpt.
+    /// No span in the text: the cause of a diagnostic is elsewhere, as in the call, or concerns a file as a whole. It
+    /// is rendered without an excerpt.
     pub const NOWHERE: Self = Self { start: usize::MAX, end: usize::MAX };
 
     /// The span from `start` to `end`; an inverted pair is read as the point `start`.
@@ -40,7 +40,7 @@ impl Span {
         self.end - self.start
     }
 
-    /// Whether it is a point.
+    /// Tests whether it is a point.
     pub fn is_empty(self) -> bool {
         self.start == self.end
     }

@@ -18,16 +18,16 @@ pub struct Source {
     name: String,
     /// The text of the file, and behind it the settings of the call, so that spans reach both.
     text: String,
-    /// Where the text of the file ends.
+    /// The end of the file's text.
     end: usize,
     /// The settings, without their marks.
     settings: Vec<Span>,
 }
 
-/// What stands before a setting, as in a call.
+/// The text before a setting, as in a call.
 const SETTING: &str = "--set ";
 
-/// A place as people count it: the first line is 1, and so is the first column, in characters.
+/// A position as people count it: the first line is 1, and so is the first column, in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
     /// Line, from 1.
@@ -48,15 +48,15 @@ impl Source {
     }
 
     /// The same with settings of a call, each `NAME=VALUE`: the text is read as if it said so. A name is that of a
-    /// parameter, or a key of the file with those that it stands under, as `simulation.noise.v2`. Of two settings of one
-    /// key the last counts.
+    /// parameter, or a key of the file with the keys above it, as `simulation.noise.v2`. The last of two settings of
+    /// one key counts.
     ///
     /// ```
     /// use pebo_design::source::Source;
     ///
-    /// let text = "model: m\nparameters: {a: 1}\nx: [p]\ny: [q]\nf_x: {p: -a*p}\nf_y: {q: p}\nphi: [p]\n";
-    /// let source = Source::new("m.yaml", text).and_then(|source| source.set(["a=2", "title=faster"])).expect("it is small");
-    /// let model = pebo_design::model::Model::parse(&source).expect("both are right");
+    /// let text = "model: m\nparameters: {a: 1}\nx: [p]\ny: [q]\nf_x: {p: -a*p}\nf_y: {q: p}\nphi: [p]\n"; let source =
+    /// Source::new("m.yaml", text).and_then(|source| source.set(["a=2", "title=faster"])).expect("it is small"); let
+    /// model = pebo_design::model::Model::parse(&source).expect("both are right");
     /// assert_eq!(model.parameters[0].value.as_ref().map(|number| number.value.text()), Some("2"));
     /// assert_eq!(source.text(), text);
     /// ```
@@ -91,7 +91,7 @@ impl Source {
         }
     }
 
-    /// A name without a text: what to print a diagnostic over when the file could not be read.
+    /// A name without a text: the header of a diagnostic when the file could not be read.
     pub fn unread(name: impl Into<String>) -> Self {
         Self { name: name.into(), text: String::new(), end: 0, settings: Vec::new() }
     }
@@ -106,21 +106,20 @@ impl Source {
         &self.text[..self.end]
     }
 
-    /// Where the settings of the call are.
+    /// The spans of the settings of the call.
     #[cfg(feature = "yaml")]
     pub(crate) fn settings(&self) -> &[Span] {
         &self.settings
     }
 
-    /// The settings of the call, a line each, and where they begin; nothing if `span` is a place in the file.
+    /// The settings of the call, a line each, and their offset; nothing if `span` is in the file.
     #[cfg(feature = "yaml")]
     pub(super) fn call(&self, span: Span) -> Option<(&str, usize)> {
         let start = self.end + 1;
         (span.start >= start && start < self.text.len()).then(|| (&self.text[start..], start))
     }
 
-    /// The part of the text under `span`, shrunk to whole characters of the text where it does not
-    /// fit.
+    /// The text under `span`, shrunk to whole characters of the text where it does not fit.
     pub fn slice(&self, span: Span) -> &str {
         &self.text[self.fit(span).range()]
     }
@@ -136,7 +135,8 @@ impl Source {
         (0..=offset.min(self.text.len())).rev().find(|&at| self.text.is_char_boundary(at)).unwrap_or(0)
     }
 
-    /// The line and column of a byte; settings of a call are the lines behind the file's. A place past the end is the end.
+    /// The line and column of a byte; settings of a call are the lines behind the file's. A position past the end is
+    /// the end.
     pub fn position(&self, offset: usize) -> Position {
         let before = &self.text[..self.floor(offset)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use super::{Argument, Definitions, VELOCITY};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::RegressionKind;
-use pebo_design::program::{Cost, Staged, Task, Undeclared, stage};
+use pebo_design::program::{Cost, StagedPrograms, Task, UndeclaredSymbol, stage};
 
-/// More choices are made together, not one by one.
+/// More choices are made at once, not one by one.
 const MOST_SWITCHES: usize = 12;
 
 /// The programs of all groups, in their order; where any is computed by the factors of the regression, those as derived
@@ -21,13 +21,13 @@ pub(in crate::emit) fn staged(
     parameters: &[Symbol],
     definitions: &Definitions,
     is_zero: impl Fn(&Arena, Expr) -> bool,
-) -> Result<(Staged, Option<Staged>), Undeclared> {
+) -> Result<(StagedPrograms, Option<StagedPrograms>), UndeclaredSymbol> {
     let sampled = definitions.symbols(Argument::Y);
     let derived = stage(arena, parameters, &sampled, &tasks(definitions))?;
     let Some(affine) = Affine::of(arena, definitions, &is_zero) else {
         return Ok((derived, None));
     };
-    let attempt = |by_factors: &[bool]| -> Result<(usize, Staged), Undeclared> {
+    let attempt = |by_factors: &[bool]| -> Result<(usize, StagedPrograms), UndeclaredSymbol> {
         let staged = stage(arena, parameters, &sampled, &affine.tasks(arena, definitions, by_factors))?;
         Ok((work(&staged, definitions), staged))
     };
@@ -71,7 +71,7 @@ pub(in crate::emit) fn varying(arguments: &[Argument]) -> impl Iterator<Item = A
 /// `phi_1 = B Psi`.
 struct Affine {
     rows: Vec<Row>,
-    /// Whether the velocities are what the regression says of the rates.
+    /// The velocities are the rates of the regression.
     has_velocity: bool,
 }
 
@@ -94,7 +94,7 @@ impl Affine {
         if definitions.regression.eta_symbols.len() != chi.len() {
             return None;
         }
-        // Y = S eta: what the extension knows of it is taken away.
+        // Y = S eta: the known terms of the extension are subtracted.
         let sign = if definitions.regression.kind == RegressionKind::Static { arena.number(-1) } else { arena.one() };
         let still: BTreeMap<Symbol, Expr> = chi.iter().map(|&chi| (chi, arena.zero())).collect();
         let diagonal = |row, column| if row == column { arena.one() } else { arena.zero() };
@@ -160,7 +160,7 @@ impl Affine {
         Some(affine)
     }
 
-    /// The rates of the outputs, those chosen in the names of the factors, for the coordinates in the place of the
+    /// The rates of the outputs, the chosen ones in the names of the factors, with the coordinates in place of the
     /// extension.
     fn rates(&self, arena: &Arena, definitions: &Definitions, chosen: &[bool]) -> Vec<Expr> {
         let z = definitions.symbols(Argument::Z).into_iter().map(|z| arena.of_symbol(z));
@@ -172,7 +172,7 @@ impl Affine {
         arena.substitute_all(&known, &coordinates)
     }
 
-    /// The tasks with the chosen equations by factors; behind these, whether the velocities are as the equations are.
+    /// The tasks with the chosen equations by factors; the last of the choices is that of the velocities.
     fn tasks(&self, arena: &Arena, definitions: &Definitions, chosen: &[bool]) -> Vec<Task> {
         let mut tasks = tasks(definitions);
         for (group, task) in definitions.groups().iter().zip(&mut tasks) {
@@ -198,7 +198,7 @@ impl Affine {
 }
 
 /// The work of a step: a sample once, flow, regression and primitives at both ends.
-fn work(staged: &Staged, definitions: &Definitions) -> usize {
+fn work(staged: &StagedPrograms, definitions: &Definitions) -> usize {
     let programs = definitions.groups().into_iter().zip(&staged.programs).map(|(group, program)| {
         let times = if ["flow", "regression", "primitive"].contains(&group.name) { 2 } else { 1 };
         times * Cost::of(program).weighted()

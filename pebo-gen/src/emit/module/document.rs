@@ -1,4 +1,4 @@
-//! What the emitted module says about itself, in the author's names.
+//! The documentation of the emitted module, in the author's names.
 //!
 //! In: plant, derivation and programs. Out: lines of documentation. No date, no path: the same model
 //! gives the same text.
@@ -12,7 +12,7 @@ use crate::emit::definition::{Argument, Definitions, Group, VELOCITY};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind};
 use pebo_design::plant::Plant;
-use pebo_design::program::{Cost, Staged};
+use pebo_design::program::{Cost, StagedPrograms};
 
 /// The documentation of the module.
 pub(in crate::emit) fn module(module: &Module<'_>) -> Vec<String> {
@@ -56,7 +56,7 @@ pub(in crate::emit) fn module(module: &Module<'_>) -> Vec<String> {
 const MODULE: usize = 96;
 
 /// All formulas that the documentation shows.
-pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged: &Staged) -> Vec<Expr> {
+pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged: &StagedPrograms) -> Vec<Expr> {
     let arena = &plant.arena;
     let constants = staged.constants.iter().copied().collect();
     let states = plant.x.iter().map(|state| state.rate.expr);
@@ -100,7 +100,7 @@ fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
     lines
 }
 
-/// What is zero by physics, but for the outputs that are given by their value.
+/// The identities, without the outputs that are given by value.
 fn identities(plant: &Plant) -> impl Iterator<Item = Expr> {
     let arena = &plant.arena;
     let of_output = |identity: &Expr| {
@@ -159,7 +159,7 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
     lines
 }
 
-/// What becomes of equations in which no unknown stands.
+/// The note on equations without unknowns.
 fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Vec<String> {
     let Some(whole) = &derivation.regression.result else { return Vec::new() };
     let arena = &plant.arena;
@@ -184,7 +184,7 @@ fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Ve
     vec![String::new(), format!("{} {verb} nothing unknown: {them} {told}.", names.join(", "))]
 }
 
-/// What becomes of the fundamental matrix, and what there is against it.
+/// The fate of the fundamental matrix, with its remedy.
 fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
     let fate = match derivation.cascade.result.as_ref().and_then(|cascade| cascade.fundamental) {
         None => return Vec::new(),
@@ -193,7 +193,7 @@ fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
             "`Psi` stays bounded but decays in some directions, in which later disturbances of `z` are not corrected."
         }
         Some(Fundamental::Grows) => "`Psi` grows without bound and amplifies every error of `theta`.",
-        Some(Fundamental::NotShown) => {
+        Some(Fundamental::Undecided) => {
             "It was not shown that `Psi` stays bounded; if it grows, it amplifies errors of `theta`."
         }
     };
@@ -205,7 +205,7 @@ fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
     vec![String::new(), format!("{fate} {remedy}")]
 }
 
-/// What the extension does under a constant bias, and what there is against it.
+/// The drift of the extension under a constant bias, with its remedy.
 fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
     let Some(drift) = derivation.drift(plant) else { return Vec::new() };
     let remedy = match (derivation.class, rebase) {
@@ -238,7 +238,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
         inverse.push_str(", for some of the states");
     }
     lines.push(format!("{inverse}."));
-    let asked = derivation.asked_of_estimates(plant);
+    let asked = derivation.conditions_on_estimates(plant);
     if !asked.is_empty() {
         let asked: Vec<String> = asked.iter().map(|(e, relation)| compared(arena, *e, *relation)).collect();
         lines.push(format!(
@@ -261,7 +261,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             }
             Excitation::Instant => "- Identifiability: almost every input excites".to_owned(),
             Excitation::Excitation => {
-                let lines = identifiability.motion.iter().flat_map(|motion| motion.lines(plant));
+                let lines = identifiability.trajectories.iter().flat_map(|trajectories| trajectories.lines(plant));
                 format!("- Identifiability: over time; {}", lines.collect::<Vec<String>>().join("; "))
             }
             Excitation::Never => "- Identifiability: none".to_owned(),
@@ -299,8 +299,8 @@ fn compared(arena: &Arena, expr: Expr, relation: Relation) -> String {
     format!("`{} {}`", arena.print(expr), relation.sign())
 }
 
-/// The functions with what they return, and the operations of one call of each.
-pub(in crate::emit) fn costs(definitions: &Definitions, staged: &Staged) -> Vec<(String, Cost)> {
+/// The functions with their results, and the operations of one call of each.
+pub(in crate::emit) fn costs(definitions: &Definitions, staged: &StagedPrograms) -> Vec<(String, Cost)> {
     let mut costs = vec![("`new`, once".to_owned(), Cost::of(&staged.setup))];
     if !staged.terms.is_empty() {
         costs.push(("`terms`, once a sample".to_owned(), Cost::of(&staged.sample)));
@@ -314,7 +314,7 @@ pub(in crate::emit) fn costs(definitions: &Definitions, staged: &Staged) -> Vec<
     costs
 }
 
-/// What a size of the module counts.
+/// The objects that a size of the module counts.
 pub(in crate::emit) fn size(plant: &Plant, definitions: &Definitions, name: &str) -> String {
     let arena = &plant.arena;
     match name {
@@ -345,7 +345,7 @@ pub(in crate::emit) fn quantity(plant: &Plant, symbol: Symbol) -> String {
     }
 }
 
-/// What a function returns.
+/// The result of a function, in words.
 pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'static str {
     match group.name {
         "flow" if definitions.class == Class::Gpebo => {

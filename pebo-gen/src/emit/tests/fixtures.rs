@@ -1,4 +1,4 @@
-//! Plants and derivations written by hand: what the analysis would find.
+//! Plants and derivations written by hand, as the analysis would find them.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub(crate) struct Sketch {
     pub(crate) x: &'static [(&'static str, &'static str)],
     pub(crate) y: &'static [(&'static str, &'static str)],
     pub(crate) u: &'static [&'static str],
-    /// What is greater than zero.
+    /// Expressions greater than zero.
     pub(crate) assume: &'static [&'static str],
     pub(crate) phi: &'static [&'static str],
     pub(crate) h: &'static [&'static str],
@@ -170,7 +170,7 @@ impl Sketch {
             }),
             identifiability: proved(Identifiability {
                 kind: Excitation::Instant,
-                motion: None,
+                trajectories: None,
                 gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
                 everywhere_else: true,
@@ -183,7 +183,7 @@ impl Sketch {
         let plant = Plant {
             origin: pebo_design::plant::TransformOrigin::Given,
             class: None,
-            asked: None,
+            cascade_class: None,
             relation_form: None,
             proposal: Proposal::default(),
             terms: std::collections::BTreeMap::new(),

@@ -1,5 +1,5 @@
-//! Which components of the extension are open integrators, and what the runtime has against their drift
-//! (Ortega et al. 2015, remark R5).
+//! Components of the extension that are open integrators, and the runtime's means against their drift (Ortega et al.
+//! 2015, remark R5).
 
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
@@ -10,7 +10,7 @@ use crate::analysis::design::{Class, Derivation, Regression, RegressionKind, Ver
 /// The components of the extension that a constant bias makes run away.
 #[derive(Clone, Debug)]
 pub struct Drift {
-    /// Components with a rate that is free of the extension and was not shown to be zero.
+    /// Components whose rate is free of the extension and not provably zero.
     pub integrators: Vec<Symbol>,
     /// The outputs and inputs that they integrate.
     pub integrated: Vec<Symbol>,
@@ -39,9 +39,9 @@ impl Drift {
     }
 }
 
-/// What has to vanish for a shift c of theta to leave the regression as it is (`Rebase` of the runtime): the
-/// derivative of `Phi_0` along it is `Phi_1`, with the sign of a static regression, and `Phi_1` does
-/// not move; likewise what stands under the derivative. None where the unknowns are not theta itself.
+/// The expressions that vanish if a shift c of theta leaves the regression as it is (`Rebase` of the runtime): the
+/// derivative of `Phi_0` along c less `Phi_1`, with the sign of a static regression, and the derivative of `Phi_1`;
+/// likewise for the terms under the derivative. None where the unknowns are not theta itself.
 pub(in crate::analysis) fn rebase_residuals(plant: &Plant, class: Class, regression: &Regression) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
     let unknowns = regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta));
@@ -79,7 +79,7 @@ mod tests {
     use crate::model::Model;
     use crate::source::Source;
 
-    /// Integrators and what they integrate.
+    /// Integrators and their integrands.
     fn of(lines: &str) -> Option<String> {
         let text = format!("model: m\n{lines}\n");
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();

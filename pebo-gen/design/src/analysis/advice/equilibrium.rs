@@ -1,9 +1,9 @@
-//! Where the plant rests under a constant input (Ortega et al. 2015, Section 2.5 and remark R5).
+//! The plant's equilibrium under a constant input (Ortega et al. 2015, Section 2.5 and remark R5).
 //!
-//! In: a plant with a proved cascade. Out: states, and inputs where the states leave equations, in those that
-//! stay free, with the proof that every rate vanishes there, and with it `h`.
+//! In: a plant with a proved cascade. Out: states, and inputs where the states leave equations, as functions of the
+//! free ones, with the proof that every rate and `h` vanish there.
 //!
-//! Elimination proposes points; what comes out is checked by the zero test within the assumed domain.
+//! Elimination proposes points; the zero test checks them within the assumed domain.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,32 +17,32 @@ use crate::analysis::design::{Cascade, Derivation, Verdict};
 use pebo_cas::forms::tidy::{operations, shortest_oriented};
 use pebo_cas::solve::elimination::Elimination;
 
-/// The search for an operating point may take one part in so many of what the command has left.
+/// The share of the command's remaining budget for this search: one part in so many.
 const SHARE: u64 = 4;
 
-/// Operations of a value from which on it is shown as it was found.
+/// Operations from which on a value is printed as it was found.
 const MOST_TIDIED: usize = 40;
 
-/// What is known of where a plant rests.
+/// The equilibrium of a plant.
 #[derive(Clone, Debug)]
 pub enum Equilibrium {
-    /// It rests there: proved.
+    /// An equilibrium: proved.
     At(OperatingPoint),
-    /// It rests nowhere, as this state or output never does: proved.
+    /// No equilibrium, since this state or output always moves: proved.
     Nowhere(Symbol),
-    /// Neither was shown, for this reason.
+    /// Undecided, for this reason.
     Undecided(String),
 }
 
 /// Values at which every rate vanishes.
 #[derive(Clone, Debug)]
 pub struct OperatingPoint {
-    /// Symbols that are determined, in those that are free.
+    /// Determined symbols as functions of the free ones.
     pub values: Vec<(Symbol, Expr)>,
-    /// Whether z' vanishes there too: `h`, of the generalised cascade `Lambda z + h`.
+    /// True if z' vanishes there too: `h`, of the generalised cascade `Lambda z + h`.
     pub still: bool,
-    /// The rank of `[f; h_i]` at almost every point, the same for all i; none where it was not shown. At
-    /// the operating point it is 0 if z' vanishes.
+    /// The rank of `[f; h_i]` at almost every point, the same for all i; none if undecided. At the operating point it
+    /// is 0 if z' vanishes.
     pub rank: Option<usize>,
 }
 
@@ -51,7 +51,7 @@ impl Equilibrium {
     pub(in crate::analysis) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
         let domain = derivation.domain(plant);
-        // Good to know, and not what the observer is emitted by: most of what is left is for that.
+        // An equilibrium is advice: most of the budget is for emitting the observer.
         plant.arena.budget().share(SHARE, || {
             let found = found(plant, &domain, cascade).unwrap_or_else(|obstacle| Self::Undecided(obstacle.to_string()));
             Some(match found {
@@ -88,10 +88,10 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let search = Elimination { arena, domain, states, inputs };
     let identities = plant.identities.iter().map(|identity| identity.expr);
     let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
-    // Where it is too hard to find where the unmeasured states rest, they may rest at zero, as momenta do.
+    // If an equilibrium of the unmeasured states is too hard to find, zero is tried, as for momenta.
     let still = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
     let searched = arena.budget().share(2, || search.run(&equations, &[BTreeMap::new(), still], &mut rests));
-    // Where it rests it does not move: what always does is looked for only if no such point was found.
+    // At an equilibrium nothing moves: a state that always moves is looked for only if no such point was found.
     if !matches!(searched, Ok(Ok(_)))
         && let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero))
     {
@@ -123,7 +123,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
 }
 
-/// The rates of all that can rest: time does not.
+/// The rates of all signals but time.
 fn resting(plant: &Plant) -> BTreeMap<Symbol, Expr> {
     let mut rates = plant.rates();
     rates.retain(|symbol, _| plant.time != Some(*symbol));
@@ -159,8 +159,8 @@ fn flow(plant: &Plant, cascade: &Cascade) -> Vec<Expr> {
     moved.zip(&cascade.h).map(|(moved, h)| arena.add(moved, *h)).collect()
 }
 
-/// The rank of the column `[f; h_i]` at almost every point. Of a column it is 1 where an entry is not zero; as
-/// `h_i` is a combination of the rates, those decide.
+/// The rank of the column `[f; h_i]` at almost every point: 1 if an entry is not zero. As `h_i` is a combination of the
+/// rates, the rates decide.
 fn rank<'a>(arena: &Arena, domain: &Domain, mut rates: impl Iterator<Item = &'a Expr> + Clone) -> Option<usize> {
     let answers = || rates.clone().map(|rate| decide(arena, *rate, domain));
     if answers().any(|answer| matches!(answer, Answer::NonZero(_))) {
@@ -182,7 +182,7 @@ mod tests {
         (plant, equilibrium)
     }
 
-    /// The values of a point at which z rests and where the rank falls from 1.
+    /// The values of a point at which z' vanishes and the rank falls from 1.
     fn at(lines: &str) -> String {
         let (plant, equilibrium) = of(lines);
         let Some(Equilibrium::At(point)) = equilibrium else { panic!("{lines}: {equilibrium:?}") };
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn identities_hold_where_the_plant_rests() {
-        // A point on the unit circle does not rest at its centre.
+        // A point on the unit circle has no equilibrium at the circle's centre.
         let circle = "x: [c, s]\ny: [q]\nu: [v, w]\nidentities: [c^2 + s^2 - 1]\n\
                       f_x: {c: -s*w, s: c*w}\nf_y: {q: v*c}\nphi: [c, s]";
         assert_eq!(at(circle), "c = 0, s = 1, w = 0");
@@ -293,14 +293,14 @@ mod tests {
         // E - (1 - d) v is positive there.
         let (_, equilibrium) = of(&format!("{BOOST}\nassume: [0 < d < 1, v < 0]"));
         assert!(matches!(equilibrium, Some(Equilibrium::Nowhere(_))), "{equilibrium:?}");
-        // A bound that the point meets, and one that only a part of the inputs meets.
+        // A bound that the point meets, and one that only some of the inputs meet.
         at(&format!("{BOOST}\nassume: [0 < d < 1, v > 0]"));
         at(&format!("{BOOST}\nassume: [0 < d < 1, v > 15]"));
     }
 
     #[test]
     fn a_point_at_which_the_observer_has_no_value_is_none() {
-        // q' = q w rests at q = 0 too, where p = z1/q has no value.
+        // q' = q w vanishes at q = 0 too, where p = z1/q has no value.
         let product = "x: [p]\ny: [q, r]\nu: [v, w]\nf_x: {p: v - p*w}\nf_y: {q: q*w, r: p}\nphi: [p*q]";
         assert_eq!(at(product), "p = 0, v = 0, w = 0");
         let alone = "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v + p}\nf_y: {q: -q, r: p}\nphi: [p*q]";

@@ -1,7 +1,7 @@
-//! What is good to know beside the claims: no verdict rests on it.
+//! Advice beside the claims: no verdict depends on it.
 //!
-//! In: a plant and what was derived of it. Out: an operating point, which integrators a bias makes grow and what helps,
-//! whether the observer may be re-based; each computed when it is first asked for.
+//! In: a plant and its derivation. Out: an operating point, the integrators that a bias makes grow with a remedy, and
+//! whether the observer may be re-based; each computed on first use.
 
 pub(super) mod drift;
 pub(super) mod equilibrium;

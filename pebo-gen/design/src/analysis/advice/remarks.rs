@@ -1,7 +1,6 @@
-//! What is worth knowing in use and no claim rests on: where the plant rests, what drifts, whether the extension can be
-//! started anew in motion.
+//! Remarks for the user of an observer, on which no claim depends: equilibrium, drift, and restarts of the extension.
 //!
-//! Worked out once, when it is first asked for: what does not print it, as the macro, does not pay for it.
+//! Computed once, on first use: callers that print no remarks, as the macro, do not pay for them.
 //!
 //! One thing with `design`, `drift` and `equilibrium`: a derivation keeps the remarks on itself, which are made of it.
 
@@ -16,7 +15,7 @@ use super::drift::{Drift, rebase_residuals};
 use super::equilibrium::Equilibrium;
 use crate::analysis::design::Derivation;
 
-/// What has been asked for so far.
+/// The remarks computed so far.
 #[derive(Debug, Default)]
 pub struct Remarks {
     operating_point: OnceCell<Option<Equilibrium>>,
@@ -25,7 +24,7 @@ pub struct Remarks {
 }
 
 impl Derivation {
-    /// Where the plant, which must be the one that this was derived of, rests; none without a proved cascade.
+    /// The equilibrium of the plant, which must be the one of this derivation; none without a proved cascade.
     pub fn operating_point(&self, plant: &Plant) -> Option<&Equilibrium> {
         self.remarks.operating_point.get_or_init(|| Equilibrium::of(plant, self)).as_ref()
     }
@@ -37,8 +36,8 @@ impl Derivation {
         self.remarks.drift.get_or_init(found).as_ref()
     }
 
-    /// The borders at which components of the transform jump, or were not shown not to: theta is another constant on each
-    /// side. None where it is open which borders there are.
+    /// The borders at which components of the transform provably or possibly jump: theta is another constant on each
+    /// side. None if the borders are undecided.
     pub fn jumps(&self, plant: &Plant) -> Vec<(Symbol, Expr)> {
         let (arena, domain) = (&plant.arena, self.domain(plant));
         let constant: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
@@ -50,7 +49,7 @@ impl Derivation {
         plant.transform().into_iter().zip(&plant.z).flat_map(of_component).collect()
     }
 
-    /// Whether a constant may be moved from theta to the extension in motion (`Rebase` of the runtime): proved.
+    /// Tests whether a constant may be moved from theta to the extension at run time (`Rebase` of the runtime): proved.
     pub fn can_rebase(&self, plant: &Plant) -> bool {
         *self.remarks.rebase.get_or_init(|| {
             let domain = plant.domain();

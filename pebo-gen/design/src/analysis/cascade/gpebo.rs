@@ -1,9 +1,8 @@
 //! The generalised cascade: z' = Lambda(y, u) z + h(y, u).
 //!
-//! In: the derivative of the transform. Out: Lambda and h, if the derivative is an affine combination of
-//! the transform itself with coefficients free of x (Ortega, Bobtsov, Nikolaev, Schiffer, Dochain 2021). That is an
-//! identity, and all that the claim asks for; what becomes of `Psi' = Lambda Psi` is remarked beside it
-//! ([`super::bounded`]).
+//! In: the derivative of the transform. Out: Lambda and h, if the derivative is an affine combination of the transform
+//! itself with coefficients free of x (Ortega, Bobtsov, Nikolaev, Schiffer, Dochain 2021). The claim is that identity
+//! alone; the behaviour of `Psi' = Lambda Psi` is a remark beside it ([`super::bounded`]).
 
 use crate::plant::Plant;
 use pebo_cas::tower::Obstacle;

@@ -1,4 +1,4 @@
-//! Mechanical plants: whether the terms of z' that are quadratic in momenta vanish.
+//! Mechanical plants: a test for z' without terms quadratic in momenta.
 //!
 //! In: inertia matrix M and frame T, z = T' p. With v = q' and `L_X M = X.dM + (dX)' M + M dX`,
 //!
@@ -6,8 +6,8 @@
 //! z_i' = h_i + v' (L_{T_i} M) v / 2
 //! ```
 //!
-//! so the terms vanish exactly if each column of T is a Killing field of M. That is decided directly, without an inverse.
-//! Ortega et al. 2015 state the same as Assumption 3: `B_(i) + B_(i)' = 0` with
+//! so the terms vanish exactly if each column of T is a Killing field of M. That is decided directly, without an
+//! inverse. Ortega et al. 2015 state the same as Assumption 3: `B_(i) + B_(i)' = 0` with
 //!
 //! ```text
 //! B_(i) = sum over j of [T_i, T_j] T_j' (M T T')^-1 + T_ji T d/dq_j (T' M T)^-1 T' / 2
@@ -23,7 +23,7 @@ use pebo_cas::number::rational::half;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr};
 
-/// Whether a field over the positions, as a column of T, is a Killing field: `z_i' = h_i`.
+/// Tests whether a field over the positions, as a column of T, is a Killing field: `z_i' = h_i`.
 pub(super) fn is_killing(arena: &Arena, domain: &Domain, plant: &Mechanical, field: &[Expr]) -> Result<bool, Obstacle> {
     Ok(nonzero(arena, domain, &change_along(arena, &plant.inertia, field, &plant.q))?.is_empty())
 }

@@ -1,9 +1,8 @@
 //! Claim 1, the cascade: the transform moves by known signals.
 //!
-//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and
-//! h(y, u) with `Lambda phi + h` on the right ([`gpebo`]), or what keeps the derivative from being free of
-//! x, a point that shows it, and a mended transform if adding multiples of the outputs makes one (Ortega et al.
-//! 2015, eq. 3).
+//! In: the plant. Out: h(y, u) with `d(phi)/dx f_x + d(phi)/dy f_y = h`, or, where that fails, Lambda(y, u) and h(y, u)
+//! with `Lambda phi + h` on the right ([`gpebo`]), or the terms of the derivative that depend on x, a point that shows
+//! it, and a repaired transform if multiples of the outputs give one (Ortega et al. 2015, eq. 3).
 
 mod bounded;
 mod gpebo;
@@ -31,18 +30,18 @@ use pebo_cas::forms::tidy::{authors_form, proved_shortest, shortest, with_fewer_
 enum Component {
     /// Free of x.
     Free(Expr),
-    /// Not free of x: the part that varies with x, and where it is seen.
+    /// Dependent on x: the term that varies with x, and a witness.
     Bound { residual: Expr, witness: Witness, through: Vec<Symbol> },
     /// It could not be decided.
     Open(Obstacle),
 }
 
-/// Proves or refutes the cascade: the plain one, and where that fails or is not asked for, the generalised one.
+/// Proves or refutes the cascade: the plain one, else, unless only that is wanted, the generalised one.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
     let lie = plant.derivative_of_transform();
     let components: Vec<Component> =
         lie.iter().enumerate().map(|(index, rate)| component_of(plant, domain, index, *rate)).collect();
-    if plant.asked != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
+    if plant.cascade_class != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
         let h = components.iter().filter_map(Component::free).collect();
         return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(Cascade { h, ..Cascade::default() }) });
     }
@@ -58,13 +57,13 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let rows: Vec<Result<Option<affine::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
     let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
     let mends = mends(plant, domain, &lie, &components);
-    if generalised && plant.asked != Some(Class::Pebo) {
+    if generalised && plant.cascade_class != Some(Class::Pebo) {
         let result = gpebo::cascade(plant, domain, rows.into_iter().filter_map(|row| row.ok()?).collect());
         let plain = components.iter().any(|c| c.free().is_none()).then(|| mends.into_iter().collect()).flatten();
         let result = Cascade { mend: plain, ..result };
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
     }
-    if plant.asked == Some(Class::Pebo) {
+    if plant.cascade_class == Some(Class::Pebo) {
         let mut refusals = Vec::new();
         let claim = pencil::refuse(plant, domain, &mut refusals);
         let claim = claim.unwrap_or_else(|| refuse(plant, domain, (&components, &mends), |_| Ok(None), &mut refusals));
@@ -81,8 +80,8 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     (Class::Pebo, claim)
 }
 
-/// What stands against the cascade, component by component, but for those that are affine in the transform by `row`
-/// and stand against a plain one alone.
+/// The obstacles to the cascade, component by component; components that `row` makes affine in the transform are
+/// obstacles to a plain one alone.
 fn refuse(
     plant: &Plant,
     domain: &Domain,
@@ -124,7 +123,7 @@ impl Component {
     }
 }
 
-/// One component, by what the class knows of it where it knows.
+/// One component, by the knowledge of the class where there is any.
 fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Component {
     let Some(plant::Class::Mechanical(mechanical)) = &plant.class else { return component(plant, domain, rate) };
     if plant.origin == TransformOrigin::Found {
@@ -134,9 +133,10 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
         Ok(true) => Component::Free(momentum::rate(plant, domain, mechanical, index)),
         Ok(false) => match &mechanical.in_velocities {
             // The rate has no normal form that could be looked at; that it varies, points show.
-            Some(shown) => {
-                let varying = killing::quadratic(&plant.arena, mechanical, index, &shown.velocities);
-                let rate = Seen { rate, shown: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
+            Some(printed) => {
+                let varying = killing::quadratic(&plant.arena, mechanical, index, &printed.velocities);
+                let rate =
+                    RateForm { rate, printed: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
                 bound(plant, domain, rate).unwrap_or(Component::Open(Obstacle::NoWitness))
             }
             None => component(plant, domain, rate),
@@ -145,8 +145,8 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
     }
 }
 
-/// A component that was searched for, and its rate: the class knows of its own T alone, not of this one. Of momenta along
-/// a Killing field the rate is what it is at rest.
+/// A component that was searched for, and its rate: the class knows of its own T alone, not of this one. The rate of
+/// momenta along a Killing field is the rate at zero velocity.
 fn component_found(
     plant: &Plant,
     domain: &Domain,
@@ -188,13 +188,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
     };
     let tidied = match tidied {
         Ok(tidied) => tidied,
-        // What no normal form reaches may differ at points all the same.
+        // An expression without a normal form may still differ at points.
         Err(obstacle) => {
-            return bound(plant, domain, Seen { rate, shown: rate, varying: None })
+            return bound(plant, domain, RateForm { rate, printed: rate, varying: None })
                 .unwrap_or(Component::Open(obstacle));
         }
     };
-    // Of a number there is no other form.
+    // A number has no other form.
     if arena.as_number(tidied).is_some() {
         return match point_of(arena, rate, domain) {
             Some(_) => Component::Free(tidied),
@@ -202,13 +202,13 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         };
     }
     if !arena.depends_on(tidied, &hidden) {
-        // The normal form is free of x; that it equals the rate is what the zero test confirms.
+        // The normal form is free of x; the zero test confirms that it equals the rate.
         return match decide(arena, arena.sub(rate, tidied), domain) {
             // It does not depend on x, so its value at any x will do: there the author's own form may have more values.
             Answer::Zero => {
                 let origin = hidden.iter().map(|symbol| (*symbol, arena.zero())).collect();
                 let plain = proved_shortest(arena, domain, arena.substitute(rate, &origin));
-                // What is free of x as it is written, then what cancels, then the normal form.
+                // Terms free of x as they are written, then terms that cancel, then the normal form.
                 let forms = as_written(arena, domain, rate, &hidden);
                 let forms = forms.into_iter().chain([shortest(arena, domain, rate), plain]);
                 let equal = |form: &Expr| {
@@ -222,32 +222,33 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };
     }
-    bound(plant, domain, Seen { rate, shown: tidied, varying: None }).unwrap_or(Component::Open(Obstacle::NoWitness))
+    bound(plant, domain, RateForm { rate, printed: tidied, varying: None })
+        .unwrap_or(Component::Open(Obstacle::NoWitness))
 }
 
-/// A rate and how it is shown.
-struct Seen {
+/// A rate and its printed form.
+struct RateForm {
     rate: Expr,
-    shown: Expr,
-    /// The part of what is shown that varies with x, if that is known.
+    printed: Expr,
+    /// The term of the printed form that varies with x, if known.
     varying: Option<Expr>,
 }
 
-/// What varies with x, with two points of the domain that show it: the same y, u and parameters, another value.
+/// The dependence on x, with two points of the domain that show it: the same y, u and parameters, another value.
 ///
-/// The part of what is shown that varies is its difference to what it is at the second point, if it is not known.
-fn bound(plant: &Plant, domain: &Domain, Seen { rate, shown, varying }: Seen) -> Option<Component> {
+/// If the varying term of the printed form is unknown, it is the difference to its value at the second point.
+fn bound(plant: &Plant, domain: &Domain, RateForm { rate, printed, varying }: RateForm) -> Option<Component> {
     let arena = &plant.arena;
     let hidden = plant.hidden();
     let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
     let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
-    let read = if varying.is_some() { rate } else { shown };
+    let read = if varying.is_some() { rate } else { printed };
     let through: Vec<Symbol> = arena.symbols_of(&[read]).intersection(&hidden).copied().collect();
     let fixed: BTreeMap<Symbol, Expr> = through.iter().filter_map(|s| Some((*s, *reference.get(s)?))).collect();
     let residual =
-        varying.unwrap_or_else(|| shortest(arena, domain, arena.sub(shown, arena.substitute(shown, &fixed))));
+        varying.unwrap_or_else(|| shortest(arena, domain, arena.sub(printed, arena.substitute(printed, &fixed))));
     let difference = here.sub(there, Precision::new(256))?;
-    let compared = Comparison::of([shown, read], &points, &hidden);
+    let compared = Comparison::of([printed, read], &points, &hidden);
     let witness = Witness {
         expr: residual,
         point: points.points[0].iter().map(|(symbol, value)| (*symbol, *value)).collect(),
@@ -309,9 +310,9 @@ fn refuted(
 ) -> Diagnostic {
     let arena = &plant.arena;
     let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
-    let shown = arena.print(residual);
-    // What the label shows at length is not said again.
-    let term = if shown.len() <= LONGEST { format!("`{shown}`") } else { "this term".to_owned() };
+    let printed = arena.print(residual);
+    // A long label is not repeated.
+    let term = if printed.len() <= LONGEST { format!("`{printed}`") } else { "this term".to_owned() };
     let component = index + 1;
     let diagnostic = Diagnostic::error(
         Code::CascadeRefuted,
@@ -321,7 +322,7 @@ fn refuted(
             listed(names.iter().map(String::as_str))
         ),
     )
-    .label(format!("its derivative keeps the term `{shown}`"))
+    .label(format!("its derivative keeps the term `{printed}`"))
     .note(format!("d(phi)/dt must be a function of y and u alone, but {term} remains in z{component}'"))
     .note(
         witness
@@ -335,7 +336,7 @@ fn refuted(
     }
 }
 
-/// Whether the plant is a mechanical one whose inverse of M is not written out.
+/// Tests whether the plant is a mechanical one whose inverse of M is not written out.
 fn is_implicit(plant: &Plant) -> bool {
     matches!(&plant.class, Some(plant::Class::Mechanical(mechanical)) if mechanical.in_velocities.is_some())
 }

@@ -1,8 +1,8 @@
 //! The rate of a momentum along a Killing field: `h_i = T_i' (G u - dV/dq)`.
 //!
-//! In: a component whose field is proved to be one. Out: its rate as a formula for people and code. What the potential gives
-//! along the field stands apart from what the inputs give: its terms often cancel wholly or to a constant, such as a weight,
-//! which is then neither expanded nor divided by what the frame is divided by.
+//! In: a component whose field is proved to be one. Out: its rate as a formula for people and code. The term of the
+//! potential is separate from that of the inputs: it often cancels wholly or to a constant, such as a weight, which is
+//! then neither expanded nor divided by the denominator of the frame.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ pub(super) fn rate(plant: &Plant, domain: &Domain, mechanical: &Mechanical, inde
     if cost(apart) < cost(short) { apart } else { short }
 }
 
-/// The rate as what the potential leaves and a combination of the inputs, each in its own form.
+/// The rate as the term of the potential and a combination of the inputs, each in its own form.
 fn apart(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     let arena = &plant.arena;
     let without: BTreeMap<_, _> = plant.u.iter().map(|input| (*input, arena.zero())).collect();

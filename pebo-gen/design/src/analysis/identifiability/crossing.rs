@@ -1,10 +1,11 @@
-//! Whether what two parts of a domain show comes together on one motion.
+//! Combines the observations on two cells of a domain along one trajectory.
 //!
-//! In: parts of which none shows all unknowns, with the rows that each sees. Out: whether every part has a neighbour into
-//! which motions pass, with which it shows them all. Of `p + s*sign(q)` a motion on which q changes its sign shows p and s;
-//! where q' = q*v none does. Motions pass from one part into another where what divides them vanishes and moves the same
-//! way on both sides. There the rows of both are taken at one point, so that all that the motion keeps is the same in both.
-//! What is of inputs alone changes its sign at once: then all but the inputs is the same.
+//! In: cells, none of which identifies all unknowns, with the rows of each. Out: true if every cell has a neighbour
+//! into which trajectories pass and with which it identifies them all. With `p + s*sign(q)` a trajectory on which q
+//! changes its sign identifies p and s; if q' = q*v there is none. Trajectories pass from one cell into another where
+//! the border function vanishes and moves the same way on both sides. The rows of both cells are taken at one such
+//! point, so that constants of the trajectory are the same in both. A border function of inputs alone changes its sign
+//! at once: then all but the inputs is the same.
 
 use std::collections::BTreeSet;
 
@@ -26,38 +27,38 @@ const MOST_POINTS: usize = 16;
 /// Points beyond a border that are looked at for one on this side.
 const FEW_POINTS: usize = 2;
 
-/// A part, and the rows that are seen in it.
-pub(super) struct Seen<'a> {
+/// A cell and its rows.
+pub(super) struct CellRows<'a> {
     pub(super) part: &'a Cell,
     pub(super) rows: Vec<Vec<Expr>>,
 }
 
-/// Whether every part shows all unknowns together with another into which motions pass.
-pub(super) fn all_shown(
+/// Tests whether every cell identifies all unknowns with another into which trajectories pass.
+pub(super) fn all_identified(
     plant: &Plant,
     cascade: &Cascade,
     varies: impl Fn(Expr) -> bool,
-    parts: &[Seen<'_>],
+    parts: &[CellRows<'_>],
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
-    let mut shown = vec![false; parts.len()];
+    let mut identified = vec![false; parts.len()];
     for first in 0..parts.len() {
         for second in first + 1..parts.len() {
             let Some(border) = border(parts[first].part, parts[second].part) else { continue };
-            if shown[first] && shown[second] {
+            if identified[first] && identified[second] {
                 continue;
             }
             let pair = [&parts[first], &parts[second]];
             if passes(plant, cascade, &varies, pair, border, unknowns)? {
-                shown[first] = true;
-                shown[second] = true;
+                identified[first] = true;
+                identified[second] = true;
             }
         }
     }
-    Ok(shown.into_iter().all(|shown| shown))
+    Ok(identified.into_iter().all(|identified| identified))
 }
 
-/// What divides two parts, if it is one formula alone.
+/// The border function of two cells, if it is one formula alone.
 fn border(first: &Cell, second: &Cell) -> Option<Expr> {
     let is_of = |part: &Cell, side: &(Expr, Side)| part.sides.contains(side);
     let mut apart = first.sides.iter().filter(|side| !is_of(second, side));
@@ -66,12 +67,13 @@ fn border(first: &Cell, second: &Cell) -> Option<Expr> {
     (same && apart.next().is_none()).then_some(*expr)
 }
 
-/// Whether motions pass from one of the parts into the other at a point at which their rows have full rank together.
+/// Tests whether trajectories pass from one of the cells into the other at a point at which their combined rows have
+/// full rank.
 fn passes(
     plant: &Plant,
     cascade: &Cascade,
     varies: &impl Fn(Expr) -> bool,
-    pair: [&Seen<'_>; 2],
+    pair: [&CellRows<'_>; 2],
     border: Expr,
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
@@ -83,10 +85,10 @@ fn passes(
     }
     let mut rates = Vec::new();
     let mut rows = Vec::new();
-    for seen in pair {
-        let domain = &seen.part.domain;
+    for cell in pair {
+        let domain = &cell.part.domain;
         let rate = Flow::new(plant, domain, cascade)?.rate(arena, border);
-        let entries: Vec<Expr> = seen.rows.iter().flatten().copied().chain([rate]).collect();
+        let entries: Vec<Expr> = cell.rows.iter().flatten().copied().chain([rate]).collect();
         let mut sides = as_on(arena, domain, &entries)?;
         if arena.dividers(&sides).into_iter().any(varies) {
             // Not one formula up to the border.
@@ -105,9 +107,9 @@ fn passes(
     Ok(found)
 }
 
-/// Whether the rows of two parts have full rank together at points that differ in the inputs alone.
-fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&Seen<'_>; 2], unknowns: usize) -> bool {
-    let [here, there] = pair.map(|seen| seen.rows.concat());
+/// Tests whether the combined rows of two cells have full rank at points that differ in the inputs alone.
+fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&CellRows<'_>; 2], unknowns: usize) -> bool {
+    let [here, there] = pair.map(|cell| cell.rows.concat());
     let both = [here.as_slice(), &there].concat();
     // The derivatives of inputs are other symbols, and are the same: that is enough.
     pair[0].part.domain.points(arena, &both).take(MOST_POINTS).any(|point| {
@@ -120,13 +122,13 @@ fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&Seen<'_>; 2], unknown
     })
 }
 
-/// Formulas as they are on a part, which have values at its border too.
+/// Formulas as they are on a cell, which have values at its border too.
 fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let field = Field::on(arena, &domain.without_radicand_facts(arena, exprs), exprs)?;
     exprs.iter().map(|expr| Ok(field.show(&field.fraction(*expr)?))).collect()
 }
 
-/// The points of the border, with what else is assumed of a part.
+/// The points of the border, with the other assumptions of a cell.
 fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
     let arena = &plant.arena;
     let assumed = plant.assumed();
@@ -138,7 +140,7 @@ fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
     let met = Domain { manifold: manifold.clone(), ..assumed.clone() };
     let mut facts = Facts::new();
     for (fact, relation) in part.facts.iter() {
-        // That the border is not met is what makes it one, unless the author says so.
+        // The border is excluded as a border alone, unless the author excludes it too.
         let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
         let is_border = decide(arena, fact, &met).is_zero();
         if is_own || !is_border {

@@ -1,8 +1,8 @@
-//! Identifiability where formulas bend: part by part.
+//! Identifiability with non-smooth formulas: cell by cell.
 //!
-//! In: how the question is answered where all formulas are analytic. Out: the answer on the whole domain. A rank that is seen
-//! at a point, and a direction that is not seen there, are so almost everywhere in the part of the point alone: with
-//! `p*max(q, 0)` p is seen while q is positive; with `a + b*sign(w)` both are seen once w has had both signs.
+//! In: the decision for analytic formulas. Out: the decision on the whole domain. The rank at a point, and an
+//! unobservable direction there, hold almost everywhere in the cell of the point alone: with `p*max(q, 0)` p is
+//! identifiable while q is positive; with `a + b*sign(w)` both are once w has had both signs.
 
 use std::collections::BTreeSet;
 
@@ -12,40 +12,43 @@ use pebo_cas::domain::cells::Cell;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr};
 
-use super::crossing::{Seen, all_shown};
-use super::trajectory::seen;
-use crate::analysis::design::{Blind, Cascade, Claim, Excitation, Identifiability, Motion, Place, Regression, Verdict};
+use super::crossing::{CellRows, all_identified};
+use super::trajectory::identifiable;
+use crate::analysis::design::{
+    BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, Trajectories, TrajectoryCondition,
+    Verdict,
+};
 use crate::analysis::left_inverse::checking::at_phi;
 
 /// An answer where all formulas are analytic.
-pub(super) struct Decided {
+pub(super) struct AnalyticDecision {
     /// The verdict.
     pub(super) claim: Claim<Identifiability>,
-    /// The directions of the unknowns that are never seen.
+    /// The directions of the unknowns that are never observable.
     pub(super) hidden: Vec<Vec<Expr>>,
     /// The rows of the regressor, with the derivatives that were looked at.
     pub(super) rows: Vec<Vec<Expr>>,
 }
 
-impl Decided {
+impl AnalyticDecision {
     fn kind(&self) -> Option<Excitation> {
         self.claim.result.as_ref().map(|result| result.kind)
     }
 }
 
-impl From<Claim<Identifiability>> for Decided {
+impl From<Claim<Identifiability>> for AnalyticDecision {
     fn from(claim: Claim<Identifiability>) -> Self {
         Self { claim, hidden: Vec::new(), rows: Vec::new() }
     }
 }
 
-/// What may bend.
+/// The formulas that may be non-smooth.
 pub(super) struct Formulas {
     /// The regressor.
     pub(super) regressor: Vec<Expr>,
     /// All rates.
     pub(super) rates: Vec<Expr>,
-    /// What is zero on the domain: it bends with them.
+    /// The formulas that vanish on the domain: they count too.
     pub(super) identities: Vec<Expr>,
 }
 
@@ -59,18 +62,19 @@ impl Formulas {
     }
 }
 
-/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is open.
+/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is
+/// open.
 pub(super) fn decide(
     plant: &Plant,
     domain: &Domain,
     (cascade, regression): (&Cascade, &Regression),
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
-    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
-    let mut told = Vec::new();
-    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut told, &on)?;
+    let mut reported = Vec::new();
+    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut reported, &on)?;
     let identified =
         |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
     if identified(&whole) {
@@ -86,11 +90,11 @@ pub(super) fn decide(
             }
         }
     }
-    found.extend(told);
+    found.extend(reported);
     Ok(whole)
 }
 
-/// Whether an expression is not of the parameters alone.
+/// Tests whether an expression depends on more than the parameters.
 fn varies(plant: &Plant, expr: Expr) -> bool {
     let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
     plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
@@ -109,7 +113,7 @@ fn depends_on_signs(plant: &Plant, part: &Cell) -> Diagnostic {
     .help("state the signs of the parameters under `assume`")
 }
 
-/// None of the parts shows all unknowns, and no motion was found that passes from one into another and shows them.
+/// No cell identifies all unknowns, and no trajectory was found that passes from one into another and identifies them.
 fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
     let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
     let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
@@ -123,90 +127,96 @@ fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
         .help("choose a phi of what is seen on one side alone, and state that side under `assume`")
 }
 
-/// The motions within parts on which not all unknowns are seen: of all parts together, where all have the same.
-fn of_parts(plant: &Plant, within: &[(&Cell, Vec<Blind>)], parts: usize) -> Vec<Blind> {
-    let key = |blind: &Blind| (blind.place(plant), blind.seen.clone());
-    let mut found: Vec<Blind> = Vec::new();
-    for (part, motions) in within {
-        for motion in motions {
-            let is_same = |(_, others): &&(&Cell, Vec<Blind>)| others.iter().any(|other| key(other) == key(motion));
-            let place = if within.iter().filter(is_same).count() == parts {
-                motion.place.clone()
+/// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
+/// same.
+fn of_parts(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], parts: usize) -> Vec<BlindTrajectory> {
+    let key = |blind: &BlindTrajectory| (blind.condition(plant), blind.identifiable.clone());
+    let mut found: Vec<BlindTrajectory> = Vec::new();
+    for (part, trajectories) in within {
+        for trajectory in trajectories {
+            let is_same =
+                |(_, others): &&(&Cell, Vec<BlindTrajectory>)| others.iter().any(|other| key(other) == key(trajectory));
+            let condition = if within.iter().filter(is_same).count() == parts {
+                trajectory.condition.clone()
             } else {
-                Place::Within(part.sides.clone(), Box::new(motion.place.clone()))
+                TrajectoryCondition::Within(part.sides.clone(), Box::new(trajectory.condition.clone()))
             };
-            let motion = Blind { place, ..motion.clone() };
-            if !found.iter().any(|other| key(other) == key(&motion)) {
-                found.push(motion);
+            let trajectory = BlindTrajectory { condition, ..trajectory.clone() };
+            if !found.iter().any(|other| key(other) == key(&trajectory)) {
+                found.push(trajectory);
             }
         }
     }
     found
 }
 
-/// Answers on a domain by the answers on its parts.
+/// The decision on a domain from those on its cells.
 fn on_parts(
     plant: &Plant,
     domain: &Domain,
     (cascade, regression): (&Cascade, &Regression),
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
-    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> Decided,
+    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
     let varies = |expr: Expr| varies(plant, expr);
-    let mut told = Vec::new();
-    let whole = on(domain, &mut told);
+    let mut reported = Vec::new();
+    let whole = on(domain, &mut reported);
     let instant = |part: &Cell| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
     if whole.kind() == Some(Excitation::Instant) {
         let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
         let everywhere = match domain.cells(arena, &formulas.of_regressor(), varies) {
             Ok(parts) => parts.len() == 1 || parts.iter().all(instant),
-            // Where the rank drops is told even so.
+            // The drop of the rank is reported even so.
             Err(Obstacle::TooLarge | Obstacle::OutOfBudget | Obstacle::NoPoint) if listed => true,
             Err(obstacle) => return Err(obstacle),
         };
         if everywhere {
-            found.extend(told);
+            found.extend(reported);
             return Ok(whole.claim);
         }
     }
     let parts = domain.cells(arena, &formulas.all(), varies)?;
     if parts.len() == 1 {
-        found.extend(told);
+        found.extend(reported);
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
-    let mut within: Vec<(&Cell, Vec<Blind>)> = Vec::new();
-    let mut shown = Vec::new();
+    let mut within: Vec<(&Cell, Vec<BlindTrajectory>)> = Vec::new();
+    let mut cells = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
     let (mut by_itself, mut at_rest) = (Some(true), true);
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     for part in &parts {
-        let mut told = Vec::new();
-        let decided = on(&part.domain, &mut told);
+        let mut reported = Vec::new();
+        let decided = on(&part.domain, &mut reported);
         match decided.kind() {
             None => {
-                found.extend(told);
+                found.extend(reported);
                 return Ok(decided.claim);
             }
             Some(Excitation::Instant) => {}
             Some(Excitation::Excitation) => {
-                let motion = decided.claim.result.as_ref().and_then(|result| result.motion.as_ref());
-                let also = motion.and_then(|motion| motion.by_itself);
+                let trajectories = decided.claim.result.as_ref().and_then(|result| result.trajectories.as_ref());
+                let also = trajectories.and_then(|trajectories| trajectories.by_itself);
                 by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
-                at_rest &= motion.is_some_and(|motion| motion.at_rest);
-                within.extend(motion.map(|motion| (part, motion.blind.clone())));
+                at_rest &= trajectories.is_some_and(|trajectories| trajectories.at_rest);
+                within.extend(trajectories.map(|trajectories| (part, trajectories.blind.clone())));
             }
             Some(Excitation::Never) => {
-                let (seen, hidden) = (seen(arena, symbols, &decided.hidden), decided.hidden.clone());
-                blind.push(Blind { place: Place::Part(part.sides.clone()), seen, hidden });
+                let (identifiable, hidden) = (identifiable(arena, symbols, &decided.hidden), decided.hidden.clone());
+                blind.push(BlindTrajectory {
+                    condition: TrajectoryCondition::Cell(part.sides.clone()),
+                    identifiable,
+                    hidden,
+                });
             }
         }
-        shown.push(Seen { part, rows: decided.rows });
+        cells.push(CellRows { part, rows: decided.rows });
         if let Some(result) = decided.claim.result {
-            parameters &= result.motion.is_none_or(|motion| motion.parameters);
+            parameters &= result.trajectories.is_none_or(|trajectories| trajectories.parameters);
             for constant in result.constants {
                 if !constants.contains(&constant) {
                     constants.push(constant);
@@ -215,34 +225,38 @@ fn on_parts(
         }
     }
     if blind.len() == parts.len() {
-        // One direction that no part sees: said of the whole domain, it must be the same in all.
+        // A direction that no cell observes is a statement on the whole domain only if it is the same in all.
         let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
         if whole.kind() == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
-            found.extend(told);
+            found.extend(reported);
             return Ok(whole.claim);
         }
         // A fundamental matrix is another at every moment, so that rows of two moments do not compare.
-        let entries: Vec<Expr> = shown.iter().flat_map(|seen| seen.rows.concat()).collect();
+        let entries: Vec<Expr> = cells.iter().flat_map(|cell| cell.rows.concat()).collect();
         let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
         if by_psi {
             return Err(Obstacle::NoWitness);
         }
-        if !all_shown(plant, cascade, varies, &shown, regression.eta.len())? {
+        if !all_identified(plant, cascade, varies, &cells, regression.eta.len())? {
             found.push(parted(plant, &parts));
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
-    // What several parts show together, they show while the plant moves from one to the other.
+    // Several cells identify the unknowns while the plant moves from one to the other.
     let by_itself = by_itself.filter(|_| blind.len() < parts.len());
     let at_rest = at_rest && by_itself == Some(true);
     blind.extend(of_parts(plant, &within, parts.len()));
     // On the borders too a column may vanish.
-    let on_whole = whole.claim.result.and_then(|result| result.motion).map(|motion| motion.blind);
-    let undecided = on_whole.into_iter().flatten().filter(|motion| matches!(motion.place, Place::Unshown(_)));
-    let others: Vec<Blind> =
-        undecided.filter(|motion| blind.iter().all(|other| other.place(plant) != motion.place(plant))).collect();
+    let on_whole = whole.claim.result.and_then(|result| result.trajectories).map(|trajectories| trajectories.blind);
+    let undecided = on_whole
+        .into_iter()
+        .flatten()
+        .filter(|trajectory| matches!(trajectory.condition, TrajectoryCondition::Undecided(_)));
+    let others: Vec<BlindTrajectory> = undecided
+        .filter(|trajectory| blind.iter().all(|other| other.condition(plant) != trajectory.condition(plant)))
+        .collect();
     blind.extend(others);
-    let motion = Motion { by_itself, at_rest, blind, everywhere: false, parameters };
+    let trajectories = Trajectories { by_itself, at_rest, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,
         result: Some(Identifiability {
@@ -251,7 +265,7 @@ fn on_parts(
             everywhere_else: false,
             constants,
             direction: None,
-            motion: Some(motion),
+            trajectories: Some(trajectories),
             gram: None,
         }),
     })

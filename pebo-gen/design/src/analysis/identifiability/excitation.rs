@@ -1,9 +1,8 @@
-//! How strongly the regression sees the unknowns: `Phi_1' Phi_1`, its determinant, and whether that is
-//! positive throughout the assumed domain (Ortega et al. 2015, remark R3).
+//! The strength of the excitation: `Phi_1' Phi_1`, its determinant, and a proof that this is positive throughout the
+//! assumed domain (Ortega et al. 2015, remark R3).
 //!
-//! Positive is proved by the assumptions, factor by factor, or else by dividing the box that they bound
-//! until an enclosure of the determinant is positive on every part. The box is closed, so that the second
-//! way also covers what lies on its faces.
+//! The proof uses the assumptions, factor by factor, or else divides the box that they bound until an enclosure of the
+//! determinant is positive on every cell. The box is closed, so that the second way also covers its faces.
 
 use std::collections::BTreeMap;
 
@@ -14,30 +13,30 @@ use pebo_cas::forms::oriented::oriented;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Rational, Relation, Symbol};
 
-use super::singular::{Places, Volume, gram};
+use super::singular::{Volume, ZeroSet, gram};
 use crate::analysis::design::{Gram, Positive};
 use pebo_cas::forms::tidy::{shorter, shortest};
 
-/// Parts that a box is divided into before the proof is given up.
+/// Cells that a box is divided into before the proof is given up.
 const MOST_PARTS: usize = 4096;
 
-/// Where a regressor with full column rank at almost every point loses it, and its Gram matrix where that could be worked
-/// out.
-pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (Places, Option<Gram>) {
-    let found = || -> Result<(Places, Gram), Obstacle> {
+/// The conditions under which a regressor with full column rank at almost every point loses it, and its Gram matrix
+/// where that could be worked out.
+pub(super) fn of(plant: &Plant, domain: &Domain, phi_1: &[Vec<Expr>]) -> (ZeroSet, Option<Gram>) {
+    let found = || -> Result<(ZeroSet, Gram), Obstacle> {
         let volume = Volume::of(&plant.arena, domain, phi_1)?;
-        let mut places = volume.places(plant, domain)?;
-        let gram = worked_out(plant, domain, phi_1, &volume, &places)?;
+        let mut zero_set = volume.zero_set(plant, domain)?;
+        let gram = worked_out(plant, domain, phi_1, &volume, &zero_set)?;
         let symbols = plant.arena.symbols_of(&[gram.determinant]);
         let general = !plant.parameters.iter().any(|parameter| symbols.contains(&parameter.symbol));
-        // What no factor shows, dividing the box may; with parameters it does so for their values alone.
+        // Dividing the box may prove what no factor does; with parameters it does so for their values alone.
         if gram.positive.is_some() && general {
-            places.signals.clear();
-            places.all = true;
+            zero_set.signals.clear();
+            zero_set.all = true;
         }
-        Ok((places, gram))
+        Ok((zero_set, gram))
     };
-    found().map_or_else(|_| (Places::default(), None), |(places, gram)| (places, Some(gram)))
+    found().map_or_else(|_| (ZeroSet::default(), None), |(zero_set, gram)| (zero_set, Some(gram)))
 }
 
 fn worked_out(
@@ -45,7 +44,7 @@ fn worked_out(
     domain: &Domain,
     phi_1: &[Vec<Expr>],
     volume: &Volume<'_>,
-    places: &Places,
+    zero_set: &ZeroSet,
 ) -> Result<Gram, Obstacle> {
     let columns = phi_1.first().map_or(0, Vec::len);
     let arena = &plant.arena;
@@ -59,15 +58,15 @@ fn worked_out(
     let columns: Vec<Vec<Expr>> = (0..columns).map(|column| phi_1.iter().map(|row| row[column]).collect()).collect();
     let written = |i: usize, j: usize| arena.dot(&columns[i], &columns[j]);
     let entry = |i: usize, j: usize, product: &Fraction| {
-        let shown = shorter(arena, written(i, j), shortest(arena, domain, field.show(product)));
-        oriented(arena, domain, shown)
+        let printed = shorter(arena, written(i, j), shortest(arena, domain, field.show(product)));
+        oriented(arena, domain, printed)
     };
     let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
     let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
     let square = volume.square;
-    let root = volume.shown();
+    let root = volume.printed();
     // Never negative, it is positive where it does not vanish.
-    let positive = if places.are_none() {
+    let positive = if zero_set.are_none() {
         Some(Positive::Assumed)
     } else {
         on_box(plant, domain, root, square).then_some(Positive::Divided)
@@ -76,7 +75,7 @@ fn worked_out(
     Ok(Gram { matrix, determinant: oriented(arena, domain, determinant), positive })
 }
 
-/// Whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
+/// Tests whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
 fn on_box(plant: &Plant, domain: &Domain, expr: Expr, square: bool) -> bool {
     let sign = ranges(plant, domain, expr).and_then(|ranges| sign_on_box(&plant.arena, expr, ranges, MOST_PARTS));
     sign.is_some_and(|positive| positive || square)
@@ -107,14 +106,14 @@ fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
     Some(found)
 }
 
-/// Whether the expression is the same after a turn of the symbol.
+/// Tests whether the expression is the same after a turn of the symbol.
 fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
     let turn = arena.turn();
     let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
     decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
 }
 
-/// What `expr >= 0` says of a symbol alone: whether from below, and the bound.
+/// The bound that `expr >= 0` puts on a symbol alone, with true for a lower one.
 fn bound(arena: &Arena, expr: Expr, symbol: Symbol) -> Option<(bool, Rational)> {
     let slope = arena.as_number(arena.derivative(expr, symbol))?;
     let rest = arena.substitute(expr, &BTreeMap::from([(symbol, arena.zero())]));

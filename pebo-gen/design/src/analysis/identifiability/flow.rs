@@ -1,8 +1,7 @@
-//! How everything moves: the plant with the extension of its observer.
+//! The flow of the plant with the extension of its observer.
 //!
-//! In: rates of states and outputs, the cascade, identities. Out: the rate of any formula along the motion. Inputs, and
-//! signals without an equation, are free functions of time, but for what the identities leave them: their derivatives
-//! are new symbols.
+//! In: rates of states and outputs, the cascade, identities. Out: the rate of any formula along the trajectory. Inputs,
+//! and signals without an equation, are free functions of time up to the identities: their derivatives are new symbols.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +11,7 @@ use pebo_cas::domain::zero::{decide, refute};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-/// What multiplies the unknowns: `Phi_1`, less the rate of what multiplies them under the derivative.
+/// The factors of the unknowns: `Phi_1`, less the rate of their factors under the derivative.
 pub(super) fn effective(arena: &Arena, flow: &Flow, phi_1: &[Vec<Expr>], primitive_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
     let mut rows = phi_1.to_vec();
     for (row, primitive) in rows.iter_mut().zip(primitive_1) {
@@ -23,7 +22,7 @@ pub(super) fn effective(arena: &Arena, flow: &Flow, phi_1: &[Vec<Expr>], primiti
     rows
 }
 
-/// The plant's motion with its observer's extension: rates of all that moves.
+/// The rates of the plant with its observer's extension.
 pub(super) struct Flow {
     rates: BTreeMap<Symbol, Expr>,
     free: Vec<Symbol>,
@@ -34,7 +33,7 @@ impl Flow {
         Self::along(plant, domain, cascade, &BTreeSet::new(), &BTreeMap::new())
     }
 
-    /// The motions on which some signals are constant and inputs are functions of others.
+    /// The trajectories on which some signals are constant and inputs are functions of others.
     pub(super) fn along(
         plant: &Plant,
         domain: &Domain,
@@ -72,8 +71,8 @@ impl Flow {
         Ok(flow)
     }
 
-    /// Gives a signal without an equation the rate that an identity leaves it: it is not free then. Whether an identity
-    /// binds one must be decided, or a rank could be seen that no motion has.
+    /// Gives a signal without an equation the rate that an identity determines: it is not free then. Undecided bindings
+    /// are an error, since a rank could be found that no trajectory has.
     fn bind(&mut self, plant: &Plant, domain: &Domain) -> Result<(), Obstacle> {
         let arena = &plant.arena;
         for identity in &plant.identities {

@@ -1,11 +1,10 @@
-//! Claim 4, identifiability: the unknowns can be told apart.
+//! Claim 4, identifiability: the unknowns are identifiable.
 //!
-//! In: the regression. Out: `instant` where `Phi_1` has full column rank at almost every point (shown by a
-//! point at which a rigorous elimination finds it), `excitation` where it has only together with its
-//! time derivatives along the plant, `never` where a direction of the unknowns stays unseen by every
-//! derivative (shown by exact linear algebra). Inputs, and signals without an equation, are free
-//! functions of time, but for what the identities leave them: their derivatives are new symbols (Ortega
-//! et al. 2015, remark R3).
+//! In: the regression. Out: `instant` where `Phi_1` has full column rank at almost every point (proved by a point at
+//! which a rigorous elimination finds it), `excitation` where it has only with its time derivatives along the plant,
+//! `never` where a direction of the unknowns is unobservable in every derivative (proved by exact linear algebra).
+//! Inputs, and signals without an equation, are free functions of time up to the identities: their derivatives are new
+//! symbols (Ortega et al. 2015, remark R3).
 
 mod trajectory;
 
@@ -23,9 +22,9 @@ use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-use self::divided::{Decided, Formulas};
+use self::divided::{AnalyticDecision, Formulas};
 use self::flow::{Flow, effective, without_psi};
-use self::singular::{Places, Volume};
+use self::singular::{Volume, ZeroSet};
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 use super::pencil;
@@ -43,8 +42,8 @@ pub(super) fn prove(
     let identities: Vec<Expr> = plant.identities.iter().map(|identity| identity.expr).collect();
     let formulas = Formulas { rates: moving(plant, cascade, &regressor, &identities), regressor, identities };
     let hidden = plant.hidden();
-    let sees_states = depends_on_states(plant, &formulas, cascade);
-    let concerns = |equation| sees_states || !plant.arena.depends_on(equation, &hidden);
+    let holds_states = depends_on_states(plant, &formulas, cascade);
+    let concerns = |equation| holds_states || !plant.arena.depends_on(equation, &hidden);
     if let Some(equation) = reducible(&plant.arena, domain, concerns) {
         found.push(falls_apart(plant, equation));
         return Claim { verdict: Verdict::Undecided, result: None };
@@ -56,8 +55,7 @@ pub(super) fn prove(
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
 }
 
-/// The rates that the regressor's derivatives hold; all, where they hold inputs, which may have to be what the rates leave
-/// them.
+/// The rates in the regressor's derivatives; all of them if these hold inputs, which the rates may restrict.
 fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Expr]) -> Vec<Expr> {
     let arena = &plant.arena;
     let mut rates = plant.rates();
@@ -76,8 +74,8 @@ fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Ex
     own.chain(lambda).collect()
 }
 
-/// Whether the regressor or a derivative of it along the plant depends on the unmeasured states: through the rates of outputs
-/// that it holds. If not, equations that hold states do not restrict its arguments.
+/// Tests whether the regressor or a derivative of it along the plant depends on the unmeasured states, through the
+/// rates of outputs in it. If not, equations with states do not restrict its arguments.
 fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> bool {
     let arena = &plant.arena;
     let moves = cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten());
@@ -91,7 +89,7 @@ fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> b
     !arena.symbols_of(&held).is_disjoint(&plant.hidden())
 }
 
-/// A domain of several parts, on one of which a plant may stay.
+/// A domain of several components, on one of which a plant may remain.
 fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
     let zero = plant.arena.print(equation);
     Diagnostic::error(
@@ -103,7 +101,7 @@ fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
     .help("write the factor that is zero under `identities`, or exclude the others under `assume`")
 }
 
-/// Decides it where the formulas are analytic, so that what is seen at a point holds almost everywhere.
+/// Decides it for analytic formulas, where the rank at a point holds almost everywhere.
 fn where_analytic(
     plant: &Plant,
     domain: &Domain,
@@ -111,9 +109,9 @@ fn where_analytic(
     regression: &Regression,
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
-) -> Decided {
+) -> AnalyticDecision {
     let (arena, unknowns) = (&plant.arena, regression.eta.len());
-    // Of an implicit regression the rates are part of what multiplies the unknowns.
+    // In an implicit regression the rates are among the factors of the unknowns.
     let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
     let flow = Flow::new(plant, domain, cascade);
     let mut stack = match &flow {
@@ -129,21 +127,21 @@ fn where_analytic(
             everywhere_else: false,
             constants: Vec::new(),
             direction,
-            motion: None,
+            trajectories: None,
             gram: None,
         }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
-        let (places, gram) =
+        let (zero_set, gram) =
             if by_rates { (of_rates(plant, domain, &phi_1), None) } else { excitation::of(plant, domain, &phi_1) };
         let result = Identifiability {
             kind: Excitation::Instant,
-            singular_where: places.signals,
-            everywhere_else: places.all,
-            constants: places.constants,
+            singular_where: zero_set.signals,
+            everywhere_else: zero_set.all,
+            constants: zero_set.constants,
             direction: None,
-            motion: None,
+            trajectories: None,
             gram,
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) }.into();
@@ -153,11 +151,11 @@ fn where_analytic(
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     let excited = || {
-        // What is to be said of motions does not use up what the other claims need.
-        let (motion, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
+        // Remarks on trajectories do not use up the budget of the other claims.
+        let (trajectories, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
         if let Some(result) = &mut claim.result {
-            result.motion = Some(motion);
+            result.trajectories = Some(trajectories);
             result.constants = constants;
         }
         claim
@@ -166,8 +164,8 @@ fn where_analytic(
         return excited().into();
     }
     let mut latest = stack.clone();
-    let mut unseen = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
-        Ok(unseen) => unseen,
+    let mut hidden = match hidden_from(arena, domain, &without_psi(plant, &stack), unknowns) {
+        Ok(hidden) => hidden,
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     for _ in 1..unknowns {
@@ -180,27 +178,27 @@ fn where_analytic(
             return excited().into();
         }
         flow.advance(plant);
-        let next = match unseen_by(arena, domain, &without_psi(plant, &stack), unknowns) {
+        let next = match hidden_from(arena, domain, &without_psi(plant, &stack), unknowns) {
             Ok(next) => next,
             Err(obstacle) => return open(plant, &obstacle, found).into(),
         };
         // No derivative adds to a rank that one derivative did not raise.
-        let settled = next.directions.len() == unseen.directions.len();
-        unseen = next;
+        let settled = next.directions.len() == hidden.directions.len();
+        hidden = next;
         if settled {
             break;
         }
     }
-    let Some(direction) = unseen.directions.first().cloned() else {
+    let Some(direction) = hidden.directions.first().cloned() else {
         return open(plant, &Obstacle::NoWitness, found).into();
     };
-    // What is constant along every motion and holds what moves may be another constant elsewhere if it can bend: the quotient
-    // of v and |v|.
-    let bends = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
-    if bends && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
+    // A direction that is constant along every trajectory but depends on signals may be another constant elsewhere if
+    // it is non-smooth: the quotient of v and |v|.
+    let is_non_smooth = !arena.dividers(&direction).is_empty() || !arena.branched(&direction).is_empty();
+    if is_non_smooth && cascade.lambda.is_none() && moves(plant, domain, cascade, &direction) {
         return open(plant, &Obstacle::NoWitness, found).into();
     }
-    // What does not identify functions of theta may identify theta.
+    // A regression that does not identify functions of theta may identify theta.
     if !regression.is_linear(plant)
         && let Some(doubt) = of_theta(plant, domain, &stack, regression, &direction)
     {
@@ -208,20 +206,20 @@ fn where_analytic(
         return Claim { verdict: Verdict::Undecided, result: None }.into();
     }
     let refusal = never(plant, domain, &direction, regression, left_inverse);
-    found.push(if unseen.special_values {
+    found.push(if hidden.special_values {
         refusal.note("this holds for the given values of the parameters, not for general values")
     } else {
         refusal
     });
-    Decided {
+    AnalyticDecision {
         claim: answer(Excitation::Never, Some(direction), Verdict::Refuted),
-        hidden: unseen.directions,
+        hidden: hidden.directions,
         rows: stack,
     }
 }
 
-/// Why theta itself may be identified although its functions are not; none where a direction of theta is provably
-/// unseen by the rows, which are all that the derivatives show.
+/// The reason why theta itself may be identifiable although its functions are not; none where a direction of theta is
+/// provably unobservable in the rows, which determine all derivatives.
 fn of_theta(
     plant: &Plant,
     domain: &Domain,
@@ -261,20 +259,20 @@ fn of_theta(
     ))
 }
 
-/// Where a regressor with the rates of outputs in it loses rank: what parameters and signals alone make zero. What states
-/// make zero is no place that an observer could know.
-fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> Places {
+/// The conditions under which a regressor with the rates of outputs loses rank: zeros of parameters and signals alone.
+/// An observer cannot know a zero of states.
+fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> ZeroSet {
     let arena = &plant.arena;
-    let found = || Volume::of(arena, domain, rows)?.places(plant, domain);
-    let Places { signals, zeros, constants, all, together } = arena.budget().share(8, found).unwrap_or_default();
+    let found = || Volume::of(arena, domain, rows)?.zero_set(plant, domain);
+    let ZeroSet { signals, zeros, constants, all, joint } = arena.budget().share(8, found).unwrap_or_default();
     let hidden = plant.hidden();
     let (known, other): (Vec<_>, Vec<_>) =
         signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));
     let (signals, zeros) = known.into_iter().unzip();
-    Places { signals, zeros, constants, all: all && other.is_empty(), together }
+    ZeroSet { signals, zeros, constants, all: all && other.is_empty(), joint }
 }
 
-/// Whether rows and their derivatives have full rank, as seen at points: exact algebra is left to what is deficient.
+/// Tests whether rows and their derivatives have full rank at points: exact algebra is for deficient ones.
 fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
     let arena = &plant.arena;
     let Ok(mut flow) = Flow::new(plant, domain, cascade) else { return false };
@@ -295,7 +293,7 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
     false
 }
 
-/// Whether formulas hold what moves: all but the parameters and signals whose rate is zero.
+/// Tests whether formulas depend on moving signals: all but the parameters and signals whose rate is zero.
 fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -> bool {
     let arena = &plant.arena;
     let Ok(flow) = Flow::new(plant, domain, cascade) else { return true };
@@ -305,18 +303,23 @@ fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -
 
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
 /// parameters where these values are nothing special.
-fn unseen_by(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Result<Unseen, Obstacle> {
+fn hidden_from(
+    arena: &Arena,
+    domain: &Domain,
+    rows: &[Vec<Expr>],
+    columns: usize,
+) -> Result<HiddenDirections, Obstacle> {
     let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &domain.fixed)).collect();
     let special = null_vectors(arena, domain, &valued, columns)?;
     let general = null_vectors(arena, domain, rows, columns)?;
     let special_values = special.len() > general.len();
-    Ok(Unseen { directions: if special_values { special } else { general }, special_values })
+    Ok(HiddenDirections { directions: if special_values { special } else { general }, special_values })
 }
 
 /// Directions of the unknowns that no row sees.
-struct Unseen {
+struct HiddenDirections {
     directions: Vec<Vec<Expr>>,
-    /// Whether other values of the parameters leave fewer.
+    /// True if other values of the parameters leave fewer.
     special_values: bool,
 }
 

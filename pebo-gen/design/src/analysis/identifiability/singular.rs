@@ -1,11 +1,11 @@
-//! Where a regressor loses rank, as conditions a reader can check.
+//! Conditions under which a regressor loses rank, for a reader to check.
 //!
-//! In: `Phi_1` of full generic column rank. Out: the zero set of det(`Phi_1`' `Phi_1`) by factors, each
-//! solved for a signal where it is linear in one (`d = 1`); factors that the assumptions keep from zero are left out,
-//! and those without signals come apart.
+//! In: `Phi_1` of full generic column rank. Out: the zero set of det(`Phi_1`' `Phi_1`) by factors, each solved for a
+//! signal where it is linear in one (`d = 1`); factors that the assumptions keep from zero are left out, and those
+//! without signals are separate.
 //!
-//! What rows and columns have in common as they are written is taken out first. A zero of what is left is one of the
-//! determinant only where its denominator does not vanish too: a denominator with a root or a magnitude is made
+//! Common factors of rows and columns as written are taken out first. A zero of the remaining numerator is one of the
+//! determinant only where its denominator does not vanish too: a denominator with a root or an absolute value is made
 //! rational by a factor that both then have, as in `(1 - |w|)/(1 - w^2)`, which is never zero.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,37 +17,38 @@ use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Facts, Node, Rational, Relation, Symbol};
 
-/// Where a determinant vanishes.
+/// The zeros of a determinant.
 #[derive(Default)]
-pub(super) struct Places {
+pub(super) struct ZeroSet {
     /// Conditions on signals, each of which makes it vanish.
     pub signals: Vec<String>,
-    /// What is zero there, in the same order.
+    /// The functions that vanish there, in the same order.
     pub zeros: Vec<Expr>,
-    /// Combinations of the parameters that make it vanish, of which no sign is known: nothing that a signal could mend.
+    /// Combinations of the parameters, of unknown sign, that make it vanish at all signals.
     pub constants: Vec<Expr>,
-    /// Whether there is no other place.
+    /// True if it has no other zeros.
     pub all: bool,
-    /// Whether values of the parameters are not excluded that make a factor vanish at all signals, by several equations.
-    pub together: bool,
+    /// True if values of the parameters are not excluded that make a factor vanish at all signals, by several
+    /// equations.
+    pub joint: bool,
 }
 
-impl Places {
-    /// Whether it vanishes nowhere.
+impl ZeroSet {
+    /// Tests whether it vanishes nowhere.
     pub(super) fn are_none(&self) -> bool {
         self.all && self.signals.is_empty() && self.constants.is_empty()
     }
 }
 
-/// The root of det(`Phi_1`' `Phi_1`) for a square regressor, that itself for any other: powers of what was taken out, and
-/// the determinant of the rest.
+/// The root of det(`Phi_1`' `Phi_1`) for a square regressor, the determinant itself for any other: powers of the common
+/// factors, and the determinant of the rest.
 pub(super) struct Volume<'a> {
     arena: &'a Arena,
     field: Field<'a>,
     powers: Vec<(Expr, Rational)>,
     rest: Vec<Vec<Expr>>,
     core: Fraction,
-    /// Whether this is the root.
+    /// True if this is the root.
     pub square: bool,
 }
 
@@ -69,7 +70,7 @@ impl<'a> Volume<'a> {
     }
 
     /// As an expression, in factors.
-    pub(super) fn shown(&self) -> Expr {
+    pub(super) fn printed(&self) -> Expr {
         let core = self.field.show_factored(&self.core);
         let powers = self.powers.iter().map(|(base, power)| (self.split(*base).unwrap_or(*base), power.clone()));
         self.arena.multiply(&Rational::ONE, powers.chain([(core, Rational::ONE)]))
@@ -82,16 +83,16 @@ impl<'a> Volume<'a> {
         (fraction.denominator().is_constant() && parts.factors.len() > 1).then(|| self.field.show_factored(&fraction))
     }
 
-    /// Where it vanishes.
-    pub(super) fn places(&self, plant: &Plant, domain: &Domain) -> Result<Places, Obstacle> {
-        let mut places = Places { all: true, ..Places::default() };
+    /// The zeros.
+    pub(super) fn zero_set(&self, plant: &Plant, domain: &Domain) -> Result<ZeroSet, Obstacle> {
+        let mut zero_set = ZeroSet { all: true, ..ZeroSet::default() };
         for (base, power) in &self.powers {
             if !power.is_negative() {
-                self.zeros_of(&self.field.fraction(*base)?, &[vec![*base]], plant, domain, &mut places)?;
+                self.zeros_of(&self.field.fraction(*base)?, &[vec![*base]], plant, domain, &mut zero_set)?;
             }
         }
-        self.zeros_of(&self.core, &self.rest, plant, domain, &mut places)?;
-        Ok(places)
+        self.zeros_of(&self.core, &self.rest, plant, domain, &mut zero_set)?;
+        Ok(zero_set)
     }
 
     /// Adds the zeros of a fraction, which is the determinant of a matrix as it is written.
@@ -101,7 +102,7 @@ impl<'a> Volume<'a> {
         written: &[Vec<Expr>],
         plant: &Plant,
         domain: &Domain,
-        places: &mut Places,
+        zero_set: &mut ZeroSet,
     ) -> Result<(), Obstacle> {
         let field = &self.field;
         let open = |factor: &Poly| -> Result<bool, Obstacle> {
@@ -118,13 +119,13 @@ impl<'a> Volume<'a> {
             if field.may_vanish_together(&factor, fraction.denominator())? {
                 shared = true;
             } else {
-                self.add(&factor, plant, domain, places)?;
+                self.add(&factor, plant, domain, zero_set)?;
             }
         }
         if !shared {
             return Ok(());
         }
-        // Where the fraction vanishes, the denominator of its inverse does.
+        // The zeros of a fraction are those of the denominator of its inverse.
         let inverse = field.div(&Fraction::one(), fraction)?;
         for (factor, _) in inverse.denominator().factored(field.limit())?.factors {
             if !open(&factor)? {
@@ -140,15 +141,15 @@ impl<'a> Volume<'a> {
                 Some((value.is_zero(), there.show(&value)))
             });
             match there {
-                Some((true, _)) => self.add(&factor, plant, domain, places)?,
+                Some((true, _)) => self.add(&factor, plant, domain, zero_set)?,
                 Some((false, there)) if domain.implies(self.arena, there, Relation::NonZero) => {}
-                _ => places.all = false,
+                _ => zero_set.all = false,
             }
         }
         Ok(())
     }
 
-    /// Whether a polynomial is zero nowhere, as far as the assumptions tell.
+    /// Tests whether the assumptions exclude all zeros of a polynomial.
     fn never_zero(&self, poly: &Poly, domain: &Domain) -> Result<bool, Obstacle> {
         let formula = self.field.show(&self.field.of_polynomial(poly)?);
         Ok(self.field.signs().never_zero(poly)
@@ -156,8 +157,8 @@ impl<'a> Volume<'a> {
             || self.contradicts(formula, domain))
     }
 
-    /// Whether what is assumed not to be zero would be where a formula is: it divides the square of that, as `cos(q) - 1`
-    /// divides `sin(q)^2`.
+    /// Tests whether the zeros of a formula contradict an assumption: an expression assumed nonzero divides the square
+    /// of the formula, as `cos(q) - 1` divides `sin(q)^2`.
     fn contradicts(&self, formula: Expr, domain: &Domain) -> bool {
         let arena = self.arena;
         let symbols = arena.symbols_of(&[formula]);
@@ -175,27 +176,27 @@ impl<'a> Volume<'a> {
     }
 
     /// Adds the zeros of a factor.
-    fn add(&self, factor: &Poly, plant: &Plant, domain: &Domain, places: &mut Places) -> Result<(), Obstacle> {
+    fn add(&self, factor: &Poly, plant: &Plant, domain: &Domain, zero_set: &mut ZeroSet) -> Result<(), Obstacle> {
         let formula = self.field.show(&self.field.of_polynomial(factor)?);
         if self.arena.symbols_of(&[formula]).is_subset(&constants(plant)) {
-            if !places.constants.contains(&formula) {
-                places.constants.push(formula);
+            if !zero_set.constants.contains(&formula) {
+                zero_set.constants.push(formula);
             }
             return Ok(());
         }
-        places.together |= self.may_be_nothing(factor, plant, domain)?;
-        let place = match self.solved(factor, plant)? {
+        zero_set.joint |= self.may_be_nothing(factor, plant, domain)?;
+        let condition = match self.solved(factor, plant)? {
             Some((kernel, value)) => format!("{} = {}", self.arena.print(kernel), self.arena.print(value)),
             None => format!("{} = 0", self.arena.print(formula)),
         };
-        if !places.signals.contains(&place) {
-            places.signals.push(place);
-            places.zeros.push(formula);
+        if !zero_set.signals.contains(&condition) {
+            zero_set.signals.push(condition);
+            zero_set.zeros.push(formula);
         }
         Ok(())
     }
 
-    /// Whether parameters may make all coefficients of a factor, as a polynomial in what varies, zero.
+    /// Tests whether parameters may make all coefficients of a factor, as a polynomial in the signals, zero.
     fn may_be_nothing(&self, factor: &Poly, plant: &Plant, domain: &Domain) -> Result<bool, Obstacle> {
         let constants = constants(plant);
         let varies = |v: &u32| !self.arena.symbols_of(&[self.field.kernel(*v)]).is_subset(&constants);
@@ -206,7 +207,7 @@ impl<'a> Volume<'a> {
                 return Ok(false);
             }
         }
-        // `k - m` and `k + m` vanish together only where k does.
+        // `k - m` and `k + m` vanish at once only where k does.
         let monomials: BTreeSet<_> = coefficients.iter().flat_map(|poly| poly.terms().map(|(m, _)| m)).collect();
         let number = |poly: &Poly, monomial| {
             poly.coefficient(monomial)
@@ -242,7 +243,7 @@ impl<'a> Volume<'a> {
         for (power, coefficient) in factor.coefficients_in(*variable) {
             if power == 1 { slope = coefficient } else { rest = coefficient }
         }
-        // Where the slope vanishes, the factor may be zero at every value.
+        // At a zero of the slope, the factor may be zero at every value.
         if !self.field.signs().never_zero(&slope) {
             return Ok(None);
         }
@@ -264,8 +265,8 @@ fn constants(plant: &Plant) -> BTreeSet<Symbol> {
     plant.parameters.iter().map(|p| p.symbol).collect()
 }
 
-/// The matrix without the factors that all entries of a column have as they are written, and of a square matrix those of
-/// the rows, with the powers that were taken out.
+/// The matrix without the common factors of each column as written, and of a square matrix those of each row, with
+/// their powers.
 fn without_common_factors(
     arena: &Arena,
     matrix: &[Vec<Expr>],
@@ -288,7 +289,7 @@ fn without_common_factors(
     (rest, powers)
 }
 
-/// Takes out of the entries that are not zero what they have in common.
+/// Takes their common factors out of the entries that are not zero.
 fn take_common(arena: &Arena, entries: &mut [Expr]) -> Vec<(Expr, Rational)> {
     let mut factors = entries.iter().filter(|e| !arena.is_zero(**e)).map(|e| factors(arena, *e));
     let Some(mut common) = factors.next() else { return Vec::new() };
@@ -350,7 +351,8 @@ mod tests {
     use crate::plant::Plant;
     use crate::source::Source;
 
-    /// Where the regressor of p' and q' as functions of a and b, with b in q', loses rank; the root of the determinant.
+    /// The conditions under which the regressor of p' and q' as functions of a and b, with b in q', loses rank; the
+    /// root of the determinant.
     fn of(assume: &str, rate: &str) -> String {
         of_both(assume, [rate, "b"])
     }
@@ -382,9 +384,9 @@ mod tests {
         // As it comes out of sums.
         assert_eq!(of("0 < d < 1", "(1 - d - e + d*e)*a + d*b"), "e = 1 | (1 - d)^2*(e - 1)^2");
         assert_eq!(of("k > 0", "(d^2 - e^2)*a"), "d + e = 0, d - e = 0 | (d + e)^2*(d - e)^2");
-        // A quotient stays as it is written.
+        // A quotient is kept as written.
         assert_eq!(of("d > 0", "(1 - 1/d^2)*a"), "d = 1 | (1 - 1/d^2)^2");
-        // Of powers the least is common.
+        // The least power is common.
         let powers = of_both("k > 0", ["(1 - d)^2*a + (1 - d)*b", "a + b"]);
         assert_eq!(powers, "d = 0, d = 1 | d^2*(d - 1)^2");
         // The sine would be zero there too.

@@ -1,7 +1,7 @@
-//! What a formula for a state is worth.
+//! Checks a candidate left inverse.
 //!
-//! In: the plant, and a formula in z and y. Out: whether it gives the state back at z = phi(x, y), for angles up to periods,
-//! and what it asks there that the domain does not show.
+//! In: the plant, and a formula in z and y. Out: the decision whether it gives the state back at z = phi(x, y), for
+//! angles up to periods, and the domain conditions there that the domain does not imply.
 
 use std::collections::BTreeMap;
 
@@ -11,26 +11,31 @@ use pebo_cas::domain::zero::{Answer, decide};
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Domain, Expr, Function, Relation, Symbol};
 
-/// What a formula for a state asks at z = phi(x, y) that the domain does not show: the ask, and the ask there.
+/// The domain conditions of a formula for a state at z = phi(x, y) that the domain does not imply: the condition in z,
+/// and at z = phi(x, y).
 ///
-/// What stands under roots and logarithms and below fraction bars is read off the formula as it stands, since
-/// substituting would simplify its domain away.
-pub(super) fn unshown(plant: &Plant, domain: &Domain, formula: Expr) -> Vec<((Expr, Relation), (Expr, Relation))> {
+/// Arguments of roots and logarithms and denominators are read off the formula as written, since substituting would
+/// simplify its domain away.
+pub(super) fn open_conditions(
+    plant: &Plant,
+    domain: &Domain,
+    formula: Expr,
+) -> Vec<((Expr, Relation), (Expr, Relation))> {
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    let asked = arena.domain_conditions(&[formula], Regularity::Defined).into_iter();
-    let there = asked.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
+    let conditions = arena.domain_conditions(&[formula], Regularity::Defined).into_iter();
+    let there = conditions.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
     there.filter(|(_, ask)| !domain.grants(arena, *ask)).collect()
 }
 
-/// What must vanish, for an angle up to periods: `phi_left(phi(x, y), y) - x`.
+/// The expression that vanishes if the formula is right, for an angle up to periods: `phi_left(phi(x, y), y) - x`.
 fn residual(plant: &Plant, state: Symbol, formula: Expr) -> Expr {
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     arena.sub(arena.substitute(formula, &transform), arena.of_symbol(state))
 }
 
-/// Decides whether a formula gives the state back; returns what was tested for zero as well.
+/// Decides whether a formula gives the state back; returns the tested expression as well.
 pub(super) fn check(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr) -> (Expr, Answer) {
     let arena = &plant.arena;
     let difference = residual(plant, state, formula);
@@ -70,12 +75,12 @@ fn turns(arena: &Arena, domain: &Domain, angle: Expr) -> (Expr, Answer) {
     (cos, decide(arena, cos, domain))
 }
 
-/// Whether an angle is provably a whole number of turns.
+/// Tests whether an angle is provably a whole number of turns.
 pub(in crate::analysis) fn is_whole_turns(arena: &Arena, domain: &Domain, angle: Expr) -> bool {
     turns(arena, domain, angle).1.is_zero()
 }
 
-/// Where the transform stands.
+/// The span of the transform.
 pub(in crate::analysis) fn at_phi(plant: &Plant) -> Span {
     match (plant.phi.first(), plant.phi.last()) {
         (Some(first), Some(last)) => first.span.to(last.span),

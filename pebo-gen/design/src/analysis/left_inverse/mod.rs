@@ -19,7 +19,7 @@ use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{self, Domain, Expr, Rational, Relation, Symbol};
 
 use super::design::{Claim, Comparison, LeftInverse, Origin, Verdict, Witness};
-use checking::{check, unshown};
+use checking::{check, open_conditions};
 use pebo_cas::linear::rank::null_vectors;
 use words::{degenerate, not_injective, refuted, takes_twice, undecided, underivable};
 
@@ -104,8 +104,8 @@ impl Verdict {
     }
 }
 
-/// Whether the formula provably has a value wherever the plant has, but for what must only not vanish and is listed
-/// among the conditions; where not, says so.
+/// Tests whether the formula provably has a value wherever the plant has, up to listed conditions that something does
+/// not vanish; reports it if not.
 fn defined(
     plant: &Plant,
     domain: &Domain,
@@ -115,7 +115,7 @@ fn defined(
     found: &mut Vec<Diagnostic>,
 ) -> bool {
     let arena = &plant.arena;
-    let unproved = unshown(plant, domain, formula).into_iter().find(|(_, ask)| ask.1 != Relation::NonZero);
+    let unproved = open_conditions(plant, domain, formula).into_iter().find(|(_, ask)| ask.1 != Relation::NonZero);
     let Some(((part, relation), (at_phi, _))) = unproved else { return true };
     let (sign, at_phi) = (relation.sign(), arena.print(at_phi));
     found.push(
@@ -142,7 +142,7 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, 
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let other = BTreeMap::from([(state, arena.substitute(formula, &transform))]);
-    // Where both states are in the domain.
+    // Both states are in the domain.
     let mut both = domain.clone();
     for (fact, relation) in domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&state)) {
         both.facts.assume(arena.substitute(fact, &other), relation);
@@ -197,7 +197,7 @@ fn taken_twice(plant: &Plant, domain: &Domain, state: Symbol) -> Option<Witness>
 /// A direction of x that the transform does not see anywhere, if there is one.
 fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
-    // What an identity holds fixed is no direction of the domain.
+    // A symbol fixed by an identity is no direction of the domain.
     let seen = plant.phi.iter().chain(&plant.identities);
     let slopes: Vec<Vec<Expr>> =
         seen.map(|seen| plant.x.iter().map(|s| arena.derivative(seen.expr, s.symbol)).collect()).collect();

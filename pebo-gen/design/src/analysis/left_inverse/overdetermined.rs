@@ -1,8 +1,8 @@
-//! Formulas for the states where the transform has more components than there are states, and is affine in these.
+//! Solves a transform that is affine in the states and has more components than states.
 //!
-//! In: a plant with `phi = M(y) x + s(y)`, M with more rows than columns. Out: `x = (M'M)^-1 M' (z - s)`, which
-//! divides by `det(M'M)`, a sum of squares, alone: it has a value wherever the columns of M are independent, while solving
-//! some of the rows may divide by what vanishes there.
+//! In: a plant with `phi = M(y) x + s(y)`, M with more rows than columns. Out: `x = (M'M)^-1 M' (z - s)`, which divides
+//! by `det(M'M)`, a sum of squares, alone: it has a value wherever the columns of M are independent, while solving some
+//! of the rows may divide by what vanishes there.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -38,7 +38,7 @@ pub(super) fn by_least_squares(plant: &Plant, domain: &Domain) -> BTreeMap<Symbo
         .zip(&transform)
         .map(|(z, formula)| arena.sub(arena.of_symbol(*z), arena.substitute(*formula, &nowhere)))
         .collect();
-    // The factors of z one by one: together they would stand over one denominator.
+    // The factors of z one by one: their sum would have one denominator.
     let factors = inverse.mul(arena, &transposed).map(|factor| shortest(arena, domain, factor));
     states.into_iter().zip(factors.apply(arena, &moved)).collect()
 }

@@ -1,7 +1,7 @@
-//! Formulas for the states, solved for from the transform.
+//! Solves the transform for the states.
 //!
-//! In: the plant. Out: for each state that something was found for, one formula in z and y: one that is right where there is
-//! one, and else the likeliest. Whether it is right is proved by who asks.
+//! In: the plant. Out: for each solved state one formula in z and y: a right one where there is one, else the
+//! likeliest. The caller proves that it is right.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -13,37 +13,37 @@ use pebo_cas::solve::{Equation, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
-use super::checking::{check, unshown};
+use super::checking::{check, open_conditions};
 use super::overdetermined::by_least_squares;
 
-type Solved = BTreeMap<Symbol, Vec<Expr>>;
+type StateFormulas = BTreeMap<Symbol, Vec<Expr>>;
 
 /// A formula for each state that one was found for.
 pub(super) fn formulas<'a>(plant: &'a Plant, domain: &Domain) -> Result<Vec<(&'a State, Expr)>, Obstacle> {
-    let solving = Solving::of(plant, domain)?;
+    let solving = StateSolver::of(plant, domain)?;
     let formula = |state: &'a State| Ok(solving.formula(state.symbol)?.map(|formula| (state, formula)));
     plant.x.iter().filter_map(|state| formula(state).transpose()).collect()
 }
 
 /// The transform, solved in several ways.
-struct Solving<'a> {
+struct StateSolver<'a> {
     plant: &'a Plant,
     domain: &'a Domain,
-    /// What it gives alone, the likelier first.
-    alone: Solved,
-    /// What it gives where functions of y alone are kept as they are written: they compute better.
-    as_written: Solved,
-    /// What it gives by least squares, once that was asked for.
+    /// Solutions of the transform alone, the likelier first.
+    alone: StateFormulas,
+    /// Solutions with functions of y alone kept as written: they compute better.
+    as_written: StateFormulas,
+    /// Least-squares solutions, computed on first use.
     least_squares: OnceCell<BTreeMap<Symbol, Expr>>,
-    /// What it gives together with the values of outputs, once that was asked for.
-    together: OnceCell<Result<Solved, Obstacle>>,
+    /// Solutions of the transform with the values of outputs, computed on first use.
+    with_outputs: OnceCell<Result<StateFormulas, Obstacle>>,
 }
 
-impl<'a> Solving<'a> {
+impl<'a> StateSolver<'a> {
     fn of(plant: &'a Plant, domain: &'a Domain) -> Result<Self, Obstacle> {
         let arena = &plant.arena;
         let states = states(plant);
-        // Where a class proposes a formula for every state, nothing is solved for.
+        // If a class proposes a formula for every state, nothing is solved for.
         let proposed = |state: &Symbol| plant.proposal.phi_left.iter().any(|(own, _)| own == state);
         let alone = if states.iter().all(proposed) {
             BTreeMap::new()
@@ -61,7 +61,7 @@ impl<'a> Solving<'a> {
         for formula in as_written.values_mut().flatten() {
             *formula = frozen.restore(*formula);
         }
-        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), together: OnceCell::new() })
+        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), with_outputs: OnceCell::new() })
     }
 
     /// The best formula for a state that is right, and else the likeliest: one that is wrong may still show that the
@@ -72,14 +72,13 @@ impl<'a> Solving<'a> {
         let candidates = self.candidates(state);
         let found = match self.by_worth(candidates.clone()).into_iter().find(right) {
             Some(found) => Some(found),
-            // What outputs measure comes with their noise: it serves where the transform alone is not solved.
+            // The value of an output comes with its noise: it is used where the transform alone is not solved.
             None => self.with_values(state)?.into_iter().find(right),
         };
         let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
-        // What has a value wherever the plant has is looked for no further.
-        let all_shown = found.is_some_and(|formula| unshown(self.plant, self.domain, formula).is_empty());
-        let squares =
-            (!all_shown).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
+        // A formula that has a value wherever the plant has ends the search.
+        let is_total = found.is_some_and(|formula| open_conditions(self.plant, self.domain, formula).is_empty());
+        let squares = (!is_total).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
         let squares = squares.and_then(|squares| squares.get(&state)).copied().filter(right);
         let forms =
             found.into_iter().chain(written).chain(squares).map(|formula| shortest(arena, self.domain, formula));
@@ -93,7 +92,7 @@ impl<'a> Solving<'a> {
         Ok(formula.map(|formula| shortest(arena, self.domain, formula)))
     }
 
-    /// What the class proposes, the shortest first, and what the transform alone gives.
+    /// The proposals of the class, the shortest first, and the solutions of the transform alone.
     fn candidates(&self, state: Symbol) -> Vec<Expr> {
         let arena = &self.plant.arena;
         let proposed = self.plant.proposal.phi_left.iter().filter(|(own, _)| *own == state);
@@ -103,15 +102,17 @@ impl<'a> Solving<'a> {
         candidates
     }
 
-    /// What the transform gives together with the values of outputs, the best first.
+    /// The solutions of the transform with the values of outputs, the best first.
     fn with_values(&self, state: Symbol) -> Result<Vec<Expr>, Obstacle> {
-        let solved = self.together.get_or_init(|| together(self.plant, self.domain)).as_ref().map_err(Clone::clone)?;
+        let solved =
+            self.with_outputs.get_or_init(|| with_outputs(self.plant, self.domain)).as_ref().map_err(Clone::clone)?;
         Ok(self.by_worth(solved.get(&state).cloned().unwrap_or_default()))
     }
 
-    /// First what has a value wherever the plant has, then what takes no root from what is near it, then what is short.
+    /// Sorts formulas: first those with a value wherever the plant has, then those without a root that cancels, then
+    /// short ones.
     fn by_worth(&self, mut candidates: Vec<Expr>) -> Vec<Expr> {
-        // What a formula asks is looked for only where it is compared.
+        // Domain conditions are computed only for a comparison.
         if candidates.len() > 1 {
             candidates.sort_by_cached_key(|formula| self.cost(*formula));
         }
@@ -126,15 +127,15 @@ impl<'a> Solving<'a> {
         let is_foreign = |call: &Expr| !own.contains(call) && arena.symbols_of(&[*call]).is_disjoint(&z);
         let foreign = functions(arena, &[formula]).into_iter().filter(is_foreign).count()
             + usize::from(dissolves(arena, &self.plant.transform(), formula));
-        let (unshown, cancelling, operations) = self.cost(formula);
-        (unshown, foreign, cancelling, operations)
+        let (open_conditions, cancelling, operations) = self.cost(formula);
+        (open_conditions, foreign, cancelling, operations)
     }
 
-    /// What it asks that is not shown, the roots that cancel, and the operations.
+    /// The number of open domain conditions, of roots that cancel, and of operations.
     fn cost(&self, formula: Expr) -> (usize, usize, usize) {
         let arena = &self.plant.arena;
-        let unshown = unshown(self.plant, self.domain, formula).len();
-        (unshown, root_differences(arena, formula).len(), operations(arena, formula))
+        let open_conditions = open_conditions(self.plant, self.domain, formula).len();
+        (open_conditions, root_differences(arena, formula).len(), operations(arena, formula))
     }
 }
 
@@ -148,8 +149,8 @@ fn equations(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
     transform.into_iter().zip(values).map(|(formula, value)| Equation { formula, value }).collect()
 }
 
-/// Solves the transform together with the identities; of what comes out, what is a function of z and y.
-fn together(plant: &Plant, domain: &Domain) -> Result<Solved, Obstacle> {
+/// Solves the transform with the identities; returns the functions of z and y among the solutions.
+fn with_outputs(plant: &Plant, domain: &Domain) -> Result<StateFormulas, Obstacle> {
     if plant.identities.is_empty() {
         return Ok(BTreeMap::new());
     }

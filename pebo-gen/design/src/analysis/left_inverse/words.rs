@@ -1,4 +1,4 @@
-//! What is said where a left inverse is refuted, undecided or not found.
+//! The diagnostics of a left inverse that is refuted, undecided or not found.
 
 use std::collections::BTreeMap;
 

@@ -32,7 +32,7 @@ pub(super) fn outputs_but(plant: &Plant, used: &[usize]) -> Vec<usize> {
 
 /// Combinations with constant coefficients in whose rates no unmeasured signal occurs, as many as were found.
 ///
-/// A coefficient that moves would bring in the rate of what it is made of; such combinations are left out.
+/// A coefficient that moves would bring in its own rate; such combinations are left out.
 pub(super) fn combinations(plant: &Plant, domain: &Domain, outputs: &[usize]) -> Vec<Combination> {
     found(plant, domain, outputs).unwrap_or_default()
 }
@@ -75,7 +75,8 @@ pub(super) fn affine_combinations(
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
     let rates = rates(plant, outputs);
     let symbols: Vec<Expr> = outputs.iter().map(|index| arena.of_symbol(plant.y[*index].symbol)).collect();
-    // The rates come last, so that each relation has one rate of its own, and of the others what keeps it from being affine.
+    // The rates come last, so that each relation has one rate of its own, and of the others only their terms that are
+    // not affine.
     let basis = [&[arena.one()], plant.transform().as_slice(), &rates].concat();
     let field = Field::over(arena, &domain.facts, &basis)?;
     let (mut found, mut moving) = (Vec::new(), false);
@@ -95,8 +96,8 @@ pub(super) fn affine_combinations(
     Ok((found, moving))
 }
 
-/// Whether at a point of the domain the unmeasured signals move these rates freely, but for so many combinations:
-/// whatever the states are, values of these signals explain the rates, so that they tell nothing else of the states.
+/// Tests whether at a point of the domain the unmeasured signals move these rates freely, up to so many combinations:
+/// whatever the states are, values of these signals explain the rates, so that they do not determine the states.
 pub(super) fn moved_freely(plant: &Plant, domain: &Domain, outputs: &[usize], but: usize) -> bool {
     const PRECISION: Precision = Precision::new(128);
     let arena = &plant.arena;

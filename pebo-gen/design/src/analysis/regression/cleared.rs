@@ -1,8 +1,8 @@
 //! Identities in the form in which the components of the transform are linear.
 //!
-//! In: the plant's identities; the value `g` of an output is one, `V - g = 0`. Out: of each the first form that is affine in
-//! the transform, with the identity as it is written first: `V = p/(1 + p)` is `V + (V - 1)*p = 0`. Each form is proved to
-//! vanish on the domain.
+//! In: the plant's identities; the value `g` of an output is one, `V - g = 0`. Out: of each the first form that is
+//! affine in the transform, with the identity as it is written first: `V = p/(1 + p)` is `V + (V - 1)*p = 0`. Each form
+//! is proved to vanish on the domain.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,9 +17,9 @@ use pebo_cas::solve::{Equation, cleared, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Node, Symbol};
 
-/// What vanishes by an identity as affine functions of the transform; none where no form of it is one.
+/// Affine functions of the transform that vanish by an identity; none where no form of it is one.
 pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec<affine::Row>, Obstacle> {
-    // Where it holds an identity says 0 = 0: what it says of z is read off it elsewhere.
+    // On its own manifold an identity says 0 = 0: its equation in z is found elsewhere.
     let everywhere = domain.without_equations();
     let written = affine::of(plant, &everywhere, identity);
     if let Ok(Some(row)) = written {
@@ -33,7 +33,7 @@ pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec
     if components.is_empty() { written.map(|_| components) } else { Ok(components) }
 }
 
-/// A form over the transform, what is free of x left as it is written.
+/// A form over the transform, terms free of x left as written.
 fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::Row> {
     let hidden = plant.hidden();
     let mut frozen = OpaqueTerms::new(&plant.arena, &hidden);
@@ -42,8 +42,8 @@ fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::
     Some(row.into_iter().map(|entry| frozen.restore(entry)).collect())
 }
 
-/// The identities as equations between z, y and u: in a form that is affine in z, else in one whose parts can be told
-/// apart, else as they are written.
+/// The identities as equations between z, y and u: in a form that is affine in z, else in one with separable terms,
+/// else as written.
 pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -> Vec<Expr> {
     let arena = &plant.arena;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
@@ -74,7 +74,7 @@ pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -
     found
 }
 
-/// Where an identity tells a state, the components of the transform that are functions of it, each less its value.
+/// The components of the transform that are functions of a state given by an identity, each less its value.
 fn components(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
     let arena = &plant.arena;
     let hidden = plant.hidden();
@@ -105,7 +105,7 @@ fn forms(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
     forms
 }
 
-/// An output as what an identity says it is, where it stands in it as one term.
+/// An output as a function given by an identity, where it is one term of the identity.
 fn value(plant: &Plant, identity: Expr) -> Option<BTreeMap<Symbol, Expr>> {
     let arena = &plant.arena;
     let Node::Sum(sum) = arena.node(identity) else { return None };

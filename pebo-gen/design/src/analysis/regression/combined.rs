@@ -1,7 +1,7 @@
-//! Regressions of several kinds of equations together.
+//! Regressions that combine several kinds of equations.
 //!
 //! In: equations `d/dt P(y) = R(z, y, u)`: rates of outputs, rates of combinations of outputs from which unmeasured
-//! signals cancel, and, with P = 0, what holds at every instant between z, y and u. Out: one regression of all. The
+//! signals cancel, and, with P = 0, relations between z, y and u at every instant. Out: one regression of all. The
 //! filter is linear, so that an equation without a derivative goes through it as any other does.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,23 +20,24 @@ use super::equation::Equation;
 use super::functions::over_parameterised;
 use super::linear::decompose;
 
-/// Regressions with more of what a plant's equations say, and whether that is all.
-pub(in crate::analysis) struct Together {
-    /// The regressions: with what is linear in z, then with everything.
+/// Regressions with more of a plant's equations, and their completeness.
+pub(in crate::analysis) struct CombinedRegressions {
+    /// The regressions: with equations linear in z, then with all.
     pub(in crate::analysis) regressions: Vec<Claim<Regression>>,
-    /// Whether nothing is left that could tell more of the unknowns.
+    /// True if no equation is left that could say more of the unknowns.
     pub(in crate::analysis) complete: bool,
 }
 
-/// A regression with what the given one leaves out: combinations of outputs, relations among z, y and u, identities.
-pub(in crate::analysis) fn together(
+/// Adds to a regression the equations that it leaves out: combinations of outputs, relations among z, y and u,
+/// identities.
+pub(in crate::analysis) fn combined(
     plant: &Plant,
     domain: &Domain,
     cascade: &Cascade,
     left_inverse: Option<&LeftInverse>,
     regression: &Regression,
     found: &mut Vec<Diagnostic>,
-) -> Together {
+) -> CombinedRegressions {
     let unused = outputs_but(plant, &regression.rows);
     let combined = combinations(plant, domain, &unused);
     let mut complete = moved_freely(plant, domain, &unused, combined.len());
@@ -48,15 +49,15 @@ pub(in crate::analysis) fn together(
         }
     }
     // A static regression is made of these.
-    let standing = if regression.kind == RegressionKind::Static {
+    let static_equations = if regression.kind == RegressionKind::Static {
         (Vec::new(), plant.identities.is_empty() || !relations::possible(plant, domain))
     } else {
-        standing(plant, domain, left_inverse)
+        static_equations(plant, domain, left_inverse)
     };
-    complete &= standing.1;
-    more.extend(standing.0);
+    complete &= static_equations.1;
+    more.extend(static_equations.0);
     if more.is_empty() {
-        return Together { regressions: Vec::new(), complete };
+        return CombinedRegressions { regressions: Vec::new(), complete };
     }
     let mut regressions = Vec::new();
     if let Some(base) = of_regression(plant, cascade, regression) {
@@ -78,7 +79,7 @@ pub(in crate::analysis) fn together(
     } else {
         complete = false;
     }
-    Together { regressions, complete }
+    CombinedRegressions { regressions, complete }
 }
 
 /// A regression from combinations of outputs alone.
@@ -111,9 +112,9 @@ fn in_z(
     (!arena.depends_on(rate, &plant.hidden())).then_some(Equation { primitive: combination.output, rate })
 }
 
-/// What holds at every instant: relations of the components of the transform with measured signals, and identities;
-/// and whether these are all.
-fn standing(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
+/// The relations at every instant: of the components of the transform with measured signals, and identities; and true
+/// if these are all.
+fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
     let arena = &plant.arena;
     let identities = match left_inverse {
         Some(left_inverse) => cleared::in_z(plant, domain, left_inverse),
@@ -135,8 +136,8 @@ fn standing(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) 
     (equations.map(|rate| Equation { primitive: arena.zero(), rate }).collect(), complete)
 }
 
-/// Whether a relation tells of the unknowns what no choice of phi could: one that is linear with constant coefficients
-/// and a constant right side only says that a component of phi is redundant.
+/// Tests whether a relation restricts the unknowns for every choice of phi: one that is linear with constant
+/// coefficients and a constant right side only makes a component of phi redundant.
 fn tells(plant: &Plant, domain: &Domain, relation: Expr) -> bool {
     let arena = &plant.arena;
     let signals: BTreeSet<Symbol> = plant.y.iter().map(|o| o.symbol).chain(plant.u.iter().copied()).collect();
@@ -155,7 +156,8 @@ fn affine(plant: &Plant, domain: &Domain, rate: Expr) -> Option<(Expr, Vec<Expr>
     (free && decide(arena, arena.sub(rate, rebuilt), domain).is_zero()).then_some((known, factors))
 }
 
-/// The equations of a regression with nothing unknown under the derivative: z = chi + theta at theta = 0, with z for chi.
+/// The equations of a regression with nothing unknown under the derivative: z = chi + theta at theta = 0, with z for
+/// chi.
 pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Vec<Equation>> {
     let arena = &plant.arena;
     let held = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
@@ -177,8 +179,8 @@ pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regre
     Some(equations.collect())
 }
 
-/// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside those
-/// whose rates are affine in z. Others are left unused; none where no rate has such a denominator.
+/// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside
+/// outputs whose rates are affine in z. Others are left unused; none where no rate has such a denominator.
 pub(super) fn under_derivative(
     plant: &Plant,
     domain: &Domain,
@@ -202,11 +204,11 @@ pub(super) fn under_derivative(
             others.push(equation);
         }
     }
-    let joined = |bent: Vec<Equation>, found: &mut Vec<Diagnostic>| {
-        if bent.is_empty() {
+    let joined = |chosen: Vec<Equation>, found: &mut Vec<Diagnostic>| {
+        if chosen.is_empty() {
             return None;
         }
-        joined(plant, domain, cascade, Some(left_inverse), &[bent, straight.clone()].concat(), found)
+        joined(plant, domain, cascade, Some(left_inverse), &[chosen, straight.clone()].concat(), found)
     };
     let whole = joined([linear.clone(), others.clone()].concat(), found);
     whole.or_else(|| if others.is_empty() { None } else { joined(linear, found) })

@@ -6,10 +6,11 @@
 //! a(y) + b(y).z + z'C z = 0
 //! ```
 //!
-//! Out: the equations `d/dt (-(a + b.z)/2) = z'C (Lambda z + h)`. Where the right side is affine in z, as always under a
-//! plain cascade, or becomes so by the relation itself (`z'C Lambda z = mu z'C z`), the regression that they make has theta itself for its unknowns, and `theta'C theta`, which the relation
-//! itself would add to these, is gone. The motor's fluxes lie on a circle, `|z - L i|^2 = lambda_m^2` (Ortega et al. 2015,
-//! eq. 28): `d/dt (L i.z - L^2 |i|^2/2) = z.h`.
+//! Out: the equations `d/dt (-(a + b.z)/2) = z'C (Lambda z + h)`. Where the right side is affine in z, as always under
+//! a plain cascade, or becomes so by the relation itself (`z'C Lambda z = mu z'C z`), the regression that they make has
+//! theta itself for its unknowns, and `theta'C theta`, which the relation itself would add to these, is gone. The
+//! motor's fluxes lie on a circle, `|z - L i|^2 = lambda_m^2` (Ortega et al. 2015, eq. 28): `d/dt (L i.z - L^2 |i|^2/2)
+//! = z.h`.
 
 use std::collections::BTreeSet;
 
@@ -24,8 +25,8 @@ use pebo_cas::forms::tidy::shortest;
 use pebo_cas::number::rational::half;
 use pebo_cas::{Domain, Expr, Symbol};
 
-/// The regression under the derivative, in theta itself, where it has fewer unknowns than the given one, or the model asks
-/// for it.
+/// The regression under the derivative, in theta itself, where it has fewer unknowns than the given one, or the model
+/// chooses it.
 pub(in crate::analysis) fn differentiated(
     plant: &Plant,
     domain: &Domain,
@@ -33,9 +34,9 @@ pub(in crate::analysis) fn differentiated(
     left_inverse: Option<&LeftInverse>,
     given: &Claim<Regression>,
 ) -> Option<Claim<Regression>> {
-    let asked = plant.asks_for(RelationForm::Differentiated);
+    let wanted = plant.wants(RelationForm::Differentiated);
     let longer = |g: &Regression| g.kind == RegressionKind::Static && g.eta.len() > plant.theta.len();
-    if !asked && !proved(given).is_none_or(longer) {
+    if !wanted && !proved(given).is_none_or(longer) {
         return None;
     }
     let relations = if !plant.identities.is_empty() {
@@ -54,7 +55,7 @@ pub(in crate::analysis) fn differentiated(
         .filter(|claim| proved(claim).is_some_and(|regression| regression.is_linear(plant)))
 }
 
-/// Says that no regression has the form that was asked for.
+/// Reports that no regression has the chosen form.
 pub(in crate::analysis) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
     let (how, needs, other) = match form {
         RelationForm::Static => (
@@ -93,7 +94,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
         constants.iter().chain(&plant.z).copied().chain(plant.y.iter().map(|o| o.symbol)).collect();
     let mut squares = Vec::new();
     let mut rate = Vec::new();
-    let mut bent = None;
+    let mut witness = None;
     for (i, first) in plant.z.iter().enumerate() {
         let slope = arena.derivative(relation, *first);
         for (j, second) in plant.z.iter().enumerate() {
@@ -102,7 +103,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
                 return None;
             }
             if !arena.is_zero(curvature) {
-                bent.get_or_insert((curvature, *first, *second));
+                witness.get_or_insert((curvature, *first, *second));
             }
             let curvature = arena.scale(curvature, &half());
             squares.push(arena.product([curvature, z[i], z[j]]));
@@ -114,7 +115,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
     let primitive = shortest(arena, domain, arena.neg(arena.scale(without_constant(plant, domain, rest), &half())));
     let rate = arena.sum(rate);
     // The relation is zero: a multiple of it takes the square away, and with it all others, if they are in proportion.
-    let (curvature, first, second) = bent?;
+    let (curvature, first, second) = witness?;
     let multiple = arena.div(arena.derivative(arena.derivative(rate, first), second), curvature);
     let rate = shortest(arena, domain, arena.sub(rate, arena.mul(multiple, relation)));
     let moves = !arena.is_zero(primitive) || !arena.is_zero(rate);
@@ -122,8 +123,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
     (moves && arena.symbols_of(&[primitive]).is_subset(&known)).then_some(Equation { primitive, rate })
 }
 
-/// An expression less what it is where z and y are zero, if it has a value there and no input is in that: a constant has no
-/// rate.
+/// An expression less its value at z = 0 and y = 0, if it has a value there without an input: a constant has no rate.
 fn without_constant(plant: &Plant, domain: &Domain, expr: Expr) -> Expr {
     let arena = &plant.arena;
     let signals = plant.z.iter().copied().chain(plant.y.iter().map(|output| output.symbol));

@@ -1,4 +1,4 @@
-//! One equation of a regression, before theta is told apart from what is known.
+//! One equation of a regression, before theta is separated from known signals.
 
 use crate::analysis::design::Cascade;
 use crate::plant::Plant;

@@ -1,8 +1,8 @@
-//! Regressions in functions of theta, dynamic or under the derivative, and what theta is known up to.
+//! Regressions in functions of theta, dynamic or under the derivative, with the ambiguity of theta.
 
 use std::collections::BTreeMap;
 
-use super::separation::{self, Recovered, Separated};
+use super::separation::{self, Separation, ThetaRecovery};
 use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::analysis::left_inverse::checking::is_whole_turns;
 use crate::plant::Plant;
@@ -18,7 +18,7 @@ pub(super) fn over_parameterised(
     domain: &Domain,
     left_inverse: &LeftInverse,
     (rows, held): (Vec<usize>, usize),
-    separated: Separated,
+    separated: Separation,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
     // The fewer functions, if they are enough.
@@ -57,18 +57,18 @@ pub(super) fn over_parameterised(
     Some(Claim { verdict: Verdict::Proved, result: Some(result) })
 }
 
-/// The states that move by a constant where theta moves by a step up to multiples of which it is determined: the outputs do
-/// not tell them from angles, which is a warning.
+/// The states that move by a constant where theta moves by the step that leaves it ambiguous: the outputs do not
+/// distinguish them from angles, which is a warning.
 ///
 /// # Errors
-/// The verdict on a regression by which a state is lost: one that does not move by a constant, or an angle that moves by a part of its
-/// period.
+/// The verdict on a regression that loses a state: one that does not move by a constant, or an angle that moves by a
+/// fraction of its period.
 pub(super) fn steps(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,
     eta: &[Expr],
-    recovered: &Recovered,
+    recovered: &ThetaRecovery,
     found: &mut Vec<Diagnostic>,
 ) -> Result<Vec<(Symbol, Expr)>, Verdict> {
     let arena = &plant.arena;
@@ -87,13 +87,14 @@ pub(super) fn steps(
             if kept {
                 continue;
             }
-            // Whether the outputs themselves are blind to the step, or only the formula for theta; and whether the domain
-            // holds the states on both sides of it.
+            // The outputs themselves are blind to the step, or only the formula for theta is; and the domain holds the
+            // states on both sides of it, or not.
             let constant = arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s));
             let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index], step), domain).is_zero());
             let bounded = domain.facts.iter().any(|(fact, _)| arena.symbols_of(&[fact]).contains(&state));
             if blind && !bounded && constant && plant.period(state).is_none() {
-                // The state may well be an angle: nothing that the outputs tell distinguishes it from one. A period is positive.
+                // The state may well be an angle: nothing that the outputs tell distinguishes it from one. A period is
+                // positive.
                 let opposite = arena.neg(shift);
                 let shift = if domain.implies(arena, opposite, Relation::Positive) { opposite } else { shift };
                 found.push(up_to_steps(plant, index, (state, shift)));
@@ -108,7 +109,7 @@ pub(super) fn steps(
     Ok(steps)
 }
 
-/// What a step of an unknown does to a state.
+/// The effect of a step of an unknown on a state.
 fn lost_by_turns(
     plant: &Plant,
     (index, step): (usize, Expr),
@@ -141,7 +142,7 @@ fn lost_by_turns(
     }
 }
 
-/// What to know of a state that the outputs show only up to a period.
+/// The warning for a state that is identifiable only up to a period.
 fn up_to_steps(plant: &Plant, index: usize, (state, shift): (Symbol, Expr)) -> Diagnostic {
     let arena = &plant.arena;
     let (name, moved) = (arena.name(state), arena.print(shift));

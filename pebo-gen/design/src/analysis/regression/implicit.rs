@@ -6,9 +6,10 @@
 //! a(z, y) y_k' = N(z, y, u)      dA/dy_k = a      d/dt A = N + dA/dz z' + (dA/dy y' without y_k') = R(z, y, u)
 //! ```
 //!
-//! a is what the denominator has that holds z: what is free of z may stay below. Where A and R are affine in z, or linear in functions of theta at z = chi + theta, filtering both sides gives a linear
-//! regression without the rate (Ortega et al. 2015, Section 5.2: for the levitated ball a = z, A = z i).
-//! Nothing is divided by a, so the regression holds also where a vanishes.
+//! a is the factor of the denominator that holds z: a factor free of z may remain. Where A and R are affine in z, or
+//! linear in functions of theta at z = chi + theta, filtering both sides gives a linear regression without the rate
+//! (Ortega et al. 2015, Section 5.2: for the levitated ball a = z, A = z i). Nothing is divided by a, so the regression
+//! holds also where a vanishes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,8 +26,8 @@ use pebo_cas::forms::tidy::{shortest, with_fewer_conditions};
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;
 
-/// The equation for the rate of an output whose multiplier and right side are affine in phi, as formulas in x: the components
-/// of phi may depend on each other.
+/// The equation for the rate of an output whose multiplier and right side are affine in phi, as formulas in x: the
+/// components of phi may depend on each other.
 pub(super) fn affine_equation(plant: &Plant, domain: &Domain, output: usize) -> Result<Option<Equation>, Obstacle> {
     let arena = &plant.arena;
     let Some(rate) = plant.y[output].rate else { return Ok(None) };
@@ -56,7 +57,7 @@ pub(super) fn equation(
     let arena = &plant.arena;
     let y = plant.y[output].symbol;
     let Some(factor) = factor(plant, domain, rate)? else { return Ok(None) };
-    // The unknown itself multiplies the rate; what is not affine in it is not taken for such a regression.
+    // The unknown itself multiplies the rate; a nonlinear factor is not taken for such a regression.
     let curved = |z: &Symbol| arena.depends_on(arena.derivative(factor, *z), &plant.z.iter().copied().collect());
     if plant.z.iter().any(curved) {
         return Ok(None);
@@ -74,7 +75,7 @@ pub(super) fn equation(
     let along = slopes.enumerate().map(|(index, slope)| arena.mul(slope, velocity(plant, cascade, index)));
     let beside = others.iter().map(|(other, rate)| arena.mul(arena.derivative(primitive, *other), *rate));
     let right = arena.add(arena.mul(factor, rate), arena.sum(along.chain(beside)));
-    // What was divided by is gone: at z = chi + theta nothing keeps it from zero.
+    // The divisor is gone: at z = chi + theta nothing keeps it from zero.
     let field = Field::over(arena, &domain.facts, &[right])?;
     let whole = field.show(&field.fraction(right)?);
     // Another output may bring its own denominator with it.
@@ -90,12 +91,12 @@ pub(super) fn equation(
     Ok(decide(arena, difference, domain).is_zero().then_some(Equation { primitive, rate: right }))
 }
 
-/// What the rate has to be multiplied by: the part of its denominator that holds z.
+/// The multiplier of the rate: the factor of its denominator that holds z.
 pub(super) fn factor(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<Expr>, Obstacle> {
     divisor(plant, domain, rate, &plant.z.iter().copied().collect())
 }
 
-/// The part of a formula's denominator that holds the symbols.
+/// The factor of a formula's denominator that holds the symbols.
 fn divisor(plant: &Plant, domain: &Domain, rate: Expr, symbols: &BTreeSet<Symbol>) -> Result<Option<Expr>, Obstacle> {
     let arena = &plant.arena;
     let field = Field::over(arena, &domain.facts, &[rate])?;

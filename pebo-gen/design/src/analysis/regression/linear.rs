@@ -14,14 +14,14 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 /// One output as an affine function of the transform.
 pub(super) struct Row {
-    /// The part free of x.
+    /// The term free of x.
     pub(super) known: Expr,
     /// The coefficients of the components of the transform, free of x.
     pub(super) factors: Vec<Expr>,
 }
 
-/// Writes an output's rate over {1, phi}, and proves it: as the left inverse has it where that asks for less, since of more
-/// components than states there are many ways.
+/// Writes an output's rate over {1, phi}, and proves it: with the left inverse where that has fewer domain conditions,
+/// since with more components than states there are many ways.
 pub(super) fn decompose(
     plant: &Plant,
     domain: &Domain,
@@ -38,12 +38,12 @@ pub(super) fn decompose(
     }))
 }
 
-/// How much a row asks to have values that the domain does not show.
+/// The number of a row's domain conditions that the domain does not imply.
 fn asks(plant: &Plant, domain: &Domain, row: &Row) -> usize {
     let arena = &plant.arena;
     let formulas = [row.factors.as_slice(), &[row.known]].concat();
-    let asked = arena.domain_conditions(&formulas, Regularity::Defined).into_iter();
-    asked.filter(|ask| !domain.grants(arena, *ask)).count()
+    let conditions = arena.domain_conditions(&formulas, Regularity::Defined).into_iter();
+    conditions.filter(|ask| !domain.grants(arena, *ask)).count()
 }
 
 /// The rate at the left inverse, where that is affine in z; proved.
@@ -75,7 +75,7 @@ fn decomposed(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Resul
     }
     let Some(row) = affine::of(plant, domain, rate)? else { return Ok(None) };
     let (known, factors) = (row[0], &row[1..]);
-    // Where the transform is the state itself, the author's own coefficients may be shorter.
+    // If the transform is the state itself, the author's own coefficients may be shorter.
     let factors = factors
         .iter()
         .zip(&phi)
@@ -127,7 +127,7 @@ pub(super) fn linear(
             Some(own) => Some(tidied()).filter(|tidied| calls(*tidied) < calls(own)).unwrap_or(own),
             None => tidied(),
         });
-        // Of what is affine in z, the slopes are the factors.
+        // The slopes of a formula affine in z are the factors.
         let factors: Vec<Expr> = row
             .factors
             .iter()

@@ -30,13 +30,13 @@ use pebo_cas::{Domain, Expr, Symbol};
 use super::blame;
 use super::design::{Cascade, Claim, LeftInverse, Regression, Verdict};
 use cancelling::{affine_combinations, combinations};
-pub(super) use combined::together;
+pub(super) use combined::combined;
 use combined::under_derivative;
 pub(super) use differentiated::{differentiated, no_such_form};
 use functions::over_parameterised;
 use linear::{decompose, linear};
 use refusal::{
-    OtherForm, hidden_by_signals, nonlinear, not_in_other_forms, not_recovered, not_sought, refuted, undecided,
+    OtherForm, hidden_by_signals, nonlinear, not_in_other_forms, not_recovered, not_tried, refuted, undecided,
 };
 pub(super) use static_relation::from_identities;
 use static_relation::from_relations;
@@ -45,8 +45,8 @@ pub(super) use valued::by_values;
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
     exponentials, sines and cosines of z were tried";
 
-/// A rate as what it is on the domain, if it bends: the assumptions on the states tell which way, and are not known of z.
-fn unbent(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
+/// A non-smooth rate as it is on the domain: the assumptions on the states decide the side, and are not known of z.
+fn on_domain_side(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     let arena = &plant.arena;
     if arena.dividers(&[rate]).into_iter().all(|part| !arena.depends_on(part, &plant.hidden())) {
         return rate;
@@ -55,7 +55,8 @@ fn unbent(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     field.and_then(|field| Ok(field.show(&field.fraction(rate)?))).unwrap_or(rate)
 }
 
-/// A form in which the unknowns of a rate that is not affine may be linear all the same, if not all such forms were tried.
+/// A form in which the unknowns of a rate that is not affine may be linear all the same, if not all such forms were
+/// tried.
 fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> Option<OtherForm> {
     let arena = &plant.arena;
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
@@ -68,16 +69,16 @@ fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> 
     }
     // A component without a rate of its own is a constant, and so is each of its functions.
     let rests = |index: usize| is_constant(plant, cascade, index);
-    let curved = |z: Symbol| arena.depends_on(arena.derivative(rate, z), &BTreeSet::from([z]));
+    let nonlinear = |z: Symbol| arena.depends_on(arena.derivative(rate, z), &BTreeSet::from([z]));
     plant
         .z
         .iter()
         .enumerate()
-        .find(|(index, z)| rests(*index) && curved(**z))
+        .find(|(index, z)| rests(*index) && nonlinear(**z))
         .map(|(index, _)| OtherForm::Function(index))
 }
 
-/// Whether a component of the transform has no rate.
+/// Tests whether a component of the transform has no rate.
 fn is_constant(plant: &Plant, cascade: &Cascade, index: usize) -> bool {
     cascade.lambda.is_none() && plant.arena.is_zero(cascade.h[index])
 }
@@ -101,8 +102,8 @@ pub(super) fn of_affine_rates(
     (!rows.is_empty()).then(|| Claim { verdict: Verdict::Proved, result: Some(regression()) })
 }
 
-/// The regression in functions of theta of the rates that are made of such functions, where there are others too; none if no
-/// rate is.
+/// The regression in functions of theta of the rates that are made of such functions, where there are others too; none
+/// if no rate is.
 pub(super) fn of_separable_rates(
     plant: &Plant,
     domain: &Domain,
@@ -123,23 +124,23 @@ pub(super) fn of_separable_rates(
 /// A rate as a function of z.
 fn of_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse, rate: Expr) -> Expr {
     let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-    plant.arena.substitute(unbent(plant, domain, rate), &inverse)
+    plant.arena.substitute(on_domain_side(plant, domain, rate), &inverse)
 }
 
-/// Whether a rate is a sum of known signals times functions of theta.
+/// Tests whether a rate is a sum of known signals times functions of theta.
 fn is_separable(plant: &Plant, domain: &Domain, rate: Expr) -> bool {
     matches!(separation::separate(plant, domain, &[rate]), Ok(Some(_)))
 }
 
-/// A rate that is not affine: its output, itself, its place, and why it was not decided.
-type Curved = (usize, Expr, Span, Option<Obstacle>);
+/// A rate that is not affine: its output, itself, its span, and the obstacle to a decision.
+type NonlinearRate = (usize, Expr, Span, Option<Obstacle>);
 
-/// Leaves the rates that are no sums of functions of theta either: it is these that stand in the way.
-fn formless(plant: &Plant, domain: &Domain, in_z: &BTreeMap<usize, Expr>, curved: &mut Vec<Curved>) {
-    let has_form = |row: &Curved| in_z.get(&row.0).is_some_and(|rate| is_separable(plant, domain, *rate));
-    let others: Vec<Curved> = curved.iter().filter(|row| !has_form(row)).cloned().collect();
+/// Keeps the rates that are no sums of functions of theta either: the obstacles.
+fn formless(plant: &Plant, domain: &Domain, in_z: &BTreeMap<usize, Expr>, nonlinear: &mut Vec<NonlinearRate>) {
+    let has_form = |row: &NonlinearRate| in_z.get(&row.0).is_some_and(|rate| is_separable(plant, domain, *rate));
+    let others: Vec<NonlinearRate> = nonlinear.iter().filter(|row| !has_form(row)).cloned().collect();
     if !others.is_empty() {
-        *curved = others;
+        *nonlinear = others;
     }
 }
 
@@ -189,19 +190,19 @@ pub(super) fn prove(
         return Claim { verdict: Verdict::Proved, result: Some(regression) };
     }
     // In functions of theta: only where z = chi + theta, the extension being an integrator.
-    let mut sought = Sought::default();
+    let mut search = FunctionSearch::default();
     if let Some(left_inverse) = left_inverse {
         let rates: Vec<Expr> = rows.iter().map(|(_, rate, _)| of_z(plant, domain, left_inverse, *rate)).collect();
-        sought.in_z = rows.iter().map(|row| row.0).zip(rates.iter().copied()).collect();
+        search.in_z = rows.iter().map(|row| row.0).zip(rates.iter().copied()).collect();
         match separation::separate(plant, domain, &rates) {
-            Ok(Some(_)) if cascade.lambda.is_some() => sought.unsought = true,
+            Ok(Some(_)) if cascade.lambda.is_some() => search.untried = true,
             Ok(Some(separated)) => {
                 let eta: Vec<String> = separated.eta.iter().map(|e| plant.arena.print(*e)).collect();
                 let outputs = rows.iter().map(|r| r.0).collect();
                 if let Some(claim) = over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found) {
                     return claim;
                 }
-                sought.unrecovered = Some(eta.join(", "));
+                search.unrecovered = Some(eta.join(", "));
             }
             Ok(None) => {
                 let of_outputs: Vec<(usize, Expr)> = rows.iter().map(|row| row.0).zip(rates).collect();
@@ -210,7 +211,7 @@ pub(super) fn prove(
                     return claim;
                 }
                 if cascade.lambda.is_none() {
-                    formless(plant, domain, &sought.in_z, &mut obstacles);
+                    formless(plant, domain, &search.in_z, &mut obstacles);
                 }
             }
             Err(obstacle) => obstacles.iter_mut().for_each(|o| o.3 = Some(obstacle.clone())),
@@ -222,7 +223,7 @@ pub(super) fn prove(
             return claim;
         }
     }
-    // What keeps one rate from being affine may cancel from several.
+    // A term that makes one rate nonlinear may cancel from several.
     let outputs: Vec<usize> = rows.iter().map(|row| row.0).collect();
     let (combined, moving) = affine_combinations(plant, domain, &outputs).unwrap_or((Vec::new(), outputs.len() > 1));
     if combined.len() > affine.len()
@@ -230,57 +231,58 @@ pub(super) fn prove(
     {
         return claim;
     }
-    // What the rates do not say an identity may, in a form that was not found, or a combination that was not put together.
+    // An identity may serve in place of the rates, in a form that was not found, or a combination that was not tried.
     let is_refuted = plant.identities.is_empty() && combined.len() <= affine.len() && !moving;
     let verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
-    refuse(plant, domain, (cascade, left_inverse), &sought, obstacles, verdict, found)
+    refuse(plant, domain, (cascade, left_inverse), &search, obstacles, verdict, found)
 }
 
-/// What was come to of functions of theta.
+/// The result of the search for functions of theta.
 #[derive(Default)]
-struct Sought {
-    /// Whether there are some that no regression is made of.
-    unsought: bool,
+struct FunctionSearch {
+    /// True if some are used by no regression.
+    untried: bool,
     /// Functions from which theta was not recovered.
     unrecovered: Option<String>,
     /// The rates as functions of z.
     in_z: BTreeMap<usize, Expr>,
 }
 
-/// Says of each rate that is in the way what is known of it; the verdict is the firmest that is left.
+/// Reports the obstacle of each nonlinear rate; the verdict is the firmest that is left.
 fn refuse(
     plant: &Plant,
     domain: &Domain,
     (cascade, left_inverse): (&Cascade, Option<&LeftInverse>),
-    sought: &Sought,
-    obstacles: Vec<Curved>,
+    search: &FunctionSearch,
+    obstacles: Vec<NonlinearRate>,
     mut verdict: Verdict,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     for (index, rate, span, obstacle) in obstacles {
-        if sought.unsought {
+        if search.untried {
             verdict = Verdict::Undecided;
-            found.push(not_sought(plant, index, span));
+            found.push(not_tried(plant, index, span));
             continue;
         }
-        if let Some(functions) = &sought.unrecovered {
+        if let Some(functions) = &search.unrecovered {
             verdict = Verdict::Undecided;
             found.push(not_recovered(plant, index, span, functions));
             continue;
         }
-        // What was given up is not refuted: it may be linear in functions of theta all the same.
-        let bend = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
+        // A rate that was given up is not refuted: it may be linear in functions of theta all the same.
+        let curvature = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         let form = match left_inverse {
-            Some(_) => sought.in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
-            // What the rate is in z is not known: it may be linear with any function of a component that is constant.
+            Some(_) => search.in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
+            // The rate as a function of z is unknown: it may be linear with any function of a component that is
+            // constant.
             None => constant_component(plant, cascade).map(OtherForm::Function),
         };
-        if let (Some(shown), Some(form)) = (&bend, form) {
+        if let (Some(shown), Some(form)) = (&curvature, form) {
             verdict = Verdict::Undecided;
             found.push(not_in_other_forms(plant, index, span, shown, form));
-        } else if let Some(shown) = bend {
-            let bends = |term| nonlinear(plant, domain, term, left_inverse).is_some();
-            let places = blame::summands(plant, index, bends);
+        } else if let Some(shown) = curvature {
+            let is_curved = |term| nonlinear(plant, domain, term, left_inverse).is_some();
+            let places = blame::summands(plant, index, is_curved);
             found.push(refuted(plant, index, &places, &shown, NO_SEPARATION));
         } else {
             verdict = Verdict::Undecided;

@@ -1,4 +1,4 @@
-//! Why there is no regression, with the point that shows it.
+//! Refuses a regression, with the point that shows it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,8 +12,7 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use super::cancelling::moved_freely;
 
-/// Every rate that is given depends on a signal that nobody knows, and so do all combinations but so many, of which no
-/// regression was found.
+/// Every given rate depends on an unmeasured signal, and so do all combinations but so many, which gave no regression.
 pub(super) fn hidden_by_signals(
     plant: &Plant,
     domain: &Domain,
@@ -57,7 +56,7 @@ pub(super) fn hidden_by_signals(
     Claim { verdict, result: None }
 }
 
-/// Outputs that unmeasured signals move, but perhaps not all of what they tell.
+/// Outputs that unmeasured signals move, perhaps not in all combinations.
 fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
     let names: Vec<String> = outputs.iter().map(|index| plant.arena.name(plant.y[*index].symbol)).collect();
     Diagnostic::error(
@@ -73,7 +72,7 @@ fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
 }
 
 /// A generalised cascade whose outputs may be linear in functions of theta.
-pub(super) fn not_sought(plant: &Plant, index: usize, span: Span) -> Diagnostic {
+pub(super) fn not_tried(plant: &Plant, index: usize, span: Span) -> Diagnostic {
     let output = plant.arena.name(plant.y[index].symbol);
     Diagnostic::error(
         Code::RegressionUndecided,
@@ -98,7 +97,7 @@ pub(super) fn not_recovered(plant: &Plant, index: usize, span: Span, functions: 
     .help("choose a phi in which this rate is affine, or give an identity under `identities`")
 }
 
-/// Why a rate is no affine function of the transform, as points of the domain show it.
+/// The reason why a rate is no affine function of the transform, by points of the domain.
 ///
 /// A second derivative, where the transform has as many components as there are states: it is then one-to-one on a
 /// neighbourhood of each point of the domain, so that z moves freely there. Else points with the same y, u and

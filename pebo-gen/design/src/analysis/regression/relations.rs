@@ -31,7 +31,7 @@ pub(super) fn among(plant: &Plant, domain: &Domain) -> Result<Vec<Expr>, Obstacl
     roots.extend(squares(phi.len()).iter().map(|monomial| product(monomial, &phi)));
     let field = Field::over(arena, &domain.facts, &roots)?;
     let linear = (0..phi.len()).map(|i| vec![i]);
-    // 1 comes first, then each monomial is looked for in those before it.
+    // 1 comes first, then each monomial is looked for in the span of earlier ones.
     let mut before: Vec<Vec<usize>> = vec![Vec::new()];
     let mut leading: Vec<Vec<usize>> = Vec::new();
     let mut found = Vec::new();
@@ -57,13 +57,13 @@ pub(super) fn among(plant: &Plant, domain: &Domain) -> Result<Vec<Expr>, Obstacl
     Ok(found)
 }
 
-/// Whether the components of the transform may have to do with each other: that none can is seen at a point where they
-/// move independently with x.
+/// Tests whether the components of the transform may be related: a point where they move independently with x excludes
+/// it.
 pub(super) fn possible(plant: &Plant, domain: &Domain) -> bool {
     independent_directions(plant, domain) < plant.phi.len()
 }
 
-/// Whether the relations are all that there are: at a point of the domain they leave z no more directions than x has.
+/// Tests whether the relations are complete: at a point of the domain they leave z no more directions than x has.
 pub(super) fn are_all(plant: &Plant, domain: &Domain, relations: &[Expr]) -> bool {
     let arena = &plant.arena;
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();

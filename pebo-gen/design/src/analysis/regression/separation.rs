@@ -20,8 +20,8 @@ use pebo_cas::solve::{Equation, solve};
 
 /// Expressions as `known + factors * eta`.
 #[derive(Clone, Debug)]
-pub(in crate::analysis) struct Separated {
-    /// What is known of each expression.
+pub(in crate::analysis) struct Separation {
+    /// The known term of each expression.
     pub known: Vec<Expr>,
     /// The factors of each eta, a row for each expression.
     pub factors: Vec<Vec<Expr>>,
@@ -34,7 +34,7 @@ pub(in crate::analysis) fn separate(
     plant: &Plant,
     domain: &Domain,
     in_z: &[Expr],
-) -> Result<Option<Separated>, Obstacle> {
+) -> Result<Option<Separation>, Obstacle> {
     let arena = &plant.arena;
     let shifted: BTreeMap<Symbol, Expr> = plant
         .z
@@ -64,13 +64,13 @@ pub(in crate::analysis) fn separate(
     Ok(Some(separated))
 }
 
-/// The parts of expressions at z = chi + theta; none where a kernel mixes theta with signals.
+/// Separates expressions at z = chi + theta; none where a kernel mixes theta with signals.
 fn apart(
     plant: &Plant,
     domain: &Domain,
     unknown: &BTreeSet<Symbol>,
     exprs: &[Expr],
-) -> Result<Option<Separated>, Obstacle> {
+) -> Result<Option<Separation>, Obstacle> {
     let arena = &plant.arena;
     let field = Field::over(arena, &domain.facts, exprs)?;
     let kernels: Vec<u32> = field.kernels_of(unknown).into_iter().collect();
@@ -83,7 +83,7 @@ fn apart(
     let mut rows: Vec<BTreeMap<Powers, Fraction>> = Vec::new();
     for expr in exprs {
         let fraction = field.fraction(*expr)?;
-        // A product of kernels of theta may stand below, as exp(theta) in cosh; a sum may not.
+        // A product of kernels of theta may be a denominator, as exp(theta) in cosh; a sum may not.
         let denominator = fraction.denominator().collect(&kernels);
         let [(below, known)] = denominator.as_slice() else { return Ok(None) };
         let below = powers(below, -1);
@@ -103,7 +103,7 @@ fn apart(
     let show = |row: &BTreeMap<Powers, Fraction>, column: &Powers| {
         row.get(column).map_or_else(|| arena.zero(), |fraction| field.show(fraction))
     };
-    Ok(Some(Separated {
+    Ok(Some(Separation {
         known: rows.iter().map(|row| show(row, &Powers::new())).collect(),
         factors: rows.iter().map(|row| columns.iter().map(|c| show(row, c)).collect()).collect(),
         eta: columns
@@ -135,7 +135,7 @@ fn product(a: &Powers, b: &Powers) -> Powers {
 }
 
 /// Proves that the separation is an identity.
-fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) -> Result<(), Obstacle> {
+fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separation) -> Result<(), Obstacle> {
     let arena = &plant.arena;
     for (expr, (known, factors)) in exprs.iter().zip(separated.known.iter().zip(&separated.factors)) {
         let products = factors.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e));
@@ -149,9 +149,9 @@ fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separated) 
     Ok(())
 }
 
-/// Joins all functions of theta whose factors are constants of the plant into one, together with the
-/// constants of the known part: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
-pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separated) -> Separated {
+/// Joins all functions of theta whose factors are constants of the plant into one, with the constants of the known
+/// term: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
+pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separation) -> Separation {
     let arena = &plant.arena;
     // With several rows the constants would differ from row to row.
     let [factors] = separated.factors.as_slice() else { return separated };
@@ -161,7 +161,7 @@ pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, sepa
     if joined.is_empty() {
         return separated;
     }
-    // What the known part is where every signal is zero, if it has a value there, is a constant of it.
+    // The value of the known term at zero signals, if there is one, is a constant of it.
     let signals = arena.symbols_of(&separated.known).into_iter().filter(|s| !constants.contains(s));
     let origin: BTreeMap<Symbol, Expr> = signals.map(|s| (s, arena.zero())).collect();
     let constant = arena.substitute(separated.known[0], &origin);
@@ -177,16 +177,16 @@ pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, sepa
     eta.push(joint);
     row.push(arena.number(-1));
     let known = shortest(arena, domain, arena.sub(separated.known[0], constant));
-    Separated { known: vec![known], factors: vec![row], eta }
+    Separation { known: vec![known], factors: vec![row], eta }
 }
 
-/// Joins functions of theta whose factors are constant combinations of other factors: these cannot be told apart, but
-/// their sums can, as `theta1 + theta2^2` in a rate `a + b^2`.
+/// Joins functions of theta whose factors are constant combinations of other factors: only their sums are identifiable,
+/// as `theta1 + theta2^2` in a rate `a + b^2`.
 pub(in crate::analysis) fn join_dependent(
     plant: &Plant,
     domain: &Domain,
-    separated: &Separated,
-) -> Result<Separated, Obstacle> {
+    separated: &Separation,
+) -> Result<Separation, Obstacle> {
     let arena = &plant.arena;
     // A symbol for each row, so that one expression holds a column.
     let marks: Vec<Symbol> = (0..separated.factors.len()).map(|row| arena.generated(&format!("row {row}"))).collect();
@@ -209,7 +209,7 @@ pub(in crate::analysis) fn join_dependent(
             None => kept.push((j, eta)),
         }
     }
-    let result = Separated {
+    let result = Separation {
         known: separated.known.clone(),
         factors: separated.factors.iter().map(|row| kept.iter().map(|(j, _)| row[*j]).collect()).collect(),
         eta: kept.into_iter().map(|(_, sum)| sum).collect(),
@@ -226,16 +226,16 @@ pub(in crate::analysis) fn join_dependent(
 
 /// theta as functions of eta, each proved.
 #[derive(Clone, Debug)]
-pub(in crate::analysis) struct Recovered {
+pub(in crate::analysis) struct ThetaRecovery {
     /// An entry for each theta, in the eta symbols.
     pub theta: Vec<Expr>,
-    /// Positions of those that are determined only up to multiples of a step, as from sine and cosine of theta, which have
-    /// the step 2 pi; with the step.
+    /// Indices of the components of theta that are determined up to multiples of a step, as from sine and cosine of
+    /// theta, which have the step 2 pi; with the step.
     pub turning: Vec<(usize, Expr)>,
 }
 
 /// theta from its functions, if they determine it at least up to whole turns.
-pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<Recovered> {
+pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<ThetaRecovery> {
     let arena = &plant.arena;
     let symbols = plant.eta(eta.len());
     let equations: Vec<Equation> =
@@ -246,7 +246,7 @@ pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr])
         .filter(|(s, _)| plant.theta.contains(s))
         .collect();
     let rest: Vec<Symbol> = plant.theta.iter().copied().filter(|t| !direct.contains_key(t)).collect();
-    // The others are looked for with these in their place.
+    // The others are solved for with these in their place.
     let equations: Vec<Equation> = equations
         .iter()
         .map(|e| Equation { formula: arena.substitute(e.formula, &direct), value: e.value })
@@ -259,7 +259,7 @@ pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr])
     }
     let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
     let unknown: BTreeSet<Symbol> = plant.theta.iter().copied().collect();
-    let mut recovered = Recovered { theta: Vec::new(), turning: Vec::new() };
+    let mut recovered = ThetaRecovery { theta: Vec::new(), turning: Vec::new() };
     for (index, theta) in plant.theta.iter().enumerate() {
         let candidates = solved.get(theta)?.iter().filter(|f| !arena.depends_on(**f, &unknown));
         let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
@@ -295,7 +295,7 @@ fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> O
     (!below.is_empty()).then(|| arena.div(arena.sum(above), arena.sum(below)))
 }
 
-/// By how much a formula grows with the angle that it is a multiple of; one where it is none.
+/// The growth of a formula in the angle that it is a multiple of; one where it is none.
 fn per_turn(arena: &Arena, formula: Expr) -> Expr {
     let Node::Product(product) = arena.node(formula) else { return arena.one() };
     let is_angle = |base: &Expr| matches!(arena.node(*base), Node::Call(Function::Atan2, _));

@@ -1,4 +1,4 @@
-//! Static regressions: from identities, or from what the components of the transform have to do with each other.
+//! Static regressions: from identities, or from relations between the components of the transform.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -49,11 +49,11 @@ pub(in crate::analysis) fn from_identities(
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
     let identities = cleared::in_z(plant, domain, left_inverse);
-    standing_still(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+    constant_relation(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
 }
 
-/// A static regression from what the components of the transform have to do with each other; none if that
-/// is nothing, or nothing that theta can be recovered from.
+/// A static regression from relations between the components of the transform; none if there are none, or theta cannot
+/// be recovered from them.
 pub(super) fn from_relations(
     plant: &Plant,
     domain: &Domain,
@@ -69,9 +69,9 @@ pub(super) fn from_relations(
             let rows = relations.iter().filter_map(|relation| in_z(plant, *relation)).map(Ok).collect();
             under_lambda(plant, domain, (rows, span), &mut own)
         }
-        None => standing_still(plant, domain, left_inverse?, (&relations, span), &mut own),
+        None => constant_relation(plant, domain, left_inverse?, (&relations, span), &mut own),
     };
-    // A claim that is undecided here is left to what the author can mend: the rates.
+    // An undecided claim is left to the rates, which the author can mend.
     if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
         return None;
     }
@@ -79,7 +79,7 @@ pub(super) fn from_relations(
     Some(claim)
 }
 
-/// What vanishes as an affine function of z, the known part first; none where it is no such function.
+/// A vanishing relation as an affine function of z, the known term first; none where it is no such function.
 fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
     let arena = &plant.arena;
     let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
@@ -89,9 +89,9 @@ fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
     affine.then(|| [vec![arena.substitute(relation, &origin)], slopes].concat())
 }
 
-/// A static regression under a generalised cascade, `z = xi + Psi theta`, from what vanishes as an affine function of z.
+/// A static regression under a generalised cascade, `z = xi + Psi theta`, from an affine function of z that vanishes.
 ///
-/// Functions of theta are not sought here: with Psi between them, they would be functions of known signals too.
+/// Functions of theta are not used here: with Psi between them, they would be functions of known signals too.
 fn under_lambda(
     plant: &Plant,
     domain: &Domain,
@@ -102,13 +102,13 @@ fn under_lambda(
     let xi: Vec<Expr> = plant.xi.iter().map(|s| arena.of_symbol(*s)).collect();
     let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
     let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
-    let mut told: Vec<&affine::Row> = Vec::new();
+    let mut known_rows: Vec<&affine::Row> = Vec::new();
     for row in rows.iter().filter_map(|row| row.as_ref().ok()) {
         let opposite: affine::Row = row.iter().map(|entry| arena.neg(*entry)).collect();
-        if told.iter().any(|known| *known == row || **known == opposite) {
+        if known_rows.iter().any(|known| *known == row || **known == opposite) {
             continue;
         }
-        told.push(row);
+        known_rows.push(row);
         // known + factors (xi + Psi theta) = 0
         phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
         let column = |column: usize| {
@@ -152,7 +152,7 @@ fn under_lambda(
 }
 
 /// A static regression from expressions in z that vanish.
-fn standing_still(
+fn constant_relation(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,
@@ -206,7 +206,7 @@ fn standing_still(
     }
 }
 
-/// What is known, as the relation itself at z = chi where that is shorter, but for the constants that the unknowns
+/// The known term, as the relation itself at z = chi where that is shorter, without the constants that the unknowns
 /// have absorbed.
 fn as_written(plant: &Plant, domain: &Domain, in_z: &[Expr], known: &[Expr]) -> Vec<Expr> {
     let arena = &plant.arena;

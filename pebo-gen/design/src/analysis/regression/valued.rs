@@ -1,8 +1,8 @@
-//! Outputs that are given by their value, each as the equation of its value.
+//! Outputs given by value, each as the equation of its value.
 //!
-//! In: a dynamic regression. Out: the regression in which outputs with a value under `g_y` stand by that value, where it is
-//! affine in z, and the others by their rates; none if there is no such output. A rate is less than the value: it has lost
-//! what is constant, and the sensor's noise is differentiated.
+//! In: a dynamic regression. Out: the regression in which outputs with a value under `g_y` stand by that value, where
+//! it is affine in z, and the others by their rates; none if there is no such output. A rate says less than the value:
+//! it has lost the constants, and the sensor's noise is differentiated.
 
 use crate::analysis::affine;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
@@ -44,12 +44,12 @@ pub(in crate::analysis) fn by_values(
     joined(plant, domain, cascade, left_inverse, &equations, found)
 }
 
-/// What vanishes by an output's value, as an affine function of z that tells something of z.
+/// An affine function of z that vanishes by an output's value and depends on z.
 fn value_in_z(plant: &Plant, domain: &Domain, output: usize) -> Option<Expr> {
     let arena = &plant.arena;
     let output = &plant.y[output];
     let value = output.value.filter(|_| output.moves_with_value())?;
-    // Where it holds the difference is 0, an affine function of anything: what it says of z is read off it elsewhere.
+    // On its own manifold the difference is 0, an affine function of anything: its equation in z is found elsewhere.
     let everywhere = domain.without_equations();
     let row = affine::of(plant, &everywhere, arena.sub(arena.of_symbol(output.symbol), value.expr)).ok()??;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();

@@ -86,7 +86,7 @@ fn the_fundamental_matrix_is_never_singular() {
 
 #[test]
 fn a_sign_stays_a_sign_where_code_computes_it() {
-    // As a quotient of q and its magnitude it would be 0/0 at q = 0, where the author's formula has a value.
+    // As a quotient of q and its absolute value it would be 0/0 at q = 0, where the author's formula has a value.
     for factor in ["2 + sign(q)*sqrt(abs(q))", "sign(q)*(1 - exp(-abs(q))) + 3", "sign(q)*max(abs(q) - 1, 0) + 1"] {
         let (plant, derivation) =
             derive(&format!("x: [p]\ny: [q]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: \"p*({factor})\"}}\nphi: [p]"));
@@ -140,25 +140,25 @@ fn claims_about_no_point_that_was_found_stay_open() {
 fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
     let lines = "x: [p]\ny: [q]\nu: [w]\nf_x: {p: (a + b + c + d + e)*w}\nf_y: {q: p}\nphi: [p]\n\
                  parameters: {a: null, b: null, c: null, d: -3, e: 0}";
-    let asked = |assume: &str| -> Vec<String> {
+    let conditions = |assume: &str| -> Vec<String> {
         let (plant, derivation) = derive(&format!("{lines}\nassume: [{assume}]"));
-        let shown = derivation.asked_of_parameters(&plant);
+        let shown = derivation.conditions_on_parameters(&plant);
         shown.iter().map(|(expr, sign)| format!("{} {sign:?}", plant.arena.print(*expr))).collect()
     };
     let given = ["d Opposite(Positive)", "e Zero"];
-    assert_eq!(asked("q > 0"), ["a Any", "b Any", "c Any", given[0], given[1]]);
+    assert_eq!(conditions("q > 0"), ["a Any", "b Any", "c Any", given[0], given[1]]);
     assert_eq!(
-        asked("a >= 0, a > 0, b != 0, c <= 0"),
+        conditions("a >= 0, a > 0, b != 0, c <= 0"),
         ["a Is(Positive)", "b Is(NonZero)", "c Opposite(NonNegative)", given[0], given[1]]
     );
     assert_eq!(
-        asked("a > 0, c > 0, a - d > 0, a > c, q > a"),
+        conditions("a > 0, c > 0, a - d > 0, a > c, q > a"),
         ["a Is(Positive)", "b Any", "c Is(Positive)", given[0], given[1], "a - c Is(Positive)"],
         "what follows from the signs is not asked again, and nothing of signals"
     );
 }
 
-/// Where the normal form would overflow, lose its digits or divide by zero, and the author's own formula does not.
+/// The normal form would overflow, lose its digits or divide by zero, and the author's own formula does not.
 #[test]
 fn results_are_in_the_functions_and_divisors_that_the_author_wrote() {
     let shown = |lines: &str| -> (Vec<String>, Vec<String>) {
@@ -217,7 +217,7 @@ fn a_relation_alone_is_a_regression_under_a_generalised_cascade_too() {
     assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Rejected, vec![Code::NeverIdentifiable]));
 }
 
-/// The difference of two outputs shows b, so that c alone is hidden.
+/// The difference of two outputs makes b observable; c alone is hidden.
 #[test]
 fn a_refusal_counts_what_combinations_of_outputs_show() {
     let (_, derivation) = derive(
@@ -280,7 +280,7 @@ fn what_is_left_of_a_linear_plant_is_the_row_that_no_output_shows() {
     assert_eq!(residual.iter().map(|e| plant.arena.print(*e)).collect::<Vec<_>>(), ["0", "2*b"]);
 }
 
-/// With an output that tells something which no regression uses, what is used may do all the same.
+/// An output that no regression uses does not spoil those that are used.
 #[test]
 fn a_regression_that_identifies_need_not_use_all_outputs() {
     let (_, derivation) = derive(

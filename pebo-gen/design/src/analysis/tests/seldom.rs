@@ -1,4 +1,4 @@
-//! What few plants show: each was seen by no test until a small fault was put there (`tests/mutants`).
+//! Rare cases: each was covered by no test until a small fault was put there (`tests/mutants`).
 
 use super::{codes, conditions, derive};
 use crate::analysis::{Derivation, Outcome, Verdict};
@@ -30,7 +30,7 @@ fn what_the_cascade_alone_asks_is_listed() {
     assert_eq!((found.1.outcome, conditions(&found)), (Outcome::Accepted, vec!["q != 0".to_owned()]));
 }
 
-/// The rates of q and s together tell of b, but not by any combination.
+/// The rates of q and s depend on b, but no combination identifies it.
 #[test]
 fn what_outputs_may_show_that_no_regression_uses_is_not_refuted() {
     let (_, derivation) = derive(
@@ -47,7 +47,7 @@ fn theta_may_be_identified_where_its_functions_are_not() {
     assert!(said.contains("theta itself can be identified near almost every value"), "{said}");
 }
 
-/// The factor of a^2 is zero, which no rule of algebra shows.
+/// The factor of a^2 is zero, which no rule of algebra proves.
 #[test]
 fn what_could_not_be_decided_of_theta_is_said() {
     let zero = "((2 + sqrt(5))^(1/3) - (sqrt(5) - 2)^(1/3) - 1)";
@@ -58,7 +58,7 @@ fn what_could_not_be_decided_of_theta_is_said() {
     assert!(said.contains("it could not be decided whether theta itself can be identified"), "{said}");
 }
 
-/// What an unknown is known up to is a step of the state: its period, if it is an angle.
+/// The ambiguity of an unknown is a step of the state: its period, if it is an angle.
 #[test]
 fn a_state_that_is_known_up_to_steps_is_an_angle_of_that_period() {
     let rotor = "parameters: [k]\nassume: [k > 0]\nx: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\n\
@@ -77,7 +77,7 @@ fn a_state_that_is_known_up_to_steps_is_an_angle_of_that_period() {
         (format!("{}angles: {{q: 2*pi}}", cosine("cos(n*q)")), rejected, warned.clone()),
         (format!("{}angles: {{q: pi}}", cosine("cos(2*q)")), accepted, Vec::new()),
         (format!("{}angles: {{q: 4*pi}}", cosine("cos(q/2)")), accepted, Vec::new()),
-        // What is known up to 4 pi is known up to 2 pi.
+        // An angle known up to 4 pi is known up to 2 pi.
         (format!("{}angles: {{q: 2*pi}}", cosine("cos(q/2)")), accepted, Vec::new()),
         (cosine("cos(q)"), accepted, warned.clone()),
         // The domain holds no other state, which no formula for theta uses.
@@ -93,7 +93,7 @@ fn a_state_that_is_known_up_to_steps_is_an_angle_of_that_period() {
     }
 }
 
-/// Which way a rate bends is known of x, not of z.
+/// The side of a non-smooth rate is known of x, not of z.
 #[test]
 fn a_rate_that_bends_is_what_it_is_on_the_domain() {
     for (assume, rate) in [("p > 5", "abs(p - 5)*p"), ("p < 0", "abs(p)*p"), ("p > 1", "max(p, 1)^2")] {
@@ -103,7 +103,7 @@ fn a_rate_that_bends_is_what_it_is_on_the_domain() {
     }
 }
 
-/// The rate of b is zero, which no rule of algebra shows.
+/// The rate of b is zero, which no rule of algebra proves.
 #[test]
 fn an_identity_that_stays_open_is_not_covered_by_one_that_is_proved() {
     let (_, derivation) = derive(
@@ -126,15 +126,15 @@ fn the_claim_in_which_the_budget_ends_is_the_last_that_is_told_of() {
 
 #[test]
 fn the_way_back_asks_of_estimates_what_no_value_of_theirs_grants() {
-    let asked = |phi: &str, left: &str| -> Vec<String> {
+    let conditions = |phi: &str, left: &str| -> Vec<String> {
         let (plant, derivation) = derive(&format!(
             "x: [p]\ny: [q, r]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: p, r: v}}\nphi: [{phi}]\nphi_left: {{p: {left}}}"
         ));
-        let asked = derivation.asked_of_estimates(&plant);
-        asked.iter().map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
+        let conditions = derivation.conditions_on_estimates(&plant);
+        conditions.iter().map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
     };
-    assert_eq!(asked("p", "z1"), Vec::<String>::new());
-    assert_eq!(asked("exp(p)", "log(z1)"), ["z1 > 0"]);
+    assert_eq!(conditions("p", "z1"), Vec::<String>::new());
+    assert_eq!(conditions("exp(p)", "log(z1)"), ["z1 > 0"]);
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn an_identity_is_a_regression_where_the_rates_are_none() {
     assert_eq!(derive(&format!("{lines}\nidentities: [s - a^2]")).1.outcome, Outcome::Accepted);
 }
 
-/// On one of the lines nothing is seen, for ever.
+/// On one of the lines nothing is observable, for ever.
 #[test]
 fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
     let model = |identity: &str, rates: &str, assume: &str| {
@@ -172,14 +172,15 @@ fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
     assert_eq!(circle.outcome, Outcome::Accepted, "{:?}", codes(&circle));
 }
 
-/// Roots of squares and absolute values in identities bend too, and parameters have both signs unless one is given.
+/// Roots of squares and absolute values in identities are non-smooth too, and parameters have both signs unless one is
+/// given.
 #[test]
 fn what_vanishes_on_a_part_of_the_domain_is_seen_on_the_other() {
     let model = |head: &str, rates: &str| format!("{head}\nx: [p]\nu: [v]\nf_x: {{p: v}}\nf_y: {{{rates}}}\nphi: [p]");
     let judged = |head: &str, rates: &str| {
         let (_, derivation) = derive(&model(head, rates));
-        let parts = derivation.identifiability.result.as_ref().and_then(|result| result.motion.as_ref());
-        (derivation.outcome, parts.map_or(0, |motion| motion.blind.len()))
+        let parts = derivation.identifiability.result.as_ref().and_then(|result| result.trajectories.as_ref());
+        (derivation.outcome, parts.map_or(0, |trajectories| trajectories.blind.len()))
     };
     let outputs = "y: [q, r]";
     for factor in ["sqrt(q^2) + q", "(q^2)^(1/2) - q", "exp(abs(q)) - exp(q)", "atan2(q, abs(q)) - pi/4"] {
@@ -211,6 +212,6 @@ fn an_input_in_a_relation_is_no_constant_that_has_no_rate() {
         |value: &str| format!("x: [s, v]\ny: [V]\nu: [I]\nf_x: {{s: -I, v: I - v}}\ng_y: {{V: {value}}}\nphi: [s, v]");
     let outcome = |value: &str| derive(&battery(value)).1.outcome;
     assert_eq!(outcome("3 + s - s^2 - v"), Outcome::Accepted);
-    // Filtered, it would ask for the rate of I.
+    // A filter would need the rate of I.
     assert_eq!(outcome("3 + s - s^2 - v - I/7"), Outcome::Undecided);
 }

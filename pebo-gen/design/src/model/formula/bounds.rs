@@ -1,7 +1,7 @@
-//! How large a formula may be.
+//! Limits on the size of a formula.
 //!
-//! A formula from outside must end in a diagnostic, not in a stack overflow or in a power with a
-//! million digits. Definitions can still multiply sizes; that is for the algebra to bound.
+//! A formula from outside must end in a diagnostic, not in a stack overflow or in a power with a million digits.
+//! Definitions can still multiply sizes; the algebra bounds these.
 
 use super::{Formula, Operator, Term};
 use crate::source::{Code, Diagnostic, Span};
@@ -13,7 +13,7 @@ pub const DEPTH_LIMIT: usize = 200;
 /// Most bytes of a formula's text.
 pub const LENGTH_LIMIT: usize = 32 * 1024;
 
-/// Largest magnitude of a constant exponent.
+/// Largest absolute value of a constant exponent.
 pub const EXPONENT_LIMIT: f64 = 64.0;
 
 /// Largest total degree, for powers of powers. Digits of a number count as degree, ten to one.
@@ -84,7 +84,7 @@ impl Measured {
         self.parts
     }
 
-    /// One level and one part more than its parts have together, if that is within bounds.
+    /// One level and one part more than its parts have, if that is within bounds.
     fn grown(self) -> Result<Self, Diagnostic> {
         let Self { formula, depth, degree, parts } = self;
         if depth >= DEPTH_LIMIT {

@@ -1,4 +1,4 @@
-//! What the parser says about a text that is no formula.
+//! The parser's diagnostics for a text that is no formula.
 
 use super::lexer::{Kind, Token};
 use super::parser::Parser;
@@ -7,7 +7,7 @@ use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 use pebo_cas::Function;
 
 impl Parser<'_> {
-    /// An operand should stand here.
+    /// A missing operand.
     pub(super) fn misplaced(&self) -> Diagnostic {
         match self.next.kind {
             Kind::Plus => self.unexpected("a plus sign needs a left side").help("remove the plus sign"),
@@ -22,7 +22,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A parenthesis should close here what `open` opens.
+    /// A missing parenthesis that closes `open`.
     pub(super) fn unclosed(&self, open: Token) -> Diagnostic {
         match self.next.kind {
             Kind::End => {
@@ -88,7 +88,7 @@ pub(super) fn argument_count(function: Function, found: usize, span: Span) -> Di
         .help(format!("write `{name}({})`", if wanted == 1 { "a" } else { "a, b" }))
 }
 
-/// A call of something that is no function; `argument` is what stands behind the parenthesis.
+/// A call of something that is no function; `argument` is the text after the parenthesis.
 pub(super) fn unknown_function(name: &str, span: Span, argument: &str) -> Diagnostic {
     let message = format!("{} is not a function", quoted(name));
     let diagnostic = Diagnostic::error(Code::UnknownFunction, span, message);

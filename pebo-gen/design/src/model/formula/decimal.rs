@@ -10,8 +10,7 @@ const EXPONENT_LIMIT: i64 = 308;
 
 /// A number as written: digits, perhaps a point, perhaps an exponent, perhaps a minus sign.
 ///
-/// It stands for exactly what it says: `0.1` is one tenth. Holds: at most 400 digits, exponent
-/// between -308 and 308.
+/// It is exact: `0.1` is one tenth. Holds: at most 400 digits, exponent between -308 and 308.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(serde::Deserialize), serde(try_from = "String"))]
 pub struct Decimal {
@@ -21,7 +20,7 @@ pub struct Decimal {
 /// A number taken apart: `digits * 10^exponent`, negated where `negative`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecimalParts {
-    /// Whether there is a minus sign.
+    /// True if there is a minus sign.
     pub negative: bool,
     /// Decimal digits, at least one.
     pub digits: String,
@@ -30,7 +29,7 @@ pub struct DecimalParts {
 }
 
 impl Decimal {
-    /// Reads `text`; `span` is where it stands.
+    /// Reads `text` at `span`.
     pub fn parse(text: &str, span: Span) -> Result<Self, Diagnostic> {
         let Some((mantissa, exponent)) = split(text) else {
             let message = format!("{} is not a number", quoted(text));
@@ -98,7 +97,7 @@ const PREFIXES: [(&str, i32); 10] =
 /// Longer texts are not written again.
 const SHORT: usize = 40;
 
-/// What to write instead of a text that is no number.
+/// A correction for a text that is no number.
 fn mended(text: &str) -> String {
     const HELP: &str = "write a decimal, as 12, 0.5 or 22e-6";
     let text = text.trim();

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{Comparison, Formula, Operator, Relation, Term};
 
-/// How tightly the outermost part of a formula binds.
+/// The binding strength of the outermost operator of a formula.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -87,10 +87,10 @@ impl fmt::Display for Comparison {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::formula::{Estimates, Places, parse_comparison, parse_formula};
+    use crate::model::formula::{Estimates, SpanMap, parse_comparison, parse_formula};
 
     fn parsed(text: &str) -> Formula {
-        parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused).unwrap()
+        parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused).unwrap()
     }
 
     #[test]
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn a_comparison_keeps_its_chain() {
         let text = "0<d <= 1-e";
-        let read = parse_comparison(text, &Places::verbatim(text, 0)).unwrap();
+        let read = parse_comparison(text, &SpanMap::verbatim(text, 0)).unwrap();
         assert_eq!(read.to_string(), "0 < d <= 1 - e");
     }
 }

@@ -1,6 +1,6 @@
-//! What other languages have and formulas have not, with what to write in its place.
+//! Syntax of other languages that formulas do not have, with replacements.
 
-/// What to write instead of a word that other languages have between operands.
+/// A replacement for a word that other languages have between operands.
 pub(super) fn operator(word: &str) -> Option<&'static str> {
     Some(match word {
         "and" => AND,
@@ -11,13 +11,13 @@ pub(super) fn operator(word: &str) -> Option<&'static str> {
     })
 }
 
-/// What to write in the place of two comparisons in one.
+/// A replacement for two comparisons in one.
 const AND: &str = "write each comparison as an entry of its own, as `[0 < v, v < 24]`, or a chain, as `0 < v < 24`";
 
-/// What to write in the place of branches.
+/// A replacement for branches.
 const BRANCHES: &str = "formulas have no branches: use max, min, sat, sign or abs";
 
-/// What to write instead of a call that other languages have; the argument begins with time if it is `timed`.
+/// A replacement for a call that other languages have; the argument begins with time if it is `timed`.
 pub(super) fn call(name: &str, timed: bool) -> Option<String> {
     Some(match name.to_ascii_lowercase().as_str() {
         "if" | "ifelse" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
@@ -40,11 +40,11 @@ pub(super) fn call(name: &str, timed: bool) -> Option<String> {
     })
 }
 
-/// What to write in the place of a delayed signal.
+/// A replacement for a delayed signal.
 const DELAY: &str =
     "formulas have no delayed signals: a delayed input is an input of its own, with its own name under `u`";
 
-/// What to write instead of an operator of other languages, which `rest` begins with.
+/// A replacement for an operator of other languages, with which `rest` begins.
 pub(super) fn character(before: &str, rest: &str) -> Option<String> {
     Some(match rest.chars().next()? {
         '&' => AND.to_owned(),

@@ -1,9 +1,9 @@
 //! A formula's text, cut into tokens.
 
-use super::{Places, Relation, foreign};
+use super::{Relation, SpanMap, foreign};
 use crate::source::{Code, Diagnostic, Span};
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Number,
@@ -34,14 +34,14 @@ pub(super) struct Token {
 /// Cuts a text into tokens, one at a time.
 pub(super) struct Lexer<'a> {
     text: &'a str,
-    places: &'a Places,
+    spans: &'a SpanMap,
     at: usize,
 }
 
 impl<'a> Lexer<'a> {
-    pub(super) fn new(text: &'a str, places: &'a Places) -> Self {
+    pub(super) fn new(text: &'a str, spans: &'a SpanMap) -> Self {
         // Without trailing white space the end is right behind the last token.
-        Self { text: text.trim_end(), places, at: 0 }
+        Self { text: text.trim_end(), spans, at: 0 }
     }
 
     pub(super) fn text(&self, token: Token) -> &'a str {
@@ -49,7 +49,7 @@ impl<'a> Lexer<'a> {
     }
 
     pub(super) fn span(&self, token: Token) -> Span {
-        self.places.span(token.start, token.end)
+        self.spans.span(token.start, token.end)
     }
 
     /// The next token; at the end of the text, `End` again and again.
@@ -84,7 +84,7 @@ impl<'a> Lexer<'a> {
         Ok(Token { kind, start, end: self.at })
     }
 
-    /// What is not read yet.
+    /// The text that is not read yet.
     pub(super) fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -92,7 +92,7 @@ impl<'a> Lexer<'a> {
     /// A character that no formula has.
     fn stranger(&self, start: usize) -> Diagnostic {
         let character = self.text[start..].chars().next().unwrap_or_default();
-        let span = self.places.span(start, start + character.len_utf8());
+        let span = self.spans.span(start, start + character.len_utf8());
         let message = format!("formulas cannot contain the character `{}`", character.escape_debug());
         let diagnostic = Diagnostic::error(Code::UnexpectedCharacter, span, message);
         match foreign::character(&self.text[..start], &self.text[start..]).or_else(|| substitute(character)) {
@@ -126,7 +126,7 @@ fn word(text: &str) -> usize {
     text.bytes().take_while(|byte| byte.is_ascii_alphanumeric() || *byte == b'_').count()
 }
 
-/// What to write instead of a character that people and their editors use.
+/// A replacement for a character that people and their editors use.
 fn substitute(character: char) -> Option<String> {
     let other = match character {
         '−' | '–' | '—' | '‐' | '‑' => "-",

@@ -1,7 +1,7 @@
 //! The expression language.
 //!
-//! In: a text and the [`Places`] of its bytes in the file. Out: a [`Formula`], a tree with a span
-//! on every node; or one diagnostic, for the first thing that is not understood.
+//! In: a text and the [`SpanMap`] of its bytes in the file. Out: a [`Formula`], a tree with a span on every node; or
+//! one diagnostic, for the first mistake.
 //!
 //! ```text
 //! comparison  formula (relation formula)+          relation: < <= > >= !=
@@ -40,7 +40,7 @@ pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
 pub(super) use lexer::greek;
 pub use parser::{Estimates, parse_comparison, parse_formula};
-pub use spans::Places;
+pub use spans::SpanMap;
 
 /// The constant of a circle: this name, unless the model declares it.
 pub const PI: &str = "pi";
@@ -48,13 +48,13 @@ pub const PI: &str = "pi";
 /// A formula as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
-    /// Where it stands, parentheses included.
+    /// The span, parentheses included.
     pub span: Span,
-    /// What it says.
+    /// The outermost operation or operand.
     pub term: Term,
 }
 
-/// The outermost part of a formula.
+/// The outermost operation or operand of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Term {
     /// A decimal, not negative.
@@ -71,7 +71,7 @@ pub enum Term {
     Call(Function, Vec<Formula>),
 }
 
-/// What stands between two operands.
+/// An operator between two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operator {
     /// `+`
@@ -91,7 +91,7 @@ pub enum Operator {
 /// Holds: at least one relation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Where it stands.
+    /// The span.
     pub span: Span,
     /// The first formula.
     pub first: Formula,
@@ -99,7 +99,7 @@ pub struct Comparison {
     pub rest: Vec<(Relation, Formula)>,
 }
 
-/// How two sides of an assumption compare.
+/// The comparison between two sides of an assumption.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Relation {
     /// `<`
@@ -123,7 +123,7 @@ impl Comparison {
 }
 
 impl Formula {
-    /// The parts directly below, from left to right.
+    /// The direct subformulas, from left to right.
     pub fn parts(&self) -> Vec<&Formula> {
         match &self.term {
             Term::Number(_) | Term::Name(_) | Term::Estimate(_) => Vec::new(),
@@ -133,7 +133,7 @@ impl Formula {
         }
     }
 
-    /// The names in it and their places, from left to right; estimates are not among them.
+    /// The names in it and their spans, from left to right; estimates are not among them.
     pub fn names(&self) -> Vec<(&str, Span)> {
         let mut found = Vec::new();
         let mut waiting = vec![self];

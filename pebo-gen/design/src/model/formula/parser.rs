@@ -5,11 +5,11 @@
 use super::bounds::Measured;
 use super::lexer::{Kind, Lexer, Token};
 use super::sum::sum;
-use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, Places, Term, complaints};
+use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, SpanMap, Term, complaints};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::Function;
 
-/// Whether a formula may hold `hat(x)`.
+/// Permission for `hat(x)` in a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimates {
     /// In the plant and its observer there are no estimates.
@@ -19,8 +19,8 @@ pub enum Estimates {
 }
 
 /// Reads `text` as one formula.
-pub fn parse_formula(text: &str, places: &Places, estimates: Estimates) -> Result<Formula, Diagnostic> {
-    let mut parser = Parser::new(text, places, estimates)?;
+pub fn parse_formula(text: &str, spans: &SpanMap, estimates: Estimates) -> Result<Formula, Diagnostic> {
+    let mut parser = Parser::new(text, spans, estimates)?;
     let formula = parser.expression(SUM)?.formula;
     match parser.next.kind {
         Kind::End => Ok(formula),
@@ -32,8 +32,8 @@ pub fn parse_formula(text: &str, places: &Places, estimates: Estimates) -> Resul
 }
 
 /// Reads `text` as a chain of comparisons.
-pub fn parse_comparison(text: &str, places: &Places) -> Result<Comparison, Diagnostic> {
-    let mut parser = Parser::new(text, places, Estimates::Refused)?;
+pub fn parse_comparison(text: &str, spans: &SpanMap) -> Result<Comparison, Diagnostic> {
+    let mut parser = Parser::new(text, spans, Estimates::Refused)?;
     let first = parser.expression(SUM)?.formula;
     let mut rest = Vec::new();
     while let Kind::Relation(relation) = parser.next.kind {
@@ -71,17 +71,17 @@ pub(super) struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(text: &'a str, places: &'a Places, estimates: Estimates) -> Result<Self, Diagnostic> {
+    fn new(text: &'a str, spans: &'a SpanMap, estimates: Estimates) -> Result<Self, Diagnostic> {
         if text.len() > LENGTH_LIMIT {
             let message = format!("the formula has {} bytes", text.len());
-            return Err(Diagnostic::error(Code::FormulaTooLarge, places.whole(), message)
+            return Err(Diagnostic::error(Code::FormulaTooLarge, spans.whole(), message)
                 .help(format!("name parts of it under `define`; the limit is {LENGTH_LIMIT}")));
         }
-        let mut lexer = Lexer::new(text, places);
+        let mut lexer = Lexer::new(text, spans);
         let next = lexer.next()?;
         if next.kind == Kind::End {
             let message = "a formula is missing".to_owned();
-            return Err(Diagnostic::error(Code::EmptyFormula, places.whole(), message).help("write 0 for zero"));
+            return Err(Diagnostic::error(Code::EmptyFormula, spans.whole(), message).help("write 0 for zero"));
         }
         Ok(Self { lexer, estimates, next, last: next, depth: 0 })
     }
@@ -198,7 +198,7 @@ impl<'a> Parser<'a> {
         Measured::call(function, arguments, span)
     }
 
-    /// Reads the parenthesis that closes `open`; gives the place of the whole.
+    /// Reads the parenthesis that closes `open`; returns the span of the whole.
     fn close(&mut self, open: Token) -> Result<Span, Diagnostic> {
         match self.next.kind {
             Kind::Close => {

@@ -1,20 +1,19 @@
-//! Where the bytes of a formula stand in the file.
+//! Maps the bytes of a formula to spans of the file.
 
 use crate::source::{Source, Span};
 
 /// Maps ranges of a text to spans of the file that it was taken from.
 ///
-/// YAML folds lines, strips indentation and replaces escapes: a scalar's text is not always a slice
-/// of the file. Runs of it that are, map exactly; if anything but white space was changed, every
-/// range maps to the whole scalar.
+/// YAML folds lines, strips indentation and replaces escapes: a scalar's text is not always a slice of the file.
+/// Unchanged runs of it map exactly; if anything but white space was changed, every range maps to the whole scalar.
 #[derive(Clone, Debug)]
-pub struct Places {
+pub struct SpanMap {
     whole: Span,
     /// Starts of runs, ascending: offset in the text, offset in the file.
     runs: Vec<(usize, usize)>,
 }
 
-impl Places {
+impl SpanMap {
     /// For `text`, the value of the scalar at `whole` in `source`.
     pub fn align(text: &str, whole: Span, source: &Source) -> Self {
         let raw = source.slice(whole);
@@ -37,12 +36,12 @@ impl Places {
         Self { whole, runs }
     }
 
-    /// For a text that stands in the file as it is, from byte `start` on.
+    /// For a text that is a slice of the file, from byte `start` on.
     pub fn verbatim(text: &str, start: usize) -> Self {
         Self { whole: Span::new(start, start + text.len()), runs: vec![(0, start)] }
     }
 
-    /// The place of the bytes `start..end` of the text.
+    /// The span of the bytes `start..end` of the text.
     pub fn span(&self, start: usize, end: usize) -> Span {
         match (self.place(start), self.place(end.saturating_sub(1).max(start))) {
             (Some(first), Some(_)) if start == end => Span::point(first),
@@ -51,7 +50,7 @@ impl Places {
         }
     }
 
-    /// The place of the whole text.
+    /// The span of the whole text.
     pub fn whole(&self) -> Span {
         self.whole
     }

@@ -1,18 +1,18 @@
 use proptest::prelude::*;
 
 use super::{
-    Comparison, DEPTH_LIMIT, Decimal, Estimates, Formula, LENGTH_LIMIT, Operator, Places, Relation, Term,
+    Comparison, DEPTH_LIMIT, Decimal, Estimates, Formula, LENGTH_LIMIT, Operator, Relation, SpanMap, Term,
     parse_comparison, parse_formula,
 };
 use crate::source::{Code, Diagnostic, Source, Span};
 use pebo_cas::Function;
 
 fn parse(text: &str) -> Result<Formula, Diagnostic> {
-    parse_formula(text, &Places::verbatim(text, 0), Estimates::Allowed)
+    parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Allowed)
 }
 
 fn compare(text: &str) -> Result<Comparison, Diagnostic> {
-    parse_comparison(text, &Places::verbatim(text, 0))
+    parse_comparison(text, &SpanMap::verbatim(text, 0))
 }
 
 /// The formula with all its parentheses.
@@ -142,7 +142,7 @@ fn help_says_what_to_write() {
 #[test]
 fn estimates_have_their_place() {
     let text = "a - hat(a)";
-    let error = parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused);
+    let error = parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused);
     let error = error.expect_err("there is no estimate");
     assert_eq!((error.code, error.primary.span), (Code::MisplacedEstimate, Span::new(4, 7)));
     assert_eq!(parse("hat").map(|formula| formula.term), Ok(Term::Name("hat".to_owned())));
@@ -177,14 +177,14 @@ fn comparisons() {
 fn every_node_has_its_place() {
     let text = "-(a + b2)*sin( c )^2";
     let formula = parse(text).expect("it parses");
-    let mut places = Vec::new();
+    let mut spans = Vec::new();
     let mut waiting = vec![&formula];
     while let Some(formula) = waiting.pop() {
-        places.push(&text[formula.span.range()]);
+        spans.push(&text[formula.span.range()]);
         waiting.extend(formula.parts().into_iter().rev());
     }
     let expected = [text, "-(a + b2)", "(a + b2)", "a", "b2", "sin( c )^2", "sin( c )", "c", "2"];
-    assert_eq!(places, expected);
+    assert_eq!(spans, expected);
     let names: Vec<&str> = formula.names().into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["a", "b2", "c"]);
 }
@@ -276,15 +276,15 @@ fn places_survive_what_yaml_does_to_a_text() {
     ];
     for (raw, text) in cases {
         let source = Source::new("m", format!("é: {raw}")).expect("it is small");
-        let places = Places::align(text, Span::new(4, 4 + raw.len()), &source);
-        let formula = parse_formula(text, &places, Estimates::Refused).expect(text);
+        let spans = SpanMap::align(text, Span::new(4, 4 + raw.len()), &source);
+        let formula = parse_formula(text, &spans, Estimates::Refused).expect(text);
         let names: Vec<&str> = formula.names().into_iter().map(|(_, span)| source.slice(span)).collect();
         assert_eq!(names, ["a", "bb", "c"], "{raw}");
     }
     // An escape: the whole scalar stands for its parts.
     let source = Source::new("m", r#""a\x2bb""#).expect("it is small");
     let whole = Span::new(0, 8);
-    assert_eq!(Places::align("a+b", whole, &source).span(0, 1), whole);
+    assert_eq!(SpanMap::align("a+b", whole, &source).span(0, 1), whole);
 }
 
 proptest! {

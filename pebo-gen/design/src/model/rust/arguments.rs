@@ -11,19 +11,19 @@ use syn::punctuated::Punctuated;
 use syn::{Expr, Lit, Meta, MetaList, MetaNameValue, Token};
 
 use super::refusal::unsupported;
-use super::spans::Places;
+use super::spans::TokenSpans;
 use crate::model::formula::Relation;
 use crate::model::spanned::{Entry, Spanned};
 use crate::model::written::{CascadeClass, RelationForm};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
-/// What an attribute may say.
+/// The keys of an attribute.
 const KEYS: [&str; 7] = ["title", "reference", "class", "regression", "assume", "angles", "units"];
 
 const ANGLES: &str = "angles(q = 2.0 * PI)";
 const UNITS: &str = "units(L = \"H\", i = \"A\")";
 
-/// What an attribute says.
+/// The arguments of an attribute.
 #[derive(Default)]
 pub(super) struct Arguments {
     pub(super) title: Option<Spanned<String>>,
@@ -43,12 +43,12 @@ pub(super) struct Chain {
 }
 
 impl Arguments {
-    pub(super) fn read(tokens: TokenStream, places: &mut Places, diagnostics: &mut Diagnostics) -> Self {
+    pub(super) fn read(tokens: TokenStream, spans: &mut TokenSpans, diagnostics: &mut Diagnostics) -> Self {
         let mut arguments = Self::default();
         let metas = match Punctuated::<Meta, Token![,]>::parse_terminated.parse2(tokens) {
             Ok(metas) => metas,
             Err(error) => {
-                let place = places.at(error.span());
+                let place = spans.at(error.span());
                 let message = format!("the attribute could not be read: {error}");
                 diagnostics.push(
                     unsupported(place, message)
@@ -58,41 +58,41 @@ impl Arguments {
             }
         };
         for meta in &metas {
-            if let Err(diagnostic) = arguments.meta(meta, places, diagnostics) {
+            if let Err(diagnostic) = arguments.meta(meta, spans, diagnostics) {
                 diagnostics.push(diagnostic);
             }
         }
         arguments
     }
 
-    fn meta(&mut self, meta: &Meta, places: &mut Places, diagnostics: &mut Diagnostics) -> Result<(), Diagnostic> {
-        let name = Places::path(meta.path());
+    fn meta(&mut self, meta: &Meta, spans: &mut TokenSpans, diagnostics: &mut Diagnostics) -> Result<(), Diagnostic> {
+        let name = TokenSpans::path(meta.path());
         match (name.as_str(), meta) {
-            ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, places)?),
-            ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, places)?),
+            ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, spans)?),
+            ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, spans)?),
             ("class", Meta::NameValue(pair)) => {
-                self.class = Some(choice(&text(pair, places)?, CascadeClass::from_name, CascadeClass::NAMES)?);
+                self.class = Some(choice(&text(pair, spans)?, CascadeClass::from_name, CascadeClass::NAMES)?);
             }
             ("regression", Meta::NameValue(pair)) => {
-                self.regression = Some(choice(&text(pair, places)?, RelationForm::from_name, RelationForm::NAMES)?);
+                self.regression = Some(choice(&text(pair, spans)?, RelationForm::from_name, RelationForm::NAMES)?);
             }
             ("assume", Meta::List(list)) => {
                 for part in split(list.tokens.clone(), is_comma) {
-                    let chain = chain(part, places);
+                    let chain = chain(part, spans);
                     self.assume.extend(diagnostics.keep(chain));
                 }
             }
             ("angles", Meta::List(list)) => {
-                self.angles.extend(pairs(list, "an angle needs a period", ANGLES, places)?);
+                self.angles.extend(pairs(list, "an angle needs a period", ANGLES, spans)?);
             }
             ("units", Meta::List(list)) => {
-                for pair in pairs(list, "a quantity needs its unit", UNITS, places)? {
-                    let name = Spanned { value: Places::path(&pair.path), span: places.of(&pair.path) };
-                    self.units.push(Entry { name, value: text(&pair, places)? });
+                for pair in pairs(list, "a quantity needs its unit", UNITS, spans)? {
+                    let name = Spanned { value: TokenSpans::path(&pair.path), span: spans.of(&pair.path) };
+                    self.units.push(Entry { name, value: text(&pair, spans)? });
                 }
             }
             ("title" | "reference" | "class" | "regression", _) => {
-                return Err(unsupported(places.of(meta), format!("`{name}` takes a text"))
+                return Err(unsupported(spans.of(meta), format!("`{name}` takes a text"))
                     .help(format!("write `{name} = \"..\"`")));
             }
             ("assume" | "angles" | "units", _) => {
@@ -101,13 +101,13 @@ impl Arguments {
                     "angles" => ANGLES,
                     _ => UNITS,
                 };
-                return Err(unsupported(places.of(meta), format!("`{name}` takes a list in parentheses"))
+                return Err(unsupported(spans.of(meta), format!("`{name}` takes a list in parentheses"))
                     .help(format!("write for example `{example}`")));
             }
             _ => {
                 let diagnostic = Diagnostic::error(
                     Code::UnknownKey,
-                    places.of(meta.path()),
+                    spans.of(meta.path()),
                     format!("the attribute has no argument `{name}`"),
                 );
                 return Err(match nearest(&name, KEYS) {
@@ -120,20 +120,25 @@ impl Arguments {
     }
 }
 
-/// A list of names with what is said of each.
-fn pairs(list: &MetaList, wrong: &str, example: &str, places: &mut Places) -> Result<Vec<MetaNameValue>, Diagnostic> {
+/// A list of names with a value for each.
+fn pairs(
+    list: &MetaList,
+    wrong: &str,
+    example: &str,
+    spans: &mut TokenSpans,
+) -> Result<Vec<MetaNameValue>, Diagnostic> {
     let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
     let pairs = pairs
-        .map_err(|error| unsupported(places.at(error.span()), wrong).help(format!("write for example `{example}`")))?;
+        .map_err(|error| unsupported(spans.at(error.span()), wrong).help(format!("write for example `{example}`")))?;
     Ok(pairs.into_iter().collect())
 }
 
-fn text(pair: &MetaNameValue, places: &mut Places) -> Result<Spanned<String>, Diagnostic> {
+fn text(pair: &MetaNameValue, spans: &mut TokenSpans) -> Result<Spanned<String>, Diagnostic> {
     match &pair.value {
         Expr::Lit(syn::ExprLit { lit: Lit::Str(text), .. }) => {
-            Ok(Spanned { value: text.value(), span: places.of(text) })
+            Ok(Spanned { value: text.value(), span: spans.of(text) })
         }
-        other => Err(unsupported(places.of(other), "this is not a text").help("write it in quotes")),
+        other => Err(unsupported(spans.of(other), "this is not a text").help("write it in quotes")),
     }
 }
 
@@ -151,8 +156,8 @@ fn choice<T>(
 }
 
 /// `a < b < c`, which as Rust would not be one expression.
-fn chain(tokens: TokenStream, places: &mut Places) -> Result<Chain, Diagnostic> {
-    let whole = places.of(&tokens);
+fn chain(tokens: TokenStream, spans: &mut TokenSpans) -> Result<Chain, Diagnostic> {
+    let whole = spans.of(&tokens);
     let mut relations = Vec::new();
     let mut sides = vec![TokenStream::new()];
     let mut tokens = tokens.into_iter().peekable();
@@ -170,7 +175,7 @@ fn chain(tokens: TokenStream, places: &mut Places) -> Result<Chain, Diagnostic> 
                     ('=', _) => {
                         return Err(Diagnostic::error(
                             Code::ComparisonExpected,
-                            places.of(&token),
+                            spans.of(&token),
                             "an assumption is not an equation",
                         )
                         .help("put what is zero by physics into a function `identities`"));
@@ -192,27 +197,27 @@ fn chain(tokens: TokenStream, places: &mut Places) -> Result<Chain, Diagnostic> 
             (None, None) => {}
         }
     }
-    let mut sides = sides.into_iter().map(|side| operand(side, whole, places));
-    let Some(first) = sides.next().transpose()? else { return Err(no_comparison(whole, places)) };
+    let mut sides = sides.into_iter().map(|side| operand(side, whole, spans));
+    let Some(first) = sides.next().transpose()? else { return Err(no_comparison(whole, spans)) };
     let rest: Vec<Expr> = sides.collect::<Result<_, _>>()?;
     if rest.is_empty() {
-        return Err(no_comparison(whole, places));
+        return Err(no_comparison(whole, spans));
     }
     Ok(Chain { span: whole, first, rest: relations.into_iter().zip(rest).collect() })
 }
 
-fn no_comparison(whole: Span, places: &Places) -> Diagnostic {
+fn no_comparison(whole: Span, spans: &TokenSpans) -> Diagnostic {
     Diagnostic::error(Code::ComparisonExpected, whole, "an assumption needs a comparison, and this has none")
-        .help(format!("write for example `{} > 0`", places.text(whole)))
+        .help(format!("write for example `{} > 0`", spans.text(whole)))
 }
 
-fn operand(tokens: TokenStream, whole: Span, places: &mut Places) -> Result<Expr, Diagnostic> {
+fn operand(tokens: TokenStream, whole: Span, spans: &mut TokenSpans) -> Result<Expr, Diagnostic> {
     if tokens.is_empty() {
         return Err(Diagnostic::error(Code::EmptyFormula, whole, "a side of this comparison is missing")
             .help("write for example `0 < d < 1`"));
     }
     syn::parse2(tokens).map_err(|error| {
-        unsupported(places.at(error.span()), format!("this is not an expression: {error}"))
+        unsupported(spans.at(error.span()), format!("this is not an expression: {error}"))
             .help("write the sides of an assumption as in Rust")
     })
 }

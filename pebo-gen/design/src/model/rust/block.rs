@@ -19,7 +19,7 @@ impl Reader<'_> {
 
     fn statements(&mut self, block: &Block, locals: &mut Locals) -> Result<Value, Diagnostic> {
         let Some((last, before)) = block.stmts.split_last() else {
-            return Err(unsupported(self.places.of(block), "there is no value here")
+            return Err(unsupported(self.spans.of(block), "there is no value here")
                 .help("end the function with the expression that it returns"));
         };
         for statement in before {
@@ -28,14 +28,14 @@ impl Reader<'_> {
         match last {
             Stmt::Expr(Expr::Return(returned), _) => match &returned.expr {
                 Some(value) => self.value(value, locals),
-                None => Err(unsupported(self.places.of(returned), "nothing is returned here")
+                None => Err(unsupported(self.spans.of(returned), "nothing is returned here")
                     .help("return the value that the function promises")),
             },
             Stmt::Expr(value, None) => self.value(value, locals),
             other => {
-                // What else it may be is said first.
+                // The diagnostic of another statement comes first.
                 self.bind_statement(other, locals)?;
-                Err(unsupported(self.places.of(other), "the function ends without a value")
+                Err(unsupported(self.spans.of(other), "the function ends without a value")
                     .help("end it with the expression that it returns, without a semicolon"))
             }
         }
@@ -44,19 +44,19 @@ impl Reader<'_> {
     fn bind_statement(&mut self, statement: &Stmt, locals: &mut Locals) -> Result<(), Diagnostic> {
         let local = match statement {
             Stmt::Local(local) => local,
-            Stmt::Expr(expr, _) => return Err(refusal::statement(expr, self.places)),
+            Stmt::Expr(expr, _) => return Err(refusal::statement(expr, self.spans)),
             Stmt::Item(item) => {
-                return Err(unsupported(self.places.of(item), "an item inside a function")
+                return Err(unsupported(self.spans.of(item), "an item inside a function")
                     .help("move it out of the function, into the module"));
             }
-            Stmt::Macro(call) => return Err(refusal::macro_call(&call.mac, self.places)),
+            Stmt::Macro(call) => return Err(refusal::macro_call(&call.mac, self.spans)),
         };
         let Some(init) = &local.init else {
-            return Err(unsupported(self.places.of(local), "a name without a value")
+            return Err(unsupported(self.spans.of(local), "a name without a value")
                 .help("give it its value where it is declared: `let a = ..;`"));
         };
         if let Some((_, diverge)) = &init.diverge {
-            return Err(refusal::control_flow(diverge, "let .. else", self.places));
+            return Err(refusal::control_flow(diverge, "let .. else", self.spans));
         }
         let value = self.value(&init.expr, locals)?;
         self.bind(&local.pat, value, locals)
@@ -67,7 +67,7 @@ impl Reader<'_> {
         match (pattern, value) {
             (Pat::Ident(name), value) if name.subpat.is_none() => {
                 if let Some(mutable) = &name.mutability {
-                    return Err(refusal::mutable(mutable, self.places));
+                    return Err(refusal::mutable(mutable, self.spans));
                 }
                 locals.push((name.ident.unraw().to_string(), value));
                 Ok(())
@@ -79,12 +79,12 @@ impl Reader<'_> {
             (Pat::Struct(shape), Value::Record(fields)) => {
                 for part in &shape.fields {
                     let syn::Member::Named(name) = &part.member else {
-                        return Err(refusal::pattern(pattern, self.places));
+                        return Err(refusal::pattern(pattern, self.spans));
                     };
                     let wanted = name.unraw().to_string();
                     match fields.iter().find(|field| field.name.value == wanted) {
                         Some(field) => self.bind(&part.pat, field.value.clone(), locals)?,
-                        None => return Err(refusal::no_field(name, &fields, self.places)),
+                        None => return Err(refusal::no_field(name, &fields, self.spans)),
                     }
                 }
                 Ok(())
@@ -94,7 +94,7 @@ impl Reader<'_> {
             {
                 elems.iter().zip(items).try_for_each(|(pattern, item)| self.bind(pattern, item, locals))
             }
-            _ => Err(refusal::pattern(pattern, self.places)),
+            _ => Err(refusal::pattern(pattern, self.spans)),
         }
     }
 }

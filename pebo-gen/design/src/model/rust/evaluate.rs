@@ -8,7 +8,7 @@ use syn::{BinOp, Expr, ExprStruct, ItemFn, Member, Path, UnOp};
 use super::functions;
 use super::items::{self, Items};
 use super::refusal::{self, unsupported};
-use super::spans::Places;
+use super::spans::TokenSpans;
 use super::value::{Field, Locals, Value};
 use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
 use crate::model::names::unknown_name;
@@ -18,7 +18,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 /// Most calls of helper functions inside one another.
 const CALL_LIMIT: usize = 32;
 
-/// Most expressions that are run, and parts that are copied, for one module.
+/// Most expressions that are evaluated, and parts that are copied, for one module.
 const WORK_LIMIT: usize = 1 << 20;
 
 /// Longest array that is written as a repetition.
@@ -27,22 +27,22 @@ const REPEAT_LIMIT: usize = 64;
 /// Runs the functions of a module.
 pub(super) struct Reader<'a> {
     pub(super) items: &'a Items<'a>,
-    pub(super) places: &'a mut Places,
+    pub(super) spans: &'a mut TokenSpans,
     pub(super) diagnostics: &'a mut Diagnostics,
-    /// Constants of the module that stand for themselves.
+    /// Constants of the module that are names of their own.
     pub(super) constants: HashSet<String>,
-    /// Whether integers are numbers, as they are in attributes but not in Rust.
+    /// True if integers are numbers, as they are in attributes but not in Rust.
     pub(super) integers: bool,
     calls: usize,
     work: usize,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(items: &'a Items<'a>, places: &'a mut Places, diagnostics: &'a mut Diagnostics) -> Self {
-        Self { items, places, diagnostics, constants: HashSet::new(), integers: false, calls: 0, work: 0 }
+    pub(super) fn new(items: &'a Items<'a>, spans: &'a mut TokenSpans, diagnostics: &'a mut Diagnostics) -> Self {
+        Self { items, spans, diagnostics, constants: HashSet::new(), integers: false, calls: 0, work: 0 }
     }
 
-    /// What an expression stands for.
+    /// The value of an expression.
     pub(super) fn value(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Value, Diagnostic> {
         self.spend(1, expr)?;
         match expr {
@@ -52,22 +52,22 @@ impl<'a> Reader<'a> {
             Expr::Paren(inner) => {
                 let mut value = self.value(&inner.expr, locals)?;
                 if let Value::Number(number) = &mut value {
-                    number.formula.span = self.places.of(expr);
+                    number.formula.span = self.spans.of(expr);
                 }
                 Ok(value)
             }
             Expr::Reference(inner) => match &inner.mutability {
                 None => self.value(&inner.expr, locals),
-                Some(mutable) => Err(refusal::mutable(mutable, self.places)),
+                Some(mutable) => Err(refusal::mutable(mutable, self.spans)),
             },
             Expr::Unary(unary) => match unary.op {
                 UnOp::Deref(_) => self.value(&unary.expr, locals),
                 UnOp::Neg(_) => {
                     let operand = self.number(&unary.expr, locals)?;
-                    let span = self.places.of(expr);
+                    let span = self.spans.of(expr);
                     Measured::negative(operand, span).map(Value::Number)
                 }
-                _ => Err(unsupported(self.places.of(&unary.op), "`!` is not an operator of formulas")
+                _ => Err(unsupported(self.spans.of(&unary.op), "`!` is not an operator of formulas")
                     .help("use + - * / and `.powi(n)`")),
             },
             Expr::Binary(binary) => {
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
                 let value = self.value(&repeat.expr, locals)?;
                 let length = self.items.whole(&repeat.len).and_then(|length| length.parse::<usize>().ok());
                 let Some(length) = length.filter(|length| (1..=REPEAT_LIMIT).contains(length)) else {
-                    return Err(unsupported(self.places.of(&repeat.len), "the length of this array is not known here")
+                    return Err(unsupported(self.spans.of(&repeat.len), "the length of this array is not known here")
                         .help("write the components out one by one"));
                 };
                 self.spend(length.saturating_mul(value.size()), expr)?;
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
             }
             Expr::Block(block) if block.label.is_none() => self.block(&block.block, locals),
             Expr::Cast(cast) if self.items.is_float(&cast.ty) => self.converted(&cast.expr, locals),
-            other => Err(refusal::expression(other, self.places)),
+            other => Err(refusal::expression(other, self.spans)),
         }
     }
 
@@ -102,7 +102,7 @@ impl<'a> Reader<'a> {
     pub(super) fn number(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Measured, Diagnostic> {
         match self.value(expr, locals)? {
             Value::Number(number) => Ok(number),
-            other => Err(unsupported(self.places.of(expr), format!("this is {}, not a number", other.kind()))
+            other => Err(unsupported(self.spans.of(expr), format!("this is {}, not a number", other.kind()))
                 .help("use its fields or components one by one")),
         }
     }
@@ -112,12 +112,12 @@ impl<'a> Reader<'a> {
     fn element(&mut self, expr: &Expr, locals: &mut Locals) -> Value {
         let value = self.value(expr, locals);
         self.diagnostics.keep(value).unwrap_or_else(|| {
-            let span = self.places.of(expr);
+            let span = self.spans.of(expr);
             Value::Number(Measured::leaf(Formula { span, term: Term::Number(Decimal::zero()) }))
         })
     }
 
-    /// A number that may be written as an integer: what is converted to a float.
+    /// A number that may be written as an integer: the operand of a conversion to a float.
     pub(super) fn converted(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Value, Diagnostic> {
         let local = matches!(expr, Expr::Path(path) if path.path.get_ident().is_some_and(|name| {
             locals.iter().any(|(local, _)| name.unraw() == local)
@@ -128,9 +128,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A whole number that stands where Rust means one.
+    /// A whole number where Rust means one.
     pub(super) fn whole(&mut self, text: &str, expr: &Expr) -> Result<Measured, Diagnostic> {
-        let span = self.places.of(expr);
+        let span = self.spans.of(expr);
         let digits = Decimal::parse(text.trim_start_matches('-'), span)?;
         let number = Measured::leaf(Formula { span, term: Term::Number(digits) });
         if text.starts_with('-') { Measured::negative(number, span) } else { Ok(number) }
@@ -143,13 +143,13 @@ impl<'a> Reader<'a> {
         right: Measured,
         whole: &Expr,
     ) -> Result<Measured, Diagnostic> {
-        let span = self.places.of(whole);
+        let span = self.spans.of(whole);
         Measured::binary(operator, left, right, span)
     }
 
     /// Runs a function of the module.
     pub(super) fn run(&mut self, item: &'a ItemFn, arguments: Vec<Value>, call: Span) -> Result<Value, Diagnostic> {
-        items::unconditional(&item.attrs, self.places)?;
+        items::unconditional(&item.attrs, self.spans)?;
         if self.calls >= CALL_LIMIT {
             let message = format!("functions call one another more than {CALL_LIMIT} deep");
             return Err(unsupported(call, message).help("write a function that does not call itself"));
@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
             match input {
                 syn::FnArg::Typed(typed) => self.bind(&typed.pat, argument, &mut locals)?,
                 syn::FnArg::Receiver(receiver) => {
-                    return Err(unsupported(self.places.of(receiver), "a function of the module has no `self`")
+                    return Err(unsupported(self.spans.of(receiver), "a function of the module has no `self`")
                         .help("give what it needs as an argument"));
                 }
             }
@@ -185,25 +185,25 @@ impl<'a> Reader<'a> {
             BinOp::Sub(_) => Operator::Subtract,
             BinOp::Mul(_) => Operator::Multiply,
             BinOp::Div(_) => Operator::Divide,
-            other => return Err(refusal::operator(other, self.places)),
+            other => return Err(refusal::operator(other, self.spans)),
         })
     }
 
     fn literal(&mut self, expr: &Expr) -> Result<Value, Diagnostic> {
-        let Some(text) = items::literal(expr) else { return Err(refusal::expression(expr, self.places)) };
+        let Some(text) = items::literal(expr) else { return Err(refusal::expression(expr, self.spans)) };
         let whole = matches!(expr, Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(number), .. })
             if !matches!(number.suffix(), "f64" | "f32"));
         if whole && !self.integers {
-            return Err(refusal::integer(expr, self.places));
+            return Err(refusal::integer(expr, self.spans));
         }
-        let span = self.places.of(expr);
+        let span = self.spans.of(expr);
         let number = Decimal::parse(&text, span)?;
         Ok(Value::Number(Measured::leaf(Formula { span, term: Term::Number(number) })))
     }
 
     /// A name: a local one, a constant of the module, or one of the mathematical constants.
     fn name(&mut self, path: &Path, locals: &Locals) -> Result<Value, Diagnostic> {
-        let place = self.places.of(path);
+        let place = self.spans.of(path);
         let Some(last) = path.segments.last() else { return Err(unsupported(place, "a name is missing")) };
         let name = last.ident.unraw().to_string();
         if path.segments.len() == 1
@@ -211,7 +211,7 @@ impl<'a> Reader<'a> {
         {
             let mut value = value.clone();
             self.spend(value.size(), path)?;
-            // A declared name is used here; what `let` names was computed where it stands.
+            // A declared name is used here; a name of `let` was computed at its definition.
             if let Value::Number(number) = &mut value
                 && matches!(number.formula.term, Term::Name(_))
             {
@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
         let mut known: Vec<&str> =
             locals.iter().map(|(local, _)| local.as_str()).chain(self.constants.iter().map(String::as_str)).collect();
         known.sort_unstable();
-        let written = Places::path(path);
+        let written = TokenSpans::path(path);
         let unknown = unknown_name(&written, place, known).label("not a signal, a `let` or a constant of this module");
         Err(match functions::mathematical(&name) {
             Some(_) => unknown.help(format!("write `core::f64::consts::{name}`, or `use` it inside of the module")),
@@ -251,11 +251,11 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// A constant with components, which have no name of their own in the model: their values stand where they are used.
+    /// A constant with components, which have no name of their own in the model: their values are inserted at each use.
     fn constant_list(&mut self, item: &syn::ItemConst, path: &Path) -> Result<Value, Diagnostic> {
-        items::unconditional(&item.attrs, self.places)?;
+        items::unconditional(&item.attrs, self.spans)?;
         if self.calls >= CALL_LIMIT {
-            return Err(unsupported(self.places.of(path), "constants refer to one another in a circle")
+            return Err(unsupported(self.spans.of(path), "constants refer to one another in a circle")
                 .help("give one of them its value"));
         }
         self.calls += 1;
@@ -269,7 +269,7 @@ impl<'a> Reader<'a> {
         match (base, &access.member) {
             (Value::Record(fields), Member::Named(name)) => {
                 let wanted = name.unraw().to_string();
-                let place = self.places.of(access);
+                let place = self.spans.of(access);
                 match fields.iter().find(|field| field.name.value == wanted) {
                     Some(field) => {
                         let mut value = field.value.clone();
@@ -280,11 +280,11 @@ impl<'a> Reader<'a> {
                         }
                         Ok(value)
                     }
-                    None => Err(refusal::no_field(name, &fields, self.places)),
+                    None => Err(refusal::no_field(name, &fields, self.spans)),
                 }
             }
             (Value::List(items), Member::Unnamed(index)) => self.component(items, index.index as usize, access),
-            (other, _) => Err(unsupported(self.places.of(access), format!("{} has no such field", other.kind()))
+            (other, _) => Err(unsupported(self.spans.of(access), format!("{} has no such field", other.kind()))
                 .help("use a field of X, Y, U or W")),
         }
     }
@@ -292,12 +292,13 @@ impl<'a> Reader<'a> {
     fn index(&mut self, access: &syn::ExprIndex, locals: &mut Locals) -> Result<Value, Diagnostic> {
         let base = self.value(&access.expr, locals)?;
         let Value::List(items) = base else {
-            return Err(unsupported(self.places.of(access), format!("{} has no components", base.kind()))
-                .help("use its fields"));
+            return Err(
+                unsupported(self.spans.of(access), format!("{} has no components", base.kind())).help("use its fields")
+            );
         };
         match self.items.whole(&access.index).and_then(|index| index.parse::<usize>().ok()) {
             Some(index) => self.component(items, index, access),
-            None => Err(unsupported(self.places.of(&access.index), "this index is not known here")
+            None => Err(unsupported(self.spans.of(&access.index), "this index is not known here")
                 .help("write a number, as in `z[0]`")),
         }
     }
@@ -309,7 +310,7 @@ impl<'a> Reader<'a> {
         whole: &impl quote::ToTokens,
     ) -> Result<Value, Diagnostic> {
         let count = items.len();
-        let place = self.places.of(whole);
+        let place = self.spans.of(whole);
         items.into_iter().nth(index).ok_or_else(|| {
             unsupported(place, format!("there are {count} components, and this is number {}", index.saturating_add(1)))
                 .help("components are counted from 0")
@@ -320,9 +321,9 @@ impl<'a> Reader<'a> {
         let mut fields = Vec::new();
         for part in &shape.fields {
             let Member::Named(name) = &part.member else {
-                return Err(unsupported(self.places.of(part), "a field without a name").help("name it"));
+                return Err(unsupported(self.spans.of(part), "a field without a name").help("name it"));
             };
-            let name = Spanned { value: name.unraw().to_string(), span: self.places.of(name) };
+            let name = Spanned { value: name.unraw().to_string(), span: self.spans.of(name) };
             let value = self.element(&part.expr, locals);
             fields.push(Field { name, value });
         }
@@ -334,7 +335,7 @@ impl<'a> Reader<'a> {
                     fields.extend(others);
                 }
                 other => {
-                    return Err(unsupported(self.places.of(rest), format!("this is {}, not a struct", other.kind()))
+                    return Err(unsupported(self.spans.of(rest), format!("this is {}, not a struct", other.kind()))
                         .help("give the fields one by one"));
                 }
             }
@@ -342,13 +343,13 @@ impl<'a> Reader<'a> {
         Ok(Value::Record(fields))
     }
 
-    /// Counts work, of which hostile input could ask for any amount.
+    /// Counts work, since hostile input could need any amount.
     fn spend(&mut self, work: usize, tokens: &impl quote::ToTokens) -> Result<(), Diagnostic> {
         self.work = self.work.saturating_add(work);
         if self.work <= WORK_LIMIT {
             return Ok(());
         }
-        Err(Diagnostic::error(Code::FormulaTooLarge, self.places.of(tokens), "the functions take too many steps")
+        Err(Diagnostic::error(Code::FormulaTooLarge, self.spans.of(tokens), "the functions take too many steps")
             .help("simplify them: a model needs some thousand operations"))
     }
 }

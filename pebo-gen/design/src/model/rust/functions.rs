@@ -7,13 +7,13 @@ use syn::{Expr, ExprCall, ExprMethodCall};
 use super::evaluate::Reader;
 use super::items;
 use super::refusal::{self, unsupported};
-use super::spans::Places;
+use super::spans::TokenSpans;
 use super::value::{Locals, Value};
 use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
 use crate::source::{Code, Diagnostic, Span, listed, nearest};
 use pebo_cas::Function;
 
-/// Functions that Rust calls otherwise than formulas do, or that are not analytic, with what to do instead.
+/// Functions that Rust names differently than formulas do, or that are not analytic, with a replacement.
 const REFUSED: &[(&str, &str)] = &[
     ("floor", "rounding is not continuous: leave it out of the formula"),
     ("ceil", "rounding is not continuous: leave it out of the formula"),
@@ -75,19 +75,19 @@ pub(super) fn call(reader: &mut Reader<'_>, call: &ExprCall, locals: &mut Locals
     let function = items::bare(&call.func);
     let Expr::Path(path) = function else {
         if matches!(function, Expr::Closure(_)) {
-            return Err(refusal::expression(function, reader.places));
+            return Err(refusal::expression(function, reader.spans));
         }
-        return Err(unsupported(reader.places.of(&call.func), "this function is not known here")
+        return Err(unsupported(reader.spans.of(&call.func), "this function is not known here")
             .help("call a function of the module by its name"));
     };
     let Some(last) = path.path.segments.last() else {
-        return Err(unsupported(reader.places.of(path), "this is not a function"));
+        return Err(unsupported(reader.spans.of(path), "this is not a function"));
     };
     let name = last.ident.to_string();
     let first = path.path.segments.first().map(|segment| segment.ident.to_string()).unwrap_or_default();
     let own = path.path.segments.len() == 1 || first == "self";
     if own {
-        let place = reader.places.of(call);
+        let place = reader.spans.of(call);
         let Some(item) = reader.items.function(&name) else {
             return Err(no_such_function(reader, path, &name));
         };
@@ -122,7 +122,7 @@ pub(super) fn method(reader: &mut Reader<'_>, call: &ExprMethodCall, locals: &mu
         Value::Number(receiver) => receiver,
         other => {
             let message = format!("methods of {} are not known here", other.kind());
-            return Err(unsupported(reader.places.of(&call.method), message)
+            return Err(unsupported(reader.spans.of(&call.method), message)
                 .help(format!("write a function of the module, and call it: `{name}(..)`")));
         }
     };
@@ -139,8 +139,8 @@ fn applied_method(
     whole: &Expr,
     locals: &mut Locals,
 ) -> Result<Value, Diagnostic> {
-    let at = reader.places.of(whole);
-    let place = reader.places.of(ident);
+    let at = reader.spans.of(whole);
+    let place = reader.spans.of(ident);
     let expected = |count: usize| {
         if arguments.len() == count { Ok(()) } else { Err(wrong_count(name, count, arguments.len(), at)) }
     };
@@ -246,13 +246,13 @@ fn exponent(reader: &mut Reader<'_>, expr: &Expr) -> Result<Measured, Diagnostic
     if let Some(text) = reader.items.whole(expr) {
         return reader.whole(&text, expr);
     }
-    Err(unsupported(reader.places.of(expr), "this exponent is not known here")
+    Err(unsupported(reader.spans.of(expr), "this exponent is not known here")
         .help("write an integer, as in `a.powi(2)`; for other powers write `a.powf(0.5)`"))
 }
 
 fn no_such_function(reader: &mut Reader<'_>, path: &syn::ExprPath, name: &str) -> Diagnostic {
-    let place = reader.places.of(path);
-    let written = Places::path(&path.path);
+    let place = reader.spans.of(path);
+    let written = TokenSpans::path(&path.path);
     let names = reader.items.functions.iter().map(|item| item.sig.ident.to_string()).collect::<Vec<_>>();
     let diagnostic = unsupported(place, format!("the function `{written}` is not known here"))
         .label("only functions of this module can be read");
@@ -265,7 +265,7 @@ fn no_such_function(reader: &mut Reader<'_>, path: &syn::ExprPath, name: &str) -
     }
 }
 
-/// Arguments are those in parentheses, without what stands before the point.
+/// The arguments in parentheses, without the receiver.
 fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic {
     let found = if found == 0 { "none".to_owned() } else { found.to_string() };
     let arguments = ["", "b", "b, c"].get(wanted).copied().unwrap_or("..");
@@ -274,7 +274,7 @@ fn wrong_count(name: &str, wanted: usize, found: usize, at: Span) -> Diagnostic 
 }
 
 fn no_such_method(name: &str, place: Span) -> Diagnostic {
-    // What Rust's numbers call otherwise is among our own.
+    // Functions that Rust's numbers name differently are among our own.
     let otherwise = [Function::Sign, Function::Min, Function::Max, Function::Sat];
     let methods = || Function::table().iter().filter(|row| !otherwise.contains(&row.function));
     let known = || methods().map(|row| row.rust).chain(OWN.iter().copied());

@@ -1,8 +1,8 @@
-//! What `use` brings into the module, as far as it may be a mathematical constant.
+//! Resolves `use` declarations of the module, as far as they may be mathematical constants.
 
 use syn::UseTree;
 
-/// Names by the paths they stand for.
+/// Names with their paths.
 #[derive(Default)]
 pub(super) struct Imports {
     /// A path and the name that it has here; the name of a glob is `*`.
@@ -10,7 +10,7 @@ pub(super) struct Imports {
 }
 
 impl Imports {
-    /// Notes what a `use` declares.
+    /// Notes the names that a `use` declares.
     pub(super) fn read(&mut self, tree: &UseTree) {
         let mut waiting = vec![(Vec::new(), tree)];
         while let Some((path, tree)) = waiting.pop() {
@@ -52,7 +52,7 @@ impl Imports {
     }
 }
 
-/// Whether a path is that of the constants of a floating-point type.
+/// Tests whether a path is that of the constants of a floating-point type.
 fn of_floats(path: &[String]) -> bool {
     let path: Vec<&str> = path.iter().map(String::as_str).collect();
     matches!(path.as_slice(), ["core" | "std", "f64" | "f32", "consts"] | ["f64" | "f32", "consts"])

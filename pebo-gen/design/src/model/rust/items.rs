@@ -1,11 +1,11 @@
-//! What a module declares that concerns its model.
+//! The items of a module that concern its model.
 
 use syn::ext::IdentExt as _;
 use syn::{Attribute, Expr, Fields, Item, ItemConst, ItemFn, ItemMod, ItemStruct, ItemType, Type};
 
 use super::imports::Imports;
 use super::refusal::{self, unsupported};
-use super::spans::Places;
+use super::spans::TokenSpans;
 use crate::model::spanned::Spanned;
 use crate::source::{Diagnostic, Diagnostics};
 
@@ -53,7 +53,7 @@ impl<'a> Items<'a> {
         self.constants.iter().copied().filter(|item| self.is_float(&item.ty))
     }
 
-    /// Whether a type is one of the two that signals have, perhaps by another name that the module gives it.
+    /// Tests whether a type is one of the two that signals have, perhaps by another name that the module gives it.
     pub(super) fn is_float(&self, ty: &Type) -> bool {
         let alias = self.aliases.iter().find(|alias| is_named(ty, &alias.ident));
         is_float(alias.map_or(ty, |alias| &alias.ty))
@@ -93,28 +93,28 @@ fn is_named(ty: &Type, name: &syn::Ident) -> bool {
 pub(super) fn fields(
     items: &Items<'_>,
     item: &ItemStruct,
-    places: &mut Places,
+    spans: &mut TokenSpans,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Spanned<String>> {
-    if let Err(conditional) = unconditional(&item.attrs, places) {
+    if let Err(conditional) = unconditional(&item.attrs, spans) {
         diagnostics.push(conditional);
     }
     let Fields::Named(named) = &item.fields else {
-        let place = places.of(&item.ident);
+        let place = spans.of(&item.ident);
         let message = format!("`{}` has no named fields", item.ident);
         diagnostics.push(unsupported(place, message).help("give each signal a name: `pub struct X { pub i1: f64 }`"));
         return Vec::new();
     };
     let mut names = Vec::new();
     for field in &named.named {
-        if let Err(conditional) = unconditional(&field.attrs, places) {
+        if let Err(conditional) = unconditional(&field.attrs, spans) {
             diagnostics.push(conditional);
         }
         let Some(ident) = &field.ident else { continue };
         if items.is_float(&field.ty) {
-            names.push(Spanned { value: ident.unraw().to_string(), span: places.of(ident) });
+            names.push(Spanned { value: ident.unraw().to_string(), span: spans.of(ident) });
         } else {
-            diagnostics.push(refusal::not_a_number(&field.ty, places));
+            diagnostics.push(refusal::not_a_number(&field.ty, spans));
         }
     }
     names
@@ -128,11 +128,11 @@ fn conditional(attributes: &[Attribute]) -> Option<&Attribute> {
     attributes.iter().find(|a| a.path().is_ident("cfg") || a.path().is_ident("cfg_attr"))
 }
 
-/// Refuses what is compiled under a condition: nobody tells a macro whether it holds.
-pub(super) fn unconditional(attributes: &[Attribute], places: &mut Places) -> Result<(), Diagnostic> {
+/// Refuses an item that is compiled under a condition: a macro does not know whether it holds.
+pub(super) fn unconditional(attributes: &[Attribute], spans: &mut TokenSpans) -> Result<(), Diagnostic> {
     match conditional(attributes) {
         None => Ok(()),
-        Some(condition) => Err(unsupported(places.of(condition), "a part of the model depends on a condition")
+        Some(condition) => Err(unsupported(spans.of(condition), "a part of the model depends on a condition")
             .label("the model is read before conditions are")
             .help("put the condition on the whole module, and write a module for each case")),
     }

@@ -1,16 +1,18 @@
 //! The reader of models in plain Rust.
 //!
-//! In: a module's tokens, and those of its attribute. Out: a [`Model`] as far as it could be read, its mistakes collected.
+//! In: a module's tokens, and those of its attribute. Out: a [`Model`] as far as it could be read, its mistakes
+//! collected.
 //!
 //! ```text
 //! tokens -> items::Items -> evaluate::Reader -> Model
 //! ```
 //!
-//! Functions are run with names for numbers: `let`, helper functions, fields and indices disappear, and what each
-//! component of the result was computed by is its formula. Rust's own rules stay Rust's: whatever this reader accepts
-//! means what the compiled function computes, but for rounding.
+//! Functions are run with names for numbers: `let`, helper functions, fields and indices disappear, and each component
+//! of the result keeps the formula of its computation. Rust's own rules hold: an accepted model means what the compiled
+//! function computes, but for rounding.
 //!
-//! There is no text here: a [`Span`](crate::source::Span) is a range of [`Places`], each of which is a run of tokens.
+//! There is no text here: a [`Span`](crate::source::Span) is a range of [`TokenSpans`], each of which is a run of
+//! tokens.
 
 mod spans;
 
@@ -28,17 +30,17 @@ use proc_macro2::TokenStream;
 
 use super::{Model, check};
 use crate::source::{Diagnostic, Diagnostics};
-pub use spans::Places;
+pub use spans::TokenSpans;
 
 impl Model {
-    /// Reads a module of plain Rust; `arguments` are those of its attribute. What its spans mean is in `places`.
+    /// Reads a module of plain Rust; `arguments` are those of its attribute. `spans` resolves its spans.
     pub fn read_rust(
         arguments: TokenStream,
         module: &syn::ItemMod,
-        places: &mut Places,
+        spans: &mut TokenSpans,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut diagnostics = Diagnostics::new();
-        let model = plant::read(arguments, module, places, &mut diagnostics);
+        let model = plant::read(arguments, module, spans, &mut diagnostics);
         if let Some(model) = &model {
             check(model, &mut diagnostics);
         }

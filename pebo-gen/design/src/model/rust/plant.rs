@@ -1,4 +1,4 @@
-//! The module as a model: which function says what.
+//! The module as a model: the meaning of each function.
 
 use proc_macro2::TokenStream;
 use syn::ext::IdentExt as _;
@@ -8,7 +8,7 @@ use super::arguments::{Arguments, Chain};
 use super::evaluate::Reader;
 use super::items::{self, Items};
 use super::refusal::unsupported;
-use super::spans::Places;
+use super::spans::TokenSpans;
 use super::value::{Locals, Value};
 use crate::model::formula::{Comparison, Decimal, Formula};
 use crate::model::observer::Observer;
@@ -37,15 +37,15 @@ impl Signals {
     }
 }
 
-/// Reads the model; nothing where one of its parts is not there.
+/// Reads the model; nothing where one of its parts is missing.
 pub(super) fn read(
     arguments: TokenStream,
     module: &ItemMod,
-    places: &mut Places,
+    spans: &mut TokenSpans,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
-    // The first place is where a diagnostic points that has no better one.
-    let name = Spanned { span: places.of(&module.ident), value: module.ident.unraw().to_string() };
+    // The first place is the default of a diagnostic.
+    let name = Spanned { span: spans.of(&module.ident), value: module.ident.unraw().to_string() };
     if module.content.is_none() {
         diagnostics.push(
             unsupported(name.span, "the module is in another file, which the attribute cannot read")
@@ -53,11 +53,11 @@ pub(super) fn read(
         );
         return None;
     }
-    let arguments = Arguments::read(arguments, places, diagnostics);
+    let arguments = Arguments::read(arguments, spans, diagnostics);
     let items = Items::of(module);
-    let mut signals = |letter: &str, required: Option<&str>, places: &mut Places| {
+    let mut signals = |letter: &str, required: Option<&str>, spans: &mut TokenSpans| {
         if let Some(item) = items.structure(letter) {
-            return items::fields(&items, item, places, diagnostics);
+            return items::fields(&items, item, spans, diagnostics);
         }
         if let Some(what) = required {
             let what = format!("the struct `{letter}`, the {what},");
@@ -66,16 +66,16 @@ pub(super) fn read(
         Vec::new()
     };
     let signals = Signals {
-        x: signals("X", Some("unmeasured states"), places),
-        y: signals("Y", Some("measured outputs"), places),
-        u: signals("U", None, places),
-        w: signals("W", None, places),
+        x: signals("X", Some("unmeasured states"), spans),
+        y: signals("Y", Some("measured outputs"), spans),
+        u: signals("U", None, spans),
+        w: signals("W", None, spans),
     };
     // Functions of signals that are not known would only repeat it.
     if diagnostics.has_errors() {
         return None;
     }
-    let mut pass = Pass { reader: Reader::new(&items, places, diagnostics), signals, module: name.span };
+    let mut pass = Pass { reader: Reader::new(&items, spans, diagnostics), signals, module: name.span };
     let (parameters, define) = pass.constants();
     let f_x =
         pass.required("f_x", "pub fn f_x(x: &X, y: &Y, u: &U) -> X { X { .. } }").map(|item| pass.entries(item, 0));
@@ -88,12 +88,12 @@ pub(super) fn read(
     let identities = pass.reader.items.function("identities").map(|item| pass.list(item)).unwrap_or_default();
     let (assume, angles) = pass.attribute(&arguments);
     let Signals { x, y, u, w } = pass.signals;
-    let title = arguments.title.or_else(|| documented(module, places));
+    let title = arguments.title.or_else(|| documented(module, spans));
     Some(Model {
         name,
         title,
         reference: arguments.reference,
-        asked: arguments.class,
+        cascade_class: arguments.class,
         relation_form: arguments.regression,
         parameters,
         x,
@@ -128,20 +128,20 @@ struct Pass<'a> {
 type Parameters = Vec<Entry<Option<Spanned<Decimal>>>>;
 
 impl<'a> Pass<'a> {
-    /// Constants that are decimals are parameters; those that are computed are definitions.
+    /// Constants that are decimals are parameters; computed ones are definitions.
     fn constants(&mut self) -> (Parameters, Vec<Entry<Formula>>) {
         let (mut parameters, mut computed) = (Vec::new(), Vec::new());
-        // Rust's constants may use those that stand after them.
+        // Rust's constants may use later ones.
         for item in self.reader.items.numbers() {
-            if let Err(conditional) = items::unconditional(&item.attrs, self.reader.places) {
+            if let Err(conditional) = items::unconditional(&item.attrs, self.reader.spans) {
                 self.reader.diagnostics.push(conditional);
             }
-            let name = Spanned { value: item.ident.unraw().to_string(), span: self.reader.places.of(&item.ident) };
+            let name = Spanned { value: item.ident.unraw().to_string(), span: self.reader.spans.of(&item.ident) };
             let Some(text) = items::literal(&item.expr) else {
                 computed.push((name, item));
                 continue;
             };
-            let span = self.reader.places.of(&item.expr);
+            let span = self.reader.spans.of(&item.expr);
             self.reader.constants.insert(name.value.clone());
             let value = self.reader.diagnostics.keep(Decimal::parse(&text, span));
             parameters.push(Entry { name, value: value.map(|value| Spanned { value, span }) });
@@ -178,13 +178,13 @@ impl<'a> Pass<'a> {
             let value = match input {
                 syn::FnArg::Typed(typed) => self.argument(&typed.ty, components),
                 syn::FnArg::Receiver(receiver) => {
-                    Err(unsupported(self.reader.places.of(receiver), "a function of the plant has no `self`")
+                    Err(unsupported(self.reader.spans.of(receiver), "a function of the plant has no `self`")
                         .help("take the signals as arguments: `x: &X, y: &Y, u: &U`"))
                 }
             };
             values.push(self.reader.diagnostics.keep(value)?);
         }
-        let place = self.reader.places.of(&item.sig.ident);
+        let place = self.reader.spans.of(&item.sig.ident);
         let value = self.reader.run(item, values, place);
         self.reader.diagnostics.keep(value)
     }
@@ -197,17 +197,17 @@ impl<'a> Pass<'a> {
                 match self.signals.of(&name) {
                     Some(fields) => Ok(Value::record(fields)),
                     None => Err(unsupported(
-                        self.reader.places.of(ty),
+                        self.reader.spans.of(ty),
                         format!("`{name}` is not one of the plant's signals"),
                     )
                     .help("take X, Y, U or W, by value or by reference")),
                 }
             }
             Type::Array(_) if components > 0 => {
-                let place = self.reader.places.of(ty);
+                let place = self.reader.spans.of(ty);
                 Ok(Value::List((1..=components).map(|number| Value::name(&format!("z{number}"), place)).collect()))
             }
-            _ => Err(unsupported(self.reader.places.of(ty), "this is not one of the plant's signals")
+            _ => Err(unsupported(self.reader.spans.of(ty), "this is not one of the plant's signals")
                 .help("take X, Y, U or W, by value or by reference; phi_left takes `z: [f64; N]` as well")),
         }
     }
@@ -217,7 +217,7 @@ impl<'a> Pass<'a> {
         let fields = match self.run(item, components) {
             Some(Value::Record(fields)) => fields,
             Some(other) => {
-                let place = self.reader.places.of(&item.sig.ident);
+                let place = self.reader.spans.of(&item.sig.ident);
                 let message = format!("`{}` returns {}, not a struct", item.sig.ident, other.kind());
                 self.reader.diagnostics.push(
                     unsupported(place, message).help("return a struct with a field for each signal: `X { i1: .. }`"),
@@ -261,7 +261,7 @@ impl<'a> Pass<'a> {
             }
         }
         if formulas.is_empty() {
-            let place = self.reader.places.of(&item.sig.ident);
+            let place = self.reader.spans.of(&item.sig.ident);
             let message = format!("`{}` returns no components", item.sig.ident);
             self.reader
                 .diagnostics
@@ -270,7 +270,7 @@ impl<'a> Pass<'a> {
         formulas
     }
 
-    /// What the attribute says, in which signals are called by their names alone.
+    /// The arguments of the attribute, in which signals are called by their names alone.
     fn attribute(&mut self, arguments: &Arguments) -> (Vec<Comparison>, Vec<Entry<Formula>>) {
         let mut locals = Locals::new();
         for (letter, fields) in
@@ -289,8 +289,8 @@ impl<'a> Pass<'a> {
         }
         let mut angles = Vec::new();
         for pair in &arguments.angles {
-            let span = self.reader.places.of(&pair.path);
-            let name = Spanned { value: Places::path(&pair.path), span };
+            let span = self.reader.spans.of(&pair.path);
+            let name = Spanned { value: TokenSpans::path(&pair.path), span };
             let period = self.reader.number(&pair.value, &mut locals);
             if let Some(period) = self.reader.diagnostics.keep(period) {
                 angles.push(Entry { name, value: period.formula });
@@ -322,7 +322,7 @@ fn returned(item: &ItemFn) -> Option<String> {
     Some(path.path.segments.last()?.ident.to_string())
 }
 
-/// Whether an expression mentions a name.
+/// Tests whether an expression mentions a name.
 fn mentions(expr: &Expr, name: &str) -> bool {
     struct Search<'n>(&'n str, bool);
     impl<'ast> syn::visit::Visit<'ast> for Search<'_> {
@@ -336,7 +336,7 @@ fn mentions(expr: &Expr, name: &str) -> bool {
 }
 
 /// The first paragraph of the module's documentation, without its full stop.
-fn documented(module: &ItemMod, places: &mut Places) -> Option<Spanned<String>> {
+fn documented(module: &ItemMod, spans: &mut TokenSpans) -> Option<Spanned<String>> {
     let lines = module.attrs.iter().filter_map(|attribute| match &attribute.meta {
         Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
             Expr::Lit(syn::ExprLit { lit: Lit::Str(text), .. }) => Some((attribute, text.value())),
@@ -348,5 +348,5 @@ fn documented(module: &ItemMod, places: &mut Places) -> Option<Spanned<String>> 
     let (first, _) = paragraph.first()?;
     let text = paragraph.iter().map(|(_, line)| line.trim()).collect::<Vec<_>>().join(" ");
     let text = text.trim_end_matches('.').to_owned();
-    Some(Spanned { value: text, span: places.of(first) })
+    Some(Spanned { value: text, span: spans.of(first) })
 }

@@ -1,4 +1,4 @@
-//! What an expression of Rust stands for.
+//! The value of an expression of Rust.
 
 use crate::model::formula::{Formula, Measured, Term};
 use crate::model::spanned::Spanned;
@@ -22,7 +22,7 @@ pub(super) struct Field {
     pub(super) value: Value,
 }
 
-/// Local names and what they stand for, the innermost last.
+/// Local names and their values, the innermost last.
 pub(super) type Locals = Vec<(String, Value)>;
 
 impl Value {
@@ -37,7 +37,7 @@ impl Value {
         Self::Record(fields.iter().map(field).collect())
     }
 
-    /// The number of parts, to bound copies by.
+    /// The number of components, to bound copies by.
     pub(super) fn size(&self) -> usize {
         match self {
             Self::Number(number) => number.parts(),
@@ -46,7 +46,7 @@ impl Value {
         }
     }
 
-    /// What it is, for messages.
+    /// Its kind, for messages.
     pub(super) fn kind(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",

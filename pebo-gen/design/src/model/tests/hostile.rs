@@ -8,7 +8,7 @@ use super::{CUK, parse};
 use crate::model::Model;
 use crate::source::{Code, Colour, Source, render};
 
-/// What a person would call a hang, on a machine however busy.
+/// A person's idea of a hang, on a machine however busy.
 const HANG: Duration = Duration::from_secs(120);
 
 /// The first diagnostic's code, in less time than a hang takes.

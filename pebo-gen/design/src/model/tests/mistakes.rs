@@ -1,9 +1,9 @@
-//! One mistake, one diagnostic, at the right place.
+//! One mistake, one diagnostic, at the right span.
 
 use super::{CUK, REST, parse};
 use crate::source::Code::{self, *};
 
-/// The example with one text replaced: the only diagnostic's code, and what it underlines.
+/// The example with one text replaced: the only diagnostic's code, and the underlined text.
 fn diagnose(from: &str, to: &str) -> (Code, String) {
     let text = CUK.to_owned() + REST;
     assert!(text.contains(from), "{from}");
@@ -132,7 +132,7 @@ fn independent_mistakes_are_all_found() {
         .replace("*v2 + v4", "v2")
         .replace("i1:", "i2:");
     let codes: Vec<Code> = parse(&text).expect_err("it is wrong").iter().map(|found| found.code).collect();
-    // That `f_x` misses an entry for i1 is told where i2 is.
+    // The missing entry of `f_x` for i1 is reported at i2.
     let expected = [UnknownKey, MalformedNumber, DuplicateName, UnknownEntry];
     assert_eq!(codes, expected);
 }
@@ -211,7 +211,7 @@ fn a_help_is_the_cure() {
     }
 }
 
-/// What a help says is taken up: then there is nothing left to say.
+/// The help is followed: then there is nothing left to say.
 #[test]
 fn the_course_of_an_input_has_a_name_of_its_own() {
     let with = |simulation: &str| parse(&format!("{CUK}simulation: {{{simulation}}}\n"));

@@ -91,7 +91,7 @@ fn every_key_is_read() {
     assert_eq!(model.observer.hold.map(|hold| hold.value), Some(Hold::FirstOrder));
     assert_eq!(model.observer.extension.len(), 2);
     assert_eq!((model.observer.within.lower.len(), model.observer.within.upper.len()), (1, 2));
-    assert_eq!(model.asked.map(|asked| asked.value), Some(CascadeClass::Gpebo));
+    assert_eq!(model.cascade_class.map(|class| class.value), Some(CascadeClass::Gpebo));
     let simulation = model.simulation.expect("it is there");
     let starts: Vec<f64> = simulation.signals[0].value.iter().map(|piece| piece.from.value.to_f64()).collect();
     assert_eq!(starts, [0.0, 0.2]);

@@ -1,4 +1,4 @@
-//! What a call sets is what a file would say; what it cannot set is refused in the call's own text.
+//! A setting of a call means the same as in the file; its refusal points into the call's own text.
 
 use super::{CUK, Model, REST, parse};
 use crate::source::Code::{self, *};
@@ -12,7 +12,7 @@ fn set(text: &str, settings: &[&str]) -> Result<Model, Vec<Diagnostic>> {
     Model::parse(&source(text, settings))
 }
 
-/// The model without places.
+/// The model without spans.
 fn told(model: &Model) -> String {
     let text = format!("{model:?}");
     let mut parts = text.split("Span {");

@@ -1,4 +1,4 @@
-//! A model file with formulas still as text: what serde decodes.
+//! A model file with formulas still as text, as serde decodes it.
 //!
 //! The types mirror the key tables of [`schema`](super::schema); a test decodes a file that has
 //! every key. Sections without formulas are the model's own types.
@@ -11,7 +11,7 @@ use crate::model::observer::Observer;
 use crate::model::spanned::{Entry, Spanned};
 use crate::model::written::{CascadeClass, Delay, RelationForm, Scale};
 
-/// A text with its place: a name, a title, a formula.
+/// A text with its span: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;
 
 /// The file.

@@ -1,11 +1,8 @@
-//! A document's texts to formulas.
-//!
-//! In: a [`Document`]. Out: the [`Model`] that it is. A formula that does not parse gets its
-//! diagnostic and is `0` from there on, so that its entry is not missing as well.
+//! Parses a document's texts to formulas.
 
 use super::document::{self, Document, Text};
 use crate::model::class::{Class, Electromechanical, Lti, Mechanical};
-use crate::model::formula::{Comparison, Decimal, Estimates, Formula, Places, Term, parse_comparison, parse_formula};
+use crate::model::formula::{Comparison, Decimal, Estimates, Formula, SpanMap, Term, parse_comparison, parse_formula};
 use crate::model::recording::Recording;
 use crate::model::spanned::Entry;
 use crate::model::written::{Baseline, Equations, Kalman, Luenberger, Model, Panel, Piece, Simulation};
@@ -36,7 +33,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         u: document.u,
         time: None,
         w: document.w,
-        asked: document.class,
+        cascade_class: document.class,
         relation_form: document.regression,
         define,
         assume,
@@ -58,22 +55,22 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
 struct Pass<'a> {
     source: &'a Source,
     diagnostics: &'a mut Diagnostics,
-    /// Whether `hat()` has a meaning in the section at hand.
+    /// Permission for `hat()` in the section at hand.
     estimates: Estimates,
 }
 
 impl Pass<'_> {
     fn formula(&mut self, text: &Text) -> Formula {
-        let places = Places::align(&text.value, text.span, self.source);
-        let parsed = parse_formula(&text.value, &places, self.estimates);
+        let spans = SpanMap::align(&text.value, text.span, self.source);
+        let parsed = parse_formula(&text.value, &spans, self.estimates);
         self.diagnostics
             .keep(parsed)
             .unwrap_or_else(|| Formula { span: text.span, term: Term::Number(Decimal::zero()) })
     }
 
     fn comparison(&mut self, text: &Text) -> Option<Comparison> {
-        let places = Places::align(&text.value, text.span, self.source);
-        self.diagnostics.keep(parse_comparison(&text.value, &places))
+        let spans = SpanMap::align(&text.value, text.span, self.source);
+        self.diagnostics.keep(parse_comparison(&text.value, &spans))
     }
 
     fn list(&mut self, texts: &[Text]) -> Vec<Formula> {
@@ -85,7 +82,7 @@ impl Pass<'_> {
         entries.into_iter().map(parse).collect()
     }
 
-    /// The class, of which there is at most one.
+    /// The class, at most one.
     fn class(
         &mut self,
         lti: Option<Lti<Text>>,

@@ -1,7 +1,7 @@
 //! The table of keys as a JSON schema, for editors that complete and check model files.
 //!
-//! In: the table of `schema`, which the reader holds files against. Out: JSON schema, draft 2020-12. It is about keys and
-//! the shapes of values: what formulas and names may be, the reader says.
+//! In: the table of `schema`, by which the reader checks files. Out: JSON schema, draft 2020-12. It describes keys and
+//! the shapes of values; the reader checks formulas and names.
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::schema::{Key, MODEL, Role, Shape};
 
-/// A schema; what is absent admits everything.
+/// A schema; an absent field admits everything.
 #[derive(Serialize, Default)]
 struct Node {
     #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
@@ -64,7 +64,7 @@ pub(super) fn text() -> String {
     model.dialect = Some("https://json-schema.org/draft/2020-12/schema");
     model.title = Some("A model file of pebo-gen");
     let classes: Vec<&Key> = MODEL.iter().filter(|key| key.role == Role::Class).collect();
-    // Beside a class nothing may stand that it gives, nor another class.
+    // A class excludes the keys that it gives, and other classes.
     let given = |class: &Key| {
         let barred = MODEL.iter().filter(|key| match key.role {
             Role::Class => key.name != class.name,
@@ -74,7 +74,7 @@ pub(super) fn text() -> String {
         Node { properties: barred.map(|key| (key.name, Admission::NEVER)).collect(), ..Node::default() }
     };
     model.dependent = classes.iter().map(|class| (class.name, given(class))).collect();
-    // Without a class what it would give is required.
+    // Without a class these keys are required.
     let by_hand = MODEL.iter().filter(|key| key.role == Role::RequiredOrByClass).map(|key| key.name).collect();
     let alternatives = std::iter::once(by_hand).chain(classes.iter().map(|class| vec![class.name]));
     model.any = alternatives.map(|required| Node { required, ..Node::default() }).collect();
@@ -94,7 +94,7 @@ fn record(keys: &[Key]) -> Node {
     }
 }
 
-/// What stands behind a key.
+/// The schema of a key's value.
 fn value(key: &Key) -> Node {
     let mut node = shape(&key.shape);
     node.description = Some(key.about);
@@ -117,7 +117,7 @@ fn example(key: &Key) -> Option<Value> {
 
 fn shape(shape: &Shape) -> Node {
     match shape {
-        // YAML reads some of the texts as numbers; the reader takes what is written.
+        // YAML reads some of the texts as numbers; the reader takes the written text.
         Shape::Text | Shape::Formula => Node { kinds: &["string", "number", "boolean"], ..Node::default() },
         Shape::Number => Node { kinds: &["number", "string"], ..Node::default() },
         Shape::Choice(choices) => Node { choices, ..Node::default() },

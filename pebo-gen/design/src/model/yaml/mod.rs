@@ -7,17 +7,15 @@
 //!     granit        shape               serde               formulas
 //! ```
 //!
-//! Two YAML crates share the work, because neither does all of it. serde's typed decoding stops at
-//! the first mistake, has no places, and silently keeps the last of two equal keys: good for
-//! turning a right document into types, poor at saying what is wrong with a wrong one. So `tree`
-//! walks the text with granit-parser, which knows the bytes of every value, and refuses what model
-//! files do without; `shape` holds the tree against the table of keys in `schema`, reports every
-//! departure, and rewrites what is right into one canonical form in which each scalar carries its
-//! place; that value is what `serde_yaml` decodes. It is decoded from the tree, not from the text
-//! again, so there are no two opinions of what the text says. Faulty parts are left out of the
-//! value: one mistake gives one diagnostic, and the rest is still read.
+//! Two YAML crates share the work, because neither does all of it. serde's typed decoding stops at the first mistake,
+//! has no places, and silently keeps the last of two equal keys: good for turning a right document into types, poor at
+//! diagnosing a wrong one. Therefore `tree` walks the text with granit-parser, which knows the bytes of every value,
+//! and refuses features that model files do without; `shape` checks the tree against the table of keys in `schema`,
+//! reports every departure, and rewrites the right parts into one canonical form in which each scalar carries its span;
+//! `serde_yaml` decodes that value. It is decoded from the tree, not from the text again, so there are no two readings
+//! of the text. Faulty parts are left out of the value: one mistake gives one diagnostic, and the rest is still read.
 //!
-//! What a call sets is put into the tree (`set`), so that it is held against the same table.
+//! Settings of a call are put into the tree (`set`) and checked by the same table.
 
 mod document;
 mod formulas;

@@ -1,4 +1,4 @@
-//! What to say about a text that is not the YAML of a model file.
+//! Diagnostics for a text that is not the YAML of a model file.
 
 use granit_parser::{ErrorKind, ScanError};
 

@@ -1,7 +1,7 @@
-//! What a call sets, put into the tree of the file.
+//! Puts the settings of a call into the tree of the file.
 //!
-//! In: the tree, and the settings behind the text in its source. Out: the tree as if the file said so, with the places of
-//! the call. What a key may hold is not looked at here: the whole tree is held against the schema.
+//! In: the tree, and the settings behind the text in its source. Out: the tree as if the file said so, with the spans
+//! of the call. Values are not checked here: the schema checks the whole tree.
 
 use super::schema::{MODEL, Shape};
 use super::tree::{Content, Key, Node, grow_part};
@@ -78,7 +78,7 @@ fn resolved(root: &Node, mut path: Vec<Key>) -> Result<Vec<Key>, Diagnostic> {
     Ok(path)
 }
 
-/// What the first name of a setting could be meant to be.
+/// The probable meaning of a setting's first name.
 fn unknown(root: &Node, path: &[Key], parameters: &[&str]) -> Diagnostic {
     let (name, span) = (path[0].text.as_str(), path[0].span.to(path[path.len() - 1].span));
     let whole: Vec<&str> = path.iter().map(|key| key.text.as_str()).collect();
@@ -115,7 +115,7 @@ fn one_of(diagnostic: Diagnostic, name: &str, names: &[&str]) -> Diagnostic {
     }
 }
 
-/// What a map has under a key.
+/// The value of a map under a key.
 fn child<'n>(node: &'n Node, name: &str) -> Option<&'n Node> {
     let Content::Map(entries) = &node.content else { return None };
     entries.iter().find(|(key, _)| key.text == name).map(|(_, node)| node)
@@ -149,7 +149,7 @@ fn parameters_as_map(root: &mut Node) {
     }
 }
 
-/// Puts the value in the place of the one that is there, or beside the others.
+/// Replaces a value, or adds it beside the others.
 fn put(node: &mut Node, path: &[Key], value: Node) -> Result<(), Diagnostic> {
     let [key, rest @ ..] = path else {
         *node = value;

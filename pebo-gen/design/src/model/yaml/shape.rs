@@ -1,7 +1,7 @@
-//! The tree against the schema.
+//! Checks the tree against the schema.
 //!
-//! In: a [`Node`]. Out: a `serde_yaml` value in canonical form, which decodes to a
-//! [`Document`](super::document::Document) whatever the file was like. In this form
+//! In: a [`Node`]. Out: a `serde_yaml` value in canonical form, which always decodes to a
+//! [`Document`](super::document::Document). In this form
 //! - a scalar is a map `{value, span}`;
 //! - a map with names for keys is a list of `{name, value}`, in the order of the file;
 //! - a choice of notations is made: parameters are a map, one gain is a list of one, a signal is a
@@ -159,7 +159,7 @@ impl<'a> Fitter<'a> {
         None
     }
 
-    /// A map with known keys; `place` is where something is missing if it is.
+    /// A map with known keys; `place` is the span of a missing one.
     fn record(&mut self, entries: &'a [(tree::Key, Node)], keys: &'static [Key], place: Span) -> Value {
         let mut fields = Mapping::new();
         let class = entries.iter().map(|(name, _)| name).find(|name| {
@@ -184,7 +184,7 @@ impl<'a> Fitter<'a> {
                 fields.insert(key.name.into(), value);
             }
         }
-        // A class stands for the keys that it replaces.
+        // A class replaces the keys that it gives.
         let missing = |key: &&Key| match key.role {
             Role::Required => true,
             Role::RequiredOrByClass => class.is_none(),
@@ -202,8 +202,8 @@ impl<'a> Fitter<'a> {
         Value::Mapping(fields)
     }
 
-    /// The shape of a value is wrong: there is nothing, or a stand-in for a formula, so that the
-    /// entry it belongs to is not missing as well.
+    /// Reports a value of the wrong shape: there is nothing, or a stand-in for a formula, so that the entry it belongs
+    /// to is not missing as well.
     fn refuse(&mut self, node: &Node, shape: &Shape) -> Option<Value> {
         let stand_in = matches!(shape, Shape::Formula).then(|| spanned("0", node.span));
         let found = match &node.content {
@@ -225,7 +225,7 @@ impl<'a> Fitter<'a> {
     }
 }
 
-/// What to write in the place of a map from numbers to values, which is a course in time or a table.
+/// A replacement for a map from numbers to values, which is a course in time or a table.
 fn course(key: &str, entry: Option<&str>) -> String {
     match (key, entry) {
         ("control", Some(input)) => format!(
@@ -257,7 +257,7 @@ fn as_list(key: &str, node: &Node) -> Option<String> {
     is_line.then(|| format!("`{key}: [{list}]`"))
 }
 
-/// Whether the keys are numbers, as start times are.
+/// Tests whether the keys are numbers, as start times are.
 fn is_course(node: &Node) -> bool {
     let Content::Map(entries) = &node.content else { return false };
     !entries.is_empty() && entries.iter().all(|(key, _)| key.text.parse::<f64>().is_ok())
@@ -308,7 +308,7 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     if let Some(help) = of_class(name, keys) {
         return diagnostic.help(help).note(valid);
     }
-    // A key of a section stands one level too high, or in another section.
+    // A key of a section one level too high, or in another section.
     let section = MODEL.iter().find(|section| match &section.shape {
         Shape::Record(inner) => section.role != Role::Class && inner.iter().any(|key| key.name == name),
         _ => false,
@@ -319,7 +319,7 @@ fn unknown_key(name: &str, span: Span, keys: &'static [Key]) -> Diagnostic {
     }
 }
 
-/// What to write instead of a matrix that a class does not have.
+/// A replacement for a matrix that a class does not have.
 fn of_class(name: &str, keys: &'static [Key]) -> Option<&'static str> {
     let has = |key: &str| keys.iter().any(|known| known.name == key);
     match name {
@@ -334,7 +334,7 @@ fn of_class(name: &str, keys: &'static [Key]) -> Option<&'static str> {
 }
 
 impl Key {
-    /// Whether the key cannot stand beside the class.
+    /// Tests whether the class excludes the key.
     fn excludes(&self, name: &tree::Key, class: &tree::Key) -> bool {
         match self.role {
             Role::Class => name.span != class.span,

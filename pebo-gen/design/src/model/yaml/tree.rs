@@ -1,4 +1,4 @@
-//! A YAML text as a tree with places.
+//! A YAML text as a tree with spans.
 //!
 //! In: a source. Out: a [`Node`] of bounded size and depth, without anchors, aliases, tags, further
 //! documents and duplicate keys, each of which gets its diagnostic here.
@@ -16,14 +16,14 @@ const NESTING_LIMIT: usize = 32;
 /// Most scalars, lists and maps in one file.
 const NODE_LIMIT: usize = 20_000;
 
-/// A value and where it stands.
+/// A value and its span.
 #[derive(Debug)]
 pub(super) struct Node {
     pub(super) span: Span,
     pub(super) content: Content,
 }
 
-/// What a map waits for.
+/// The next thing that a map expects.
 enum Pending {
     /// A key.
     Key,
@@ -33,7 +33,7 @@ enum Pending {
     Discard,
 }
 
-/// What a value is.
+/// The content of a node.
 #[derive(Debug)]
 pub(super) enum Content {
     /// Nothing, or a plain `null` or `~`.
@@ -45,7 +45,7 @@ pub(super) enum Content {
     Broken,
 }
 
-/// A key of a map and where it stands.
+/// A key of a map and its span.
 #[derive(Debug)]
 pub(super) struct Key {
     pub(super) span: Span,
@@ -57,7 +57,7 @@ pub(super) fn grow(source: &Source, diagnostics: &mut Diagnostics) -> Option<Nod
     grow_part(source, Span::new(0, source.text().len()), refusal::empty(), diagnostics)
 }
 
-/// The same of a part of the text, with what there is to say if it holds nothing.
+/// The same of a range of the text, with the diagnostic for an empty one.
 pub(super) fn grow_part(source: &Source, part: Span, empty: Diagnostic, diagnostics: &mut Diagnostics) -> Option<Node> {
     let options = granit_parser::options! {
         disallow_directives: true,
@@ -162,7 +162,7 @@ impl Grower<'_> {
                 (Content::Map(entries), last)
             }
         };
-        // The end of a block is only seen at what follows it.
+        // The event after a block ends it.
         let end = if frame.flow { end } else { last.unwrap_or(frame.span) };
         self.place(Node { span: frame.span.to(end), content });
     }
@@ -217,11 +217,10 @@ impl Grower<'_> {
     }
 }
 
-/// How many characters to look for the end of a formula that a comma has cut. Hostile input has a
-/// candidate at every comma.
+/// Characters to look for the end of a formula that a comma has cut. Hostile input has a candidate at every comma.
 const CUT_LIMIT: usize = 1024;
 
-/// The place of a formula that a comma has cut, of which `span` is the first piece.
+/// The span of a formula that a comma has cut; its first piece is at `span`.
 ///
 /// `{q: atan2(a, b)/n}` is YAML for q: "atan2(a" and "b)/n": nothing. It is the most natural slip
 /// of all, so it gets a diagnostic of its own instead of three strange ones.

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::model::{Electromechanical as WrittenClass, Formula as Written, Model};
+use crate::model::{Electromechanical as WrittenClass, Formula as WrittenFormula, Model};
 use crate::plant::Matrix;
 use crate::plant::matrix::dot;
 use crate::plant::plant::{Assumption, Formula, Output, State};
@@ -21,7 +21,7 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Relation, Symbol};
 
 use super::shape::{self, Size};
-use super::{Class, Expansion, Names, Place, Proposal, Stop, singular, unresolved};
+use super::{Class, ClassContext, Expansion, Names, Proposal, Stop, singular, unresolved};
 
 /// Coils that move one mass.
 #[derive(Clone, Debug)]
@@ -33,22 +33,22 @@ pub struct Electromechanical {
 }
 
 /// The number of coils: of outputs that are not the speed.
-pub(super) fn coils(class: &WrittenClass<Written>, model: &Model) -> usize {
+pub(super) fn coils(class: &WrittenClass<WrittenFormula>, model: &Model) -> usize {
     let is_speed = |name: &str| class.speed.as_ref().is_some_and(|speed| speed.value == name);
     model.y.iter().filter(|output| !is_speed(&output.value)).count()
 }
 
 pub(super) fn expand(
-    place: &Place<'_>,
-    written: &WrittenClass<Written>,
+    context: &ClassContext<'_>,
+    written: &WrittenClass<WrittenFormula>,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
-    let (arena, facts) = (place.arena, &place.domain.facts);
+    let (arena, facts) = (context.arena, &context.domain.facts);
     let (Some(l), Some(speed_name)) = (&written.inductance, &written.speed) else { return Err(Stop::Reported) };
-    let speed = speed(place, names, speed_name)?;
+    let speed = speed(context, names, speed_name)?;
     let [position] = names.x else {
-        let span = place.model.x[1].span;
+        let span = context.model.x[1].span;
         return Err(Diagnostic::error(Code::WrongShape, span, "an electromechanical plant has one position")
             .help("list the position alone in x; the class takes the fluxes as the transform")
             .into());
@@ -56,15 +56,16 @@ pub(super) fn expand(
     let currents: Vec<Symbol> = names.y.iter().copied().filter(|s| *s != speed).collect();
     let n = currents.len();
     if n == 0 || names.y[..n] != currents {
-        let span = place.model.y[0].span;
+        let span = context.model.y[0].span;
         return Err(Diagnostic::error(Code::WrongShape, span, "the first outputs are not the currents")
             .help("list the currents first in y, the speed after them if it is measured")
             .into());
     }
     counted(written, n)?;
-    let Parts { inductance, magnets, resistance, voltages, inertia, friction, load } =
-        Parts::read(place, written, names, (*position, speed, n), problems).ok_or(Stop::Reported)?;
-    place.symmetric("L", &inductance, l.span)?;
+    let ElectromechanicalEntries { inductance, magnets, resistance, voltages, inertia, friction, load } =
+        ElectromechanicalEntries::read(context, written, names, (*position, speed, n), problems)
+            .ok_or(Stop::Reported)?;
+    context.symmetric("L", &inductance, l.span)?;
     let open = |what: &'static str| move |obstacle: Obstacle| Stop::from(unresolved(what, l.span, &obstacle));
     let inverse = inductance.inverse(arena, facts).map_err(open("the inverse of L"))?;
     let inverse = inverse.ok_or_else(|| singular("L", l.span))?;
@@ -102,7 +103,7 @@ pub(super) fn expand(
         let against = arena.add(drag, load.unwrap_or_else(|| arena.zero()));
         arena.div(arena.sub(force, against), inertia)
     });
-    let outputs = names.y.iter().zip(&place.model.y).enumerate().map(|(k, (symbol, name))| {
+    let outputs = names.y.iter().zip(&context.model.y).enumerate().map(|(k, (symbol, name))| {
         let rate = if *symbol == speed { acceleration } else { rates.get(k).copied() };
         let span = match &written.inertia {
             Some(inertia) if *symbol == speed => inertia.span,
@@ -125,7 +126,7 @@ pub(super) fn expand(
 }
 
 /// The formulas of the class.
-struct Parts {
+struct ElectromechanicalEntries {
     inductance: Matrix,
     magnets: Vec<Expr>,
     resistance: Matrix,
@@ -135,11 +136,11 @@ struct Parts {
     load: Option<Expr>,
 }
 
-impl Parts {
+impl ElectromechanicalEntries {
     /// Reads them for so many coils; nothing if there was a mistake, which is reported.
     fn read(
-        place: &Place<'_>,
-        written: &WrittenClass<Written>,
+        context: &ClassContext<'_>,
+        written: &WrittenClass<WrittenFormula>,
         names: &Names<'_>,
         (position, speed, n): (Symbol, Symbol, usize),
         problems: &mut Diagnostics,
@@ -147,7 +148,7 @@ impl Parts {
         let on_q: BTreeSet<Symbol> = [position].iter().chain(names.constants).copied().collect();
         let mut read = |name, matrix, (height, width), diagonal, counted, allowed| {
             let size = Size { height, width, diagonal, counted };
-            place.matrix(shape::Written { name, matrix }, size, allowed, problems)
+            context.matrix(shape::WrittenMatrix { name, matrix }, size, allowed, problems)
         };
         let nu = names.u.iter().filter(|input| **input != speed).count();
         let inductance = read("L", &written.inductance, (n, n), true, "coils x coils", &on_q);
@@ -156,7 +157,7 @@ impl Parts {
         let voltages = if written.voltages.is_some() {
             read("B", &written.voltages, (n, nu), nu == n, "coils x voltages", names.constants)
         } else if nu == n {
-            Some(Matrix::identity(place.arena, n))
+            Some(Matrix::identity(context.arena, n))
         } else {
             let span = written.inductance.as_ref()?.span;
             let message = format!("{nu} voltages for {n} coils need the matrix B");
@@ -166,8 +167,8 @@ impl Parts {
             );
             None
         };
-        let mut constant = |formula: &Option<Written>, what: &str| match formula {
-            Some(formula) => problems.keep(place.formula(formula, names.constants, what)).map(Some),
+        let mut constant = |formula: &Option<WrittenFormula>, what: &str| match formula {
+            Some(formula) => problems.keep(context.formula(formula, names.constants, what)).map(Some),
             None => Some(None),
         };
         let inertia = constant(&written.inertia, "inertia");
@@ -186,12 +187,16 @@ impl Parts {
 }
 
 /// The declared symbol of the speed.
-fn speed(place: &Place<'_>, names: &Names<'_>, written: &crate::model::Spanned<String>) -> Result<Symbol, Diagnostic> {
+fn speed(
+    context: &ClassContext<'_>,
+    names: &Names<'_>,
+    written: &crate::model::Spanned<String>,
+) -> Result<Symbol, Diagnostic> {
     let signals = || names.y.iter().chain(names.u).chain(names.w);
-    let found = signals().find(|symbol| place.arena.name(**symbol) == written.value);
+    let found = signals().find(|symbol| context.arena.name(**symbol) == written.value);
     found.copied().ok_or_else(|| {
         let message = format!("the speed `{}` is not declared", written.value);
-        let known: Vec<String> = signals().map(|symbol| place.arena.name(*symbol)).collect();
+        let known: Vec<String> = signals().map(|symbol| context.arena.name(*symbol)).collect();
         let diagnostic = Diagnostic::error(Code::UnknownName, written.span, message)
             .note(format!("signals are {}", listed(known.iter().map(String::as_str))));
         match nearest(&written.value, known.iter().map(String::as_str)) {
@@ -201,8 +206,8 @@ fn speed(place: &Place<'_>, names: &Names<'_>, written: &crate::model::Spanned<S
     })
 }
 
-/// Whether the number of coils that is written is that of the currents.
-fn counted(written: &WrittenClass<Written>, n: usize) -> Result<(), Diagnostic> {
+/// Checks that the written number of coils is that of the currents.
+fn counted(written: &WrittenClass<WrittenFormula>, n: usize) -> Result<(), Diagnostic> {
     let Some(coils) = &written.coils else { return Ok(()) };
     let found = pebo_cas::Rational::from_decimal(coils.value.text()).ok();
     if found.and_then(|value| value.to_i64()) == i64::try_from(n).ok() {
@@ -212,8 +217,12 @@ fn counted(written: &WrittenClass<Written>, n: usize) -> Result<(), Diagnostic> 
     Err(Diagnostic::error(Code::WrongShape, coils.span, message).help("y lists a current for each coil"))
 }
 
-/// Where a component of the flux stands: the magnet's part if there is one, else the row of L.
-fn flux_span(l: &crate::model::Matrix<Written>, mu: Option<&crate::model::Matrix<Written>>, k: usize) -> Span {
+/// The span of a component of the flux: the magnet's entry if there is one, else the row of L.
+fn flux_span(
+    l: &crate::model::Matrix<WrittenFormula>,
+    mu: Option<&crate::model::Matrix<WrittenFormula>>,
+    k: usize,
+) -> Span {
     let entry = mu.and_then(|mu| if mu.depth == 2 { mu.rows.get(k)?.first() } else { mu.rows[0].get(k) });
     let row = l.rows.get(k).filter(|_| l.depth == 2);
     match (entry, row) {

@@ -1,11 +1,11 @@
 //! Linear plants: `x' = A11 x + A12 y + B1 u`, `y' = A21 x + A22 y + B2 u`.
 //!
-//! A linear transform z = T1 x + T2 y moves by known signals exactly if `T1 A11 + T2 A21 = 0`, and has a
-//! left inverse exactly if T1 has rank `n_x`. Rows of T1 that make an invertible square part may be
-//! combined to T1 = I, so the question is whether `A11 + T2 A21 = 0` has a solution: whether the rows of
-//! A11 are combinations of those of A21 (Ortega et al. 2015, Section 4, eq. 19).
+//! A linear transform z = T1 x + T2 y moves by known signals exactly if `T1 A11 + T2 A21 = 0`, and has a left inverse
+//! exactly if T1 has rank `n_x`. Rows of T1 that form an invertible square block may be combined to T1 = I, so the
+//! problem is to solve `A11 + T2 A21 = 0`: the rows of A11 have to be combinations of those of A21 (Ortega et al. 2015,
+//! Section 4, eq. 19).
 
-use crate::model::{Formula as Written, Lti};
+use crate::model::{Formula as WrittenFormula, Lti};
 use crate::plant::Matrix;
 use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
@@ -15,41 +15,41 @@ use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Relation, Symbol};
 
 use super::shape::{self, Size};
-use super::{Class, Expansion, Names, Place, Proposal, Stop, unresolved};
+use super::{Class, ClassContext, Expansion, Names, Proposal, Stop, unresolved};
 use crate::plant::plant::{Assumption, Formula, Output, State};
 
 /// A linear plant.
 #[derive(Clone, Debug)]
 pub struct Linear {
-    /// How the unmeasured states act on themselves.
+    /// The action of the unmeasured states on themselves.
     pub a11: Matrix,
-    /// How they act on the outputs.
+    /// Their action on the outputs.
     pub a21: Matrix,
     /// The transform: `z = T1 x + T2 y`.
     pub t1: Matrix,
     /// See [`Self::t1`].
     pub t2: Matrix,
-    /// Whether T1 and T2 are the author's.
+    /// True if T1 and T2 are the author's.
     pub given: bool,
     /// The parameters whose values make ranks of A11 and A21 others than in general: the values were written in.
     pub special: Vec<Symbol>,
     /// Rows of A11 that are no combination of rows of A21: no transform exists if there is one.
     pub unsolved: Vec<usize>,
-    /// Where A11 stands.
+    /// The span of A11.
     pub span: Span,
 }
 
-/// States up to which T2 is written by minors: there are twice as many of them with each further row, and every claim goes
-/// through all of them.
+/// States up to which T2 is written by minors: there are twice as many of them with each further row, and every claim
+/// goes through all of them.
 const MOST_BY_MINORS: usize = 6;
 
 pub(super) fn expand(
-    place: &Place<'_>,
-    written: &Lti<Written>,
+    context: &ClassContext<'_>,
+    written: &Lti<WrittenFormula>,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
-    let arena = place.arena;
+    let arena = context.arena;
     if let (None, Some(alone)) = (&written.t1, &written.t2) {
         return Err(Diagnostic::error(Code::MissingKey, alone.span, "T2 is given without T1")
             .help("give T1 as well, or leave both out to have them derived")
@@ -58,7 +58,7 @@ pub(super) fn expand(
     let (nx, ny, nu) = (names.x.len(), names.y.len(), names.u.len());
     let mut read = |name, matrix, (height, width), counted| {
         let size = Size { height, width, diagonal: false, counted };
-        place.matrix(shape::Written { name, matrix }, size, names.constants, problems)
+        context.matrix(shape::WrittenMatrix { name, matrix }, size, names.constants, problems)
     };
     let a11 = read("A11", &written.a11, (nx, nx), "states x states");
     let a12 = read("A12", &written.a12, (nx, ny), "states x outputs");
@@ -66,7 +66,7 @@ pub(super) fn expand(
     let a22 = read("A22", &written.a22, (ny, ny), "outputs x outputs");
     let b1 = read("B1", &written.b1, (nx, nu), "states x inputs");
     let b2 = read("B2", &written.b2, (ny, nu), "outputs x inputs");
-    let nz = super::components(place.model);
+    let nz = super::components(context.model);
     let t1 = read("T1", &written.t1, (nz, nx), "components x states");
     let t2 = read("T2", &written.t2, (nz, ny), "components x outputs");
     let (Some(mut a11), Some(a12), Some(mut a21), Some(a22), Some(b1), Some(b2), Some(t1), Some(t2)) =
@@ -75,11 +75,11 @@ pub(super) fn expand(
         return Err(Stop::Reported);
     };
     let (Some(first), Some(second)) = (&written.a11, &written.a21) else { return Err(Stop::Reported) };
-    let facts = &place.domain.facts;
+    let facts = &context.domain.facts;
     let open = |obstacle: Obstacle| Stop::from(unresolved("the transform", first.span, &obstacle));
-    // Values at which ranks are others than in general are written in for the parameters: what follows
-    // holds for these values and no others.
-    let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(entry, &place.domain.fixed));
+    // Values of the parameters at which ranks differ from the generic ones are inserted: the rest holds for these
+    // values alone.
+    let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(entry, &context.domain.fixed));
     let ranks = |a11: &Matrix, a21: &Matrix| -> Result<[usize; 2], Obstacle> {
         let both = Matrix::new(a11.rows().iter().chain(a21.rows()).cloned().collect());
         Ok([a21.rank(arena, facts)?, both.rank(arena, facts)?])
@@ -95,7 +95,7 @@ pub(super) fn expand(
         blocks
     };
     let special = if differ {
-        valued_symbols.into_iter().filter(|s| place.domain.fixed.contains_key(s)).collect()
+        valued_symbols.into_iter().filter(|s| context.domain.fixed.contains_key(s)).collect()
     } else {
         Vec::new()
     };
@@ -104,14 +104,14 @@ pub(super) fn expand(
     let is_long = few && a21.is_long_to_invert(arena, facts).map_err(open)?;
     let nonzero = |expr: Expr| Assumption { expr, relation: Relation::NonZero, span: first.span };
     let (t1, t2, unsolved, conditions) = if given {
-        let conditions = denominators(place, &t2).map_err(open)?;
+        let conditions = denominators(context, &t2).map_err(open)?;
         (t1, t2, Vec::new(), conditions)
     } else if is_long && a21.rank(arena, facts).map_err(open)? == nx {
-        let (t2, determinant) = by_cofactors(place, &a11, &a21);
+        let (t2, determinant) = by_cofactors(context, &a11, &a21);
         (Matrix::identity(arena, nx), t2, Vec::new(), vec![determinant])
     } else {
-        let (t2, unsolved) = transform(place, &a11, &a21).map_err(open)?;
-        let conditions = denominators(place, &t2).map_err(open)?;
+        let (t2, unsolved) = transform(context, &a11, &a21).map_err(open)?;
+        let conditions = denominators(context, &t2).map_err(open)?;
         (Matrix::identity(arena, nx), t2, unsolved, conditions)
     };
     let conditions = conditions.into_iter().map(nonzero).collect();
@@ -121,7 +121,7 @@ pub(super) fn expand(
         let driven = if u.is_empty() { arena.zero() } else { dot(arena, &c.rows()[row], &u) };
         arena.sum([dot(arena, &a.rows()[row], &x), dot(arena, &b.rows()[row], &y), driven])
     };
-    let span = |matrix: &crate::model::Matrix<Written>, row: usize| match matrix.rows.get(row) {
+    let span = |matrix: &crate::model::Matrix<WrittenFormula>, row: usize| match matrix.rows.get(row) {
         Some(entries) => entries[0].span.to(entries[entries.len() - 1].span),
         None => matrix.span,
     };
@@ -129,7 +129,7 @@ pub(super) fn expand(
         symbol: *symbol,
         rate: Formula { expr: rate(i, [&a11, &a12, &b1]), span: span(first, i) },
     });
-    let outputs = names.y.iter().zip(&place.model.y).enumerate().map(|(i, (symbol, name))| Output {
+    let outputs = names.y.iter().zip(&context.model.y).enumerate().map(|(i, (symbol, name))| Output {
         symbol: *symbol,
         rate: Some(Formula { expr: rate(i, [&a21, &a22, &b2]), span: span(second, i) }),
         value: None,
@@ -139,7 +139,7 @@ pub(super) fn expand(
         expr: arena.add(dot(arena, &t1.rows()[i], &x), dot(arena, &t2.rows()[i], &y)),
         span: span(written.t1.as_ref().unwrap_or(first), i),
     });
-    let proposal = propose(place, [&t1, &t2], [&a21, &a22, &b2], names, is_long).map_err(open)?;
+    let proposal = propose(context, [&t1, &t2], [&a21, &a22, &b2], names, is_long).map_err(open)?;
     Ok(Expansion {
         x: states.collect(),
         y: outputs.collect(),
@@ -151,10 +151,10 @@ pub(super) fn expand(
 }
 
 /// T2 with `A11 + T2 A21 = 0`, zero in the rows that have no solution, and these.
-fn transform(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, Vec<usize>), Obstacle> {
-    let arena = place.arena;
+fn transform(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, Vec<usize>), Obstacle> {
+    let arena = context.arena;
     let entries = [a11.entries(), a21.entries()].concat();
-    let field = Field::over(arena, &place.domain.facts, &entries)?;
+    let field = Field::over(arena, &context.domain.facts, &entries)?;
     // A21' T2' = -A11', a right side for each row of A11.
     let mut system = Vec::new();
     for column in 0..a11.height() {
@@ -175,19 +175,19 @@ fn transform(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> Result<(Matrix, V
     Ok((Matrix::new(rows), unsolved))
 }
 
-/// `T2 = -A11 adj(A21) / det(A21)` and the determinant, which is not zero: as expressions that share their minors, where
-/// their normal forms are too long to be written out.
-fn by_cofactors(place: &Place<'_>, a11: &Matrix, a21: &Matrix) -> (Matrix, Expr) {
-    let arena = place.arena;
+/// `T2 = -A11 adj(A21) / det(A21)` and the determinant, which is not zero: as expressions that share their minors,
+/// where their normal forms are too long to be written out.
+fn by_cofactors(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> (Matrix, Expr) {
+    let arena = context.arena;
     let (adjugate, determinant) = a21.adjugate(arena);
     let over_determinant = |entry: Expr| arena.neg(arena.div(entry, determinant));
     (a11.mul(arena, &adjugate).map(over_determinant), determinant)
 }
 
-/// What must not vanish for the entries to have values: a rank that holds in general falls there.
-fn denominators(place: &Place<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacle> {
-    let arena = place.arena;
-    let field = Field::over(arena, &place.domain.facts, &matrix.entries())?;
+/// Expressions that must not vanish for the entries to have values: at their zeros the generic rank falls.
+fn denominators(context: &ClassContext<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacle> {
+    let arena = context.arena;
+    let field = Field::over(arena, &context.domain.facts, &matrix.entries())?;
     let mut seen: Vec<Poly> = Vec::new();
     let mut found: Vec<Expr> = Vec::new();
     for entry in matrix.entries() {
@@ -205,16 +205,16 @@ fn denominators(place: &Place<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacl
     Ok(found)
 }
 
-/// `x = T1^+ (z - T2 y)` with `T1^+ = (T1' T1)^-1 T1'`, and the regression of claim C3:
-/// `y' = (A22 - A21 T1^+ T2) y + B2 u + A21 T1^+ z`. Where T2 is too long for normal forms, so is what is made of it.
+/// `x = T1^+ (z - T2 y)` with `T1^+ = (T1' T1)^-1 T1'`, and the regression of claim C3: `y' = (A22 - A21 T1^+ T2) y +
+/// B2 u + A21 T1^+ z`. If T2 is too long for normal forms, so are the products with it.
 fn propose(
-    place: &Place<'_>,
+    context: &ClassContext<'_>,
     [t1, t2]: [&Matrix; 2],
     [a21, a22, b2]: [&Matrix; 3],
     names: &Names<'_>,
     is_long: bool,
 ) -> Result<Proposal, Obstacle> {
-    let (arena, facts) = (place.arena, &place.domain.facts);
+    let (arena, facts) = (context.arena, &context.domain.facts);
     let transposed = t1.transpose();
     let Some(gram) = transposed.mul(arena, t1).inverse(arena, facts)? else { return Ok(Proposal::default()) };
     let left = gram.mul(arena, &transposed).normal(arena, facts)?;
@@ -225,7 +225,7 @@ fn propose(
     let rest = short(a22.add(arena, &a21.mul(arena, &on_y)))?;
     let symbols = |list: &[pebo_cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (y, u) = (symbols(names.y), symbols(names.u));
-    let z = symbols(place.z);
+    let z = symbols(context.z);
     let states = names
         .x
         .iter()

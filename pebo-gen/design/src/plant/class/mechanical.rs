@@ -4,14 +4,14 @@
 //! H = p' M(q)^-1 p / 2 + V(q)      q' = dH/dp = M^-1 p      p' = -dH/dq + G(q) u      z = T(q)' p
 //! ```
 //!
-//! With v = q' the force of inertia is `-d/dq (p' M^-1 p / 2) = v' (dM/dq) v / 2`. Everything is inverted
-//! through W = T' M T, which is simple where T is worth its name: `M^-1 = T W^-1 T'`, and the velocities
-//! are `v = (T' M)^-1 z = T W^-1 z` (Ortega et al. 2015, Section 5.1). Where W is not simple, its inverse is not written
-//! out: formulas hold it as cofactors over the determinant, and are shown in the velocities.
+//! With v = q' the force of inertia is `-d/dq (p' M^-1 p / 2) = v' (dM/dq) v / 2`. Everything is inverted through W =
+//! T' M T, which is simple where T is worth its name: `M^-1 = T W^-1 T'`, and the velocities are `v = (T' M)^-1 z = T
+//! W^-1 z` (Ortega et al. 2015, Section 5.1). Where W is not simple, its inverse is not written out: formulas hold it
+//! as cofactors over the determinant, and are shown in the velocities.
 
 use std::collections::BTreeSet;
 
-use crate::model::{Formula as Written, Mechanical as WrittenClass};
+use crate::model::{Formula as WrittenFormula, Mechanical as WrittenClass};
 use crate::plant::Matrix;
 use crate::plant::matrix::dot;
 use crate::plant::plant::{Assumption, Formula, Output, State};
@@ -25,7 +25,7 @@ use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 
 use super::shape::{self, Size};
-use super::{Class, Expansion, Names, Place, Proposal, Stop, singular, unresolved};
+use super::{Class, ClassContext, Expansion, Names, Proposal, Stop, singular, unresolved};
 
 /// A mechanical plant.
 #[derive(Clone, Debug)]
@@ -42,13 +42,13 @@ pub struct Mechanical {
     pub inverse_metric: Matrix,
     /// The velocities `(T' M)^-1 z`.
     pub velocities: Vec<Expr>,
-    /// `-T' (dV/dq - G u)`: what z' is if the terms that are quadratic in momenta vanish.
+    /// `-T' (dV/dq - G u)`: z' without the terms that are quadratic in momenta.
     pub h: Vec<Expr>,
     /// The energy H.
     pub energy: Expr,
-    /// What is shown where the inverse of T' M T is too long to be written out.
+    /// The printed forms where the inverse of T' M T is too long to be written out.
     pub in_velocities: Option<InVelocities>,
-    /// Where T stands.
+    /// The span of T.
     pub span: Span,
 }
 
@@ -87,24 +87,24 @@ fn inertial(arena: &Arena, inertia: &Matrix, q: Symbol, v: &[Expr]) -> Expr {
 }
 
 pub(super) fn expand(
-    place: &Place<'_>,
-    written: &WrittenClass<Written>,
+    context: &ClassContext<'_>,
+    written: &WrittenClass<WrittenFormula>,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
-    let (arena, facts, n) = (place.arena, &place.domain.facts, names.y.len());
+    let (arena, facts, n) = (context.arena, &context.domain.facts, names.y.len());
     let Some(m) = &written.m else { return Err(Stop::Reported) };
     // Without a frame the momenta themselves: any will do to write the equations.
     let t = written.t.as_ref().unwrap_or(m);
     if names.x.len() != n {
-        let span = place.model.x.first().map_or(m.span, |first| first.span);
+        let span = context.model.x.first().map_or(m.span, |first| first.span);
         let message = format!("{} momenta in x for {n} positions in y", names.x.len());
         return Err(Diagnostic::error(Code::WrongShape, span, message)
             .help("a mechanical plant measures all its positions, and x has their momenta in the same order")
             .into());
     }
-    let Read { inertia, forces, frame, potential } = read(place, written, names, problems)?;
-    place.symmetric("M", &inertia, m.span)?;
+    let MechanicalEntries { inertia, forces, frame, potential } = read(context, written, names, problems)?;
+    context.symmetric("M", &inertia, m.span)?;
     let open = |what: &'static str, span: Span| move |obstacle: Obstacle| Stop::from(unresolved(what, span, &obstacle));
     let transposed = frame.transpose();
     let metric = transposed.mul(arena, &inertia).mul(arena, &frame);
@@ -112,20 +112,20 @@ pub(super) fn expand(
     let inverse_frame = frame.inverse(arena, facts).map_err(open("the inverse of T", t.span))?;
     let inverse_frame = inverse_frame.ok_or_else(|| singular("T", t.span))?;
     let inverse =
-        inverse_metric(place, (&inertia, &frame), &metric, names).map_err(open("the inverse of M", m.span))?;
+        inverse_metric(context, (&inertia, &frame), &metric, names).map_err(open("the inverse of M", m.span))?;
     let (inverse_metric, is_implicit) = inverse.ok_or_else(|| singular("M", m.span))?;
-    // Not in normal form: where W is simple, what the author wrote for T is shorter.
+    // Not in normal form: if W is simple, the author's T is shorter.
     let velocity = frame.mul(arena, &inverse_metric);
-    // det W = det(T)^2 det M: where it does not vanish, T has an inverse wherever it has a value. Where the inverse of W is not
-    // written out, neither is what must not vanish: the rates have no value there.
+    // det W = det(T)^2 det M: if it does not vanish, T has an inverse wherever it has a value. If the inverse of W is
+    // not written out, neither is its condition: the rates have no value there.
     let (inverted, span) = if is_implicit { (&frame, t.span) } else { (&metric, m.span) };
-    let conditions = nonzero_determinant(place, inverted, span)?.into_iter().collect();
+    let conditions = nonzero_determinant(context, inverted, span)?.into_iter().collect();
 
     let symbols = |list: &[Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (p, u) = (symbols(names.x), symbols(names.u));
-    let z: Vec<Expr> = place.z.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
+    let z: Vec<Expr> = context.z.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
     let at_p = transposed.apply(arena, &p);
-    let over_one = |matrix: &Matrix, vector: &[Expr]| collected(place, matrix, vector, is_implicit);
+    let over_one = |matrix: &Matrix, vector: &[Expr]| collected(context, matrix, vector, is_implicit);
     let on_positions = arena.symbols_of(&inverse_metric.rows().concat());
     let rates = over_one(&velocity, &at_p).map_err(open("M^-1 p", m.span))?;
     let velocities = if names.y.iter().any(|position| on_positions.contains(position)) {
@@ -143,7 +143,7 @@ pub(super) fn expand(
         symbol: *symbol,
         rate: Formula { expr: arena.add(inertial(arena, &inertia, names.y[i], &rates), external[i]), span: m.span },
     });
-    let outputs = names.y.iter().zip(&place.model.y).enumerate().map(|(i, (symbol, name))| Output {
+    let outputs = names.y.iter().zip(&context.model.y).enumerate().map(|(i, (symbol, name))| Output {
         symbol: *symbol,
         rate: Some(Formula { expr: rates[i], span: m.span }),
         value: None,
@@ -170,7 +170,7 @@ pub(super) fn expand(
         phi: phi.collect(),
         proposal: if given { proposal } else { Proposal::default() },
         conditions,
-        // What the class knows is of its own frame.
+        // The class knows its own frame alone.
         class: given.then(|| {
             Class::Mechanical(Mechanical {
                 q: names.y.to_vec(),
@@ -188,8 +188,8 @@ pub(super) fn expand(
     })
 }
 
-/// What is written of a mechanical plant, over its positions.
-struct Read {
+/// The entries of a mechanical plant as written, over its positions.
+struct MechanicalEntries {
     inertia: Matrix,
     forces: Matrix,
     frame: Matrix,
@@ -197,16 +197,16 @@ struct Read {
 }
 
 fn read(
-    place: &Place<'_>,
-    written: &WrittenClass<Written>,
+    context: &ClassContext<'_>,
+    written: &WrittenClass<WrittenFormula>,
     names: &Names<'_>,
     problems: &mut Diagnostics,
-) -> Result<Read, Stop> {
-    let (arena, n) = (place.arena, names.y.len());
+) -> Result<MechanicalEntries, Stop> {
+    let (arena, n) = (context.arena, names.y.len());
     let on_q: BTreeSet<Symbol> = names.y.iter().chain(names.constants).copied().collect();
     let mut matrix = |name, matrix, (height, width), diagonal, counted| {
         let size = Size { height, width, diagonal, counted };
-        place.matrix(shape::Written { name, matrix }, size, &on_q, problems)
+        context.matrix(shape::WrittenMatrix { name, matrix }, size, &on_q, problems)
     };
     let inertia = matrix("M", &written.m, (n, n), true, "positions x positions");
     let forces = matrix("G", &written.g, (n, names.u.len()), false, "positions x inputs");
@@ -215,20 +215,22 @@ fn read(
         None => Some(Matrix::identity(arena, n)),
     };
     let potential = match &written.v {
-        Some(v) => problems.keep(place.formula(v, &on_q, "V(q)")),
+        Some(v) => problems.keep(context.formula(v, &on_q, "V(q)")),
         None => Some(arena.zero()),
     };
     match (inertia, forces, frame, potential) {
-        (Some(inertia), Some(forces), Some(frame), Some(potential)) => Ok(Read { inertia, forces, frame, potential }),
+        (Some(inertia), Some(forces), Some(frame), Some(potential)) => {
+            Ok(MechanicalEntries { inertia, forces, frame, potential })
+        }
         _ => Err(Stop::Reported),
     }
 }
 
-/// That a determinant does not vanish, where it is no number.
-fn nonzero_determinant(place: &Place<'_>, matrix: &Matrix, span: Span) -> Result<Option<Assumption>, Stop> {
-    let determinant = matrix.determinant(place.arena, &place.domain.facts);
+/// The condition that a determinant does not vanish, where it is no number.
+fn nonzero_determinant(context: &ClassContext<'_>, matrix: &Matrix, span: Span) -> Result<Option<Assumption>, Stop> {
+    let determinant = matrix.determinant(context.arena, &context.domain.facts);
     let expr = determinant.map_err(|obstacle| Stop::from(unresolved("a determinant", span, &obstacle)))?;
-    let is_number = place.arena.as_number(expr).is_some();
+    let is_number = context.arena.as_number(expr).is_some();
     Ok((!is_number).then_some(Assumption { expr, relation: Relation::NonZero, span }))
 }
 
@@ -248,65 +250,71 @@ pub fn change_along(arena: &Arena, m: &Matrix, field: &[Expr], q: &[Symbol]) -> 
 
 /// `W^-1`, and whether it is not written out; none if W has no inverse.
 fn inverse_metric(
-    place: &Place<'_>,
+    context: &ClassContext<'_>,
     parts: (&Matrix, &Matrix),
     metric: &Matrix,
     names: &Names<'_>,
 ) -> Result<Option<(Matrix, bool)>, Obstacle> {
-    if let Some(inverse) = implicit_inverse(place, parts, metric, names)? {
+    if let Some(inverse) = implicit_inverse(context, parts, metric, names)? {
         return Ok(Some((inverse, true)));
     }
-    Ok(metric.inverse(place.arena, &place.domain.facts)?.map(|inverse| (inverse, false)))
+    Ok(metric.inverse(context.arena, &context.domain.facts)?.map(|inverse| (inverse, false)))
 }
 
-/// `W^-1` as cofactors over the determinant, where its normal form would be out of proportion: if a column of T is no Killing
-/// field of M, so that the cascade is refused and nothing is to be proved of the inverse but that it exists.
+/// `W^-1` as cofactors over the determinant, where its normal form would be out of proportion: if a column of T is no
+/// Killing field of M, so that the cascade is refused and nothing is to be proved of the inverse but that it exists.
 fn implicit_inverse(
-    place: &Place<'_>,
+    context: &ClassContext<'_>,
     (inertia, frame): (&Matrix, &Matrix),
     metric: &Matrix,
     names: &Names<'_>,
 ) -> Result<Option<Matrix>, Obstacle> {
-    let arena = place.arena;
-    if !metric.is_long_to_invert(arena, &place.domain.facts)? {
+    let arena = context.arena;
+    if !metric.is_long_to_invert(arena, &context.domain.facts)? {
         return Ok(None);
     }
     let changes = |column: usize| change_along(arena, inertia, &frame.column(column), names.y).entries();
-    let differs = |entry: &Expr| matches!(decide(arena, *entry, place.domain), Answer::NonZero(_));
+    let differs = |entry: &Expr| matches!(decide(arena, *entry, context.domain), Answer::NonZero(_));
     if !(0..frame.width()).any(|column| changes(column).iter().any(differs)) {
         return Ok(None);
     }
     let (adjugate, determinant) = metric.adjugate(arena);
-    let exists = refute(arena, determinant, place.domain).is_some();
+    let exists = refute(arena, determinant, context.domain).is_some();
     Ok(exists.then(|| adjugate.map(|cofactor| arena.div(cofactor, determinant))))
 }
 
-/// The product with a vector, each component over one denominator where that is shorter, but for what is not written out.
+/// The product with a vector, each component over one denominator where that is shorter, except for inverses that are
+/// not written out.
 ///
-/// As a product of what the author wrote it has a value wherever the author's formulas have, and sums of angles are kept.
-fn collected(place: &Place<'_>, matrix: &Matrix, vector: &[Expr], is_implicit: bool) -> Result<Vec<Expr>, Obstacle> {
-    let arena = place.arena;
+/// As a product of the author's formulas it has a value wherever these have, and sums of angles are kept.
+fn collected(
+    context: &ClassContext<'_>,
+    matrix: &Matrix,
+    vector: &[Expr],
+    is_implicit: bool,
+) -> Result<Vec<Expr>, Obstacle> {
+    let arena = context.arena;
     let products = matrix.apply(arena, vector);
     if is_implicit {
         return Ok(products);
     }
-    let field = Field::of_long_sums(arena, &place.domain.facts, &products)?;
+    let field = Field::of_long_sums(arena, &context.domain.facts, &products)?;
     let shortened = |product: &Expr| {
-        let over_one = oriented(arena, place.domain, field.show(&field.fraction(*product)?));
+        let over_one = oriented(arena, context.domain, field.show(&field.fraction(*product)?));
         Ok(shorter(arena, [over_one, *product]))
     };
     products.iter().map(shortened).collect()
 }
 
-/// Of two equal formulas the one with fewer operations, the first where they have as many.
+/// The one of two equal formulas with fewer operations, the first where they have as many.
 fn shorter(arena: &Arena, [first, second]: [Expr; 2]) -> Expr {
     if operations(arena, second) < operations(arena, first) { second } else { first }
 }
 
-/// Where the column of T stands that a component of z is made of: its first entry that is not zero.
-fn column(written: &crate::model::Matrix<Written>, index: usize) -> Span {
+/// The span of T's column for a component of z: its first entry that is not zero.
+fn column(written: &crate::model::Matrix<WrittenFormula>, index: usize) -> Span {
     let entries = written.rows.iter().filter_map(|row| row.get(index));
-    let is_zero = |f: &&Written| matches!(&f.term, crate::model::Term::Number(n) if n.to_f64() == 0.0);
+    let is_zero = |f: &&WrittenFormula| matches!(&f.term, crate::model::Term::Number(n) if n.to_f64() == 0.0);
     if written.depth < 2 {
         return written.rows[0].get(index).map_or(written.span, |entry| entry.span);
     }

@@ -1,11 +1,11 @@
 //! Plants by class: the matrices that the author wrote, expanded into the ordinary plant.
 //!
 //! ```text
-//! lti | mechanical | electromechanical -> x' = f_x, y' = f_y, z = phi, and what the class knows of them
+//! lti | mechanical | electromechanical -> x' = f_x, y' = f_y, z = phi, and a proposal
 //! ```
 //!
-//! Every equation keeps the span of the field that it is made of. What the class knows (a left inverse,
-//! the terms of the regression) is a [`Proposal`]: the analysis proves it as it proves anything else.
+//! Every equation keeps the span of the field that it is made of. The knowledge of the class (a left inverse, the terms
+//! of the regression) is a [`Proposal`]: the analysis proves it as it proves anything else.
 
 mod electromechanical;
 mod linear;
@@ -28,7 +28,7 @@ pub use electromechanical::Electromechanical;
 pub use linear::Linear;
 pub use mechanical::{InVelocities, Mechanical, change_along};
 
-/// What is known of a plant that was written by class.
+/// The class of a plant, with its matrices.
 #[derive(Clone, Debug)]
 pub enum Class {
     /// `lti`
@@ -56,7 +56,7 @@ impl Class {
     }
 }
 
-/// What a class proposes, unproved.
+/// The proposals of a class, unproved.
 #[derive(Clone, Debug, Default)]
 pub struct Proposal {
     /// States in z and y.
@@ -65,7 +65,7 @@ pub struct Proposal {
     pub rates: BTreeMap<Symbol, (Expr, Vec<Expr>)>,
 }
 
-/// The plant that a class stands for.
+/// The plant of a class.
 #[derive(Debug, Default)]
 pub(super) struct Expansion {
     pub(super) x: Vec<State>,
@@ -73,7 +73,7 @@ pub(super) struct Expansion {
     pub(super) phi: Vec<Formula>,
     pub(super) proposal: Proposal,
     pub(super) class: Option<Class>,
-    /// What the class asks of its matrices besides what their formulas ask.
+    /// The domain conditions of the class on its matrices besides those of their formulas.
     pub(super) conditions: Vec<Assumption>,
 }
 
@@ -101,9 +101,9 @@ pub(super) struct Names<'a> {
     pub(super) constants: &'a BTreeSet<Symbol>,
 }
 
-/// Where the formulas of a class are resolved.
+/// The context in which the formulas of a class are resolved.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct ClassContext<'a> {
     pub(super) arena: &'a Arena,
     pub(super) scope: &'a Scope,
     pub(super) model: &'a Model,
@@ -112,7 +112,7 @@ pub(super) struct Place<'a> {
     pub(super) z: &'a [Symbol],
 }
 
-/// What stopped an expansion.
+/// The reason for the end of an expansion.
 enum Stop {
     /// Mistakes that are reported already.
     Reported,
@@ -126,7 +126,7 @@ impl From<Diagnostic> for Stop {
     }
 }
 
-impl Place<'_> {
+impl ClassContext<'_> {
     /// The plant of a class; nothing if there was a mistake, which is among the problems then.
     pub(super) fn expand(
         &self,

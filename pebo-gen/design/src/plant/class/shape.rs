@@ -1,7 +1,7 @@
-//! Written matrices in the sizes that their places ask for.
+//! Written matrices in the sizes that the class needs.
 //!
-//! A matrix is a list of rows. A plain list stands for a row, a column, or, where that is allowed, a
-//! diagonal; a single formula for the only entry, or that multiple of the identity.
+//! A matrix is a list of rows. A plain list is a row, a column, or, where that is allowed, a diagonal; a single formula
+//! is the only entry, or that multiple of the identity.
 
 use std::collections::BTreeSet;
 
@@ -11,14 +11,14 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::Symbol;
 use pebo_cas::domain::zero::{Answer, decide};
 
-use super::Place;
+use super::ClassContext;
 
-/// The size of a matrix, and what it is counted in.
+/// The size of a matrix, and the names of its counts.
 #[derive(Clone, Copy)]
 pub(super) struct Size {
     pub(super) height: usize,
     pub(super) width: usize,
-    /// Whether a list may be a diagonal, and a formula a multiple of the identity.
+    /// True if a list may be a diagonal, and a formula a multiple of the identity.
     pub(super) diagonal: bool,
     /// As `outputs x states`.
     pub(super) counted: &'static str,
@@ -26,16 +26,16 @@ pub(super) struct Size {
 
 /// A written matrix with its name.
 #[derive(Clone, Copy)]
-pub(super) struct Written<'a> {
+pub(super) struct WrittenMatrix<'a> {
     pub(super) name: &'static str,
     pub(super) matrix: &'a Option<model::Matrix<model::Formula>>,
 }
 
-impl Place<'_> {
+impl ClassContext<'_> {
     /// The matrix in that size; zero where none is written. Mistakes are reported.
     pub(super) fn matrix(
         &self,
-        written: Written<'_>,
+        written: WrittenMatrix<'_>,
         size: Size,
         allowed: &BTreeSet<Symbol>,
         problems: &mut Diagnostics,
@@ -45,7 +45,7 @@ impl Place<'_> {
         let mut sound = true;
         for row in &matrix.rows {
             let lowered = row.iter().map(|f| problems.keep(self.formula(f, allowed, written.name)));
-            // Every entry is looked at, whatever became of those before.
+            // Every entry is checked, even after a mistake.
             let lowered: Vec<_> = lowered.collect();
             let row: Option<Vec<_>> = lowered.into_iter().collect();
             sound &= row.is_some();
@@ -74,7 +74,7 @@ impl Place<'_> {
         fitted
     }
 
-    /// Whether the matrix is symmetric; where not, says so.
+    /// Tests whether the matrix is symmetric; reports it if not.
     pub(super) fn symmetric(&self, name: &str, matrix: &Matrix, span: Span) -> Result<(), Diagnostic> {
         for i in 0..matrix.height() {
             for j in 0..i {

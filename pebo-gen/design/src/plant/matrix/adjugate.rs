@@ -1,8 +1,8 @@
 //! Inverses that are not written out: cofactors over the determinant, as expressions that share their minors.
 //!
 //! In: a square matrix. Out: its adjugate and its determinant. The minors of the first rows are made once each, row by
-//! row, and nothing is multiplied out, so that what would be millions of terms is some thousand products. The normal form
-//! of such an entry is as long as ever; its value at a point is soon found.
+//! row, and nothing is multiplied out: some thousand products in place of millions of terms. The normal form of such an
+//! entry is as long as ever; its value at a point is cheap.
 
 use std::collections::BTreeMap;
 
@@ -18,8 +18,8 @@ const LONG: usize = 20_000;
 const MOST_ROWS: usize = 10;
 
 impl Matrix {
-    /// Whether the determinant, written out, is longer than anything that is to be read or proved of the inverse; not of
-    /// matrices that have too many minors.
+    /// Tests whether the written-out determinant is too long for its inverse to be read or proved of; not for matrices
+    /// that have too many minors.
     pub fn is_long_to_invert(&self, arena: &Arena, facts: &Facts) -> Result<bool, Obstacle> {
         if self.height() > MOST_ROWS {
             return Ok(false);
@@ -46,7 +46,7 @@ impl Matrix {
         (adjugate, determinant)
     }
 
-    /// For each column the determinant of what is left without it and the row.
+    /// For each column the minor without it and the row.
     fn minors_without(&self, arena: &Arena, row: usize) -> Vec<Expr> {
         // By the set of their columns, a bit each.
         let mut minors = BTreeMap::from([(0_u64, arena.one())]);

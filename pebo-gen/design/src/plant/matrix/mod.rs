@@ -1,7 +1,6 @@
 //! Matrices of expressions, for the classes of plants.
 //!
-//! Entries are kept as the shortest exact form that is at hand: the author's own, or the normal form of
-//! what was computed from it.
+//! Entries are kept as the shortest exact form that is at hand: the author's own, or a computed normal form.
 
 mod adjugate;
 
@@ -130,9 +129,9 @@ impl Matrix {
         Ok(Some(Self { rows }))
     }
 
-    /// The rank over the field of functions of what the entries hold.
+    /// The rank over the field of functions that the entries generate.
     pub fn rank(&self, arena: &Arena, facts: &Facts) -> Result<usize, Obstacle> {
-        // A rank that a point shows is the least that there is: the greatest possible needs no elimination.
+        // A rank at a point is a lower bound: the greatest possible one needs no elimination.
         let most = self.height().min(self.width());
         let domain = Domain { facts: facts.clone(), ..Domain::default() };
         if proved_rank(arena, &domain, &self.rows, self.width()) == most {

@@ -1,35 +1,36 @@
-//! The states by which the slope of a transform with a plain cascade is a function of y alone.
+//! Finds the states by which the slope of a transform with a plain cascade is a function of y alone.
 //!
-//! In: a plant. Out: for each state, whether inputs move it by itself. The rate of phi is free of x for every value of an
-//! input, so that its derivative by the input is: phi along the field g by which the input moves the plant. If g has no
-//! part in y and none that depends on x, that is a combination of slopes of phi by x with coefficients free of x. Where
-//! such combinations give a single slope, it is free of x, and phi is affine in that state with a coefficient of y.
+//! In: a plant. Out: for each state, true if inputs move it by itself. The rate of phi is free of x for every value of
+//! an input, so that its derivative by the input is: phi along the field g by which the input moves the plant. If g has
+//! no component in y and none that depends on x, that is a combination of slopes of phi by x with coefficients free of
+//! x. Where such combinations give a single slope, it is free of x, and phi is affine in that state with a coefficient
+//! of y.
 
 use pebo_cas::linear::Echelon;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
-/// Of each state, whether the slope by it is shown to be free of x.
-pub(in crate::search) fn driven(question: &Question<'_>) -> Vec<bool> {
-    shown(question).unwrap_or_else(|_| vec![false; question.x.len()])
+/// For each state, true if the slope by it is provably free of x.
+pub(in crate::search) fn driven(problem: &Problem<'_>) -> Vec<bool> {
+    shown(problem).unwrap_or_else(|_| vec![false; problem.x.len()])
 }
 
-fn shown(question: &Question<'_>) -> Result<Vec<bool>, Obstacle> {
-    let arena = question.arena;
+fn shown(problem: &Problem<'_>) -> Result<Vec<bool>, Obstacle> {
+    let arena = problem.arena;
     let along = |symbols: &[Symbol], input| -> Vec<Expr> {
-        let rates = symbols.iter().filter_map(|symbol| question.rates.get(symbol));
+        let rates = symbols.iter().filter_map(|symbol| problem.rates.get(symbol));
         rates.map(|rate| arena.derivative(*rate, input)).collect()
     };
-    let is_free = |e: &Expr| !arena.depends_on(*e, &question.hidden);
-    let fields = question.plant.u.iter().filter(|input| along(&question.y, **input).iter().all(|e| arena.is_zero(*e)));
+    let is_free = |e: &Expr| !arena.depends_on(*e, &problem.hidden);
+    let fields = problem.plant.u.iter().filter(|input| along(&problem.y, **input).iter().all(|e| arena.is_zero(*e)));
     let fields: Vec<Vec<Expr>> =
-        fields.map(|input| along(&question.x, *input)).filter(|field| field.iter().all(is_free)).collect();
-    let field = Field::over(arena, &question.domain.facts, &fields.concat())?;
+        fields.map(|input| along(&problem.x, *input)).filter(|field| field.iter().all(is_free)).collect();
+    let field = Field::over(arena, &problem.domain.facts, &fields.concat())?;
     let rows = fields.iter().map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>());
-    let (echelon, _) = Echelon::of(&field, rows.collect::<Result<_, _>>()?, question.x.len())?;
-    let mut driven = vec![false; question.x.len()];
+    let (echelon, _) = Echelon::of(&field, rows.collect::<Result<_, _>>()?, problem.x.len())?;
+    let mut driven = vec![false; problem.x.len()];
     for (pivot, row) in echelon.rows() {
         driven[pivot] = row.iter().enumerate().all(|(column, entry)| column == pivot || entry.is_zero());
     }

@@ -1,16 +1,17 @@
-//! How many components a transform can have at most, whatever functions it is made of.
+//! Upper bounds on the number of a transform's components, whatever functions it is made of.
 //!
 //! ```text
 //! f at a rational point -> power series -> linear equations for the Taylor coefficients of phi -> rank, certificate
 //! ```
 //!
-//! If the rate of phi is free of x, so are all coefficients of its power series around a point: the coefficients of `L_f phi`
-//! whose monomials hold x vanish, for every value of the inputs. These are linear equations A c = 0 for the Taylor
-//! coefficients c of phi. A combination of the rows that is a combination of the columns of dphi/dx alone is a relation that
-//! the gradient of every smooth phi satisfies there. So if there are r independent ones, no phi, of any number of
-//! components, has a larger rank than n - r at that point, and none with n > n - r has a differentiable left inverse around
-//! it. The rows that are used are found modulo a prime, and the combination is then solved for in rational numbers, which is
-//! the certificate: a proof by exact arithmetic for the point and the values of the parameters that are named with it.
+//! If the rate of phi is free of x, so are all coefficients of its power series around a point: the coefficients of
+//! `L_f phi` whose monomials hold x vanish, for every value of the inputs. These are linear equations A c = 0 for the
+//! Taylor coefficients c of phi. A combination of the rows that is a combination of the columns of dphi/dx alone is a
+//! relation that the gradient of every smooth phi satisfies there. So if there are r independent ones, no phi, of any
+//! number of components, has a larger rank than n - r at that point, and none with n > n - r has a differentiable left
+//! inverse around it. The rows are found modulo a prime, and the combination is then solved for in rational numbers,
+//! which is the certificate: a proof by exact arithmetic for the point and the values of the parameters that are named
+//! with it.
 
 mod driven;
 pub(crate) mod largest;
@@ -23,7 +24,7 @@ use pebo_cas::linear::residues::ResidueRows;
 use pebo_cas::poly::{PrimeField, Residue};
 use pebo_cas::{Expr, Rational, Symbol};
 
-use super::problem::Question;
+use super::problem::Problem;
 use driven::driven;
 use series::{Jets, Monomial};
 
@@ -40,9 +41,9 @@ pub struct Bound {
     pub states: usize,
     /// No transform of the class has a larger rank there.
     pub rank: usize,
-    /// Of which transforms this is said.
+    /// The class of transforms that it bounds.
     pub class: BoundClass,
-    /// Whether the certificate was worked out in rational numbers.
+    /// True if the certificate was worked out in rational numbers.
     pub proved: bool,
     /// The point and the values of the parameters for which it is said.
     pub point: Vec<(Symbol, Expr)>,
@@ -50,34 +51,34 @@ pub struct Bound {
     pub x: Vec<Symbol>,
     /// The coefficients of each relation among the entries of a gradient there.
     pub relations: Vec<Vec<Expr>>,
-    /// How it was worked out.
+    /// The evidence.
     pub evidence: Evidence,
 }
 
-/// How a bound was worked out.
+/// The evidence for a bound.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Evidence {
     /// By power series around the point.
     Series {
-        /// How many equations at most are combined to one relation.
+        /// Most equations that one relation combines.
         equations: usize,
         /// The order of the series.
         order: usize,
     },
     /// By completing the equations for transforms affine in x: for every y but for single ones.
     Completion {
-        /// How many independent transforms there are but for functions of y, where that is decided.
+        /// The number of independent transforms up to functions of y, where that is decided.
         transforms: Option<usize>,
     },
 }
 
 impl Bound {
-    /// Whether it is proved that no transform of the class has a differentiable left inverse around the point.
+    /// Tests whether it is proved that no transform of the class has a differentiable left inverse around the point.
     pub fn excludes(&self) -> bool {
         self.proved && self.rank < self.states
     }
 
-    /// How many independent transforms of the class there are but for functions of y, where that is decided.
+    /// The number of independent transforms of the class up to functions of y, where that is decided.
     pub fn transforms(&self) -> Option<usize> {
         match self.evidence {
             Evidence::Completion { transforms } => transforms,
@@ -97,22 +98,22 @@ pub enum BoundClass {
     AffineRate,
 }
 
-/// Bounds the rank of transforms of one class by series to this order, at the first point that is found or after so many
-/// others; none where no point was found, or the equations are too many. Where identities hold, a rate has to be free of x
-/// on them alone, and nothing is said.
-pub(super) fn bound(question: &Question<'_>, class: BoundClass, (largest, others): (usize, usize)) -> Option<Bound> {
-    if !question.plant.identities.is_empty() {
+/// Bounds the rank of transforms of one class by series to this order, at the first point that is found or after so
+/// many others; none where no point was found, or the equations are too many. Where identities hold, a rate has to be
+/// free of x on them alone, and nothing is said.
+pub(super) fn bound(problem: &Problem<'_>, class: BoundClass, (largest, others): (usize, usize)) -> Option<Bound> {
+    if !problem.plant.identities.is_empty() {
         return None;
     }
-    let states = question.x.len();
-    let jets = Jets::of(question, others)?;
-    let unknowns = Unknowns::of(question, class);
+    let states = problem.x.len();
+    let jets = Jets::of(problem, others)?;
+    let unknowns = Unknowns::of(problem, class);
     let mut best: Option<Bound> = None;
     for order in 1..=largest {
-        if !question.goes_on() || unknowns.monomials(order + 1).len() > MOST_UNKNOWNS {
+        if !problem.goes_on() || unknowns.monomials(order + 1).len() > MOST_UNKNOWNS {
             break;
         }
-        let Some(found) = at(question, &unknowns, &jets, order) else { break };
+        let Some(found) = at(problem, &unknowns, &jets, order) else { break };
         if best.as_ref().is_none_or(|best| (found.rank, !found.proved) < (best.rank, !best.proved)) {
             best = Some(found);
         }
@@ -123,22 +124,22 @@ pub(super) fn bound(question: &Question<'_>, class: BoundClass, (largest, others
     best
 }
 
-/// The transforms of which a bound is said.
+/// The Taylor coefficients of the bounded transforms.
 struct Unknowns {
     class: BoundClass,
     /// The coordinates: states, then outputs.
     width: usize,
-    /// Of each state, whether a monomial that holds it may hold a state besides.
+    /// For each state, true if a monomial that holds it may hold a state besides.
     mixed: Vec<bool>,
 }
 
 impl Unknowns {
-    fn of(question: &Question<'_>, class: BoundClass) -> Self {
+    fn of(problem: &Problem<'_>, class: BoundClass) -> Self {
         let mixed = match class {
-            BoundClass::Smooth => driven(question).into_iter().map(|driven| !driven).collect(),
-            BoundClass::Affine | BoundClass::AffineRate => vec![false; question.x.len()],
+            BoundClass::Smooth => driven(problem).into_iter().map(|driven| !driven).collect(),
+            BoundClass::Affine | BoundClass::AffineRate => vec![false; problem.x.len()],
         };
-        Self { class, width: question.x.len() + question.y.len(), mixed }
+        Self { class, width: problem.x.len() + problem.y.len(), mixed }
     }
 
     /// The monomials of phi up to that degree, but for 1.
@@ -176,8 +177,8 @@ struct Equations {
     columns: Vec<Monomial>,
 }
 
-fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Equations> {
-    let states = question.x.len();
+fn equations(problem: &Problem<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Equations> {
+    let states = problem.x.len();
     let mut columns = unknowns.monomials(order + 1);
     let is_gradient = |m: &Monomial| {
         m[..states].iter().map(|e| usize::from(*e)).sum::<usize>() == 1 && m[states..].iter().all(|e| *e == 0)
@@ -186,7 +187,7 @@ fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: u
     // The least degree in x that a rate must not have.
     let known = if unknowns.class == BoundClass::AffineRate { 2 } else { 1 };
     let mut rows = Vec::new();
-    for field in jets.fields(question, order)? {
+    for field in jets.fields(problem, order)? {
         // The rate of each monomial, term by term.
         let mut equations: BTreeMap<Monomial, Vec<Rational>> = BTreeMap::new();
         for (column, monomial) in columns.iter().enumerate() {
@@ -206,7 +207,7 @@ fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: u
                 }
             }
         }
-        if !question.arena.budget().take((columns.len() * equations.len()) as u64) {
+        if !problem.arena.budget().take((columns.len() * equations.len()) as u64) {
             return None;
         }
         rows.extend(equations.into_values());
@@ -215,9 +216,9 @@ fn equations(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: u
 }
 
 /// The bound at a point, from series of that order.
-fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Bound> {
-    let states = question.x.len();
-    let Equations { rows, columns } = equations(question, unknowns, jets, order)?;
+fn at(problem: &Problem<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> Option<Bound> {
+    let states = problem.x.len();
+    let Equations { rows, columns } = equations(problem, unknowns, jets, order)?;
     let split = columns.len() - states;
     let prime = PrimeField::below(1 << 31)?;
     let images: Option<Vec<Vec<Residue>>> =
@@ -226,7 +227,7 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
     // Rows that are zero but for the gradient's columns, after elimination.
     let mut echelon = ResidueRows::new(&prime, columns.len());
     for row in images.iter().cloned() {
-        if !question.arena.budget().take((columns.len() * (echelon.rank() + 1) / 8) as u64) {
+        if !problem.arena.budget().take((columns.len() * (echelon.rank() + 1) / 8) as u64) {
             return None;
         }
         echelon.insert(row);
@@ -237,35 +238,35 @@ fn at(question: &Question<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -
         rank: states - pivots,
         class: unknowns.class,
         proved: pivots == 0,
-        point: jets.point(question),
-        x: question.x.clone(),
+        point: jets.point(problem),
+        x: problem.x.clone(),
         relations: Vec::new(),
         evidence: Evidence::Series { equations: 0, order },
     };
     if pivots > 0 {
-        let relations = certificate(question, &prime, (&rows, &images), (split, pivots))?;
+        let relations = certificate(problem, &prime, (&rows, &images), (split, pivots))?;
         let equations = relations.iter().map(|(_, equations)| *equations).max().unwrap_or(0);
         bound.evidence = Evidence::Series { equations, order };
-        let relations = reduced(question, &relations.into_iter().map(|(relation, _)| relation).collect::<Vec<_>>())?;
-        let number = |value: &Rational| question.arena.number(value.clone());
+        let relations = reduced(problem, &relations.into_iter().map(|(relation, _)| relation).collect::<Vec<_>>())?;
+        let number = |value: &Rational| problem.arena.number(value.clone());
         bound.relations = relations.iter().map(|relation| relation.iter().map(number).collect()).collect();
         bound.proved = bound.relations.len() == pivots;
     }
     Some(bound)
 }
 
-/// Combinations of the rows that vanish but for the last columns, in rational numbers and checked; as many as asked, or
-/// none.
+/// Combinations of the rows that vanish but for the last columns, in rational numbers and checked; as many as wanted,
+/// or none.
 fn certificate(
-    question: &Question<'_>,
+    problem: &Problem<'_>,
     prime: &PrimeField,
     (rows, images): (&[Vec<Rational>], &[Vec<Residue>]),
     (split, wanted): (usize, usize),
 ) -> Option<Vec<(Vec<Rational>, usize)>> {
-    // Combinations of rows: the null space of the transposed left part, those that are not zero on the right.
+    // Combinations of rows: those in the null space of the transposed left block that are not zero on the right.
     let mut transposed = ResidueRows::new(prime, rows.len());
     for column in 0..split {
-        if !question.arena.budget().take((rows.len() * (transposed.rank() + 1) / 8) as u64) {
+        if !problem.arena.budget().take((rows.len() * (transposed.rank() + 1) / 8) as u64) {
             return None;
         }
         transposed.insert(images.iter().map(|row| row[column]).collect());
@@ -287,7 +288,7 @@ fn certificate(
         }
         let support: Vec<usize> = (0..rows.len()).filter(|row| !vector[*row].is_zero()).collect();
         let chosen: Vec<&Vec<Rational>> = support.iter().map(|row| &rows[*row]).collect();
-        let combination = combination(question, &chosen, split)?;
+        let combination = combination(problem, &chosen, split)?;
         // The check of the certificate: c A = (0 | relation), every entry in rational numbers.
         let total = |column: usize| {
             combination.iter().zip(&chosen).fold(Rational::ZERO, |sum, (factor, row)| &sum + &(factor * &row[column]))
@@ -306,20 +307,20 @@ fn certificate(
     Some(found)
 }
 
-/// The same relations in their simplest form: what annihilates all that they annihilate.
-fn reduced(question: &Question<'_>, relations: &[Vec<Rational>]) -> Option<Vec<Vec<Rational>>> {
-    let (width, budget) = (question.x.len(), question.arena.budget());
+/// The same relations in their simplest form: the annihilator of their annihilator.
+fn reduced(problem: &Problem<'_>, relations: &[Vec<Rational>]) -> Option<Vec<Vec<Rational>>> {
+    let (width, budget) = (problem.x.len(), problem.arena.budget());
     let gradients = null_space_of_numbers(relations, width, budget)?;
     null_space_of_numbers(&gradients, width, budget)
 }
 
 /// The combination of these rows that vanishes left of the split, if it is the only one.
-fn combination(question: &Question<'_>, rows: &[&Vec<Rational>], split: usize) -> Option<Vec<Rational>> {
+fn combination(problem: &Problem<'_>, rows: &[&Vec<Rational>], split: usize) -> Option<Vec<Rational>> {
     let transposed: Vec<Vec<Rational>> = (0..split)
         .map(|column| rows.iter().map(|row| row[column].clone()).collect::<Vec<Rational>>())
         .filter(|row| row.iter().any(|entry| !entry.is_zero()))
         .collect();
-    let vectors = null_space_of_numbers(&transposed, rows.len(), question.arena.budget())?;
+    let vectors = null_space_of_numbers(&transposed, rows.len(), problem.arena.budget())?;
     let [vector] = vectors.as_slice() else { return None };
     Some(vector.clone())
 }

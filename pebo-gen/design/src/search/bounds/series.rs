@@ -8,12 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use pebo_cas::graph::enclosure::Point;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Symbol};
 
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
 /// A monomial in the coordinates, as exponents.
 pub(in crate::search) type Monomial = Vec<u8>;
 
-/// A truncated power series; the constant part may hold multiples of the angle whose sine is 3/5 and cosine 4/5.
+/// A truncated power series; the constant term may hold multiples of the angle whose sine is 3/5 and cosine 4/5.
 #[derive(Clone, Debug)]
 pub(in crate::search) struct Jet {
     terms: BTreeMap<Monomial, Rational>,
@@ -41,7 +41,7 @@ pub(in crate::search) struct Jets {
     coordinates: Vec<Symbol>,
 }
 
-/// Steps that a product of two terms takes: one of rational numbers, and a place among the terms.
+/// Steps of a product of two terms: one of rational numbers, and an index among the terms.
 const STEPS_OF_A_PAIR: u64 = 30;
 
 /// `atan(3/4)`, whose sine and cosine are rational.
@@ -51,15 +51,15 @@ fn angle(arena: &Arena) -> Expr {
 
 impl Jets {
     /// At a point of the domain that is found after so many others, where all rates have rational series.
-    pub(in crate::search) fn of(question: &Question<'_>, mut others: usize) -> Option<Self> {
+    pub(in crate::search) fn of(problem: &Problem<'_>, mut others: usize) -> Option<Self> {
         const MOST_POINTS: usize = 12;
-        let arena = question.arena;
-        let formulas: Vec<Expr> = question.rates.values().copied().collect();
+        let arena = problem.arena;
+        let formulas: Vec<Expr> = problem.rates.values().copied().collect();
         let (angles, zeros) = special(arena, &formulas);
-        let coordinates: Vec<Symbol> = question.x.iter().chain(&question.y).copied().collect();
+        let coordinates: Vec<Symbol> = problem.x.iter().chain(&problem.y).copied().collect();
         for turned in [true, false] {
-            let mut domain = question.domain.clone();
-            // Claims are for all values of the parameters with these signs: those with few digits make short proofs.
+            let mut domain = problem.domain.clone();
+            // Claims are for all values of the parameters with these signs: values with few digits make short proofs.
             domain.fixed.clear();
             for symbol in zeros.iter().chain(angles.iter().filter(|_| !turned)) {
                 domain.fixed.entry(*symbol).or_insert(arena.zero());
@@ -68,14 +68,14 @@ impl Jets {
                 domain.fixed.entry(*symbol).or_insert(angle(arena));
             }
             for point in domain.points(arena, &formulas).take(MOST_POINTS) {
-                let free = question.plant.u.iter().chain(&question.plant.w).copied().collect();
+                let free = problem.plant.u.iter().chain(&problem.plant.w).copied().collect();
                 let beside = domain.beside(&point, &free);
                 let mut points = vec![point];
                 if points[0].keys().any(|symbol| free.contains(symbol)) {
                     points.extend(beside.points(arena, &formulas).take(free.len() + 2));
                 }
                 let jets = Self { points, coordinates: coordinates.clone() };
-                if jets.fields(question, 1).is_some() {
+                if jets.fields(problem, 1).is_some() {
                     if others == 0 {
                         return Some(jets);
                     }
@@ -87,24 +87,24 @@ impl Jets {
     }
 
     /// The point, without inputs.
-    pub(in crate::search) fn point(&self, question: &Question<'_>) -> Vec<(Symbol, Expr)> {
-        let given = |symbol: &Symbol| !question.plant.u.contains(symbol);
+    pub(in crate::search) fn point(&self, problem: &Problem<'_>) -> Vec<(Symbol, Expr)> {
+        let given = |symbol: &Symbol| !problem.plant.u.contains(symbol);
         self.points.first().into_iter().flatten().filter(|(s, _)| given(s)).map(|(s, e)| (*s, *e)).collect()
     }
 
     /// The series of the rates, in the order of the coordinates, for each of the points.
-    pub(in crate::search) fn fields(&self, question: &Question<'_>, order: usize) -> Option<Vec<Vec<Jet>>> {
+    pub(in crate::search) fn fields(&self, problem: &Problem<'_>, order: usize) -> Option<Vec<Vec<Jet>>> {
         let rates: Vec<Expr> =
-            self.coordinates.iter().map(|symbol| question.rates.get(symbol).copied()).collect::<Option<_>>()?;
+            self.coordinates.iter().map(|symbol| problem.rates.get(symbol).copied()).collect::<Option<_>>()?;
         let field = |point: &Point| {
-            let series = Series { arena: question.arena, point, coordinates: &self.coordinates, order };
+            let series = Series { arena: problem.arena, point, coordinates: &self.coordinates, order };
             series.of_all(&rates)
         };
         self.points.iter().map(field).collect()
     }
 }
 
-/// Symbols that stand in sines and cosines alone, with rational factors, and those that stand in other functions.
+/// Symbols that occur in sines and cosines alone, with rational factors, and symbols that occur in other functions.
 fn special(arena: &Arena, formulas: &[Expr]) -> (Vec<Symbol>, Vec<Symbol>) {
     let (mut within, mut others) = (Vec::new(), Vec::new());
     let mut plain: BTreeSet<Symbol> = BTreeSet::new();
@@ -228,7 +228,7 @@ impl Series<'_> {
         Some(Jet { terms, angle: Rational::ZERO })
     }
 
-    /// The value at the point, and what is left of the series.
+    /// The value at the point, and the rest of the series.
     fn split(&self, jet: &Jet) -> (Rational, Jet) {
         let mut rest = jet.clone();
         let value = rest.terms.remove(&vec![0; self.coordinates.len()]).unwrap_or(Rational::ZERO);

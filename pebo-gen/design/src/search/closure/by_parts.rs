@@ -1,12 +1,13 @@
 //! Transforms of plants with unknown constants, by integration by parts.
 //!
-//! In: a plant some of whose states have the rate zero. Out: functions of x and y whose rates are affine in themselves. Where
-//! a constant c multiplies in a rate what is the rate of w, c*w is taken into the component instead, as the constant has no
-//! rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has z = y' + b*y with z' = -a*y + u. What is left in
-//! the rates are the components, and products of constants times known signals, which are components too.
+//! In: a plant some of whose states have the rate zero. Out: functions of x and y whose rates are affine in themselves.
+//! Where a constant c multiplies the rate of w in another rate, c*w is taken into the component instead, as the
+//! constant has no rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has z = y' + b*y with z' = -a*y
+//! + u. The rates then consist of the components, and of products of constants and known signals, which are components
+//! too.
 //!
-//! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply measured
-//! signals alone (Marino and Tomei 1992).
+//! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply
+//! measured signals alone (Marino and Tomei 1992).
 
 use std::collections::BTreeSet;
 
@@ -16,12 +17,12 @@ use pebo_cas::{Expr, Node, Rational, Symbol};
 
 use super::products::{Term, apart, terms};
 use crate::search::integral::antiderivative;
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
 
-/// Steps by parts, and rounds over all rates, after which they are taken not to end.
+/// Steps by parts, and rounds over all rates, after which they are assumed endless.
 const MOST_STEPS: usize = 500;
 const MOST_ROUNDS: usize = 12;
 
@@ -33,30 +34,30 @@ struct Component {
 
 /// The functions; none where it does not end.
 pub(in crate::search) fn by_parts(
-    question: &Question<'_>,
+    problem: &Problem<'_>,
     constants: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Expr>>, Obstacle> {
-    let arena = question.arena;
-    let mut search = ByParts { question, constants, components: Vec::new(), steps: 0 };
+    let arena = problem.arena;
+    let mut search = ByParts { problem, constants, components: Vec::new(), steps: 0 };
     for _ in 0..MOST_ROUNDS {
         let before: Vec<Expr> = search.functions();
-        for rate in question.output_rates() {
+        for rate in problem.output_rates() {
             if search.reduced(rate, None)?.is_none() {
                 return Ok(None);
             }
         }
         let mut index = 0;
         while index < search.components.len() {
-            let rate = question.rate(search.components[index].function);
+            let rate = problem.rate(search.components[index].function);
             if search.reduced(rate, Some(index))?.is_none() {
                 return Ok(None);
             }
             index += 1;
         }
         if search.functions() == before {
-            let rates: Vec<Expr> = before.iter().map(|function| question.rate(*function)).collect();
+            let rates: Vec<Expr> = before.iter().map(|function| problem.rate(*function)).collect();
             let mut found = before;
-            for rate in question.output_rates().into_iter().chain(rates) {
+            for rate in problem.output_rates().into_iter().chain(rates) {
                 let Some(rest) = search.reduced(rate, None)? else { return Ok(None) };
                 for of_constants in search.of_constants(rest)? {
                     let is_new = |other: &Expr| arena.as_number(arena.div(of_constants, *other)).is_none();
@@ -72,7 +73,7 @@ pub(in crate::search) fn by_parts(
 }
 
 struct ByParts<'a, 'b> {
-    question: &'a Question<'b>,
+    problem: &'a Problem<'b>,
     constants: &'a BTreeSet<Symbol>,
     components: Vec<Component>,
     steps: usize,
@@ -83,10 +84,10 @@ impl ByParts<'_, '_> {
         self.components.iter().map(|component| component.function).collect()
     }
 
-    /// The rate without the components that it holds; what is left holds constants alone. A component whose rate this is takes
-    /// in what goes by parts. None where it does not end.
+    /// The rate without its components; constants alone are left. A component with this rate absorbs the terms
+    /// integrated by parts. None where it does not end.
     fn reduced(&mut self, rate: Expr, owner: Option<usize>) -> Result<Option<Expr>, Obstacle> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let mut rest = rate;
         loop {
             let Some(terms) = self.terms(rest)? else { return Ok(None) };
@@ -98,7 +99,7 @@ impl ByParts<'_, '_> {
             if self.steps > MOST_STEPS {
                 return Ok(None);
             }
-            // Components first: what they leave may cancel what would go by parts.
+            // Components first: the rest may cancel terms that would be integrated by parts.
             let component = |term: &Term| self.components.iter().find(|component| component.lead == term.product);
             if let Some((term, component)) = open.iter().find_map(|term| Some((term, component(term)?))) {
                 rest = arena.sub(rest, arena.mul(term.coefficient, component.function));
@@ -110,7 +111,7 @@ impl ByParts<'_, '_> {
             {
                 let moved = arena.sub(self.components[index].function, part);
                 self.components[index].function = moved;
-                rest = arena.sub(rest, self.question.rate(part));
+                rest = arena.sub(rest, self.problem.rate(part));
                 continue;
             }
             if self.components.len() == MOST {
@@ -120,11 +121,11 @@ impl ByParts<'_, '_> {
         }
     }
 
-    /// What has the term in its rate: a constant times a function whose rate holds the rest of the product.
+    /// The function with the term in its rate: a constant times a function whose rate holds the rest of the product.
     fn part(&self, term: &Term) -> Result<Option<Expr>, Obstacle> {
-        let (arena, question) = (self.question.arena, self.question);
+        let (arena, problem) = (self.problem.arena, self.problem);
         let held = arena.symbols_of(&[term.product]);
-        let outputs = question.y.iter().map(|symbol| (arena.of_symbol(*symbol), Some(*symbol)));
+        let outputs = problem.y.iter().map(|symbol| (arena.of_symbol(*symbol), Some(*symbol)));
         let functions = self.components.iter().map(|component| (component.function, None));
         let candidates: Vec<(Expr, Option<Symbol>)> = outputs.chain(functions).collect();
         // A constant, or all that is constant: `1/(1 + c)` is a factor as a whole.
@@ -135,15 +136,15 @@ impl ByParts<'_, '_> {
                 continue;
             }
             for (function, output) in &candidates {
-                let Some(terms) = self.terms(question.rate(*function))? else { continue };
+                let Some(terms) = self.terms(problem.rate(*function))? else { continue };
                 let Some(own) = terms.iter().find(|own| own.product == remaining) else { continue };
                 let ratio = arena.div(term.coefficient, own.coefficient);
                 let signals: BTreeSet<Symbol> =
-                    arena.symbols_of(&[ratio]).into_iter().filter(|s| question.signals.contains(s)).collect();
+                    arena.symbols_of(&[ratio]).into_iter().filter(|s| problem.signals.contains(s)).collect();
                 let whole = match output {
                     _ if signals.is_empty() => Some(arena.mul(ratio, *function)),
                     Some(output) if signals.iter().eq([output]) => {
-                        antiderivative(arena, &question.domain, ratio, *output)
+                        antiderivative(arena, &problem.domain, ratio, *output)
                     }
                     _ => None,
                 };
@@ -157,7 +158,7 @@ impl ByParts<'_, '_> {
 
     /// The factors that are constant, where there are any.
     fn constant_part(&self, product: Expr) -> Option<Expr> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let Node::Product(product) = arena.node(product) else { return None };
         let is_constant = |factor: &&(Expr, Rational)| arena.symbols_of(&[factor.0]).is_subset(self.constants);
         let part: Vec<(Expr, Rational)> = product.factors.iter().filter(is_constant).cloned().collect();
@@ -165,20 +166,20 @@ impl ByParts<'_, '_> {
     }
 
     fn is_constant(&self, product: Expr) -> bool {
-        self.question.arena.symbols_of(&[product]).is_subset(self.constants)
+        self.problem.arena.symbols_of(&[product]).is_subset(self.constants)
     }
 
     fn terms(&self, formula: Expr) -> Result<Option<Vec<Term>>, Obstacle> {
-        terms(self.question, formula, &self.question.hidden)
+        terms(self.problem, formula, &self.problem.hidden)
     }
 
     /// The polynomials in the constants that multiply known signals which are independent of each other.
     fn of_constants(&self, formula: Expr) -> Result<Vec<Expr>, Obstacle> {
-        let (arena, question) = (self.question.arena, self.question);
-        let field = Field::over(arena, &question.domain.facts, &[formula])?;
+        let (arena, problem) = (self.problem.arena, self.problem);
+        let field = Field::over(arena, &problem.domain.facts, &[formula])?;
         let fraction = field.fraction(formula)?;
         let others: BTreeSet<Symbol> =
-            question.signals.iter().copied().filter(|signal| !question.hidden.contains(signal)).collect();
+            problem.signals.iter().copied().filter(|signal| !problem.hidden.contains(signal)).collect();
         let (known, constants) = (field.kernels_of(&others), field.kernels_of(self.constants));
         let Some([divisor, _]) = apart(&field, fraction.denominator(), [&constants, &known])? else {
             return Ok(Vec::new());
@@ -195,10 +196,10 @@ impl ByParts<'_, '_> {
         Ok(found)
     }
 
-    /// The formula without what it holds of the parameters as a factor, and with a first term that is not subtracted.
+    /// The formula without its factor of parameters, and with a first term that is not subtracted.
     fn without_numbers(&self, formula: Expr) -> Result<Expr, Obstacle> {
-        let (arena, question) = (self.question.arena, self.question);
-        let field = Field::over(arena, &question.domain.facts, &[formula])?;
+        let (arena, problem) = (self.problem.arena, self.problem);
+        let field = Field::over(arena, &problem.domain.facts, &[formula])?;
         let fraction = field.fraction(formula)?;
         let kernels: Vec<u32> = field.kernels_of(self.constants).into_iter().collect();
         let parts = fraction.numerator().collect(&kernels);

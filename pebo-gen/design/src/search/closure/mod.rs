@@ -1,12 +1,12 @@
 //! Functions of x whose rates are affine in themselves: an immersion into a plant that is linear in z.
 //!
-//! In: formulas, those of the outputs' rates or the states. Out: the functions of x that they consist of, with those that the
-//! rates of these consist of, and so on until nothing is added; none if that does not end soon. Coefficients are functions
-//! of y and u, so that the cascade is a generalised one, and what the functions were taken from is affine in them.
+//! In: formulas, those of the outputs' rates or the states. Out: their functions of x, with those in the rates of
+//! these, and so on until nothing is added; none if that does not end soon. Coefficients are functions of y and u, so
+//! that the cascade is a generalised one, and the given formulas are affine in the functions.
 //!
-//! A function is what multiplies one function of y and u in a formula: `2*v*p + 2*s - p^2` consists of p and `2*s - p^2`,
-//! as no other part of it is seen. Functions that are combinations of others with constant coefficients are left out, so
-//! that of a closure that begins with the outputs nothing stays hidden because of its size.
+//! A function is the coefficient of one function of y and u in a formula: `2*v*p + 2*s - p^2` consists of p and `2*s -
+//! p^2`, as nothing else of it is observable. Functions that are combinations of others with constant coefficients are
+//! left out, so that of a closure that begins with the outputs nothing stays hidden because of its size.
 
 pub(super) mod by_parts;
 pub(super) mod constants;
@@ -22,61 +22,61 @@ use pebo_cas::poly::{Monomial, Poly};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
-use super::problem::Question;
+use super::problem::Problem;
 use super::sample::is_affine_in;
 use products::apart;
 
 /// More functions than this make no observer that anybody would run.
 const MOST: usize = 12;
 
-/// Nor do functions of more parts: rates of rates that do not close grow with every step.
+/// Most nodes of the functions: rates of rates that do not close grow with every step.
 const MOST_PARTS: usize = 3_000;
 
-/// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave what it can say.
-pub(super) fn closure(question: &Question<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
+/// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave this form.
+pub(super) fn closure(problem: &Problem<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
     let mut found: Vec<Expr> = Vec::new();
     let mut open: Vec<Expr> = start.to_vec();
     while let Some(formula) = open.pop() {
-        let Some(functions) = functions_of(question, formula)? else { return Ok(None) };
+        let Some(functions) = functions_of(problem, formula)? else { return Ok(None) };
         for function in functions {
-            if !is_new(question, &found, function)? {
+            if !is_new(problem, &found, function)? {
                 continue;
             }
             if found.len() == MOST
-                || is_long(question, function)
-                || question.bends_in_states(function)
-                || question.arena.depends_on(function, &question.plant.w.iter().copied().collect())
+                || is_long(problem, function)
+                || problem.is_non_smooth_in_states(function)
+                || problem.arena.depends_on(function, &problem.plant.w.iter().copied().collect())
             {
                 return Ok(None);
             }
             found.push(function);
-            open.push(question.rate(function));
+            open.push(problem.rate(function));
         }
     }
-    let mut found = plainest(question, &found)?;
-    found.sort_by_key(|e| (question.arena.print(*e).len(), *e));
+    let mut found = plainest(problem, &found)?;
+    found.sort_by_key(|e| (problem.arena.print(*e).len(), *e));
     Ok(Some(found))
 }
 
-/// The outputs' rates that hold states and no input, and their rates, and so on until those are affine in what is there; none
-/// if they hold an input before, or it is more than that.
-pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
-    let arena = question.arena;
-    let others: BTreeSet<Symbol> = question.plant.u.iter().chain(&question.plant.w).copied().collect();
+/// The outputs' rates that hold states and no input, and their rates, and so on until those are affine in earlier ones;
+/// none if they hold an input before, or there are more than that.
+pub(super) fn of_rows(problem: &Problem<'_>) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = problem.arena;
+    let others: BTreeSet<Symbol> = problem.plant.u.iter().chain(&problem.plant.w).copied().collect();
     let is_of_states = |row: &Expr| {
-        arena.depends_on(*row, &question.states())
+        arena.depends_on(*row, &problem.states())
             && !arena.depends_on(*row, &others)
-            && !question.bends_in_states(*row)
+            && !problem.is_non_smooth_in_states(*row)
     };
-    let mut found: Vec<Expr> = question.output_rates().into_iter().filter(is_of_states).collect();
+    let mut found: Vec<Expr> = problem.output_rates().into_iter().filter(is_of_states).collect();
     let mut next = 0;
     while next < found.len() {
-        let rate = question.rate(found[next]);
+        let rate = problem.rate(found[next]);
         next += 1;
-        if is_long(question, rate) {
+        if is_long(problem, rate) {
             return Ok(None);
         }
-        if is_affine_in(question, &[rate], &found)? {
+        if is_affine_in(problem, &[rate], &found)? {
             continue;
         }
         if found.len() == MOST || !is_of_states(&rate) {
@@ -87,22 +87,22 @@ pub(super) fn of_rows(question: &Question<'_>) -> Result<Option<Vec<Expr>>, Obst
     Ok((!found.is_empty()).then_some(found))
 }
 
-fn is_long(question: &Question<'_>, function: Expr) -> bool {
-    question.arena.postorder(&[function]).len() > MOST_PARTS
+fn is_long(problem: &Problem<'_>, function: Expr) -> bool {
+    problem.arena.postorder(&[function]).len() > MOST_PARTS
 }
 
-/// The functions of x of which a formula is a combination with coefficients that are free of x, independent of each other;
-/// none where they are not seen, as x stands together with what is known in a factor of the denominator.
-fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Expr>>, Obstacle> {
-    let arena = question.arena;
-    let field = Field::over(arena, &question.domain.facts, &[formula])?;
+/// The functions of x of which a formula is a combination with coefficients that are free of x, independent of each
+/// other; none where they are not separable, as x occurs with known signals in a factor of the denominator.
+fn functions_of(problem: &Problem<'_>, formula: Expr) -> Result<Option<Vec<Expr>>, Obstacle> {
+    let arena = problem.arena;
+    let field = Field::over(arena, &problem.domain.facts, &[formula])?;
     let fraction = field.fraction(formula)?;
-    let hidden = field.kernels_of(&question.hidden);
-    let known: BTreeSet<Symbol> = question.signals.difference(&question.hidden).copied().collect();
+    let hidden = field.kernels_of(&problem.hidden);
+    let known: BTreeSet<Symbol> = problem.signals.difference(&problem.hidden).copied().collect();
     let known = field.kernels_of(&known);
     let parts = apart(&field, fraction.denominator(), [&hidden, &known])?;
     let Some([divisor, _]) = parts else { return Ok(None) };
-    // Kernels of x and y together may be coefficients times one another: only those of x alone are told apart.
+    // Kernels of both x and y may be coefficients times one another: only kernels of x alone are separable.
     let numerator = fraction.numerator();
     if numerator.variables().iter().any(|kernel| hidden.contains(kernel) && known.contains(kernel)) {
         return Ok(None);
@@ -110,12 +110,12 @@ fn functions_of(question: &Question<'_>, formula: Expr) -> Result<Option<Vec<Exp
     let known: Vec<u32> = known.into_iter().collect();
     let parts = numerator.collect(&known).into_iter().map(|(_, part)| part);
     let mut found = combinations(&field, parts, (&hidden, &divisor))?;
-    found.retain(|function| arena.depends_on(*function, &question.hidden));
+    found.retain(|function| arena.depends_on(*function, &problem.hidden));
     Ok(Some(found))
 }
 
-/// What polynomials in hidden kernels, divided by another, span with constant coefficients: where that is all of their
-/// monomials, these. A sum is divided term by term where it can be: `exp(p) + exp(-p)` rather than one fraction.
+/// The span of quotients of polynomials in hidden kernels with constant coefficients: where that is all of their
+/// monomials, these. A sum is divided term by term where possible: `exp(p) + exp(-p)` rather than one fraction.
 fn combinations(
     field: &Field<'_>,
     parts: impl Iterator<Item = Poly>,
@@ -123,7 +123,7 @@ fn combinations(
 ) -> Result<Vec<Expr>, Obstacle> {
     let arena = field.arena();
     let hidden: Vec<u32> = hidden.iter().copied().collect();
-    // A constant is no part of a function, unless it is divided by what is hidden.
+    // A constant is no part of a function, unless it is divided by a hidden kernel.
     let is_kept = |(monomial, _): &(Monomial, Poly)| !(divisor.is_one() && monomial.is_one());
     let parts: Vec<BTreeMap<Monomial, Poly>> =
         parts.map(|part| part.collect(&hidden).into_iter().filter(is_kept).collect()).collect();
@@ -153,20 +153,20 @@ fn combinations(
     echelon.rows().map(of_row).collect()
 }
 
-/// Whether a function is no combination of 1 and those that were found with constant coefficients.
-fn is_new(question: &Question<'_>, found: &[Expr], function: Expr) -> Result<bool, Obstacle> {
-    let arena = question.arena;
+/// Tests whether a function is no combination of 1 and the known ones with constant coefficients.
+fn is_new(problem: &Problem<'_>, found: &[Expr], function: Expr) -> Result<bool, Obstacle> {
+    let arena = problem.arena;
     let all = [&[arena.one()], found, &[function]].concat();
-    let field = Field::over(arena, &question.domain.facts, &all)?;
-    let matrix = equations(&field, &[all], &question.signals)?;
+    let field = Field::over(arena, &problem.domain.facts, &all)?;
+    let matrix = equations(&field, &[all], &problem.signals)?;
     let (echelon, _) = Echelon::of(&field, matrix, found.len() + 2)?;
     Ok(echelon.rank() == found.len() + 2)
 }
 
 /// Functions with the same span, each as plain as it can be.
-fn plainest(question: &Question<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
-    let arena = question.arena;
-    let field = Field::over(arena, &question.domain.facts, found)?;
+fn plainest(problem: &Problem<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let arena = problem.arena;
+    let field = Field::over(arena, &problem.domain.facts, found)?;
     let fractions = found.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
     let mut common = Poly::one();
     for fraction in &fractions {
@@ -174,7 +174,7 @@ fn plainest(question: &Question<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstac
     }
     let parts = fractions.iter().map(|fraction| field.over_denominator(fraction, &common));
     let parts = parts.collect::<Result<Vec<Poly>, _>>()?.into_iter();
-    let hidden = field.kernels_of(&question.hidden);
+    let hidden = field.kernels_of(&problem.hidden);
     // A constant factor is not part of a function.
     let Some([divisor, _]) = apart(&field, &common, [&hidden, &BTreeSet::new()])? else { return Ok(found.to_vec()) };
     combinations(&field, parts, (&hidden, &divisor))

@@ -1,9 +1,9 @@
-//! The part of a transform that the outputs depend on.
+//! The observable part of a transform.
 //!
-//! In: functions of x and y whose rates are affine in themselves, and in which the rates of the outputs are affine. Out:
-//! the combinations of them with constant coefficients that occur in the outputs' rates as factors of different functions
-//! of y and u, with those that occur in their rates, and so on: the others are seen by no output. `b*S - g` of b*S, b and g,
-//! where an output's rate is `(b*S - g)*I - b*I^2`, with b.
+//! In: functions of x and y whose rates are affine in themselves, and in which the rates of the outputs are affine.
+//! Out: the combinations of them with constant coefficients that occur in the outputs' rates as factors of different
+//! functions of y and u, with those that occur in their rates, and so on: the others are unobservable. `b*S - g` of
+//! b*S, b and g, where an output's rate is `(b*S - g)*I - b*I^2`, with b.
 
 use crate::plant::matrix::dot;
 use pebo_cas::Expr;
@@ -11,21 +11,21 @@ use pebo_cas::linear::Echelon;
 use pebo_cas::linear::combination::{combine, equations};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
-/// The functions that are observable, in terms of those that are given; those themselves where all are, or the rates are
-/// not affine in them.
-pub(in crate::search) fn observable(question: &Question<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
-    let arena = question.arena;
-    let rates = functions.iter().map(|function| question.rate(*function));
-    let targets: Vec<Expr> = question.output_rates().into_iter().chain(rates).collect();
-    let Some(rows) = rows(question, &targets, functions)? else { return Ok(functions.to_vec()) };
+/// The observable functions, in terms of the given ones; the given ones themselves where all are, or the rates are not
+/// affine in them.
+pub(in crate::search) fn observable(problem: &Problem<'_>, functions: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+    let arena = problem.arena;
+    let rates = functions.iter().map(|function| problem.rate(*function));
+    let targets: Vec<Expr> = problem.output_rates().into_iter().chain(rates).collect();
+    let Some(rows) = rows(problem, &targets, functions)? else { return Ok(functions.to_vec()) };
     let (outputs, flow) = rows.split_at(rows.len() - functions.len());
-    let field = Field::over(arena, &question.domain.facts, &rows.concat())?;
+    let field = Field::over(arena, &problem.domain.facts, &rows.concat())?;
     let columns = functions.len();
     let spanned = |known: Vec<Vec<Fraction>>, rows: &[Vec<Expr>]| -> Result<Echelon, Obstacle> {
         // Factors of different functions of the signals, which are constants.
-        let vectors = [known, equations(&field, rows, &question.signals)?].concat();
+        let vectors = [known, equations(&field, rows, &problem.signals)?].concat();
         Ok(Echelon::of(&field, vectors, columns)?.0)
     };
     let mut span = spanned(Vec::new(), outputs)?;
@@ -54,13 +54,13 @@ pub(in crate::search) fn observable(question: &Question<'_>, functions: &[Expr])
 }
 
 /// The coefficients of the functions in each target, functions of y and u; none where a target is not affine in them.
-fn rows(question: &Question<'_>, targets: &[Expr], functions: &[Expr]) -> Result<Option<Vec<Vec<Expr>>>, Obstacle> {
-    let arena = question.arena;
+fn rows(problem: &Problem<'_>, targets: &[Expr], functions: &[Expr]) -> Result<Option<Vec<Vec<Expr>>>, Obstacle> {
+    let arena = problem.arena;
     let basis = [&[arena.one()], functions].concat();
-    let field = Field::over(arena, &question.domain.facts, &[basis.as_slice(), targets].concat())?;
+    let field = Field::over(arena, &problem.domain.facts, &[basis.as_slice(), targets].concat())?;
     let mut rows = Vec::new();
     for target in targets {
-        let Some(row) = combine(&field, *target, &basis, &question.hidden)? else { return Ok(None) };
+        let Some(row) = combine(&field, *target, &basis, &problem.hidden)? else { return Ok(None) };
         rows.push(row[1..].iter().map(|c| field.show(c)).collect());
     }
     Ok(Some(rows))

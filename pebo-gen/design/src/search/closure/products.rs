@@ -1,4 +1,4 @@
-//! Formulas as sums of products of hidden symbols, and reciprocals of sums of them, with coefficients in what is known.
+//! Formulas as sums of products of hidden symbols, and reciprocals of sums of them, with known coefficients.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Rational, Symbol};
 
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
 /// A product of hidden symbols, perhaps divided by polynomials in them, with its coefficient.
 pub(in crate::search) struct Term {
@@ -14,21 +14,21 @@ pub(in crate::search) struct Term {
     pub(in crate::search) coefficient: Expr,
 }
 
-/// The terms of a formula; none where hidden symbols stand in functions, or together with what is known in a factor of the
+/// The terms of a formula; none where hidden symbols occur in functions, or with known signals in a factor of the
 /// denominator.
 pub(in crate::search) fn terms(
-    question: &Question<'_>,
+    problem: &Problem<'_>,
     formula: Expr,
     hidden: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Term>>, Obstacle> {
-    let arena = question.arena;
-    let field = Field::over(arena, &question.domain.facts, &[formula])?;
+    let arena = problem.arena;
+    let field = Field::over(arena, &problem.domain.facts, &[formula])?;
     let fraction = field.fraction(formula)?;
     let kernels: Vec<u32> = field.kernels_of(hidden).into_iter().collect();
     if kernels.iter().any(|kernel| arena.as_symbol(field.kernel(*kernel)).is_none()) {
         return Ok(None);
     }
-    let known = field.kernels_of(&question.signals.difference(hidden).copied().collect());
+    let known = field.kernels_of(&problem.signals.difference(hidden).copied().collect());
     let hidden = kernels.iter().copied().collect();
     let Some([divisor, rest]) = apart(&field, fraction.denominator(), [&hidden, &known])? else { return Ok(None) };
     let divisor = field.show_factored(&field.quotient(&Poly::one(), &divisor)?);
@@ -41,8 +41,8 @@ pub(in crate::search) fn terms(
     Ok(Some(terms))
 }
 
-/// A polynomial as a product: of the factors that hold hidden kernels, and of the others; none where a factor holds known ones
-/// too.
+/// A polynomial as a product: of the factors that hold hidden kernels, and of the others; none where a factor holds
+/// known ones too.
 pub(in crate::search) fn apart(
     field: &Field<'_>,
     polynomial: &Poly,

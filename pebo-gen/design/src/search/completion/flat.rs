@@ -1,9 +1,10 @@
 //! Solutions of a flat connection in closed form.
 //!
-//! In: functions of the outputs by their derivatives, `dw = G w`, whose second derivatives agree. A function that depends on
-//! itself and on earlier ones alone is an exponential of an integral times an integral; two that depend on each other are
-//! an exponential of a constant matrix, or of one that does not vary with the output that is integrated along. Where an
-//! integral is not found, the solutions that need it are left out. Out: solutions, by the values of all functions.
+//! In: functions of the outputs by their derivatives, `dw = G w`, whose second derivatives agree. A function that
+//! depends on itself and on earlier ones alone is an exponential of an integral times an integral; two that depend on
+//! each other are an exponential of a constant matrix, or of one that does not vary with the output that is integrated
+//! along. Where an integral is not found, the solutions that need it are left out. Out: solutions, by the values of all
+//! functions.
 
 use std::collections::BTreeSet;
 
@@ -14,11 +15,11 @@ use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Function, Relation, Symbol};
 
 use super::connection::{exponential, potential};
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
 /// A flat connection.
 pub(in crate::search) struct Flat<'a> {
-    question: &'a Question<'a>,
+    problem: &'a Problem<'a>,
     /// For each function and output, the factors of the functions in its derivative.
     slopes: Vec<Vec<Vec<Expr>>>,
 }
@@ -31,8 +32,8 @@ struct Block {
     inverse: Vec<Vec<Expr>>,
 }
 
-/// A matrix of two rows, as `mean I` and what has the trace zero.
-struct Parts {
+/// A matrix of two rows, as `mean I` and a matrix of trace zero.
+struct TraceSplit {
     mean: Expr,
     diagonal: Expr,
     upper: Expr,
@@ -40,13 +41,13 @@ struct Parts {
 }
 
 impl<'a> Flat<'a> {
-    pub(in crate::search) fn new(question: &'a Question<'a>, slopes: Vec<Vec<Vec<Expr>>>) -> Self {
-        Self { question, slopes }
+    pub(in crate::search) fn new(problem: &'a Problem<'a>, slopes: Vec<Vec<Vec<Expr>>>) -> Self {
+        Self { problem, slopes }
     }
 
     /// Solutions, each by the values of all functions.
     pub(in crate::search) fn solutions(&self) -> Result<Vec<Vec<Expr>>, Obstacle> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let mut found: Vec<Vec<Expr>> = Vec::new();
         for functions in self.order() {
             let block = self.block(&functions)?;
@@ -74,9 +75,9 @@ impl<'a> Flat<'a> {
         Ok(found)
     }
 
-    /// The functions, each after those that it depends on, as far as there is such an order: alone, or two together.
+    /// The functions, each after the ones that it depends on, as far as there is such an order: alone, or two at once.
     fn order(&self) -> Vec<Vec<usize>> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let uses = |function: usize| {
             let of = self.slopes[function].iter();
             let others = (0..self.slopes.len()).filter(|other| *other != function);
@@ -111,18 +112,19 @@ impl<'a> Flat<'a> {
 
     /// The exponential of an integral.
     fn alone(&self, function: usize) -> Option<Block> {
-        let own = self.question.y.iter().copied().zip(self.slopes[function].iter().map(|row| row[function]));
+        let own = self.problem.y.iter().copied().zip(self.slopes[function].iter().map(|row| row[function]));
         let unit = self.exponential(&own.collect::<Vec<_>>())?;
-        let inverse = self.question.arena.div(self.question.arena.one(), unit);
+        let inverse = self.problem.arena.div(self.problem.arena.one(), unit);
         Some(Block { values: vec![vec![unit]], inverse: vec![vec![inverse]] })
     }
 
-    /// Two functions whose derivatives are `d I + a J` times them, with the same constant J of trace zero for all outputs.
+    /// Two functions whose derivatives are `d I + a J` times them, with the same constant J of trace zero for all
+    /// outputs.
     fn of_constant_matrix(&self, pair: [usize; 2]) -> Result<Option<Block>, Obstacle> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let (mut common, mut turning, mut matrix) = (Vec::new(), Vec::new(), None);
-        for (index, symbol) in self.question.y.iter().enumerate() {
-            let Parts { mean, diagonal, upper, lower } = self.parts(pair, index);
+        for (index, symbol) in self.problem.y.iter().enumerate() {
+            let TraceSplit { mean, diagonal, upper, lower } = self.parts(pair, index);
             common.push((*symbol, mean));
             turning.push((*symbol, upper));
             if arena.is_zero(upper) {
@@ -132,7 +134,7 @@ impl<'a> Flat<'a> {
                 continue;
             }
             let ratios = [self.tidied(arena.div(diagonal, upper))?, self.tidied(arena.div(lower, upper))?];
-            if ratios.iter().any(|e| arena.depends_on(*e, &self.question.signals))
+            if ratios.iter().any(|e| arena.depends_on(*e, &self.problem.signals))
                 || matrix.is_some_and(|known| known != ratios)
             {
                 return Ok(None);
@@ -140,18 +142,18 @@ impl<'a> Flat<'a> {
             matrix = Some(ratios);
         }
         let Some([diagonal, lower]) = matrix else { return Ok(None) };
-        let (Some(scale), Some(angle)) = (self.exponential(&common), potential(self.question, &turning)) else {
+        let (Some(scale), Some(angle)) = (self.exponential(&common), potential(self.problem, &turning)) else {
             return Ok(None);
         };
         self.turned(scale, angle, [diagonal, arena.one(), lower])
     }
 
-    /// Two functions whose derivatives by one output do not vary with it: they are an exponential along it, and what is left
-    /// to solve holds it no more.
+    /// Two functions whose derivatives by one output do not vary with it: they are an exponential along it, and the
+    /// remaining equations are free of it.
     fn along_one_output(&self, pair: [usize; 2]) -> Result<Option<Block>, Obstacle> {
-        let question = self.question;
-        let arena = question.arena;
-        for (index, symbol) in question.y.iter().enumerate() {
+        let problem = self.problem;
+        let arena = problem.arena;
+        for (index, symbol) in problem.y.iter().enumerate() {
             let matrix = self.matrix(pair, index);
             let entries = matrix.entries();
             let varies = entries.iter().any(|e| arena.depends_on(*e, &[*symbol].into()));
@@ -159,19 +161,19 @@ impl<'a> Flat<'a> {
                 continue;
             }
             let y = arena.of_symbol(*symbol);
-            let Parts { mean, diagonal, upper, lower } = self.parts(pair, index);
+            let TraceSplit { mean, diagonal, upper, lower } = self.parts(pair, index);
             let scale = arena.call(Function::Exp, &[arena.mul(self.tidied(mean)?, y)]);
             let Some(outer) = self.turned(scale, y, [diagonal, upper, lower])? else { continue };
             let (values, inverse) = (Matrix::new(outer.values), Matrix::new(outer.inverse));
             // w = U v, dv = U^-1 (G U - dU) v
             let mut slopes = vec![Vec::new(), Vec::new()];
-            for (other, symbol) in question.y.iter().enumerate() {
+            for (other, symbol) in problem.y.iter().enumerate() {
                 let moved = if other == index {
                     Matrix::zero(arena, 2, 2)
                 } else {
                     let slope = values.derivative(arena, *symbol).map(|e| arena.neg(e));
                     let moved = self.matrix(pair, other).mul(arena, &values).add(arena, &slope);
-                    inverse.mul(arena, &moved).normal(arena, &question.domain.facts)?
+                    inverse.mul(arena, &moved).normal(arena, &problem.domain.facts)?
                 };
                 for (slopes, row) in slopes.iter_mut().zip(moved.rows()) {
                     slopes.push(row.clone());
@@ -180,29 +182,29 @@ impl<'a> Flat<'a> {
             if slopes.iter().flatten().flatten().any(|e| arena.depends_on(*e, &[*symbol].into())) {
                 continue;
             }
-            let solutions = Flat::new(question, slopes).solutions()?;
+            let solutions = Flat::new(problem, slopes).solutions()?;
             if solutions.len() != 2 {
                 continue;
             }
             let inner = Matrix::new(solutions).transpose();
-            let Some(opposite) = inner.inverse(arena, &question.domain.facts)? else { continue };
+            let Some(opposite) = inner.inverse(arena, &problem.domain.facts)? else { continue };
             let whole = values.mul(arena, &inner).rows().to_vec();
             return Ok(Some(Block { values: whole, inverse: opposite.mul(arena, &inverse).rows().to_vec() }));
         }
         Ok(None)
     }
 
-    /// What two functions are multiplied by in their derivatives by an output.
+    /// The matrix of two functions' derivatives by an output.
     fn matrix(&self, pair: [usize; 2], output: usize) -> Matrix {
         Matrix::build(2, 2, |row, column| self.slopes[pair[row]][output][pair[column]])
     }
 
-    /// The same, its mean diagonal apart from the rest.
-    fn parts(&self, pair: [usize; 2], output: usize) -> Parts {
-        let arena = self.question.arena;
+    /// The same, its mean diagonal separate from the rest.
+    fn parts(&self, pair: [usize; 2], output: usize) -> TraceSplit {
+        let arena = self.problem.arena;
         let matrix = self.matrix(pair, output);
         let (first, second) = (matrix.at(0, 0), matrix.at(1, 1));
-        Parts {
+        TraceSplit {
             mean: arena.scale(arena.add(first, second), &half()),
             diagonal: arena.scale(arena.sub(first, second), &half()),
             upper: matrix.at(0, 1),
@@ -212,7 +214,7 @@ impl<'a> Flat<'a> {
 
     /// A factor times `exp(a J)`, J of trace zero given by its diagonal, upper and lower entry.
     fn turned(&self, scale: Expr, angle: Expr, [diagonal, upper, lower]: [Expr; 3]) -> Result<Option<Block>, Obstacle> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let square = self.tidied(arena.add(arena.mul(diagonal, diagonal), arena.mul(upper, lower)))?;
         let Some([even, odd]) = self.series(square, angle) else { return Ok(None) };
         let of = |scale: Expr, odd: Expr| {
@@ -228,7 +230,7 @@ impl<'a> Flat<'a> {
 
     /// The even part of `exp(a J)`, and the factor of J in the odd one, where J^2 is this multiple of the identity.
     fn series(&self, square: Expr, angle: Expr) -> Option<[Expr; 2]> {
-        let Question { arena, domain, .. } = self.question;
+        let Problem { arena, domain, .. } = self.problem;
         if arena.is_zero(square) {
             return Some([arena.one(), angle]);
         }
@@ -246,23 +248,23 @@ impl<'a> Flat<'a> {
 
     /// The factors, functions of y, of a block's own solutions in one with these further terms in its derivatives.
     fn varied(&self, block: &Block, rests: &[Vec<Expr>]) -> Result<Option<Vec<Expr>>, Obstacle> {
-        let question = self.question;
+        let problem = self.problem;
         let mut factors = Vec::new();
         for row in &block.inverse {
             let mut slopes = Vec::new();
-            for (index, symbol) in question.y.iter().enumerate() {
+            for (index, symbol) in problem.y.iter().enumerate() {
                 let rest: Vec<Expr> = rests.iter().map(|rest| rest[index]).collect();
-                slopes.push((*symbol, self.tidied(dot(question.arena, row, &rest))?));
+                slopes.push((*symbol, self.tidied(dot(problem.arena, row, &rest))?));
             }
-            let Some(factor) = potential(question, &slopes) else { return Ok(None) };
+            let Some(factor) = potential(problem, &slopes) else { return Ok(None) };
             factors.push(factor);
         }
         Ok(Some(factors))
     }
 
-    /// For each of these functions, what the others add to its derivatives.
+    /// For each of these functions, the contribution of the others to its derivatives.
     fn rests(&self, functions: &[usize], solution: &[Expr]) -> Result<Vec<Vec<Expr>>, Obstacle> {
-        let arena = self.question.arena;
+        let arena = self.problem.arena;
         let along = |row: &Vec<Expr>| {
             let others = row.iter().zip(solution).enumerate().filter(|(index, _)| !functions.contains(index));
             let terms = others.map(|(_, (factor, value))| arena.mul(*factor, *value));
@@ -273,11 +275,11 @@ impl<'a> Flat<'a> {
 
     /// The exponential of a function with these derivatives.
     fn exponential(&self, slopes: &[(Symbol, Expr)]) -> Option<Expr> {
-        Some(exponential(self.question, potential(self.question, slopes)?))
+        Some(exponential(self.problem, potential(self.problem, slopes)?))
     }
 
     fn tidied(&self, expr: Expr) -> Result<Expr, Obstacle> {
-        let field = Field::over(self.question.arena, &self.question.domain.facts, &[expr])?;
+        let field = Field::over(self.problem.arena, &self.problem.domain.facts, &[expr])?;
         Ok(field.show(&field.fraction(expr)?))
     }
 }

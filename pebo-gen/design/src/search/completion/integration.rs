@@ -1,12 +1,12 @@
-//! Transforms affine in x in closed form, where they are integrals.
+//! Finds transforms affine in x in closed form, where they are integrals.
 //!
 //! ```text
 //! equations for T and the gradient of s, completed -> dw = G w -> T, and s by its gradient -> T(y) x + s(y)
 //! ```
 //!
-//! In: a plant whose equations for `T(y) x + s(y)` complete to a flat connection (see [`crate::search::completion`]), so that a
-//! solution is given by its values at a point. Out: transforms, for those solutions that have a closed form; nothing is
-//! proved of the domain.
+//! In: a plant whose equations for `T(y) x + s(y)` complete to a flat connection (see [`crate::search::completion`]),
+//! so that a solution is given by its values at a point. Out: transforms, for those solutions that have a closed form;
+//! nothing is proved of the domain.
 
 use crate::plant::matrix::dot;
 use pebo_cas::forms::tidy::shortest;
@@ -15,19 +15,19 @@ use pebo_cas::{Expr, Symbol};
 
 use super::connection::potential;
 use super::flat::Flat;
-use super::posed::{Posed, Rows};
+use super::gradient::{EquationRows, GradientEquations};
 use super::{Derivations, Solutions, System};
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
-/// The transforms affine in x, as far as they are integrals of what the equations for them hold.
-pub(in crate::search) fn integrated(question: &Question<'_>) -> Result<Vec<Expr>, Obstacle> {
-    let arena = question.arena;
-    let posed = Posed::affine(question, &question.rates)?;
-    let Some(field) = posed.field(question)? else { return Ok(Vec::new()) };
-    let Some(Rows { kept, rows }) = posed.rows(question, &field)? else { return Ok(Vec::new()) };
-    let by = Derivations::of(&field, &posed.base)?;
-    // An elimination keeps the last functions: T, in terms of which the gradient of s is given.
-    let (states, outputs) = (question.x.len(), posed.base.len());
+/// The transforms affine in x, as far as they are integrals of the functions in their equations.
+pub(in crate::search) fn integrated(problem: &Problem<'_>) -> Result<Vec<Expr>, Obstacle> {
+    let arena = problem.arena;
+    let equations = GradientEquations::affine(problem, &problem.rates)?;
+    let Some(field) = equations.field(problem)? else { return Ok(Vec::new()) };
+    let Some(EquationRows { kept, rows }) = equations.rows(problem, &field)? else { return Ok(Vec::new()) };
+    let by = Derivations::of(&field, &equations.base)?;
+    // An elimination keeps the last functions: T, which determine the gradient of s.
+    let (states, outputs) = (problem.x.len(), equations.base.len());
     let turned = |row: &Vec<Fraction>| {
         let (slopes, values) = row.split_at(kept.len() * outputs);
         let (of_frame, of_shift) = slopes.split_at(states * outputs);
@@ -41,20 +41,20 @@ pub(in crate::search) fn integrated(question: &Question<'_>) -> Result<Vec<Expr>
     }
     let shown = |row: &Vec<Fraction>| row.iter().map(|e| field.show(e)).collect::<Vec<Expr>>();
     let slopes = completed.slopes.iter().map(|rows| rows.iter().map(shown).collect()).collect();
-    let flat = Flat::new(question, slopes);
+    let flat = Flat::new(problem, slopes);
     let lift: Vec<Vec<Expr>> = completed.lift.iter().map(shown).collect();
     let mut found = Vec::new();
     for solution in flat.solutions()? {
         let values: Vec<Expr> =
-            lift.iter().map(|row| shortest(arena, &question.domain, dot(arena, row, &solution))).collect();
+            lift.iter().map(|row| shortest(arena, &problem.domain, dot(arena, row, &solution))).collect();
         let (gradient, frame) = values.split_at(values.len() - states);
         if frame.iter().all(|e| arena.is_zero(*e)) {
             continue;
         }
         let along: Vec<(Symbol, Expr)> =
-            kept[states..].iter().map(|function| question.y[function - states]).zip(gradient.iter().copied()).collect();
-        let Some(shift) = potential(question, &along) else { continue };
-        let terms = frame.iter().zip(&question.x).map(|(factor, x)| arena.mul(*factor, arena.of_symbol(*x)));
+            kept[states..].iter().map(|function| problem.y[function - states]).zip(gradient.iter().copied()).collect();
+        let Some(shift) = potential(problem, &along) else { continue };
+        let terms = frame.iter().zip(&problem.x).map(|(factor, x)| arena.mul(*factor, arena.of_symbol(*x)));
         found.push(arena.add(arena.sum(terms.collect::<Vec<Expr>>()), shift));
     }
     Ok(found)

@@ -1,21 +1,21 @@
-//! Linear partial differential equations for functions of y, completed until they contradict nothing that follows from them.
+//! Completes linear partial differential equations for functions of y to an integrable system.
 //!
 //! ```text
 //! rows over [dw | w] -> what holds of w alone is solved -> mixed derivatives agree -> and so on -> dw = G w, flat
 //! ```
 //!
-//! In: equations of first order for unknown functions w of y, linear and homogeneous, over a field of functions of y. Three
-//! steps add what follows from them. An equation without derivatives is solved, and fewer functions are left. A derivative
-//! that no equation gives becomes an unknown function of its own. Second derivatives do not depend on the order: that gives
-//! further equations. Holds after: the functions with which a completion started are `lift w` of those that are left, so
-//! that the rank of `lift` bounds that of all solutions. Where each derivative is given and second derivatives agree, a
+//! In: equations of first order for unknown functions w of y, linear and homogeneous, over a field of functions of y.
+//! Three steps add their consequences. An equation without derivatives is solved, and fewer functions are left. A
+//! derivative that no equation gives becomes an unknown function of its own. Second derivatives do not depend on the
+//! order: that gives further equations. Holds after: the original functions are `lift w` of the remaining ones, so that
+//! the rank of `lift` bounds that of all solutions. Where each derivative is given and second derivatives agree, a
 //! solution is given by its values at a point, any values (Frobenius): there are as many as functions are left.
 
 pub(crate) mod connection;
 pub(crate) mod decision;
 mod flat;
+mod gradient;
 pub(super) mod integration;
-mod posed;
 
 use pebo_cas::Symbol;
 use pebo_cas::linear::Echelon;
@@ -28,7 +28,7 @@ const MOST_ROUNDS: usize = 24;
 /// More functions than this are not completed.
 const MOST_FUNCTIONS: usize = 24;
 
-pub(super) type Row = Vec<Fraction>;
+pub(super) type EquationRow = Vec<Fraction>;
 
 /// Differentiation of the elements of a field by some symbols.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ impl<'a> Derivations<'a> {
         self.slopes.len()
     }
 
-    /// The derivative by the symbol at this place.
+    /// The derivative by the symbol at this index.
     fn derivative(&self, of: &Fraction, by: usize) -> Result<Fraction, Obstacle> {
         let field = self.field;
         let along = |poly: &Poly| {
@@ -76,29 +76,30 @@ impl<'a> Derivations<'a> {
 #[derive(Debug)]
 pub(super) struct System<'a> {
     by: &'a Derivations<'a>,
-    /// How many functions there are.
+    /// The number of functions.
     functions: usize,
     /// So many of the first are to be given in terms of the others.
     given: usize,
-    /// A row has a column for each derivative, those of one function together, and then one for each function.
-    rows: Vec<Row>,
-    /// What was asked for, in terms of the functions.
-    lift: Vec<Row>,
+    /// A row has a column for each derivative, those of one function in sequence, and then one for each function.
+    rows: Vec<EquationRow>,
+    /// The wanted functions, in terms of the functions.
+    lift: Vec<EquationRow>,
 }
 
-/// What a completion came to.
+/// The result of a completion.
 #[derive(Debug)]
-pub(super) struct Completed {
-    /// What was asked for, in terms of the functions that are left.
-    pub(super) lift: Vec<Row>,
-    /// How many functions are left.
+pub(super) struct Completion {
+    /// The wanted functions, in terms of the remaining ones.
+    pub(super) lift: Vec<EquationRow>,
+    /// The number of remaining functions.
     pub(super) functions: usize,
-    /// Where each derivative of these is given: for each function and symbol, its coefficients in terms of the functions.
-    pub(super) slopes: Vec<Vec<Row>>,
+    /// The derivatives of these, where each is given: for each function and symbol, its coefficients in terms of the
+    /// functions.
+    pub(super) slopes: Vec<Vec<EquationRow>>,
     pub(super) solutions: Solutions,
 }
 
-/// How many independent solutions there are around a point.
+/// The number of independent solutions around a point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Solutions {
     /// As many as functions are left: each choice of their values at a point gives one.
@@ -110,9 +111,9 @@ pub(super) enum Solutions {
 }
 
 impl<'a> System<'a> {
-    /// The equations; what is asked for are the first of the functions.
-    pub(super) fn new(by: &'a Derivations<'a>, (asked, functions): (usize, usize), rows: Vec<Row>) -> Self {
-        Self { by, functions, given: 0, rows, lift: (0..asked).map(|index| unit(functions, index)).collect() }
+    /// The equations; the wanted functions come first.
+    pub(super) fn new(by: &'a Derivations<'a>, (wanted, functions): (usize, usize), rows: Vec<EquationRow>) -> Self {
+        Self { by, functions, given: 0, rows, lift: (0..wanted).map(|index| unit(functions, index)).collect() }
     }
 
     /// The same, with so many of the first functions to be given in terms of the others where that can be.
@@ -120,7 +121,7 @@ impl<'a> System<'a> {
         Self { given, ..self }
     }
 
-    /// The same equations for solutions of which all that is asked for vanishes.
+    /// The same equations for solutions in which all wanted functions vanish.
     pub(super) fn vanishing(&self) -> Self {
         let padding = vec![Fraction::zero(); self.functions * self.by.count()];
         let vanishes = self.lift.iter().map(|row| [padding.as_slice(), row].concat());
@@ -129,7 +130,7 @@ impl<'a> System<'a> {
     }
 
     /// Adds all that follows.
-    pub(super) fn completed(mut self) -> Result<Completed, Obstacle> {
+    pub(super) fn completed(mut self) -> Result<Completion, Obstacle> {
         for _ in 0..MOST_ROUNDS {
             let width = self.functions * self.by.count();
             let (slopes, rest) = Echelon::of(self.by.field, std::mem::take(&mut self.rows), width)?;
@@ -145,7 +146,7 @@ impl<'a> System<'a> {
                 let count = self.by.count();
                 let of = |column: usize| self.rows[column][width..].iter().map(Fraction::opposite).collect();
                 let slopes = (0..self.functions).map(|f| (0..count).map(|by| of(f * count + by)).collect()).collect();
-                return Ok(Completed { slopes, ..self.ended(Solutions::AsFunctions) });
+                return Ok(Completion { slopes, ..self.ended(Solutions::AsFunctions) });
             }
             // There is nothing with which derivatives by one symbol could disagree.
             if self.by.count() == 1 {
@@ -159,19 +160,20 @@ impl<'a> System<'a> {
         Ok(self.ended(Solutions::Unknown))
     }
 
-    fn ended(self, solutions: Solutions) -> Completed {
-        Completed { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
+    fn ended(self, solutions: Solutions) -> Completion {
+        Completion { lift: self.lift, functions: self.functions, slopes: Vec::new(), solutions }
     }
 
-    /// Replaces functions by those in terms of which they are given.
+    /// Replaces functions by combinations of the remaining ones.
     fn solve(&mut self, slopes: &Echelon, values: &Echelon) -> Result<(), Obstacle> {
         let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
-        // The functions are the columns of `basis` times those that are left.
+        // The functions are the columns of `basis` times the remaining ones.
         let basis = values.null_space();
         let mut changes = Vec::new();
         for vector in &basis {
-            let by = |direction| vector.iter().map(|e| self.by.derivative(e, direction)).collect::<Result<Row, _>>();
-            changes.push((0..directions).map(by).collect::<Result<Vec<Row>, Obstacle>>()?);
+            let by =
+                |direction| vector.iter().map(|e| self.by.derivative(e, direction)).collect::<Result<EquationRow, _>>();
+            changes.push((0..directions).map(by).collect::<Result<Vec<EquationRow>, Obstacle>>()?);
         }
         let mut rows = Vec::new();
         for (_, row) in slopes.rows() {
@@ -201,9 +203,9 @@ impl<'a> System<'a> {
         Ok(())
     }
 
-    /// Makes unknown functions of the derivatives that are not given, keeps the others as rows, and gives the equations that
-    /// say that second derivatives agree.
-    fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<Row>, Obstacle> {
+    /// Makes unknown functions of the derivatives that are not given, keeps the others as rows, and gives the equations
+    /// that say that second derivatives agree.
+    fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<EquationRow>, Obstacle> {
         let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
         let width = before * directions;
         let is_pivot = |column: &usize| slopes.rows().any(|(pivot, _)| pivot == *column);
@@ -260,7 +262,7 @@ impl<'a> System<'a> {
     }
 }
 
-fn unit(length: usize, index: usize) -> Row {
+fn unit(length: usize, index: usize) -> EquationRow {
     let mut row = vec![Fraction::zero(); length];
     row[index] = Fraction::one();
     row

@@ -1,8 +1,8 @@
 //! Antiderivatives of simple functions.
 //!
-//! In: a formula and a symbol. Out: a function whose derivative it is, proved; none where the rules end: sums, powers and
-//! functions of affine arguments, products of these with polynomials, `c g' g^n`, and quotients of
-//! polynomials, or of sines and cosines.
+//! In: a formula and a symbol. Out: a function whose derivative it is, proved; none where the rules end: sums, powers
+//! and functions of affine arguments, products of these with polynomials, `c g' g^n`, and quotients of polynomials, or
+//! of sines and cosines.
 
 pub(crate) mod logarithm;
 mod rational;
@@ -17,7 +17,7 @@ use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Symbol};
 
 use logarithm::logarithm;
 
-/// Derivatives of a polynomial part that are taken before it is given up.
+/// Derivatives of a polynomial factor that are taken before it is given up.
 const MOST_PARTS: usize = 8;
 
 /// Terms into which a product is multiplied out.
@@ -92,7 +92,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Of a power of an affine function, or of a function with an affine argument.
+    /// The antiderivative of a power of an affine function, or of a function with an affine argument.
     fn power(&self, base: Expr, exponent: &Rational) -> Option<Expr> {
         let arena = self.arena;
         if let Some(slope) = self.slope(base) {
@@ -204,8 +204,8 @@ impl Rules<'_> {
         Some(field.show(&field.fraction(expr).ok()?))
     }
 
-    /// The terms of the numerator over the denominator, each on its own; below, a power of one affine function is a power
-    /// of the variable.
+    /// The terms of the numerator over the denominator, each on its own; a power of one affine function in the
+    /// denominator becomes a power of the variable.
     fn expanded(&self, expr: Expr) -> Option<Expr> {
         let arena = self.arena;
         let field = Field::over(arena, &self.domain.facts, &[expr]).ok()?;

@@ -1,8 +1,8 @@
 //! Antiderivatives of rational functions.
 //!
-//! In: a quotient of polynomials in a symbol, over what is free of it. Out: a rational function, logarithms of the factors
-//! below the bar, and arcs of those of degree two without real roots, if their undetermined coefficients exist (Hermite 1872;
-//! of factors of degree one and two that is every antiderivative).
+//! In: a quotient of polynomials in a symbol, over expressions free of it. Out: a rational function, logarithms of the
+//! factors of the denominator, and arcs of those of degree two without real roots, if their undetermined coefficients
+//! exist (Hermite 1872; of factors of degree one and two that is every antiderivative).
 
 use pebo_cas::linear::solve;
 use pebo_cas::number::rational::half;
@@ -37,7 +37,7 @@ struct Quotient<'a> {
     arena: &'a Arena,
     domain: &'a Domain,
     field: &'a Field<'a>,
-    /// The variable, as it stands in polynomials and as a formula.
+    /// The variable, as a kernel of polynomials and as a formula.
     kernel: u32,
     variable: Expr,
 }
@@ -110,7 +110,7 @@ impl Quotient<'_> {
         Ok(Some(arena.sum(terms)))
     }
 
-    /// What has the derivative `1/(a s^2 + b s + c)`, where that has no real roots.
+    /// The antiderivative of `1/(a s^2 + b s + c)`, where that has no real roots.
     fn arc(&self, factor: &Poly) -> Result<Option<Expr>, Obstacle> {
         let &Self { arena, field, kernel, .. } = self;
         if factor.degree(kernel) != 2 {

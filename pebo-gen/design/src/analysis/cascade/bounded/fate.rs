@@ -1,12 +1,12 @@
-//! What each criterion says of a block.
+//! The verdict of each criterion on a block.
 
-/// What is known of a part of the fundamental matrix.
+/// The behaviour of a block of the fundamental matrix.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Fate {
     /// It dies out, no slower than some exponential.
     Fades,
-    /// It stays bounded.
-    Stays,
+    /// Bounded.
+    Bounded,
     /// It grows without bound.
     Grows,
     /// Nothing.

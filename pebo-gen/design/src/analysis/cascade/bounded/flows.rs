@@ -1,15 +1,15 @@
 //! Flows between compartments.
 //!
-//! In: a constant block of Lambda whose components feed one another. Out: that it provably stays bounded because no
-//! component feeds others more than it loses itself: with entries beside the diagonal that are not negative, the sum of
-//! magnitudes never grows where no column has a positive sum. It dies out if one loses more than it feeds: the discs of
+//! In: a constant block of Lambda whose components feed one another. Out: a proof that it is bounded because no
+//! component feeds others more than it loses itself: with nonnegative entries off the diagonal, the sum of absolute
+//! values never grows if no column has a positive sum. It dies out if one loses more than it feeds: the discs of
 //! Gershgorin touch the imaginary axis at zero alone, and zero is no eigenvalue then (Taussky 1949).
 
 use super::fate::Fate;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
 pub(super) fn fate(field: &Field<'_>, entries: &[Vec<Fraction>], block: &[usize]) -> Result<Fate, Obstacle> {
-    let mut fate = Fate::Stays;
+    let mut fate = Fate::Bounded;
     for &from in block {
         let mut gain = Fraction::zero();
         for &to in block {

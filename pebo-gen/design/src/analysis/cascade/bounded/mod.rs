@@ -1,15 +1,15 @@
-//! Whether the fundamental matrix of a generalised cascade stays bounded.
+//! Boundedness of the fundamental matrix of a generalised cascade.
 //!
-//! In: Lambda(y, u). Out: whether every solution of `Psi' = Lambda Psi` provably stays bounded, provably grows, or
-//! neither. Lambda is taken apart into blocks of components that feed one another. Each block is judged by itself,
+//! In: Lambda(y, u). Out: every solution of `Psi' = Lambda Psi` is provably bounded, provably grows, or neither. Lambda
+//! is divided into blocks of components that feed one another. Each block is judged by itself,
 //! - by a quadratic form with a constant positive diagonal P that never grows: `P Lambda + Lambda' P` is diagonal
 //!   without a positive entry (for circuits and mechanisms P is the stored energy);
 //! - where it is constant, as flows between compartments that lose no less than they feed ([`flows`]);
 //! - else by the criterion of Hurwitz;
 //! - by its trace, which is the rate of `log det Psi` (Liouville).
 //!
-//! Then in the order in which the blocks feed one another: what is fed through constants by something bounded stays
-//! bounded if by itself it dies out at a constant rate; what does not, only if all that feeds it dies out so.
+//! Then in the order in which the blocks feed one another: a block fed through constants by a bounded block is bounded
+//! if by itself it dies out at a constant rate; any other block only if all that feeds it dies out so.
 
 mod fate;
 mod flows;
@@ -25,9 +25,9 @@ use crate::analysis::design::Fundamental;
 /// A block with more components is not judged by its characteristic polynomial.
 const MOST_COMPONENTS: usize = 6;
 
-/// What becomes of the fundamental matrix.
+/// The behaviour of the fundamental matrix.
 pub(super) fn of(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Fundamental {
-    judged(plant, domain, lambda).unwrap_or(Fundamental::NotShown)
+    judged(plant, domain, lambda).unwrap_or(Fundamental::Undecided)
 }
 
 fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundamental, Obstacle> {
@@ -40,7 +40,7 @@ fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundam
     let (mut rows, mut fades) = (vec![Fate::Open; lambda.len()], false);
     for block in system.blocks() {
         let alone = system.alone(&block)?;
-        // What a block does by itself is the diagonal block of Psi.
+        // A block by itself is the diagonal block of Psi.
         if alone == Fate::Grows || system.integrates(&block)? {
             return Ok(Fundamental::Grows);
         }
@@ -50,31 +50,31 @@ fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundam
             rows[component] = fate;
         }
     }
-    let bounded = rows.iter().all(|fate| matches!(fate, Fate::Fades | Fate::Stays));
-    Ok(if bounded { Fundamental::Bounded { fades } } else { Fundamental::NotShown })
+    let bounded = rows.iter().all(|fate| matches!(fate, Fate::Fades | Fate::Bounded));
+    Ok(if bounded { Fundamental::Bounded { fades } } else { Fundamental::Undecided })
 }
 
 struct System<'a> {
     plant: &'a Plant,
     field: Field<'a>,
     entries: Vec<Vec<Fraction>>,
-    /// Whether a component is fed by another, directly or through others; each is by itself.
+    /// True if a component is fed by another, directly or through others; each is by itself.
     fed: Vec<Vec<bool>>,
 }
 
 impl System<'_> {
-    /// Components that feed one another, a block each, what feeds a block before it.
+    /// Components that feed one another, a block each, in the order of the feed.
     fn blocks(&self) -> Vec<Vec<usize>> {
         let fed = &self.fed;
         let together = |i: usize| (0..fed.len()).filter(|&j| fed[i][j] && fed[j][i]).collect::<Vec<usize>>();
         let mut blocks: Vec<Vec<usize>> = (0..fed.len()).map(together).collect();
-        // What feeds a block is fed by fewer components than it.
+        // The blocks that feed a block are fed by fewer components than it.
         blocks.sort_by_key(|block| (fed[block[0]].iter().filter(|by| **by).count(), block[0]));
         blocks.dedup();
         blocks
     }
 
-    /// What becomes of a block by itself.
+    /// The behaviour of a block by itself.
     fn alone(&self, block: &[usize]) -> Result<Fate, Obstacle> {
         let mut trace = Fraction::zero();
         for &i in block {
@@ -138,13 +138,13 @@ impl System<'_> {
                 return Ok(Fate::Open);
             }
             if !self.is_constant(&loss) || !field.signs().is_positive(&loss)? {
-                fate = Fate::Stays;
+                fate = Fate::Bounded;
             }
         }
         Ok(fate)
     }
 
-    /// Of a constant block, by its characteristic polynomial.
+    /// The behaviour of a constant block, by its characteristic polynomial.
     fn by_polynomial(&self, block: &[usize]) -> Result<Fate, Obstacle> {
         let field = &self.field;
         let polynomial = self.characteristic(block)?;
@@ -164,7 +164,7 @@ impl System<'_> {
         }
         // s^2 + c with c > 0: an oscillation.
         let oscillates = block.len() == 2 && polynomial[1].is_zero() && field.signs().is_positive(&polynomial[2])?;
-        Ok(if oscillates { Fate::Stays } else { Fate::Open })
+        Ok(if oscillates { Fate::Bounded } else { Fate::Open })
     }
 
     /// The characteristic polynomial, from its leading coefficient down (Faddeev and Le Verrier).
@@ -193,8 +193,8 @@ impl System<'_> {
         Ok(polynomial)
     }
 
-    /// Whether a component by itself stands still and integrates one that stands still, through a constant that is
-    /// not zero, while nothing else that feeds it is moved by that one.
+    /// Tests whether a component that is constant by itself integrates another such component through a constant that
+    /// is not zero, while nothing else that feeds it depends on that component.
     fn integrates(&self, block: &[usize]) -> Result<bool, Obstacle> {
         let &[component] = block else { return Ok(false) };
         let row = &self.entries[component];
@@ -216,7 +216,7 @@ impl System<'_> {
         Ok(false)
     }
 
-    /// What becomes of a block that others feed.
+    /// The behaviour of a block that others feed.
     fn beside(&self, block: &[usize], alone: Fate, rows: &[Fate]) -> Fate {
         let outside = (0..rows.len()).filter(|j| !block.contains(j));
         let (mut all_fade, mut all_bounded) = (true, true);
@@ -224,25 +224,25 @@ impl System<'_> {
             for factor in block.iter().map(|&i| &self.entries[i][j]).filter(|factor| !factor.is_zero()) {
                 let constant = self.is_constant(factor);
                 all_fade &= constant && rows[j] == Fate::Fades;
-                all_bounded &= constant && matches!(rows[j], Fate::Fades | Fate::Stays);
+                all_bounded &= constant && matches!(rows[j], Fate::Fades | Fate::Bounded);
             }
         }
         match alone {
             Fate::Fades if all_fade => Fate::Fades,
-            Fate::Fades if all_bounded => Fate::Stays,
-            Fate::Stays if all_fade => Fate::Stays,
+            Fate::Fades if all_bounded => Fate::Bounded,
+            Fate::Bounded if all_fade => Fate::Bounded,
             _ => Fate::Open,
         }
     }
 
-    /// Whether the value consists of parameters alone, their values known or not.
+    /// Tests whether the value is a function of parameters alone, their values known or not.
     fn is_constant(&self, value: &Fraction) -> bool {
         let symbols = self.plant.arena.symbols_of(&[self.field.show(value)]);
         symbols.iter().all(|symbol| self.plant.parameters.iter().any(|p| p.symbol == *symbol))
     }
 }
 
-/// Whether a component is fed by another, directly or through others.
+/// For each pair of components, true if the first is fed by the second, directly or through others.
 fn fed(entries: &[Vec<Fraction>]) -> Vec<Vec<bool>> {
     let size = entries.len();
     let directly = |i: usize, j: usize| i == j || !entries[i][j].is_zero();

@@ -1,16 +1,16 @@
-//! Whether special values of parameters may hide in functions of signals.
+//! Tests for special values of parameters inside functions of signals.
 //!
-//! In: rows of full rank. Out: whether a function in them holds a parameter that could make it constant, or equal to another,
-//! as `sin(k*v)` and `sin(m*v)` are for k = m, or `tanh(k*v)` is for k = 0. The factors of a determinant are those of a
-//! polynomial in such functions: they do not show these values.
+//! In: rows of full rank. Out: true if a function in them holds a parameter that could make it constant, or equal to
+//! another, as `sin(k*v)` and `sin(m*v)` are for k = m, or `tanh(k*v)` is for k = 0. The factors of a determinant are
+//! those of a polynomial in such functions: they do not show these values.
 
 use std::collections::BTreeSet;
 
-use super::problem::Question;
+use super::problem::TrajectoryProblem;
 use pebo_cas::{Expr, Node, Relation, Symbol};
 
-impl Question<'_> {
-    /// Whether values of the parameters may make functions in the rows constant or equal.
+impl TrajectoryProblem<'_> {
+    /// Tests whether values of the parameters may make functions in the rows constant or equal.
     pub(super) fn may_coincide(&self, stack: &[Vec<Expr>]) -> bool {
         let arena = &self.plant.arena;
         let parameters: BTreeSet<Symbol> = self.plant.parameters.iter().map(|parameter| parameter.symbol).collect();

@@ -1,30 +1,32 @@
-//! Where rows that have full rank with constant inputs, or at rest, lose it: at values of inputs, at values of parameters, and
-//! where a formula of several signals stays zero. It is read off the determinant of the rows, and off their entries.
+//! Conditions under which rows of full rank, with constant inputs or at rest, lose it: values of inputs, values of
+//! parameters, and zeros of formulas of several signals. They are read off the determinant of the rows, and off their
+//! entries.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::design::{Blind, Place};
+use crate::analysis::design::{BlindTrajectory, TrajectoryCondition};
 use crate::analysis::identifiability::flow::{Flow, without_psi};
 use crate::analysis::identifiability::singular::Volume;
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 
-use super::problem::{Question, Restriction, Shown, seen};
+use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
 
-/// Parts of the rows up to which their determinant is worked out.
+/// Size of the rows up to which their determinant is worked out.
 pub(super) const MOST_OF_DETERMINANT: usize = 150;
 
-impl Question<'_> {
-    /// Values of parameters at which rows that have full rank with constant inputs lose it, but for what is a condition.
+impl TrajectoryProblem<'_> {
+    /// Values of parameters at which rows that have full rank with constant inputs lose it, but for those that are
+    /// conditions.
     pub(super) fn coincidences(&self, stack: &[Vec<Expr>], conditions: &[Expr]) -> Vec<(Symbol, Expr)> {
         let arena = &self.plant.arena;
         if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
             return Vec::new();
         }
         let volume = Volume::of(arena, self.domain, stack);
-        let places = volume.and_then(|volume| volume.places(self.plant, self.domain)).unwrap_or_default();
-        let open = places.constants.into_iter().filter(|formula| !conditions.contains(formula));
+        let zero_set = volume.and_then(|volume| volume.zero_set(self.plant, self.domain)).unwrap_or_default();
+        let open = zero_set.constants.into_iter().filter(|formula| !conditions.contains(formula));
         let value = |formula: Expr| {
             let mut parameters = arena.symbols_of(&[formula]).into_iter();
             parameters.find_map(|parameter| Some((parameter, solved(arena, formula, parameter)?)))
@@ -32,30 +34,40 @@ impl Question<'_> {
         open.filter_map(value).collect()
     }
 
-    /// Where rows that have full rank with constant inputs lose it, but for what is listed: where an input is a function of
-    /// others, it is asked what is seen there; the rest was not decided. And whether there is no other such motion: what a
-    /// motion leaves at once is none, and what several signals make zero is not listed unless it stays so.
-    pub(super) fn doubtful(&self, listed: &[Blind], symbols: &[Symbol], stack: &[Vec<Expr>]) -> (Vec<Blind>, bool) {
+    /// Further conditions under which rows of full rank with constant inputs may lose it: where an input is a function
+    /// of others, the unknowns are decided there; the rest is undecided. And true if there are no other such
+    /// trajectories: a trajectory that leaves the zero at once is none, and a zero of several signals is listed only if
+    /// it is invariant.
+    pub(super) fn doubtful(
+        &self,
+        listed: &[BlindTrajectory],
+        symbols: &[Symbol],
+        stack: &[Vec<Expr>],
+    ) -> (Vec<BlindTrajectory>, bool) {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
         if self.is_constant(stack) {
             return (Vec::new(), true);
         }
         let volume = Volume::of(arena, domain, stack);
-        let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
+        let Ok(zero_set) = volume.and_then(|volume| volume.zero_set(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
         let held: BTreeSet<Symbol> = plant.commanded().collect();
         let known: BTreeSet<Symbol> = constants.union(&held).copied().collect();
         let flow = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new());
-        let blind = |place: Place, shown: Shown| Blind {
-            place,
-            seen: seen(arena, symbols, &shown.hidden),
-            hidden: shown.hidden,
+        let blind = |condition: TrajectoryCondition, observed: Observation| BlindTrajectory {
+            condition,
+            identifiable: identifiable(arena, symbols, &observed.hidden),
+            hidden: observed.hidden,
         };
         let mut found = Vec::new();
-        let mut all = places.all;
-        for zero in places.zeros {
-            let unshown = || Blind { place: Place::Unshown(zero), seen: Vec::new(), hidden: Vec::new() };
+        let mut all = zero_set.all;
+        for zero in zero_set.zeros {
+            let undecided = || BlindTrajectory {
+                condition: TrajectoryCondition::Undecided(zero),
+                identifiable: Vec::new(),
+                hidden: Vec::new(),
+            };
             let symbols_there = arena.symbols_of(&[zero]);
             if !symbols_there.is_subset(&known) {
                 let alone = symbols_there.difference(&constants).count() == 1;
@@ -63,8 +75,8 @@ impl Question<'_> {
                 if rate.is_some_and(|rate| self.leaves(zero, rate)) {
                     continue;
                 }
-                if alone || rate.is_some_and(|rate| self.stays(zero, rate)) {
-                    found.push(unshown());
+                if alone || rate.is_some_and(|rate| self.is_invariant(zero, rate)) {
+                    found.push(undecided());
                 } else {
                     all = false;
                 }
@@ -75,25 +87,25 @@ impl Question<'_> {
                 solved(arena, zero, input).filter(|_| steep)
             };
             let Some((input, value)) = plant.commanded().find_map(|input| Some((input, one(input)?))) else {
-                found.push(unshown());
+                found.push(undecided());
                 continue;
             };
             if is_listed(arena, listed, zero) {
                 continue;
             }
             let equal = BTreeMap::from([(input, value)]);
-            match self.shown(&Restriction { equal, ..Restriction::default() }) {
-                // What the inputs show there by their variation they may not show as constants.
-                Ok(shown) if shown.hidden.is_empty() => match self.steady(input, value) {
-                    Ok(shown) if shown.hidden.is_empty() => {}
-                    Ok(shown) => found.push(blind(Place::Steady(input, value), shown)),
+            match self.solve(&Restriction { equal, ..Restriction::default() }) {
+                // Inputs that identify unknowns by their variation may not do so as constants.
+                Ok(observed) if observed.hidden.is_empty() => match self.steady(input, value) {
+                    Ok(observed) if observed.hidden.is_empty() => {}
+                    Ok(observed) => found.push(blind(TrajectoryCondition::Steady(input, value), observed)),
                     Err(Obstacle::NoPoint) => {}
-                    Err(_) => found.push(unshown()),
+                    Err(_) => found.push(undecided()),
                 },
-                Ok(shown) => found.push(blind(Place::Value(input, value), shown)),
-                // Where the domain holds no such motion, there is nothing to say.
+                Ok(observed) => found.push(blind(TrajectoryCondition::Value(input, value), observed)),
+                // The domain holds no such trajectory.
                 Err(Obstacle::NoPoint) => {}
-                Err(_) => found.push(unshown()),
+                Err(_) => found.push(undecided()),
             }
         }
         (found, all)
@@ -133,36 +145,36 @@ impl Question<'_> {
         Ok(found)
     }
 
-    /// What no input moves away from zero, of all that makes rows lose their rank: an output that stays constant, or one that
-    /// multiplies its own rate.
+    /// Zeros at which rows lose their rank and that no input moves: an output that is constant, or one that multiplies
+    /// its own rate.
     pub(super) fn kept(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
         if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
             return Vec::new();
         }
-        // What has no rate of its own is as free as an input is.
+        // A signal without a rate is as free as an input.
         let constants = plant.parameters.iter().map(|p| p.symbol);
         let determined: BTreeSet<Symbol> =
             constants.chain(plant.rates().into_keys()).chain(plant.chi.clone()).collect();
         let found = || -> Result<Vec<Expr>, Obstacle> {
-            let zeros = Volume::of(arena, domain, stack)?.places(plant, domain)?.zeros;
+            let zeros = Volume::of(arena, domain, stack)?.zero_set(plant, domain)?.zeros;
             let flow = Flow::along(plant, domain, self.cascade, &BTreeSet::new(), &BTreeMap::new())?;
             let is_kept = |zero: &Expr| {
-                arena.symbols_of(&[*zero]).is_subset(&determined) && self.stays(*zero, flow.rate(arena, *zero))
+                arena.symbols_of(&[*zero]).is_subset(&determined) && self.is_invariant(*zero, flow.rate(arena, *zero))
             };
             Ok(zeros.into_iter().filter(is_kept).collect())
         };
         found().unwrap_or_default()
     }
 
-    /// Whether the rows are the same on all motions.
+    /// Tests whether the rows are the same on all trajectories.
     fn is_constant(&self, stack: &[Vec<Expr>]) -> bool {
         let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
         self.plant.arena.symbols_of(&stack.concat()).is_subset(&constants)
     }
 
-    /// Whether what is zero moves on at once, wherever it is.
+    /// Tests whether every trajectory leaves a zero at once.
     fn leaves(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
@@ -179,8 +191,8 @@ impl Question<'_> {
             || arena.symbols_of(&[zero]).into_iter().find_map(there).unwrap_or(false)
     }
 
-    /// Whether what is zero stays so: it divides its rate.
-    fn stays(&self, zero: Expr, rate: Expr) -> bool {
+    /// Tests whether a zero is invariant: the formula divides its rate.
+    fn is_invariant(&self, zero: Expr, rate: Expr) -> bool {
         let &Self { plant, domain, .. } = self;
         let divides = || -> Result<bool, Obstacle> {
             let field = Field::on(&plant.arena, domain, &[zero, rate])?;
@@ -190,8 +202,8 @@ impl Question<'_> {
         divides().unwrap_or(false)
     }
 
-    /// What makes rows that have full rank at rest lose it, as all that is zero stays so there; and whether nothing else
-    /// does.
+    /// Zeros at which rows that have full rank at rest lose it, each of which is invariant there; and true if there are
+    /// no others.
     pub(super) fn doubtful_at_rest(&self, stack: &[Vec<Expr>]) -> (Vec<Expr>, bool) {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
@@ -202,15 +214,15 @@ impl Question<'_> {
             return (Vec::new(), false);
         }
         let volume = Volume::of(arena, domain, stack);
-        let Ok(places) = volume.and_then(|volume| volume.places(plant, domain)) else { return (Vec::new(), false) };
+        let Ok(zero_set) = volume.and_then(|volume| volume.zero_set(plant, domain)) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
         let commanded: BTreeSet<Symbol> = plant.commanded().collect();
-        // What is of inputs alone is looked at on all motions.
+        // Functions of inputs alone are tested on all trajectories.
         let of_outputs = |zero: &Expr| {
             let symbols = arena.symbols_of(&[*zero]);
             symbols.difference(&constants).any(|signal| !commanded.contains(signal))
         };
-        (places.zeros.into_iter().filter(of_outputs).collect(), places.all)
+        (zero_set.zeros.into_iter().filter(of_outputs).collect(), zero_set.all)
     }
 
     /// Values of inputs at which an entry vanishes.
@@ -245,18 +257,18 @@ impl Question<'_> {
         Ok(found)
     }
 
-    /// Combinations of the parameters at which rows that have full rank on some motions lose it on all, and whether there
-    /// are no other such values.
+    /// Combinations of the parameters at which rows that have full rank on some trajectories lose it on all, and true
+    /// if there are no other such values.
     pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Result<(Vec<Expr>, bool), Obstacle> {
         let arena = &self.plant.arena;
         let own: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
         if arena.symbols_of(&stack.concat()).is_disjoint(&own) {
             return Ok((Vec::new(), true));
         }
-        let places = Volume::of(arena, self.domain, stack)?.places(self.plant, self.domain)?;
-        let mut all = places.all && !places.together;
+        let zero_set = Volume::of(arena, self.domain, stack)?.zero_set(self.plant, self.domain)?;
+        let mut all = zero_set.all && !zero_set.joint;
         let mut lost = Vec::new();
-        for formula in places.constants {
+        for formula in zero_set.constants {
             let solved = arena
                 .symbols_of(&[formula])
                 .into_iter()
@@ -266,42 +278,42 @@ impl Question<'_> {
                 lost.push(formula);
                 continue;
             };
-            match self.shown_with(&there) {
-                // Other motions show them all the same, but perhaps not for further values.
+            match self.further_values(&there) {
+                // Other trajectories identify them all the same, but perhaps not for further values.
                 Ok(Some(further)) => all &= !further,
                 Ok(None) => lost.push(formula),
-                // Whether they do is open: the verdict says that such values were not all worked out.
+                // Undecided: the verdict says that such values were not all worked out.
                 Err(_) => all = false,
             }
         }
         Ok((lost, all))
     }
 
-    /// Whether further values of the parameters may hide unknowns that are shown with a restriction; none if they are not
-    /// shown.
-    fn shown_with(&self, restriction: &Restriction) -> Result<Option<bool>, Obstacle> {
+    /// Tests whether further values of the parameters may hide unknowns that are identifiable with a restriction; none
+    /// if they are not identifiable.
+    fn further_values(&self, restriction: &Restriction) -> Result<Option<bool>, Obstacle> {
         let &Self { plant, domain, .. } = self;
-        let shown = self.shown(restriction)?;
-        if !shown.hidden.is_empty() {
+        let observed = self.solve(restriction)?;
+        if !observed.hidden.is_empty() {
             return Ok(None);
         }
-        let places = || {
+        let zero_set = || {
             let domain = domain.restricted(&plant.arena, &restriction.equal)?;
-            Volume::of(&plant.arena, &domain, &shown.stack).and_then(|volume| volume.places(plant, &domain)).ok()
+            Volume::of(&plant.arena, &domain, &observed.stack).and_then(|volume| volume.zero_set(plant, &domain)).ok()
         };
-        Ok(Some(places().is_none_or(|places| !places.all || places.together || !places.constants.is_empty())))
+        Ok(Some(zero_set().is_none_or(|zero_set| !zero_set.all || zero_set.joint || !zero_set.constants.is_empty())))
     }
 }
 
-/// Whether what is zero where an input has a value is listed by that.
-pub(super) fn is_listed(arena: &Arena, listed: &[Blind], zero: Expr) -> bool {
-    listed.iter().any(|other| match &other.place {
-        Place::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
+/// Tests whether a zero at a value of an input is already listed.
+pub(super) fn is_listed(arena: &Arena, listed: &[BlindTrajectory], zero: Expr) -> bool {
+    listed.iter().any(|other| match &other.condition {
+        TrajectoryCondition::Value(one, at) => arena.is_zero(arena.substitute(zero, &BTreeMap::from([(*one, *at)]))),
         _ => false,
     })
 }
 
-/// What the symbol is where a formula that is linear in it vanishes.
+/// The value of the symbol at the zero of a formula that is linear in it.
 fn solved(arena: &Arena, formula: Expr, symbol: Symbol) -> Option<Expr> {
     let slope = arena.derivative(formula, symbol);
     let linear = !arena.is_zero(slope) && !arena.depends_on(slope, &BTreeSet::from([symbol]));

@@ -1,4 +1,4 @@
-//! The one question about a motion: which directions of the unknowns no derivative of the rows shows on it.
+//! The observability problem on a trajectory: the directions of the unknowns that no derivative of the rows observes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,11 +9,11 @@ use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-/// Parts of the rows with their derivatives up to which directions are solved for.
+/// Size of the rows with their derivatives up to which directions are solved for.
 pub(super) const MOST_PARTS: usize = 600;
 
-/// A question about motions of a plant.
-pub(super) struct Question<'a> {
+/// An observability problem on trajectories of a plant.
+pub(super) struct TrajectoryProblem<'a> {
     pub(super) plant: &'a Plant,
     pub(super) domain: &'a Domain,
     pub(super) cascade: &'a Cascade,
@@ -21,7 +21,7 @@ pub(super) struct Question<'a> {
     pub(super) unknowns: usize,
 }
 
-/// What is asked of a motion at all times.
+/// The conditions of a trajectory at all times.
 #[derive(Default)]
 pub(super) struct Restriction {
     /// Signals that do not move.
@@ -30,17 +30,17 @@ pub(super) struct Restriction {
     pub(super) equal: BTreeMap<Symbol, Expr>,
 }
 
-/// What the rows with their derivatives show on a motion.
-pub(super) struct Shown {
+/// The observations of the rows with their derivatives on a trajectory.
+pub(super) struct Observation {
     /// Rows that show as much as all derivatives do.
     pub(super) stack: Vec<Vec<Expr>>,
     /// Directions that they do not show.
     pub(super) hidden: Vec<Vec<Expr>>,
 }
 
-impl Question<'_> {
-    /// What the rows with their derivatives show on the motions that a restriction leaves.
-    pub(super) fn shown(&self, restriction: &Restriction) -> Result<Shown, Obstacle> {
+impl TrajectoryProblem<'_> {
+    /// Solves the problem on the trajectories of a restriction.
+    pub(super) fn solve(&self, restriction: &Restriction) -> Result<Observation, Obstacle> {
         let &Self { plant, domain, cascade, regression, unknowns } = self;
         let arena = &plant.arena;
         let domain = if restriction.equal.is_empty() {
@@ -89,19 +89,19 @@ impl Question<'_> {
         if hidden.is_empty() && rank < unknowns {
             return Err(Obstacle::NoWitness);
         }
-        Ok(Shown { stack, hidden })
+        Ok(Observation { stack, hidden })
     }
 
-    /// What is shown where all inputs are constant, and an input or parameter has a value.
-    pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Shown, Obstacle> {
+    /// Solves the problem with all inputs constant, and an input or parameter at a value.
+    pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Observation, Obstacle> {
         let held = self.plant.commanded().filter(|input| *input != symbol).collect();
-        self.shown(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
+        self.solve(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
     }
 }
 
-/// What is seen of the unknowns where these directions are not: combinations that do not change along them. Each direction
+/// The identifiable combinations of the unknowns: those that do not change along the hidden directions. Each direction
 /// has a component that is one, and zero in the others.
-pub(crate) fn seen(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+pub(crate) fn identifiable(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
     let own = |index: usize| {
         (0..symbols.len()).find(|&column| {
             let entry = |(other, vector): (usize, &Vec<Expr>)| {

@@ -1,18 +1,18 @@
-//! Plants, and what is said of the motions on which unknowns stay hidden.
+//! Plants, and the report of the trajectories on which their unknowns are hidden.
 
 use crate::analysis::{Derivation, Outcome};
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::source::Source;
 
-/// What is said of a plant's motions, and the conditions on its parameters.
+/// The report on a plant's trajectories, and the conditions on its parameters.
 fn of(lines: &str) -> Vec<String> {
     let text = format!("model: m\n{lines}\n");
     let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
     let derivation = Derivation::derive(&plant);
     assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}");
     let result = derivation.identifiability.result.as_ref().expect("proved");
-    let mut lines = result.motion.as_ref().expect("over time").lines(&plant);
+    let mut lines = result.trajectories.as_ref().expect("over time").lines(&plant);
     lines.extend(result.constants.iter().map(|e| format!("{} != 0", plant.arena.print(*e))));
     lines
 }
@@ -30,7 +30,7 @@ fn inputs_that_are_equal_or_constant_may_hide_unknowns() {
         "while `e = 0`, only `z1` is identified",
     ];
     assert_eq!(of(&anywhere), expected);
-    // Their variation shows what they hide as constants.
+    // Their variation identifies unknowns that they hide as constants.
     let cells = |outputs: &str| {
         of(&format!(
             "x: [p, s]\ny: [q]\nu: [v, w]\nassume: [v > 0, w > 0]\nf_x: {{p: -v*p, s: -w*s}}\n{outputs}\nphi: [p, s]"
@@ -89,7 +89,7 @@ fn what_constant_inputs_hide_at_a_value_of_one_or_of_a_parameter_is_listed() {
     let lines = of(sum);
     assert!(lines[0].ends_with("even at rest, but for these motions"), "{lines:?}");
     assert!(lines[1].starts_with("while the inputs are constant and `k = m`, only"), "{lines:?}");
-    // q = v stays, while r moves.
+    // q = v is invariant, while r moves.
     let pursuit = "x: [p, s]\ny: [r, q]\nu: [v]\nf_x: {p: -v*p, s: -q*s}\nf_y: {r: p + s, q: q - v}\nphi: [p, s]";
     let lines = of(pursuit);
     assert!(lines.iter().any(|line| line.contains("q - v = 0") || line.contains("v - q = 0")), "{lines:?}");
@@ -122,16 +122,16 @@ fn what_several_signals_hide_at_rest_is_listed() {
     assert_eq!(lines.len(), 2, "{lines:?}");
 }
 
-/// No motion is passed over in silence: what is said of all motions was seen to hold on all.
+/// No trajectory is passed over in silence: a statement on all trajectories provably holds on all.
 #[test]
 fn motions_that_several_signals_keep_to_are_listed_or_not_spoken_of() {
     let almost = "the unknowns are identified on almost every motion, also with constant inputs";
-    // A limit cycle, on which q^2 + w^2 stays 1.
+    // A limit cycle, on which q^2 + w^2 is 1.
     let cycle = "x: [p, s]\ny: [q, w, r]\nf_x: {p: 0, s: 0}\nphi: [p, s]\n\
                  f_y: {q: w + q*(1 - q^2 - w^2), w: -q + w*(1 - q^2 - w^2), r: p + s*(q^2 + w^2)}";
     let lines = of(cycle);
     assert!(lines.iter().any(|line| line.starts_with("while `") && line.contains("= 0`, it was not")), "{lines:?}");
-    // Two axes, of which one may hold still.
+    // Two axes, one of which may hold still.
     let axes = "x: [a, g, b, k]\ny: [q, v, r, w]\nu: [m, n]\nf_x: {a: 0, g: 0, b: 0, k: 0}\n\
                 f_y: {q: v, v: m - a*v - g*cos(q), r: w, w: n - b*w - k*cos(r)}\nphi: [a, g, b, k]";
     assert_eq!(of(axes)[0], almost);
@@ -145,8 +145,8 @@ fn outputs_at_which_the_plant_rests_unseen_are_listed() {
     assert!(lines.iter().any(|line| line.contains("q - 1 = 0`, it was not decided")), "{lines:?}");
 }
 
-/// The factors of a determinant do not show the values at which functions of signals are equal, or constant, nor those at
-/// which several coefficients vanish.
+/// The factors of a determinant do not show the values at which functions of signals are equal, or constant, nor those
+/// at which several coefficients vanish.
 #[test]
 fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of() {
     let open = "it was not worked out for which special values of the parameters this is not so";
@@ -169,13 +169,13 @@ fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of
     for rate in ["p*sin(v) + s*cos(v)", "p*k*v + s*sin(v)", "p*tanh(v + k) + s*v"] {
         assert!(!told(rate), "{rate}");
     }
-    // k - 2*m and k + m vanish together only where k does.
+    // k - 2*m and k + m vanish at once only where k does.
     let signed = "parameters: [k, m]\nassume: [k > 0]\nx: [p, s]\ny: [q]\nu: [v, w]\nf_x: {p: 0, s: 0}\nphi: [p, s]";
     let lines = of(&format!("{signed}\nf_y: {{q: p*v + ((k - 2*m)*v^2 + (k + m)*w)*s}}"));
     assert!(!lines.iter().any(|line| line == open), "{lines:?}");
 }
 
-/// At r = 0, which stays, no input shows s.
+/// At r = 0, which is invariant, no input makes s observable.
 #[test]
 fn outputs_that_no_input_moves_from_a_blind_value_are_listed() {
     let of_rate = |rate: &str| {
@@ -184,15 +184,15 @@ fn outputs_that_no_input_moves_from_a_blind_value_are_listed() {
         ))
     };
     let open = "while `r = 0`, it was not decided what is identified".to_owned();
-    for stays in ["0", "-r", "r*(v - q)"] {
-        let lines = of_rate(stays);
-        assert!(lines.contains(&open), "{stays}: {lines:?}");
+    for is_invariant in ["0", "-r", "r*(v - q)"] {
+        let lines = of_rate(is_invariant);
+        assert!(lines.contains(&open), "{is_invariant}: {lines:?}");
     }
     assert!(of_rate("0")[0].contains("keep the inputs varying"));
     assert!(!of_rate("v").contains(&open));
 }
 
-/// A part of the domain in which all unknowns are seen needs its excitation there too.
+/// A cell of the domain in which all unknowns are identifiable needs its excitation there too.
 #[test]
 fn parts_of_the_domain_say_what_has_to_move_in_them() {
     let of_rate = |rate: &str, other: &str| {
@@ -236,7 +236,7 @@ fn what_hides_on_each_side_of_a_bend_is_told() {
     ] {
         assert!(lines.iter().any(|line| line == told), "{lines:?}");
     }
-    // What is the same on both sides is told of both.
+    // A result that is the same on both sides is reported for both.
     let lines = of("x: [p, s]\ny: [q]\nu: [v, r]\nf_x: {p: 0, s: 0}\nf_y: {q: p*abs(v) + s*r}\nphi: [p, s]");
     assert!(lines.contains(&"while `r = 0`, only `z1` is identified".to_owned()), "{lines:?}");
     assert!(lines.iter().any(|line| line.starts_with("while `abs(v) = 0`")), "{lines:?}");

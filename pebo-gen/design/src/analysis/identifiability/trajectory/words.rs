@@ -1,17 +1,17 @@
-//! What has to move, and where the regression is blind, in sentences.
+//! Sentences on the necessary motion and on the trajectories that hide unknowns.
 
-use crate::analysis::design::{Blind, Motion, Place};
+use crate::analysis::design::{BlindTrajectory, Trajectories, TrajectoryCondition};
 use crate::plant::Plant;
 use pebo_cas::Expr;
 use pebo_cas::domain::cells::Side;
 
-impl Motion {
-    /// Whether there are parts of the domain in which not all unknowns are seen.
+impl Trajectories {
+    /// Tests whether there are cells of the domain in which not all unknowns are identifiable.
     pub fn is_divided(&self) -> bool {
-        self.blind.iter().any(|blind| matches!(blind.place, Place::Part(_)))
+        self.blind.iter().any(|blind| matches!(blind.condition, TrajectoryCondition::Cell(_)))
     }
 
-    /// What has to move, in a line, and where the regression is blind, in a line each.
+    /// The necessary motion, in a line, and the trajectories that hide unknowns, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
             _ if self.is_divided() => self.of_parts(),
@@ -19,7 +19,10 @@ impl Motion {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
             (Some(true), true, true)
-                if self.blind.iter().all(|blind| matches!(blind.place, Place::UnshownAtRest(_))) =>
+                if self
+                    .blind
+                    .iter()
+                    .all(|blind| matches!(blind.condition, TrajectoryCondition::UndecidedAtRest(_))) =>
             {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
             }
@@ -45,7 +48,7 @@ impl Motion {
         std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
     }
 
-    /// The first line where there are parts of the domain in which not all unknowns are seen.
+    /// The first line where there are cells of the domain in which not all unknowns are identifiable.
     fn of_parts(&self) -> &'static str {
         match (self.by_itself, self.at_rest) {
             (Some(true), true) => {
@@ -66,42 +69,44 @@ impl Motion {
     }
 }
 
-impl Blind {
-    /// The motion.
-    pub fn place(&self, plant: &Plant) -> String {
+impl BlindTrajectory {
+    /// The trajectory.
+    pub fn condition(&self, plant: &Plant) -> String {
         self.worded(plant).replace('`', "")
     }
 
-    /// The motion, with formulas as code.
+    /// The trajectory, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
-        self.place.worded(plant)
+        self.condition.worded(plant)
     }
 
     fn line(&self, plant: &Plant) -> String {
-        let seen: Vec<String> = self.seen.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
-        if self.place.is_undecided() {
+        let identifiable: Vec<String> =
+            self.identifiable.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        if self.condition.is_undecided() {
             return format!("while {}, it was not decided what is identified", self.worded(plant));
         }
-        let seen = if seen.is_empty() { "nothing".to_owned() } else { format!("only {}", seen.join(", ")) };
-        format!("while {}, {seen} is identified", self.worded(plant))
+        let identifiable =
+            if identifiable.is_empty() { "nothing".to_owned() } else { format!("only {}", identifiable.join(", ")) };
+        format!("while {}, {identifiable} is identified", self.worded(plant))
     }
 }
 
-impl Place {
-    /// The motion, with formulas as code.
+impl TrajectoryCondition {
+    /// The trajectory, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
         match self {
-            Place::Rest => "the plant rests".to_owned(),
-            Place::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
+            TrajectoryCondition::Equilibrium => "the plant rests".to_owned(),
+            TrajectoryCondition::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
                 "all inputs are constant".to_owned()
             }
-            Place::Constant(inputs) => {
+            TrajectoryCondition::Constant(inputs) => {
                 let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", arena.name(*input))).collect();
                 format!("{} is constant", names.join(", "))
             }
-            Place::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
-            Place::Steady(symbol, value) => {
+            TrajectoryCondition::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
+            TrajectoryCondition::Steady(symbol, value) => {
                 let others = match (plant.u.contains(symbol), plant.commanded().count()) {
                     (true, 0 | 1) | (false, 0) => "",
                     (true, 2) => "the other input is constant and ",
@@ -111,18 +116,20 @@ impl Place {
                 };
                 format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
             }
-            Place::Unshown(zero) => format!("`{} = 0`", arena.print(*zero)),
-            Place::UnshownAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
-            Place::Part(sides) => on_sides(plant, sides),
-            Place::Within(sides, place) => format!("{} and {}", on_sides(plant, sides), place.worded(plant)),
+            TrajectoryCondition::Undecided(zero) => format!("`{} = 0`", arena.print(*zero)),
+            TrajectoryCondition::UndecidedAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
+            TrajectoryCondition::Cell(sides) => on_sides(plant, sides),
+            TrajectoryCondition::Within(sides, condition) => {
+                format!("{} and {}", on_sides(plant, sides), condition.worded(plant))
+            }
         }
     }
 
-    /// Whether what is seen there was not decided.
+    /// Tests whether its identifiability is undecided.
     fn is_undecided(&self) -> bool {
         match self {
-            Self::Unshown(_) | Self::UnshownAtRest(_) => true,
-            Self::Within(_, place) => place.is_undecided(),
+            Self::Undecided(_) | Self::UndecidedAtRest(_) => true,
+            Self::Within(_, condition) => condition.is_undecided(),
             _ => false,
         }
     }

@@ -1,4 +1,4 @@
-//! What the table of keys says of each: its name, whether it must be there, and the shape of its value.
+//! The columns of the table of keys: name, obligation, and the shape of the value.
 
 /// The shape that a value must have.
 #[derive(Debug)]
@@ -13,7 +13,7 @@ pub(crate) enum Shape {
     Choice(&'static [&'static str]),
     /// A list of values of one shape.
     List(&'static Shape),
-    /// A list, or a single value that stands for a list of one.
+    /// A list, or a single value in place of a list of one.
     OneOrMore(&'static Shape),
     /// A map from names to values of one shape.
     Map(&'static Shape),
@@ -27,21 +27,21 @@ pub(crate) enum Shape {
     Kinds(&'static [Key], &'static Shape),
     /// A map with these keys.
     Record(&'static [Key]),
-    /// A map with these keys, or a number, which stands for the first of them.
+    /// A map with these keys, or a number in place of the first of them.
     NumberOr(&'static [Key]),
-    /// A matrix of formulas: rows, or a plain list, or a single one; what these stand for depends on
-    /// the size that is wanted.
+    /// A matrix of formulas: rows, or a plain list, or a single one; the meaning of these depends on the size that is
+    /// wanted.
     Matrix,
 }
 
-/// What the presence of a key means for the others.
+/// The effect of a key on the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// It must be there.
     Required,
     /// It may be there.
     Optional,
-    /// It stands for the keys that a class gives.
+    /// A class: it replaces the keys that it gives.
     Class,
     /// It must be there unless a class is, which gives it.
     RequiredOrByClass,
@@ -52,7 +52,7 @@ pub(crate) enum Role {
 }
 
 impl Role {
-    /// Whether its value has at least one entry, if it is there.
+    /// Tests whether its value has at least one entry, if it is there.
     pub(crate) fn is_filled(self) -> bool {
         matches!(self, Self::Required | Self::RequiredOrByClass | Self::SearchedOrByClass)
     }
@@ -64,9 +64,9 @@ pub(crate) struct Key {
     pub(crate) name: &'static str,
     pub(crate) role: Role,
     pub(crate) shape: Shape,
-    /// How to write it.
+    /// An example.
     pub(crate) example: &'static str,
-    /// What it is, in a line that editors show.
+    /// A description, in a line that editors show.
     pub(crate) about: &'static str,
 }
 

@@ -1,6 +1,6 @@
-//! The keys of a model file, and the shape of the value behind each: the one place that describes them.
+//! The keys of a model file, and the shape of the value behind each.
 //!
-//! The reader holds a file against this table (`shape`), and `json_schema` prints it for editors.
+//! The reader checks a file by this table (`shape`), and `json_schema` prints it for editors.
 
 mod key;
 
@@ -21,7 +21,7 @@ const OFFSETS: Shape = Shape::Map(&Shape::Number);
 const FORMULAS: Shape = Shape::List(&Shape::Formula);
 const RATES: Shape = Shape::Map(&Shape::Formula);
 
-/// What other tools and textbooks call a key, beside its name here.
+/// Names of keys in other tools and textbooks, beside the names here.
 pub(super) const OTHERS: &[(&str, &str)] = &[
     ("params", "parameters"),
     ("param", "parameters"),
@@ -185,7 +185,7 @@ pub(super) const MODEL: &[Key] = &[
     ),
 ];
 
-/// Blocks of a linear plant; those left out are zero. With T1 and T2 the author chooses the transform.
+/// Blocks of a linear plant; absent ones are zero. With T1 and T2 the author chooses the transform.
 const LTI: &[Key] = &[
     required("A11", Shape::Matrix, "A11: [[0, 1], [-1, 0]]", "From x to the rate of x"),
     optional("A12", Shape::Matrix, "A12: [[0], [1]]", "From y to the rate of x; zero if left out"),
@@ -487,7 +487,7 @@ const SIMULATION: &[Key] = &[
     ),
 ];
 
-/// What a recording has besides signals.
+/// The keys of a recording besides signals.
 const RECORDING: &[Key] = &[
     optional(Recording::T, Shape::Formula, "t: time/1000", "When each row was recorded, in seconds"),
     optional(

@@ -1,8 +1,8 @@
-//! The equations that the gradient of a transform with a plain cascade satisfies.
+//! The differential equations for the gradient of a transform with a plain cascade.
 //!
-//! In: a plant, and rates of its signals. Out: linear partial differential equations of first order for unknown functions,
-//! over a field that holds the derivatives of its elements. Of `T(y) x + s(y)` they hold the functions T and the gradient
-//! of s, over the functions of y; of any smooth phi(x, y) its gradient, over those of x and y.
+//! In: a plant, and rates of its signals. Out: linear partial differential equations of first order for unknown
+//! functions, over a field that holds the derivatives of its elements. Of `T(y) x + s(y)` they hold the functions T and
+//! the gradient of s, over the functions of y; of any smooth phi(x, y) its gradient, over those of x and y.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,50 +11,50 @@ use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
 use super::connection::conditions;
-use crate::search::problem::Question;
+use crate::search::problem::Problem;
 
-/// How often the kernels of derivatives may bring new ones.
+/// Most rounds in which the kernels of derivatives may bring new ones.
 const MOST_ROUNDS: usize = 3;
 
 /// Equations for unknown functions, those for the entries of dphi/dx first.
-pub(in crate::search) struct Posed {
-    /// What the unknown functions are functions of.
+pub(in crate::search) struct GradientEquations {
+    /// The arguments of the unknown functions.
     pub(in crate::search) base: Vec<Symbol>,
-    /// For each hidden symbol a row that says that a rate is free of it: a column for each derivative of an unknown
-    /// function, those of one together, and one for each function.
+    /// For each hidden symbol a row for the independence of a rate: a column for each derivative of an unknown
+    /// function, those of one in sequence, and one for each function.
     conditions: Vec<Vec<Expr>>,
-    /// The unknown functions that are entries of a gradient: of which and by which symbol of the base.
+    /// The unknown functions that are entries of a gradient: the function and the symbol of the base.
     gradient: Vec<(usize, usize)>,
 }
 
 /// The equations over a field.
-pub(in crate::search) struct Rows {
+pub(in crate::search) struct EquationRows {
     /// The unknown functions that the equations hold.
     pub(in crate::search) kept: Vec<usize>,
-    /// Over the derivatives of those, those of one function together, and then over the functions.
+    /// Over the derivatives of those, those of one function in sequence, and then over the functions.
     pub(in crate::search) rows: Vec<Vec<Fraction>>,
 }
 
-impl Posed {
+impl GradientEquations {
     /// For T and the gradient of s, functions of y.
-    pub(in crate::search) fn affine(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>) -> Result<Self, Obstacle> {
-        let (states, outputs) = (question.x.len(), question.y.len());
-        let arena = question.arena;
-        let conditions = conditions(question, rates)?.into_iter().map(|row| {
+    pub(in crate::search) fn affine(problem: &Problem<'_>, rates: &BTreeMap<Symbol, Expr>) -> Result<Self, Obstacle> {
+        let (states, outputs) = (problem.x.len(), problem.y.len());
+        let arena = problem.arena;
+        let conditions = conditions(problem, rates)?.into_iter().map(|row| {
             let (slopes, rest) = row.split_at(states * outputs);
             let (shifts, values) = rest.split_at(outputs);
             let padding = vec![arena.zero(); outputs * outputs];
             [slopes, &padding, values, shifts].concat()
         });
         let gradient = (0..outputs).map(|output| (states + output, output)).collect();
-        Ok(Self { base: question.y.clone(), conditions: conditions.collect(), gradient })
+        Ok(Self { base: problem.y.clone(), conditions: conditions.collect(), gradient })
     }
 
     /// For the gradient of phi, functions of x and y.
-    pub(in crate::search) fn smooth(question: &Question<'_>, rates: &BTreeMap<Symbol, Expr>) -> Self {
-        let arena = question.arena;
-        let base: Vec<Symbol> = question.x.iter().chain(&question.y).copied().collect();
-        let conditions = question.hidden.iter().map(|hidden| {
+    pub(in crate::search) fn smooth(problem: &Problem<'_>, rates: &BTreeMap<Symbol, Expr>) -> Self {
+        let arena = problem.arena;
+        let base: Vec<Symbol> = problem.x.iter().chain(&problem.y).copied().collect();
+        let conditions = problem.hidden.iter().map(|hidden| {
             let slopes = base.iter().flat_map(|function| {
                 let is_this = |by: &Symbol| if by == hidden { rates[function] } else { arena.zero() };
                 base.iter().map(is_this).collect::<Vec<Expr>>()
@@ -66,18 +66,18 @@ impl Posed {
         Self { base, conditions, gradient }
     }
 
-    /// What moves besides the base.
-    pub(in crate::search) fn moving(&self, question: &Question<'_>) -> BTreeSet<Symbol> {
-        question.signals.iter().filter(|symbol| !self.base.contains(symbol)).copied().collect()
+    /// The moving symbols besides the base.
+    pub(in crate::search) fn moving(&self, problem: &Problem<'_>) -> BTreeSet<Symbol> {
+        problem.signals.iter().filter(|symbol| !self.base.contains(symbol)).copied().collect()
     }
 
     /// The field of the conditions and all derivatives by the base; none if these lead to ever new functions.
-    pub(in crate::search) fn field<'a>(&self, question: &Question<'a>) -> Result<Option<Field<'a>>, Obstacle> {
-        let arena = question.arena;
+    pub(in crate::search) fn field<'a>(&self, problem: &Problem<'a>) -> Result<Option<Field<'a>>, Obstacle> {
+        let arena = problem.arena;
         let symbols: BTreeSet<Symbol> = self.base.iter().copied().collect();
         let mut roots = self.conditions.concat();
         for _ in 0..MOST_ROUNDS {
-            let field = Field::over(arena, &question.domain.facts, &roots)?;
+            let field = Field::over(arena, &problem.domain.facts, &roots)?;
             let kernels = field.kernels_of(&symbols);
             let pairs = kernels.iter().flat_map(|kernel| self.base.iter().map(move |symbol| (*kernel, *symbol)));
             let slopes: Vec<Expr> = pairs.map(|(kernel, by)| arena.derivative(field.kernel(kernel), by)).collect();
@@ -91,10 +91,14 @@ impl Posed {
     }
 
     /// The equations over the field; none if there are none.
-    pub(in crate::search) fn rows(&self, question: &Question<'_>, field: &Field<'_>) -> Result<Option<Rows>, Obstacle> {
-        let (states, directions) = (question.x.len(), self.base.len());
+    pub(in crate::search) fn rows(
+        &self,
+        problem: &Problem<'_>,
+        field: &Field<'_>,
+    ) -> Result<Option<EquationRows>, Obstacle> {
+        let (states, directions) = (problem.x.len(), self.base.len());
         let Some(all) = self.conditions.first().map(|row| row.len() / (directions + 1)) else { return Ok(None) };
-        let mut rows = equations(field, &self.conditions, &self.moving(question))?;
+        let mut rows = equations(field, &self.conditions, &self.moving(problem))?;
         // phi may be any function of an output in whose rate there is nothing hidden.
         let occurs = |function: &usize| {
             let columns = (0..directions).map(|by| function * directions + by).chain([all * directions + function]);
@@ -117,6 +121,6 @@ impl Posed {
                 rows.push(row);
             }
         }
-        Ok(Some(Rows { kept, rows }))
+        Ok(Some(EquationRows { kept, rows }))
     }
 }
