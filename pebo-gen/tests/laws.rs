@@ -89,7 +89,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_printed_parses_to_the_same(r in recipe(true)) {
+    fn printed_text_parses_to_the_same(r in recipe(true)) {
         let arena = Arena::new();
         let expr = build(&arena, &r);
         let text = arena.print(expr);

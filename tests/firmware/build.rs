@@ -8,8 +8,10 @@ fn main() {
     println!("cargo::rerun-if-env-changed=FIRMWARE_MODULES");
     println!("cargo::rerun-if-changed={}", modules.display());
     let mut declarations = String::new();
-    let mut files: Vec<PathBuf> =
-        std::fs::read_dir(&modules).expect("a folder of modules").map(|entry| entry.expect("an entry").path()).collect();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&modules)
+        .expect("a folder of modules")
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
     files.sort();
     for file in files {
         let name = file.file_stem().expect("a file").display().to_string();
