@@ -1,6 +1,8 @@
 //! The pieces of Rust that the manual shows and no example has: that the text is here is tested by
 //! `pebo-gen/tests/manual`, that it does what the manual says, here.
 
+use pebo_gen::emit::Scalar;
+use pebo_gen::source::Source;
 use pebo_runtime::nalgebra::SVector;
 use pebo_runtime::{Bounded, Fault, Gate, Hold, LeastSquares, OutputForm, SampledRegression, WindowedRegression};
 use tests::emitted::{boost_f64 as boost, cuk_f64 as cuk};
@@ -56,4 +58,16 @@ fn the_examples_run() {
     // observer of the model takes a tenth of a second.
     let current = current(&vec![24.0; 100_000], 0.5).expect("good samples");
     assert!((current - 0.96).abs() < 1e-6, "{current}");
+}
+
+/// The derivation and the module, step by step, as a build script may call them.
+#[test]
+fn a_build_script_may_derive_and_emit_by_itself() {
+    for (model, name) in [("../models/cuk.yaml", "Cuk"), ("../models/motor.yaml", "Motor")] {
+        let text = std::fs::read_to_string(model).expect("a model");
+        let source = Source::new(model, text).expect("a text");
+        let derived = pebo_gen::derive(&source).unwrap_or_else(|d| panic!("{model}: {}", d[0].message));
+        let emitted = derived.emit(Scalar::F32).unwrap_or_else(|e| panic!("{model}: {e}"));
+        assert!(emitted.text.contains(&format!("pub struct {name}")));
+    }
 }

@@ -5,8 +5,8 @@
 //! so its derivative is the difference quotient; no signal is differentiated otherwise.
 //!
 //! - [`FilteredRegression`]: the operator is a [`Filter`];
-//! - [`WindowedRegression`](crate::WindowedRegression): the mean over a window, the integral form;
-//! - [`SampledRegression`](crate::SampledRegression): each sample by itself, for sensors of known standard deviation.
+//! - [`WindowedRegression`]: the mean over a window, the integral form;
+//! - [`SampledRegression`]: each sample by itself, for sensors of known standard deviation.
 
 mod filter;
 mod sampled;

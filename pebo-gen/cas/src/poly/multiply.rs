@@ -4,7 +4,7 @@
 //! exponents if the box of exponents is not much larger than the number of products, else in a hash table, whose keys
 //! are sorted at the end. They are words, double words, or integers of any size, by the sizes of the coefficients.
 //!
-//! One unit with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table
+//! One thing with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table
 //! or one long integer, for products and quotients alike, and each delegates polynomials that are too sparse or too
 //! dense for it.
 

@@ -6,7 +6,7 @@
 //! An equation with a single occurrence of the unknown is inverted operation by operation. If none is left, the
 //! equations are taken as linear in the kernels that hold unknowns (`p`, `sin(q)`, `exp(x)`, `x^3`) and eliminated; the
 //! resulting kernels are inverted: a sine and a cosine of one angle give `atan2`, and products are separated
-//! ([`monomials`]). The remaining equation in one unknown may be quadratic ([`quadratic`]). Known terms are opaque at
+//! (`monomials`). The remaining equation in one unknown may be quadratic (`quadratic`). Known terms are opaque at
 //! first ([`crate::forms::opaque`]), and only then expanded, for results that need a relation within them.
 
 pub mod elimination;

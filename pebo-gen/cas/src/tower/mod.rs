@@ -24,7 +24,7 @@
 //! roots that do not denest, and inverse trigonometric functions beyond sums of three. No verdict relies on
 //! independence: an enclosure refutes (see [`crate::domain::zero`]).
 //!
-//! One unit with `domain`, `manifold` and all files of this folder: a kernel has arguments in normal form, a normal
+//! One thing with `domain`, `manifold` and all files of this folder: a kernel has arguments in normal form, a normal
 //! form consists of kernels, and the equality of kernels depends on their signs on the domain, which normal forms
 //! decide.
 

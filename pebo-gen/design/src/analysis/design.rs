@@ -259,6 +259,13 @@ pub struct BlindTrajectory {
     pub hidden: Vec<Vec<Expr>>,
 }
 
+impl BlindTrajectory {
+    /// Trajectories on which the rank is undecided.
+    pub(in crate::analysis) fn undecided(condition: TrajectoryCondition) -> Self {
+        Self { condition, identifiable: Vec::new(), hidden: Vec::new() }
+    }
+}
+
 /// A condition that holds at all times.
 #[derive(Clone, Debug)]
 pub enum TrajectoryCondition {

@@ -1,8 +1,8 @@
 //! Lowers expressions to operations.
 //!
-//! Every value is computed once, sines and cosines of sums from those of the summands ([`super::angles`]). Signs travel
-//! with the values and end in subtractions; [`super::signs`] removes what it can of the remaining negations. Products
-//! are in [`super::product`].
+//! Every value is computed once, sines and cosines of sums from those of the summands (`angles`). Signs travel
+//! with the values and end in subtractions; `signs` removes what it can of the remaining negations. Products
+//! are in `product`.
 //!
 //! One thing with `product`, `angles` and `sharing`: a product is lowered factor by factor, an angle by its summands,
 //! and sharing counts the products of that lowering.

@@ -45,7 +45,7 @@ impl Candidate {
         let accepted = match self.derivation.outcome {
             Outcome::Accepted => 0,
             Outcome::Undecided => 1,
-            _ => 2,
+            Outcome::Rejected => 2,
         };
         let kind = self.derivation.identifiability.result.as_ref().map(|result| result.kind);
         (

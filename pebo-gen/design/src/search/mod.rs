@@ -54,10 +54,10 @@ pub use words::settles;
 /// Searches for a transform of the plant, of one class of cascade or of any.
 ///
 /// ```
-/// use pebo_gen::model::Model;
-/// use pebo_gen::plant::Plant;
-/// use pebo_gen::search::{SearchVerdict, solve};
-/// use pebo_gen::source::Source;
+/// use pebo_design::model::Model;
+/// use pebo_design::plant::Plant;
+/// use pebo_design::search::{SearchVerdict, solve};
+/// use pebo_design::source::Source;
 ///
 /// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\n";
 /// let model = Model::parse(&Source::new("m.yaml", text).expect("a short text")).expect("a model");

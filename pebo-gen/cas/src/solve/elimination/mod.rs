@@ -3,7 +3,7 @@
 //! In: formulas that are to vanish, states and inputs to determine, and a check of the result. Out: the first values
 //! that the check accepts, in symbols that remain free, or a formula that no rule makes vanish.
 //!
-//! Linear equations are solved combined first ([`joint`]). Then an equation is taken for a symbol in which one of its
+//! Linear equations are solved combined first (`joint`). Then an equation is taken for a symbol in which one of its
 //! factors is linear, which is replaced in all others; if there is none, a factor may be quadratic, or inverse
 //! functions may help. A divisor that vanishes somewhere can lose solutions, never add one, and if a product vanishes,
 //! each factor in turn is tried. So this is a search, and no elimination of a matrix, whose pivots might vanish.

@@ -205,14 +205,11 @@ fn on_parts(
                 at_rest &= trajectories.is_some_and(|trajectories| trajectories.at_rest);
                 within.extend(trajectories.map(|trajectories| (part, trajectories.blind.clone())));
             }
-            Some(Excitation::Never) => {
-                let (identifiable, hidden) = (identifiable(arena, symbols, &decided.hidden), decided.hidden.clone());
-                blind.push(BlindTrajectory {
-                    condition: TrajectoryCondition::Cell(part.sides.clone()),
-                    identifiable,
-                    hidden,
-                });
-            }
+            Some(Excitation::Never) => blind.push(BlindTrajectory {
+                condition: TrajectoryCondition::Cell(part.sides.clone()),
+                identifiable: identifiable(arena, symbols, &decided.hidden),
+                hidden: decided.hidden.clone(),
+            }),
         }
         cells.push(CellRows { part, rows: decided.rows });
         if let Some(result) = decided.claim.result {
@@ -248,13 +245,10 @@ fn on_parts(
     blind.extend(of_parts(plant, &within, parts.len()));
     // On the borders too a column may vanish.
     let on_whole = whole.claim.result.and_then(|result| result.trajectories).map(|trajectories| trajectories.blind);
-    let undecided = on_whole
-        .into_iter()
-        .flatten()
-        .filter(|trajectory| matches!(trajectory.condition, TrajectoryCondition::Undecided(_)));
-    let others: Vec<BlindTrajectory> = undecided
-        .filter(|trajectory| blind.iter().all(|other| other.condition(plant) != trajectory.condition(plant)))
-        .collect();
+    let is_undecided = |of: &BlindTrajectory| matches!(of.condition, TrajectoryCondition::Undecided(_));
+    let is_new = |of: &BlindTrajectory| blind.iter().all(|other| other.condition(plant) != of.condition(plant));
+    let others: Vec<BlindTrajectory> =
+        on_whole.into_iter().flatten().filter(|of| is_undecided(of) && is_new(of)).collect();
     blind.extend(others);
     let trajectories = Trajectories { by_itself, at_rest, blind, everywhere: false, parameters };
     Ok(Claim {

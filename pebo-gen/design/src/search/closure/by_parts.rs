@@ -2,9 +2,9 @@
 //!
 //! In: a plant some of whose states have the rate zero. Out: functions of x and y whose rates are affine in themselves.
 //! Where a constant c multiplies the rate of w in another rate, c*w is taken into the component instead, as the
-//! constant has no rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has z = y' + b*y with z' = -a*y
-//! + u. The rates then consist of the components, and of products of constants and known signals, which are components
-//! too.
+//! constant has no rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has `z = y' + b*y` with
+//! `z' = -a*y + u`. The rates then consist of the components, and of products of constants and known signals, which are
+//! components too.
 //!
 //! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply
 //! measured signals alone (Marino and Tomei 1992).

@@ -92,11 +92,7 @@ pub(super) fn of(
     let (constants, all) = special.unwrap_or_default();
     let parameters = all && !coincide();
     let kept = observed.filter(|_| by_itself != Some(true)).map(|observed| problem.kept(&observed.stack));
-    let undecided = |zero| BlindTrajectory {
-        condition: TrajectoryCondition::Undecided(zero),
-        identifiable: Vec::new(),
-        hidden: Vec::new(),
-    };
+    let undecided = |zero| BlindTrajectory::undecided(TrajectoryCondition::Undecided(zero));
     let kept: Vec<BlindTrajectory> = kept.into_iter().flatten().map(undecided).collect();
     let parts = held.as_ref().map_or(usize::MAX, |observed| arena.postorder(&observed.stack.concat()).len());
     let mut everywhere = false;
@@ -141,11 +137,8 @@ pub(super) fn of(
         let known: Vec<Expr> = blind.iter().filter_map(|other| undecided_zero(&other.condition)).collect();
         let (doubtful, all) = problem.doubtful_at_rest(&observed.stack);
         let others = doubtful.into_iter().filter(|zero| !known.contains(zero));
-        blind.extend(others.map(|zero| BlindTrajectory {
-            condition: TrajectoryCondition::UndecidedAtRest(zero),
-            identifiable: Vec::new(),
-            hidden: Vec::new(),
-        }));
+        let at_rest = |zero| BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(zero));
+        blind.extend(others.map(at_rest));
         everywhere &= all;
     }
     (Trajectories { by_itself, at_rest, blind, everywhere, parameters }, constants)
