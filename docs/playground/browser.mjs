@@ -15,7 +15,7 @@ const [site, ...rest] = process.argv.slice(2);
 const pictures = rest[0] === "--screenshots" ? rest.splice(0, 2)[1] : null;
 const browsers = rest.length ? rest : ["chrome", "firefox"];
 const PROGRAMS = { chrome: "/usr/bin/chromium", firefox: "/usr/bin/firefox-esr" };
-/** What a loaded machine may take for a proof or a run. */
+/** The time that a loaded machine may take for a proof or a run. */
 const PATIENCE = 60_000;
 
 const server = await serve(site);
@@ -49,7 +49,7 @@ const shows = (page, selector, words) =>
     selector,
     words.source,
   );
-/** What the status line says. */
+/** The text of the status line. */
 const said = (page, words) =>
   page.waitForFunction(
     (words) => document.getElementById("status").textContent.includes(words),

@@ -1,4 +1,4 @@
-// How long a visitor waits, beside the native program: medians of ten.
+// Waiting times of a visitor, beside the native program: medians of ten.
 //
 //   node measure.mjs SITE NATIVE [MODEL ..]
 //

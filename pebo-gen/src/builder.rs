@@ -37,7 +37,7 @@ pub struct Builder {
 /// A model that was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Built {
+pub struct BuiltModel {
     /// The model's name, which is the module's.
     pub model: String,
     /// The name of the type in it that implements `Model`.
@@ -118,13 +118,13 @@ impl Builder {
     /// # Errors
     /// If a model is not accepted, or a file cannot be read or written. All models are looked at first: nothing is
     /// written if one of them is refused, and each tells what is wrong with it.
-    pub fn compile(&self, models: &[impl AsRef<Path>]) -> Result<Vec<Built>, BuildError> {
+    pub fn compile(&self, models: &[impl AsRef<Path>]) -> Result<Vec<BuiltModel>, BuildError> {
         let folder = self.folder()?;
         let (mut texts, mut refused) = (Vec::new(), Vec::new());
         for path in models {
             match self.one(path.as_ref()) {
                 Ok((model, type_name, text)) => {
-                    let built = Built { path: folder.join(format!("{model}.rs")), model, type_name };
+                    let built = BuiltModel { path: folder.join(format!("{model}.rs")), model, type_name };
                     texts.push((built, text));
                 }
                 Err(BuildError(text)) => refused.push(text),

@@ -23,11 +23,11 @@ pub mod report;
 pub mod simulate;
 
 #[cfg(feature = "yaml")]
-pub use answer::{Answer, Ask, Section, Solution, Stage, Standing, Typeset, answer, solve};
+pub use answer::{Answer, Request, Section, Solution, Stage, Standing, TypesetFormulas, answer, solve};
 #[cfg(feature = "simulate")]
-pub use answer::{AskRun, FinalError, Run, Tape, replay};
+pub use answer::{FinalError, Run, RunRequest, Tape, replay};
 #[cfg(feature = "yaml")]
-pub use builder::{BuildError, Builder, Built};
+pub use builder::{BuildError, Builder, BuiltModel};
 pub use derived::Derived;
 #[cfg(feature = "yaml")]
 pub use derived::{derive, derive_within};

@@ -293,7 +293,7 @@ fn chains_of_point_masses_satisfy_assumption_3() {
 /// Elimination would go on for hours in the equations of a chain in motion: it rests at zero momenta, whatever its
 /// positions are that the forces hold.
 #[test]
-fn a_chain_of_point_masses_rests_where_it_is_held() {
+fn a_chain_of_point_masses_has_equilibria_where_it_is_held() {
     let chain = derived(&chain(4));
     let report = summary(&chain.plant, &chain.derivation);
     for line in ["operating point           p_r1 = 0", "p_q4 = 0", "f_q4 = g*m4*r4*cos(q4)", "h = 0 there"] {
@@ -334,7 +334,7 @@ mechanical:
       [(bx*rb1 - by*ra1)/sin(q4), (bx*rb2 - by*ra2)/sin(q4), -by/sin(q4), -bx/sin(q4)]]";
 
 #[test]
-fn a_plant_is_divided_by_what_its_frame_is_divided_by() {
+fn a_plant_has_the_denominators_of_its_frame() {
     let links = derived(FOUR_LINKS);
     assert_eq!(links.derivation.outcome, Outcome::Accepted, "{:?}", links.derivation.diagnostics);
     assert_eq!(links.derivation.conditions.len(), 0);

@@ -89,7 +89,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_printed_parses_to_the_same(r in recipe(true)) {
+    fn printed_text_parses_to_the_same(r in recipe(true)) {
         let arena = Arena::new();
         let expr = build(&arena, &r);
         let text = arena.print(expr);
@@ -164,8 +164,8 @@ proptest! {
         };
         let width = Interval::from_rational(&(&step * &Rational::from(2)), precision).expect("a number");
         let quotient = up.sub(&down, precision).and_then(|rise| rise.div(&width, precision)).expect("a quotient");
-        // The error of a central difference is h^2/6 times the third derivative. Of numbers beyond 2^400 the difference is
-        // rounding alone, as its enclosure says.
+        // The error of a central difference is h^2/6 times the third derivative. Of numbers beyond 2^400 the difference
+        // is rounding alone, as its enclosure says.
         let size = slope.lo().abs();
         if size < 1e6 {
             let error = 1e-6 * (1.0 + size);

@@ -15,7 +15,7 @@ use pebo_gen::plant::{Scope, lower};
 
 /// The proved sign of a formula.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Shown {
+enum ProvedSign {
     Positive,
     NotNegative,
     Negative,
@@ -24,12 +24,12 @@ enum Shown {
     /// Nothing, although there is a sign: a failure means that more is proved than before.
     Open,
 }
-use Shown::{Negative, NotNegative, NotPositive, Nothing, Open, Positive};
+use ProvedSign::{Negative, NotNegative, NotPositive, Nothing, Open, Positive};
 
 const NAMES: [&str; 6] = ["a", "b", "c", "x", "y", "z"];
 
 /// Formula; assumptions, a formula that is positive or, with `>=` before it, not negative; the proved sign.
-const TABLE: &[(&str, &[&str], Shown)] = &[
+const TABLE: &[(&str, &[&str], ProvedSign)] = &[
     // Numbers, rational and not.
     ("3", &[], Positive),
     ("-1/7", &[], Negative),
@@ -163,7 +163,7 @@ fn assumption(text: &str) -> (Formula, Relation) {
     }
 }
 
-fn shown(text: &str, assumptions: &[&str]) -> Shown {
+fn proved_sign(text: &str, assumptions: &[&str]) -> ProvedSign {
     let arena = Arena::new();
     let mut scope = Scope::new();
     for name in NAMES {
@@ -214,8 +214,8 @@ fn value(formula: &Formula, point: &BTreeMap<&str, f64>) -> f64 {
 }
 
 /// A value has the sign, up to rounding.
-fn agrees(shown: Shown, value: f64) -> bool {
-    match shown {
+fn agrees(proved_sign: ProvedSign, value: f64) -> bool {
+    match proved_sign {
         Positive | NotNegative => value > -1e-9,
         Negative | NotPositive => value < 1e-9,
         Nothing | Open => true,
@@ -226,7 +226,7 @@ fn agrees(shown: Shown, value: f64) -> bool {
 fn signs_are_those_of_the_table() {
     let wrong: Vec<String> = TABLE
         .iter()
-        .map(|(text, facts, expected)| (text, facts, expected, shown(text, facts)))
+        .map(|(text, facts, expected)| (text, facts, expected, proved_sign(text, facts)))
         .filter(|(_, _, expected, found)| *expected != found && !(**expected == Open && *found == Nothing))
         .map(|(text, facts, expected, found)| format!("{text} where {facts:?}: {found:?}, not {expected:?}"))
         .collect();

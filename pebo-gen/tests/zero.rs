@@ -326,7 +326,7 @@ fn near_identities_are_refuted_with_a_witness() {
 }
 
 #[test]
-fn what_is_not_covered_stays_open() {
+fn formulas_outside_the_scope_remain_open() {
     for (text, positive) in OPEN {
         let (_, answer) = decided(&parse(text), positive);
         assert!(matches!(answer, Answer::Open(_)), "{text}: {answer:?}");

@@ -6,7 +6,7 @@
 Plants are those of models/, under the control law with the true state, so that all observers see the same data. Each
 observer has one setting for all columns. Where chance is at work the numbers are those of 100 runs: medians of the time
 to settle and of the root mean square from then on, and what nine tenths of the runs do not exceed at worst. Errors are
-in percent of the largest magnitude of the state (of an angle: of its period), of the state with the largest.
+in percent of the largest absolute value of the state (of an angle: of its period), of the state with the largest.
 """
 
 import argparse
@@ -44,7 +44,7 @@ CONDITIONS = {
     },
 }
 
-# What all conditions of a model have in common.
+# Settings that all conditions of a model have in common.
 COMMON = {
     "cuk_case2": {"duration": "0.1", "panels": "[]"},
     "motor": {"duration": "0.5", "step": "1e-4", "panels": "[]"},
@@ -110,7 +110,7 @@ def simulate(model, settings, arguments):
 
 
 def largest(model):
-    """The largest magnitude of each state."""
+    """The largest absolute value of each state."""
     settings = {f"simulation.{key}": value for key, value in COMMON[model].items()}
     _, out, _ = simulate(model, settings | {"simulation.baselines": "{}"}, ["--csv", "-", "--feedback", "truth"])
     rows = list(csv.DictReader(io.StringIO(out)))

@@ -16,7 +16,7 @@ from driver.systems import whole  # noqa: E402
 IDENTITIES = ("SymEngine", "SymPy", "symplex")
 CHECKS = {"cuk": (1, 2, 4, 8), "lti": (12, 24, 60), "symbolic": (2, 4, 6), "arm": (3, 4, 5, 6, 7), "spatial": (2, 3, 6),
           "compartments": (6, 12), "grid": (8, 16, 32), "terms": (50, 201, 400)}
-# Who answers the central question of a family besides us (rivals/family_rival.py).
+# The rivals that answer the central question of a family (rivals/family_rival.py).
 FAMILY_RIVALS = {"cuk": "SymPy", "lti": "FLINT", "compartments": "SymPy", "grid": "SymPy", "terms": "SymPy"}
 POLYNOMIALS = ("FLINT", "SymEngine", "SymPy", "symplex")
 

@@ -73,7 +73,7 @@ fn immersion([gamma_1, gamma_2]: [f64; 2]) -> Step {
 }
 
 /// Name and settings of every observer, and itself.
-fn rivals() -> Result<Vec<(&'static str, Step)>, Fault> {
+fn baselines() -> Result<Vec<(&'static str, Step)>, Fault> {
     let gains = Vector2::new(5e-6, 0.1);
     let weak = Vector2::new(1e6, 1e10);
     let speed = Vector2::new(1e5, 1e5);
@@ -111,9 +111,9 @@ struct Row {
 }
 
 fn run(noise: f64, dt: f64) -> Result<Vec<(&'static str, Row)>, Fault> {
-    let mut rivals = rivals()?;
+    let mut baselines = baselines()?;
     let mut rows: Vec<Row> =
-        rivals.iter().map(|_| Row { settled: Vector2::zeros(), at_10_ms: Vector2::zeros() }).collect();
+        baselines.iter().map(|_| Row { settled: Vector2::zeros(), at_10_ms: Vector2::zeros() }).collect();
     let mut random = Noise::new(1);
     let mut plant = Converter::new();
     let initial = plant.transform();
@@ -121,7 +121,7 @@ fn run(noise: f64, dt: f64) -> Result<Vec<(&'static str, Row)>, Fault> {
     while t < DURATION {
         let y = plant.outputs().map(|y| y * (1.0 + noise * random.normal()));
         let (z, x) = (plant.transform(), plant.unmeasured());
-        for ((_, step), row) in rivals.iter_mut().zip(&mut rows) {
+        for ((_, step), row) in baselines.iter_mut().zip(&mut rows) {
             let estimate = step(&y, d, dt)?;
             let error = estimate - Vector2::new(0.0, L3 * G / C4 * y.y) - z;
             for (settled, share) in row.settled.iter_mut().zip(error.component_div(&initial).iter()) {
@@ -138,7 +138,7 @@ fn run(noise: f64, dt: f64) -> Result<Vec<(&'static str, Row)>, Fault> {
         steps += 1;
         t = f64::from(steps) * dt;
     }
-    Ok(rivals.iter().map(|(name, _)| *name).zip(rows).collect())
+    Ok(baselines.iter().map(|(name, _)| *name).zip(rows).collect())
 }
 
 fn main() -> Result<(), Fault> {

@@ -5,7 +5,7 @@ Write the cases, then read them (the second number is how many to sample, all if
     PEBO_CASES=$PWD/target/cases.tsv cargo test --release -p pebo-gen --test campaign
     python3 tests/oracle/zero_oracle.py target/cases.tsv 5000
 
-Needs SymPy and mpmath. What decides is the value at random points of the domain, with 150 and with 250 digits: a
+Needs SymPy and mpmath. The value at random points of the domain decides, with 150 and with 250 digits: a
 value that differs from zero is the same with both, while what rounding leaves of zero is not. A case called zero
 must have no such value, one called nonzero must have one. `simplify` is asked of short open cases only, for
 information. Exits with 1 on a wrong verdict.
@@ -94,7 +94,7 @@ def at(digits, code, point):
 
 
 def differs_from_zero(few, many):
-    """Whether a value with few and with many digits is one number other than zero, and not rounding.
+    """A value with few and with many digits is one number other than zero, and not rounding.
 
     Rounding leaves of zero what is a hundred orders smaller with a hundred digits more, or nothing with either.
     """
@@ -102,7 +102,7 @@ def differs_from_zero(few, many):
 
 
 def largest(text, random_source, times=12, reach=2.5):
-    """The largest magnitude over some points, zero where it is rounding, and how many points had a value."""
+    """The largest absolute value over some points, zero if it is rounding, and the number of points with a value."""
     code, best, seen = compiled(text), mpmath.mpf(0), 0
     for _, point in zip(range(times), points(random_source, reach)):
         try:

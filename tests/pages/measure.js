@@ -37,7 +37,7 @@ function behind(element, view) {
   return [255, 255, 255];
 }
 
-// Whether a part of a name is not shown: of a name that is broken over lines, a browser shows the first line alone.
+// A part of a name is hidden: of a name that is broken over lines, a browser shows the first line alone.
 function isBroken(token, view) {
   const style = view.getComputedStyle(token);
   PAPER.font = `${style.fontStyle} ${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;

@@ -44,7 +44,7 @@ fn a_struct_keeps_its_name() {
 
 /// The files whose change makes cargo build again.
 #[test]
-fn the_compiler_is_told_of_the_files() {
+fn the_compiler_knows_the_files() {
     let program = std::env::current_exe().expect("this test");
     let listed = std::fs::read_to_string(program.with_extension("d")).expect("cargo writes what a program depends on");
     for file in ["models/cuk.yaml", "models/cuk_case2.yaml"] {

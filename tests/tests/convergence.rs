@@ -111,7 +111,7 @@ const STEPS: &[(&str, f64, f64)] = &[
 ];
 
 /// A model without the baselines beside its observer, and without their panels.
-fn without_rivals(text: &str) -> String {
+fn without_baselines(text: &str) -> String {
     let mut is_left_out = false;
     let kept = text.lines().filter(|line| {
         if !line.starts_with("   ") {
@@ -126,7 +126,7 @@ fn without_rivals(text: &str) -> String {
 #[test]
 fn estimates_recover_from_a_step_of_the_plant() {
     for &(model, after_start, after_step) in STEPS {
-        let text = without_rivals(&text(model));
+        let text = without_baselines(&text(model));
         assert!(text.contains("\n  plant:\n"), "{model} has no step");
         let every_sample = Overrides { every: Some(f64::MIN_POSITIVE), ..Overrides::default() };
         let trace = run_with(&text, &every_sample);

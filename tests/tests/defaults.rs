@@ -72,7 +72,7 @@ simulation: {duration: 10, step: 0.05, initial: {a: 1, b: 1, q: 0}, noise: {q: 1
 
 /// Of a model's first states, and of its innovation: the root mean square that is seen in so many runs, over what is
 /// expected.
-fn seen_over_expected(text: &str, runs: u32) -> [f64; 3] {
+fn measured_over_expected(text: &str, runs: u32) -> [f64; 3] {
     let (mut seen, mut expected, mut surprise) = ([0.0; 2], [0.0; 2], 0.0);
     let derived = derive(&Source::new("model", text).unwrap()).unwrap();
     for seed in 0..runs {
@@ -89,8 +89,8 @@ fn seen_over_expected(text: &str, runs: u32) -> [f64; 3] {
 }
 
 #[test]
-fn expected_errors_are_those_that_are_seen() {
-    let found = seen_over_expected(LAG, 400);
+fn expected_errors_are_the_measured_ones() {
+    let found = measured_over_expected(LAG, 400);
     println!("{found:?}");
     // An error of the last tenth of a run is one number: 400 of them tell a deviation to 1/sqrt(800) = 3.5 %: four of that.
     // 400 runs with 12 innovations of one row: known to sqrt(2/4800) = 2 %.
@@ -106,7 +106,7 @@ fn expected_errors_are_those_that_are_seen() {
         noisy.replace("noise:", "every: {v4: 5}\n  noise:"),
         noisy.replace("noise:", "dropped: 0.2\n  noise:"),
     ] {
-        let found = seen_over_expected(&text, 200);
+        let found = measured_over_expected(&text, 200);
         println!("{found:?}");
         assert!(found[..2].iter().all(|ratio| (ratio - 1.0).abs() < 0.2), "{found:?}");
         // 200 runs with 12 innovations of two rows, where none is missing: known to sqrt(2/4800) = 2 %.

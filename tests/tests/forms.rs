@@ -61,7 +61,7 @@ mod forms {
 }
 
 #[test]
-fn what_was_read_is_what_is_compiled() {
+fn the_read_plant_is_the_compiled_one() {
     use forms::{NR, U, X, Y};
     for (q, tau) in [(0.3, 1.5), (-2.0, 0.25), (4.0, -8.0)] {
         let (y, u) = (Y { q, s: 0.0 }, U { tau });

@@ -8,7 +8,7 @@ use pebo_gen::emit::{Emitted, Scalar};
 use pebo_gen::model::Model;
 use pebo_gen::model::rust::TokenSpans;
 use pebo_gen::source::{Code, Source};
-use pebo_gen::{Ask, Builder, Derived, Standing, answer};
+use pebo_gen::{Builder, Derived, Request, Standing, answer};
 use pebo_runtime::nalgebra::SVector;
 use pebo_runtime::{Extension as _, Fundamental};
 use tests::emitted::{cuk_f64, prey_f64, rotating_frame_f64};
@@ -65,7 +65,7 @@ fn unsettled(path: &str) -> String {
 
 /// From the text of a model file, in one call.
 fn from_file(path: &str, text: &str, scalar: Scalar) -> Emitted {
-    let answer = answer(&Source::new(path, text).expect("a text"), &Ask::new().emit(scalar));
+    let answer = answer(&Source::new(path, text).expect("a text"), &Request::new().emit(scalar));
     assert_eq!(answer.standing, Standing::Accepted, "{}", answer.summary);
     answer.emitted.expect("accepted")
 }

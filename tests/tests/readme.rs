@@ -22,7 +22,7 @@ fn blocks(language: &str) -> Vec<&'static str> {
 /// CI runs the commands as they are, in a clean checkout. A mistake that it found once is found here at once: without
 /// one default among the programs of the workspace, `cargo run` does not know which is meant.
 #[test]
-fn the_commands_that_are_shown_mean_one_program() {
+fn the_commands_of_the_readme_mean_one_program() {
     let commands: Vec<&str> = blocks("sh").iter().flat_map(|block| block.lines()).collect();
     assert_eq!(commands, ["cargo run --release -- models/cuk.yaml", "cargo test"]);
     let mut cargo = Command::new(env!("CARGO"));

@@ -53,7 +53,7 @@ fn row(derived: &Derived) -> String {
 const FIGURES: &str = "\n## Settling";
 
 #[test]
-fn the_table_is_what_the_tool_says() {
+fn the_table_agrees_with_the_tool() {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder()).expect("the models").flatten().map(|entry| entry.path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "yaml"));

@@ -7,7 +7,7 @@
 //! `respond` is all there is: `memory` calls it in a page, and `native` in a native program, so that the two can be
 //! compared. The last model is kept with its derivation, so that the next question about it derives nothing.
 
-mod keep;
+mod cache;
 mod memory;
 mod question;
 mod respond;

@@ -4,7 +4,7 @@
 
 use std::cell::RefCell;
 
-use super::keep::Kept;
+use super::cache::ModelCache;
 use super::respond::respond;
 
 #[link(wasm_import_module = "page")]
@@ -19,7 +19,7 @@ fn tell(done: f64) {
 
 thread_local! {
     static TEXT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
-    static KEPT: RefCell<Kept> = RefCell::new(Kept::new(tell));
+    static KEPT: RefCell<ModelCache> = RefCell::new(ModelCache::new(tell));
 }
 
 /// Makes room for a question of so many bytes, and says where.
@@ -36,7 +36,7 @@ pub extern "C" fn room(bytes: usize) -> *mut u8 {
 #[unsafe(no_mangle)]
 pub extern "C" fn ask() -> usize {
     let question = TEXT.take();
-    let answer = KEPT.with_borrow_mut(|kept| respond(kept, &String::from_utf8_lossy(&question)));
+    let answer = KEPT.with_borrow_mut(|cache| respond(cache, &String::from_utf8_lossy(&question)));
     let bytes = answer.len();
     TEXT.set(answer.into_bytes());
     bytes

@@ -2,19 +2,19 @@
 //!
 //! An example of the package `tests`, which has the generator compiled already.
 
-mod keep;
+mod cache;
 mod question;
 mod respond;
 
 use std::io::{BufRead, Write, stdin, stdout};
 
-use keep::Kept;
+use cache::ModelCache;
 use respond::respond;
 
 fn main() -> std::io::Result<()> {
-    let mut kept = Kept::new(|_| ());
+    let mut cache = ModelCache::new(|_| ());
     for question in stdin().lock().lines() {
-        writeln!(stdout().lock(), "{}", respond(&mut kept, &question?).replace('\n', " "))?;
+        writeln!(stdout().lock(), "{}", respond(&mut cache, &question?).replace('\n', " "))?;
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ pub(super) enum Question {
         set: Vec<String>,
         /// Options of the run.
         #[serde(default)]
-        how: How,
+        how: RunOptions,
         /// The table of all signals is wanted.
         #[serde(default)]
         csv: bool,
@@ -89,14 +89,14 @@ impl From<Number> for Scalar {
 /// Options of a run.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct How {
+pub(super) struct RunOptions {
     seed: Option<u64>,
     initial_error: Option<f64>,
     estimator: Option<Estimator>,
 }
 
-impl From<How> for Overrides {
-    fn from(how: How) -> Self {
+impl From<RunOptions> for Overrides {
+    fn from(how: RunOptions) -> Self {
         Self { seed: how.seed, initial_error: how.initial_error, estimator: how.estimator, ..Self::default() }
     }
 }

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use pebo_gen::model::{Estimator, Model, json_schema};
 use pebo_gen::source::{Code, Diagnostic, Source};
-use pebo_gen::{Answer, Ask, AskRun, Derived, Solution, Tape, derive_within, solve};
+use pebo_gen::{Answer, Derived, Request, RunRequest, Solution, Tape, derive_within, solve};
 use serde::Serialize;
 
-use super::keep::{Kept, budget};
+use super::cache::{ModelCache, budget};
 use super::question::Question;
 
 /// The name of the text of a page's editor.
@@ -15,7 +15,7 @@ const NAME: &str = "model.yaml";
 
 /// The answer on a model, with the replacements and settings that a page offers.
 #[derive(Debug, Serialize)]
-struct Checked {
+struct CheckAnswer {
     #[serde(flatten)]
     answer: Answer,
     /// The replacement at the span of each diagnostic, if that mends it.
@@ -58,7 +58,7 @@ impl Knobs {
 
 /// A run with its signals as CSV.
 #[derive(Debug, Serialize)]
-struct Ran {
+struct RunAnswer {
     #[serde(flatten)]
     answer: Answer,
     csv: Option<String>,
@@ -66,7 +66,7 @@ struct Ran {
 
 /// A replay with its figure as SVG, and its estimates as CSV.
 #[derive(Debug, Serialize)]
-struct Taped {
+struct ReplayAnswer {
     #[serde(flatten)]
     answer: Answer,
     figure: Option<String>,
@@ -84,54 +84,55 @@ struct Story {
 
 /// The answer to a malformed question.
 #[derive(Debug, Serialize)]
-struct Misasked {
+struct QuestionError {
     error: String,
 }
 
 /// Answers a question.
-pub(super) fn respond(kept: &mut Kept, question: &str) -> String {
+pub(super) fn respond(cache: &mut ModelCache, question: &str) -> String {
     let question = match serde_json::from_str(question) {
         Ok(question) => question,
-        Err(error) => return json(&Misasked { error: error.to_string() }),
+        Err(error) => return json(&QuestionError { error: error.to_string() }),
     };
     match question {
         Question::Check { text, limit } => {
-            let answer =
-                |kept: &Kept, derived: &Derived, source: &Source| Answer::on(derived, source, &kept.ask().sections());
-            let (answer, model) = of_model(kept, &text, limit, answer);
+            let answer = |cache: &ModelCache, derived: &Derived, source: &Source| {
+                Answer::on(derived, source, &cache.ask().sections())
+            };
+            let (answer, model) = of_model(cache, &text, limit, answer);
             let accepted = answer.report.verdict == pebo_gen::analysis::Outcome::Accepted;
             let knobs = model.filter(|_| accepted).and_then(|model| Knobs::of(&model));
             let replacement = |diagnostic: &Diagnostic| diagnostic.replacement().map(str::to_owned);
             let replacements = answer.diagnostics.iter().map(replacement).collect();
-            json(&Checked { answer, replacements, knobs })
+            json(&CheckAnswer { answer, replacements, knobs })
         }
         Question::Emit { text, limit, scalar } => json(
-            &of_model(kept, &text, limit, |kept, derived, source| {
-                Answer::on(derived, source, &kept.ask().emit(scalar.into()))
+            &of_model(cache, &text, limit, |cache, derived, source| {
+                Answer::on(derived, source, &cache.ask().emit(scalar.into()))
             })
             .0,
         ),
         Question::Simulate { text, limit, set, how, csv } => {
-            let run = AskRun { overrides: how.into(), trace: csv, figure: true, runs: None };
-            let (mut answer, _) = of_setting(kept, (&text, &set), limit, |kept, derived, source| {
-                Answer::on(derived, source, &kept.ask().run(run))
+            let run = RunRequest { overrides: how.into(), trace: csv, figure: true, runs: None };
+            let (mut answer, _) = of_setting(cache, (&text, &set), limit, |cache, derived, source| {
+                Answer::on(derived, source, &cache.ask().run(run))
             });
             let trace = answer.run.as_mut().and_then(|run| run.trace.take());
-            json(&Ran { csv: trace.map(|trace| trace.csv()), answer })
+            json(&RunAnswer { csv: trace.map(|trace| trace.csv()), answer })
         }
         Question::Solve { text, limit } => json(&match Source::new(NAME, text) {
-            Ok(source) => solve(&source, None, &limited(kept.ask(), limit)),
+            Ok(source) => solve(&source, None, &limited(cache.ask(), limit)),
             Err(diagnostic) => Solution::of_unread("model", vec![diagnostic], &Source::unread(NAME)),
         }),
         Question::Replay { text, limit, name, csv } => {
             let mut estimates = Vec::new();
-            let (answer, _) = of_model(kept, &text, limit, |kept, derived, source| {
+            let (answer, _) = of_model(cache, &text, limit, |cache, derived, source| {
                 let tape = Tape { name: &name, recording: &mut csv.as_bytes(), estimates: Some(&mut estimates) };
-                Answer::replayed_on(derived, source, &kept.ask(), tape)
+                Answer::replayed_on(derived, source, &cache.ask(), tape)
             });
             let csv = answer.replay.is_some().then(|| String::from_utf8_lossy(&estimates).into_owned());
             let figure = answer.replay.as_ref().map(|replay| replay.figure.clone());
-            json(&Taped { answer, figure, csv })
+            json(&ReplayAnswer { answer, figure, csv })
         }
         Question::Stories => {
             let story = |code: Code| Story {
@@ -147,7 +148,7 @@ pub(super) fn respond(kept: &mut Kept, question: &str) -> String {
     }
 }
 
-fn limited(ask: Ask, limit: Option<f64>) -> Ask {
+fn limited(ask: Request, limit: Option<f64>) -> Request {
     match limit {
         Some(seconds) => ask.limit(seconds),
         None => ask,
@@ -156,21 +157,21 @@ fn limited(ask: Ask, limit: Option<f64>) -> Ask {
 
 /// The answer on a text, and the model if it is one.
 fn of_model(
-    kept: &mut Kept,
+    cache: &mut ModelCache,
     text: &str,
     limit: Option<f64>,
-    answer: impl FnOnce(&Kept, &Derived, &Source) -> Answer,
+    answer: impl FnOnce(&ModelCache, &Derived, &Source) -> Answer,
 ) -> (Answer, Option<Model>) {
-    of_setting(kept, (text, &[]), limit, answer)
+    of_setting(cache, (text, &[]), limit, answer)
 }
 
 /// The same on a text with settings. The derivation of the text alone is kept, which settings of its loop do not
 /// change.
 fn of_setting(
-    kept: &mut Kept,
+    cache: &mut ModelCache,
     (text, settings): (&str, &[String]),
     limit: Option<f64>,
-    answer: impl FnOnce(&Kept, &Derived, &Source) -> Answer,
+    answer: impl FnOnce(&ModelCache, &Derived, &Source) -> Answer,
 ) -> (Answer, Option<Model>) {
     let both = Source::new(NAME, text).and_then(|source| Ok((source.clone(), source.set(settings)?)));
     let (source, set) = match both {
@@ -180,24 +181,24 @@ fn of_setting(
         }
     };
     let unread = |diagnostics: Vec<Diagnostic>| (Answer::of_unread("model", diagnostics, &set), None);
-    let mut derived = kept.take(&source, limit);
+    let mut derived = cache.take(&source, limit);
     let answered = match &mut derived {
-        Ok(derived) if settings.is_empty() => (answer(kept, derived, &set), Some(derived.model.clone())),
+        Ok(derived) if settings.is_empty() => (answer(cache, derived, &set), Some(derived.model.clone())),
         Ok(derived) => match Model::parse(&set) {
             Ok(model) if derived.holds_of(&model) => {
                 let usual = std::mem::replace(&mut derived.model, model);
-                let answer = answer(kept, derived, &set);
+                let answer = answer(cache, derived, &set);
                 (answer, Some(std::mem::replace(&mut derived.model, usual)))
             }
             Ok(_) => match derive_within(&set, budget(limit)) {
-                Ok(other) => (answer(kept, &other, &set), Some(other.model)),
+                Ok(other) => (answer(cache, &other, &set), Some(other.model)),
                 Err(diagnostics) => unread(diagnostics),
             },
             Err(diagnostics) => unread(diagnostics),
         },
         Err(diagnostics) => unread(diagnostics.clone()),
     };
-    kept.keep(&source, limit, derived);
+    cache.keep(&source, limit, derived);
     answered
 }
 

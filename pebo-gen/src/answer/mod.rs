@@ -1,7 +1,7 @@
 //! The whole answer on a model in one call, as a value that serialises.
 //!
 //! ```text
-//! Source, Ask -> derive -> report, emit, run -> Answer
+//! Source, Request -> derive -> report, emit, run -> Answer
 //! ```
 //!
 //! In: a source, and requests beside the verdict. Out: the verdict for programs and for people, every diagnostic with
@@ -9,12 +9,12 @@
 //! The command line is this call between reading and writing files; a page or an editor makes the same call. Front ends
 //! that need tokens alone call its parts, [`derive_within`] and [`Derived::admitted`](crate::Derived::admitted).
 
-mod ask;
 mod filled;
 mod framed;
 mod page;
 #[cfg(feature = "simulate")]
 mod replay;
+mod request;
 #[cfg(feature = "simulate")]
 mod run;
 mod solve;
@@ -23,21 +23,21 @@ mod typeset;
 
 pub use crate::page::Section;
 #[cfg(feature = "simulate")]
-pub use ask::AskRun;
-pub use ask::{Ask, Stage};
-#[cfg(feature = "simulate")]
 pub use replay::{Tape, replay};
+#[cfg(feature = "simulate")]
+pub use request::RunRequest;
+pub use request::{Request, Stage};
 #[cfg(feature = "simulate")]
 pub use run::{FinalError, Run};
 pub use solve::{Solution, solve};
 pub use standing::Standing;
-pub use typeset::Typeset;
+pub use typeset::TypesetFormulas;
 
 use std::path::Path;
 
 use serde::Serialize;
 
-use ask::Explained;
+use request::Explanation;
 
 use crate::certificate::certificate;
 use crate::derived::{Derived, derive_within};
@@ -54,10 +54,10 @@ use pebo_lab::recording::Replayed;
 ///
 /// ```
 /// use pebo_gen::source::Source;
-/// use pebo_gen::{Ask, answer};
+/// use pebo_gen::{Request, answer};
 ///
 /// let text = "model: m\nx: [p]\ny: [q]\nf_x: {p: s}\nf_y: {q: p}\n";
-/// let answer = answer(&Source::new("m.yaml", text).expect("a short text"), &Ask::new());
+/// let answer = answer(&Source::new("m.yaml", text).expect("a short text"), &Request::new());
 /// let value = serde_json::to_value(answer).expect("it serialises");
 /// assert_eq!(value["standing"], "malformed");
 /// let place = &value["diagnostics"][0]["primary"]["span"];
@@ -77,7 +77,7 @@ pub struct Answer {
     /// The observer as Rust, if it was requested and everything is proved.
     pub emitted: Option<Emitted>,
     /// The derivation as `MathML`, if it was requested.
-    pub mathml: Option<Typeset>,
+    pub mathml: Option<TypesetFormulas>,
     /// A Python script that proves the claims again with `SymPy`, if it was requested and everything is proved.
     pub certificate: Option<String>,
     /// A page of HTML that explains the proof, if it was requested and there is a plant, accepted or not.
@@ -97,29 +97,29 @@ pub struct Answer {
 /// ```
 /// use pebo_gen::emit::Scalar;
 /// use pebo_gen::source::Source;
-/// use pebo_gen::{Ask, Standing, answer};
+/// use pebo_gen::{Request, Standing, answer};
 ///
 /// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\nphi: [p]\n";
 /// let source = Source::new("m.yaml", text).expect("a short text");
-/// let answer = answer(&source, &Ask::new().emit(Scalar::F32));
+/// let answer = answer(&source, &Request::new().emit(Scalar::F32));
 /// assert_eq!(answer.standing, Standing::Accepted);
 /// assert!(answer.report.line().starts_with(r#"{"schema":1,"model":"m","verdict":"accepted""#));
 /// assert!(answer.emitted.expect("it is accepted").text.contains("pub struct M"));
 /// ```
-pub fn answer(source: &Source, ask: &Ask) -> Answer {
-    let derived = match derive_within(source, ask.budget()) {
+pub fn answer(source: &Source, request: &Request) -> Answer {
+    let derived = match derive_within(source, request.budget()) {
         Ok(derived) => derived,
         Err(diagnostics) => {
-            return Answer::of_unread(&stem(source, ask), diagnostics, source);
+            return Answer::of_unread(&stem(source, request), diagnostics, source);
         }
     };
-    Answer::on(&derived, source, ask)
+    Answer::on(&derived, source, request)
 }
 
 /// The name of a model that is too malformed to say its own.
-fn stem(source: &Source, ask: &Ask) -> String {
+fn stem(source: &Source, request: &Request) -> String {
     let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    ask.name.clone().or_else(stem).unwrap_or_default()
+    request.name.clone().or_else(stem).unwrap_or_default()
 }
 
 impl Answer {
@@ -128,45 +128,45 @@ impl Answer {
     ///
     /// ```
     /// use pebo_gen::source::Source;
-    /// use pebo_gen::{Answer, Ask, Standing, derive};
+    /// use pebo_gen::{Answer, Request, Standing, derive};
     ///
     /// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\nphi: [p]\n";
     /// let source = Source::new("m.yaml", text).expect("a short text");
     /// let derived = derive(&source).expect("it is a model");
-    /// let answer = Answer::on(&derived, &source, &Ask::new().sections());
+    /// let answer = Answer::on(&derived, &source, &Request::new().sections());
     /// assert_eq!(answer.standing, Standing::Accepted);
     /// let sections = answer.sections.expect("they were asked for");
     /// let cascade = sections.iter().find(|section| section.id == "cascade").expect("there are four claims");
     /// assert_eq!(cascade.verdict, Some("proved"));
     /// assert!(cascade.places.iter().any(|place| source.slice(*place) == "v - sin(q)"));
     /// ```
-    pub fn on(derived: &Derived, source: &Source, ask: &Ask) -> Self {
+    pub fn on(derived: &Derived, source: &Source, request: &Request) -> Self {
         let mut answer = Self::of(derived, source);
-        answer.mathml = ask.mathml.then(|| Typeset::of(derived));
+        answer.mathml = request.mathml.then(|| TypesetFormulas::of(derived));
         if derived.derivation.outcome == Outcome::Accepted {
-            answer.add(derived, ask);
+            answer.add(derived, request);
         }
         let known = (answer.diagnostics.as_slice(), answer.emitted.as_ref());
-        match ask.explained {
-            Explained::Not => {}
-            Explained::Page => {
-                let (page, refusal) = page::page(derived, source, ask, known);
+        match request.explained {
+            Explanation::Not => {}
+            Explanation::Page => {
+                let (page, refusal) = page::page(derived, source, request, known);
                 answer.page = Some(page);
                 if let Some((standing, found)) = refusal {
                     answer.refuse(standing, found);
                 }
             }
-            Explained::Sections => answer.sections = Some(page::sections(derived, source, known)),
+            Explanation::Sections => answer.sections = Some(page::sections(derived, source, known)),
         }
         answer
     }
 
     /// Adds the requested results of an accepted model.
-    fn add(&mut self, derived: &Derived, ask: &Ask) {
-        if ask.certificate {
+    fn add(&mut self, derived: &Derived, request: &Request) {
+        if request.certificate {
             self.certificate = certificate(&derived.model, &derived.plant, &derived.derivation);
         }
-        if let Some(scalar) = ask.scalar {
+        if let Some(scalar) = request.scalar {
             match derived.admitted(scalar) {
                 Ok(emitted) => {
                     self.diagnostics.extend(derived.cautions(&emitted, scalar));
@@ -176,8 +176,8 @@ impl Answer {
             }
         }
         #[cfg(feature = "simulate")]
-        if let Some(wanted) = &ask.run {
-            match run::run(derived, ask, wanted) {
+        if let Some(wanted) = &request.run {
+            match run::run(derived, request, wanted) {
                 Ok((run, advice)) => {
                     self.run = Some(run);
                     self.diagnostics.extend(advice);

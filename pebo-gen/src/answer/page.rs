@@ -6,9 +6,9 @@ use crate::page::{self, Section, Subject};
 use pebo_design::analysis::Outcome;
 use pebo_design::source::{Diagnostic, Source};
 
-use super::ask::Ask;
+use super::request::Request;
 #[cfg(feature = "simulate")]
-use super::ask::AskRun;
+use super::request::RunRequest;
 #[cfg(feature = "simulate")]
 use super::run::{self, Run};
 use super::standing::Standing;
@@ -20,20 +20,20 @@ type Refusal = (Standing, Vec<Diagnostic>);
 pub(super) fn page(
     derived: &Derived,
     source: &Source,
-    ask: &Ask,
+    request: &Request,
     (known, emitted): (&[Diagnostic], Option<&Emitted>),
 ) -> (String, Option<Refusal>) {
     let mut refusal = None;
-    let emitted = match emitted.filter(|_| ask.scalar == Some(Scalar::F64)) {
+    let emitted = match emitted.filter(|_| request.scalar == Some(Scalar::F64)) {
         Some(emitted) => Some(emitted.clone()),
-        None if derived.derivation.outcome == Outcome::Accepted && ask.scalar != Some(Scalar::F64) => {
+        None if derived.derivation.outcome == Outcome::Accepted && request.scalar != Some(Scalar::F64) => {
             let admitted = derived.admitted(Scalar::F64);
             admitted.map_err(|found| refusal = Some((Standing::of_emission(&found), found))).ok()
         }
         None => None,
     };
     #[cfg(feature = "simulate")]
-    let run = emitted.as_ref().and_then(|_| described(derived, ask)).map(|run| {
+    let run = emitted.as_ref().and_then(|_| described(derived, request)).map(|run| {
         run.map(|(run, _)| run).map_err(|(standing, found)| {
             let note = |found: Diagnostic| found.note("the page is written without the figure of the closed loop");
             refusal = Some((standing, found.into_iter().map(note).collect()));
@@ -74,9 +74,9 @@ pub(super) fn sections(
 
 /// Runs the closed loop that the model describes, if it describes one.
 #[cfg(feature = "simulate")]
-fn described(derived: &Derived, ask: &Ask) -> Option<Result<(Run, Option<Diagnostic>), Refusal>> {
+fn described(derived: &Derived, request: &Request) -> Option<Result<(Run, Option<Diagnostic>), Refusal>> {
     derived.model.simulation.as_ref()?;
-    Some(run::run(derived, ask, &AskRun { figure: true, ..AskRun::default() }))
+    Some(run::run(derived, request, &RunRequest { figure: true, ..RunRequest::default() }))
 }
 
 /// The rows of a run on the page: the table without empty columns.

@@ -11,7 +11,7 @@ use pebo_design::analysis::Outcome;
 use pebo_design::source::{Diagnostic, Source};
 use pebo_lab::recording::{Failure, Log, Replayed, Unreadable};
 
-use super::ask::{Ask, Stage};
+use super::request::{Request, Stage};
 use super::standing::Standing;
 use super::{Answer, stem};
 
@@ -29,32 +29,32 @@ pub struct Tape<'a> {
 ///
 /// ```
 /// use pebo_gen::source::Source;
-/// use pebo_gen::{Ask, Standing, Tape, replay};
+/// use pebo_gen::{Request, Standing, Tape, replay};
 ///
 /// let text = "model: m\nx: [p]\ny: [q]\nf_x: {p: -p}\nf_y: {q: p}\nphi: [p]\nobserver: {gain: 1, filter: 1}\n";
 /// let source = Source::new("m.yaml", text).expect("a short text");
 /// let mut recording = "t,q\n0,0\n0.1,0.095\n0.2,0.181\n".as_bytes();
 /// let mut estimates = Vec::new();
 /// let tape = Tape { name: "log.csv", recording: &mut recording, estimates: Some(&mut estimates) };
-/// let answer = replay(&source, &Ask::new(), tape);
+/// let answer = replay(&source, &Request::new(), tape);
 /// assert_eq!(answer.standing, Standing::Accepted);
 /// assert_eq!(answer.replay.expect("a replay").rows, 3);
 /// assert!(estimates.starts_with(b"t,p_hat\n0,0\n0.1,"));
 /// ```
-pub fn replay(source: &Source, ask: &Ask, tape: Tape<'_>) -> Answer {
-    let derived = match derive_within(source, ask.budget()) {
+pub fn replay(source: &Source, request: &Request, tape: Tape<'_>) -> Answer {
+    let derived = match derive_within(source, request.budget()) {
         Ok(derived) => derived,
-        Err(diagnostics) => return Answer::of_unread(&stem(source, ask), diagnostics, source),
+        Err(diagnostics) => return Answer::of_unread(&stem(source, request), diagnostics, source),
     };
-    Answer::replayed_on(&derived, source, ask, tape)
+    Answer::replayed_on(&derived, source, request, tape)
 }
 
 impl Answer {
     /// The same for a model that was derived before, from this source: nothing is derived again.
-    pub fn replayed_on(derived: &Derived, source: &Source, ask: &Ask, tape: Tape<'_>) -> Self {
+    pub fn replayed_on(derived: &Derived, source: &Source, request: &Request, tape: Tape<'_>) -> Self {
         let mut answer = Self::of(derived, source);
         if derived.derivation.outcome == Outcome::Accepted {
-            match run(derived, ask, tape) {
+            match run(derived, request, tape) {
                 Ok((replayed, advice)) => {
                     answer.replay = Some(replayed);
                     answer.diagnostics.extend(advice);
@@ -70,13 +70,13 @@ impl Answer {
 /// diagnostics if it did not converge.
 fn run(
     derived: &Derived,
-    ask: &Ask,
+    request: &Request,
     tape: Tape<'_>,
 ) -> Result<(Replayed, Option<Diagnostic>), (Standing, Vec<Diagnostic>)> {
     let unreadable = |found: Unreadable| (Standing::Malformed, vec![found.explain(tape.name)]);
     let mut log = Log::open(tape.name, tape.recording).map_err(unreadable)?;
     let replay = derived.replay(&log).map_err(|found| (Standing::Malformed, found))?;
-    let mut watch = |rows, bytes| match &ask.watch {
+    let mut watch = |rows, bytes| match &request.watch {
         Some(watch) => watch(Stage::Replay { rows, bytes }),
         None => ControlFlow::Continue(()),
     };

@@ -11,7 +11,7 @@ use crate::derived::Derived;
 use pebo_design::source::Diagnostic;
 use pebo_lab::{Ensemble, Rated, Scenario, Summary, Trace, figure};
 
-use super::ask::{Ask, AskRun, Stage};
+use super::request::{Request, RunRequest, Stage};
 use super::standing::Standing;
 
 /// The result of a run.
@@ -51,13 +51,13 @@ pub struct FinalError {
 /// it did not converge.
 pub(super) fn run(
     derived: &Derived,
-    ask: &Ask,
-    wanted: &AskRun,
+    request: &Request,
+    wanted: &RunRequest,
 ) -> Result<(Run, Option<Diagnostic>), (Standing, Vec<Diagnostic>)> {
     let mut scenario = derived.scenario(&wanted.overrides).map_err(|found| (Standing::Malformed, found))?;
     let runs = wanted.runs.unwrap_or(1).max(1);
     let samples = scenario.samples().saturating_mul(runs);
-    let mut progress = |done| match &ask.watch {
+    let mut progress = |done| match &request.watch {
         Some(watch) => watch(Stage::Run { done, samples }),
         None => ControlFlow::Continue(()),
     };

@@ -14,8 +14,8 @@ use pebo_design::plant::Plant;
 use pebo_design::search::{self, SearchVerdict};
 use pebo_design::source::{Diagnostic, Source};
 
-use super::ask::Ask;
 use super::filled::filled;
+use super::request::Request;
 use super::standing::Standing;
 
 /// The answer on the transforms of a plant. Fields are only ever added.
@@ -41,21 +41,21 @@ pub struct Solution {
 ///
 /// ```
 /// use pebo_gen::source::Source;
-/// use pebo_gen::{Ask, Standing, solve};
+/// use pebo_gen::{Request, Standing, solve};
 ///
 /// let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v - sin(q)}\nf_y: {q: p}\n";
-/// let solution = solve(&Source::new("m.yaml", text).expect("a short text"), None, &Ask::new());
+/// let solution = solve(&Source::new("m.yaml", text).expect("a short text"), None, &Request::new());
 /// assert_eq!(solution.standing, Standing::Accepted);
 /// assert!(solution.report.line().starts_with(r#"{"schema":1,"model":"m","verdict":"found""#));
 /// assert_eq!(solution.filled.expect("it was found"), format!("{text}phi: [p]\n"));
 /// ```
-pub fn solve(source: &Source, class: Option<Class>, ask: &Ask) -> Solution {
-    let read = Model::parse(source).and_then(|model| Ok((Plant::resolve_within(&model, ask.budget())?, model)));
+pub fn solve(source: &Source, class: Option<Class>, request: &Request) -> Solution {
+    let read = Model::parse(source).and_then(|model| Ok((Plant::resolve_within(&model, request.budget())?, model)));
     let (plant, model) = match read {
         Ok(read) => read,
         Err(diagnostics) => {
             let stem = || Path::new(source.name()).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            let name = ask.name.clone().or_else(stem).unwrap_or_default();
+            let name = request.name.clone().or_else(stem).unwrap_or_default();
             return Solution::of_unread(&name, diagnostics, source);
         }
     };

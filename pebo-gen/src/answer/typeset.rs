@@ -9,7 +9,7 @@ use pebo_cas::{Arena, Expr};
 /// The functions of an observer as `MathML`, each formula a `math` element; empty if they were not derived.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Typeset {
+pub struct TypesetFormulas {
     /// The known part of z', a component each.
     pub h: Vec<String>,
     /// The matrix of a generalised cascade, by rows.
@@ -22,7 +22,7 @@ pub struct Typeset {
     pub phi_left: IndexMap<String, String>,
 }
 
-impl Typeset {
+impl TypesetFormulas {
     /// The derived formulas, whatever the verdict.
     pub(super) fn of(derived: &Derived) -> Self {
         let (arena, derivation) = (&derived.plant.arena, &derived.derivation);

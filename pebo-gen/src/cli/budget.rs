@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use memory_stats::memory_stats;
 use pebo_cas::Budget;
-use pebo_gen::{Ask, Stage};
+use pebo_gen::{Request, Stage};
 
 use super::arguments::Limit;
 
@@ -17,8 +17,8 @@ const RESERVE: f64 = 0.25;
 
 impl Limit {
     /// A request within the limit, begun now.
-    pub(super) fn ask(self) -> Ask {
-        Ask::new().limit(self.0).watch(self.watch())
+    pub(super) fn request(self) -> Request {
+        Request::new().limit(self.0).watch(self.watch())
     }
 
     /// Ends a call that takes longer from now on, or more memory.

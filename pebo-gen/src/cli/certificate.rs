@@ -8,7 +8,7 @@ use super::arguments::{CertificateOptions, Limit};
 use super::{files, terminal};
 
 pub(super) fn run(options: &CertificateOptions, limit: Limit) -> Standing {
-    let (source, answer) = files::answer(&options.model, limit.ask().certificate());
+    let (source, answer) = files::answer(&options.model, limit.request().certificate());
     terminal::say(&answer.summary);
     terminal::report(&answer.diagnostics, &source);
     let Some(script) = answer.certificate else { return answer.standing };

@@ -14,7 +14,7 @@ pub(super) fn run(options: &CheckOptions, limit: Limit) -> Standing {
 }
 
 fn one(path: &Path, format: Format, limit: Limit) -> Result<Standing, Diagnostic> {
-    let (source, answer) = files::answer(path, limit.ask());
+    let (source, answer) = files::answer(path, limit.request());
     match format {
         Format::Json => line(&answer.report.line())?,
         Format::Human => {

@@ -6,22 +6,22 @@ use std::path::{Path, PathBuf};
 
 use pebo_gen::analysis::Class;
 use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
-use pebo_gen::{Answer, Ask, Solution, Tape};
+use pebo_gen::{Answer, Request, Solution, Tape};
 use tempfile::NamedTempFile;
 
 use super::standard::{self, reason};
 
 /// The answer on a model file, with the text that its diagnostics refer to.
-pub(super) fn answer(path: &Path, ask: Ask) -> (Source, Answer) {
-    answer_with(path, &[], ask)
+pub(super) fn answer(path: &Path, request: Request) -> (Source, Answer) {
+    answer_with(path, &[], request)
 }
 
 /// The same with settings of the call.
-pub(super) fn answer_with(path: &Path, settings: &[String], ask: Ask) -> (Source, Answer) {
+pub(super) fn answer_with(path: &Path, settings: &[String], request: Request) -> (Source, Answer) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read_with(path, settings) {
         Ok(source) => {
-            let answer = pebo_gen::answer(&source, &ask.named(stem));
+            let answer = pebo_gen::answer(&source, &request.named(stem));
             (source, answer)
         }
         Err(unread) => {
@@ -33,11 +33,11 @@ pub(super) fn answer_with(path: &Path, settings: &[String], ask: Ask) -> (Source
 }
 
 /// The transforms of a model file's plant, with the text that its diagnostics refer to.
-pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Solution) {
+pub(super) fn solve(path: &Path, class: Option<Class>, request: Request) -> (Source, Solution) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read(path) {
         Ok(source) => {
-            let solution = pebo_gen::solve(&source, class, &ask.named(stem));
+            let solution = pebo_gen::solve(&source, class, &request.named(stem));
             (source, solution)
         }
         Err(unread) => {
@@ -50,11 +50,11 @@ pub(super) fn solve(path: &Path, class: Option<Class>, ask: Ask) -> (Source, Sol
 
 /// The answer on a model file with settings of the call, and on a recording, with the text that its diagnostics refer
 /// to.
-pub(super) fn replay(path: &Path, settings: &[String], ask: Ask, tape: Tape<'_>) -> (Source, Answer) {
+pub(super) fn replay(path: &Path, settings: &[String], request: Request, tape: Tape<'_>) -> (Source, Answer) {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read_with(path, settings) {
         Ok(source) => {
-            let answer = pebo_gen::replay(&source, &ask.named(stem), tape);
+            let answer = pebo_gen::replay(&source, &request.named(stem), tape);
             (source, answer)
         }
         Err(unread) => {
@@ -127,13 +127,13 @@ fn target(path: &Path) -> std::io::Result<Target> {
 
 /// A file that is written part by part, and is there when it is whole; or standard output for `-`. It has no name while
 /// it grows, so that nothing is left of it if the program is ended.
-pub(super) enum Growing {
+pub(super) enum GrowingFile {
     Named(PathBuf, BufWriter<File>),
     Stream(PathBuf, BufWriter<File>),
     Standard(BufWriter<Stdout>),
 }
 
-impl Growing {
+impl GrowingFile {
     pub(super) fn create(path: &Path) -> Result<Self, Diagnostic> {
         if is_standard(path) {
             return Ok(Self::Standard(BufWriter::new(std::io::stdout())));
@@ -164,7 +164,7 @@ impl Growing {
     }
 }
 
-impl Write for Growing {
+impl Write for GrowingFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         match self {
             Self::Named(_, file) | Self::Stream(_, file) => file.write(bytes),

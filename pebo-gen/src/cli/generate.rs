@@ -36,7 +36,7 @@ fn misspelt(path: &Path) -> Option<(&str, String)> {
 }
 
 fn one(path: &Path, options: &GenerateOptions, limit: Limit) -> Standing {
-    let (source, answer) = files::answer(path, limit.ask().emit(options.scalar));
+    let (source, answer) = files::answer(path, limit.request().emit(options.scalar));
     terminal::say(&answer.summary);
     terminal::report(&answer.diagnostics, &source);
     let Some(emitted) = answer.emitted else { return answer.standing };

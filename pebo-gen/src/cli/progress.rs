@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use pebo_gen::{Ask, Stage};
+use pebo_gen::{Request, Stage};
 
 use super::arguments::Limit;
 
@@ -21,20 +21,20 @@ const LARGE: u64 = 16 << 20;
 const TICKS: u64 = 1000;
 
 /// A request about a model, begun now.
-pub(super) fn ask(limit: Option<Limit>) -> Ask {
+pub(super) fn request(limit: Option<Limit>) -> Request {
     let (proof, run) = (limit.unwrap_or_default().watch(), watch(limit));
-    limit.unwrap_or_default().ask().watch(move |stage| match stage {
+    limit.unwrap_or_default().request().watch(move |stage| match stage {
         Stage::Run { done, samples } => run(done, samples),
         stage => proof(stage),
     })
 }
 
 /// A request about a model, begun now, and a recording of this many bytes.
-pub(super) fn replaying(limit: Option<Limit>, size: Option<u64>) -> Ask {
+pub(super) fn replaying(limit: Option<Limit>, size: Option<u64>) -> Request {
     let proof = limit.unwrap_or_default().watch();
     let most = limit.map(|limit| Duration::from_secs_f64(limit.0));
     let begun: OnceCell<(Instant, ProgressBar)> = OnceCell::new();
-    limit.unwrap_or_default().ask().watch(move |stage| {
+    limit.unwrap_or_default().request().watch(move |stage| {
         let Stage::Replay { bytes, .. } = stage else { return proof(stage) };
         let (start, bar) = begun.get_or_init(|| (Instant::now(), bar(size.is_some_and(|size| size > LARGE))));
         bar.set_position(share(real(bytes) / real(size.unwrap_or(1))));

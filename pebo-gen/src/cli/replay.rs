@@ -32,12 +32,12 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     let (mut recording, size) = open(&options.data)?;
     let is_standard = files::is_standard(&options.data);
     let name = if is_standard { "standard input".to_owned() } else { options.data.display().to_string() };
-    let ask = progress::replaying(limit, size);
-    let mut file = options.csv.as_deref().map(files::Growing::create).transpose()?;
+    let request = progress::replaying(limit, size);
+    let mut file = options.csv.as_deref().map(files::GrowingFile::create).transpose()?;
     let (source, answer) = {
         let estimates = file.as_mut().map(|file| file as &mut dyn Write);
         let tape = Tape { name: &name, recording: &mut *recording, estimates };
-        files::replay(&options.model, &options.set, ask, tape)
+        files::replay(&options.model, &options.set, request, tape)
     };
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);

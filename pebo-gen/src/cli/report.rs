@@ -10,7 +10,7 @@ use super::arguments::{Limit, ReportOptions};
 use super::{files, progress, terminal};
 
 pub(super) fn run(options: &ReportOptions, limit: Option<Limit>) -> Standing {
-    let (source, answer) = files::answer(&options.model, progress::ask(limit).page());
+    let (source, answer) = files::answer(&options.model, progress::request(limit).page());
     terminal::say(&answer.summary);
     terminal::report(&answer.diagnostics, &source);
     let Some(page) = answer.page else { return answer.standing };

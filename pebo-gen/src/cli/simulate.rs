@@ -3,7 +3,7 @@
 use pebo_gen::analysis::Outcome;
 use pebo_gen::simulate::{Ensemble, Overrides, Trace};
 use pebo_gen::source::Source;
-use pebo_gen::{AskRun, Standing};
+use pebo_gen::{RunRequest, Standing};
 
 use super::arguments::{Limit, SimulateOptions};
 use super::{files, progress, terminal};
@@ -22,8 +22,8 @@ pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {
         ..Overrides::default()
     };
     let (trace, figure) = (options.csv.is_some(), options.plot.is_some());
-    let wanted = AskRun { overrides, trace, figure, runs: options.runs };
-    let (source, answer) = files::answer_with(&options.model, &options.set, progress::ask(limit).run(wanted));
+    let wanted = RunRequest { overrides, trace, figure, runs: options.runs };
+    let (source, answer) = files::answer_with(&options.model, &options.set, progress::request(limit).run(wanted));
     // An accepted model prints its run alone.
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);

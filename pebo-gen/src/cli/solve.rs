@@ -22,7 +22,7 @@ pub(super) fn run(options: &SolveOptions, limit: Limit) -> Standing {
 
 fn one(options: &SolveOptions, limit: Limit) -> Result<Standing, Diagnostic> {
     let class = Class::from_name(options.class.name());
-    let (source, solution) = files::solve(&options.model, class, limit.ask().watch(watch(limit)));
+    let (source, solution) = files::solve(&options.model, class, limit.request().watch(watch(limit)));
     match options.format {
         Format::Json => standard::write(format!("{}\n", solution.report.line()).as_bytes())?,
         Format::Human => {

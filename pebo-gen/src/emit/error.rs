@@ -1,4 +1,4 @@
-//! Why nothing was emitted.
+//! Reasons that nothing was emitted.
 
 use std::fmt;
 
@@ -33,14 +33,14 @@ pub enum EmitError {
     Inaccurate {
         /// The function.
         function: String,
-        /// Where.
+        /// The point.
         place: String,
-        /// The error, in units of what rounding of the arguments causes.
+        /// The error, in units of the effect of rounding the arguments.
         units: String,
         /// The type of the numbers.
         scalar: &'static str,
     },
-    /// The emitted code does not compute what was derived.
+    /// The emitted code does not compute the derived formulas.
     Differs {
         /// The function.
         function: String,

@@ -1,7 +1,7 @@
 //! A program as Rust statements and expressions.
 //!
 //! In: a program, and the tokens of its inputs. Out: `let` statements, and an expression for each
-//! output. A value that is used once stands where it is used, unless the line would become too long.
+//! output. A value that is used once is written where it is used, unless the line would become too long.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use super::names::{LONGEST, Names};
 use pebo_cas::{Function, Rational};
 use pebo_design::program::{Constant, Operand, Operation, Program};
 
-/// How tightly the outermost operation of an expression binds.
+/// The precedence of the outermost operation of an expression.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Binding {
     Sum,
@@ -22,14 +22,14 @@ enum Binding {
     Atom,
 }
 
-/// An expression with what its surroundings must know of it.
+/// An expression with its precedence and label.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) tokens: TokenStream,
     binding: Binding,
     /// The number of characters it takes.
     pub(super) width: usize,
-    /// What a value that holds it may be called, if that is telling.
+    /// A telling name for a value that holds it, if there is one.
     label: Option<String>,
 }
 
@@ -279,12 +279,12 @@ fn call(name: &str, arguments: &[Piece], label: Option<String>) -> Piece {
     Piece::atom(quote!(Real::#function(#(#tokens),*)), "Real::".len() + name.len() + inner, label)
 }
 
-/// Whether an atom is a call, which a variable can hold.
+/// The atom is a call, which a variable can hold.
 fn is_call(piece: &Piece) -> bool {
     piece.tokens.clone().into_iter().any(|tree| matches!(tree, proc_macro2::TokenTree::Group(_)))
 }
 
-/// Whether a program calls a function of the runtime's scalar.
+/// The program calls a function of the runtime's scalar.
 pub(super) fn calls(program: &Program) -> bool {
     program.operations.iter().any(|operation| {
         use Operation::{Binary, ExpM1, Ln1P, Power, Unary};

@@ -33,7 +33,7 @@ impl Scalar {
         }
     }
 
-    /// Whether the number neither overflows nor, unless it is zero, vanishes.
+    /// The number neither overflows nor, unless it is zero, underflows.
     pub(super) fn holds(self, value: &Rational) -> bool {
         let (smallest, largest) = match self {
             Self::F32 => (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX)),
@@ -43,7 +43,7 @@ impl Scalar {
         value.is_zero() || (smallest..=largest).contains(&magnitude)
     }
 
-    /// Every decimal of so many digits is told apart; more are more than the type can show.
+    /// Every decimal of so many digits is distinct in the type; more digits are not.
     pub(super) fn digits(self) -> usize {
         match self {
             Self::F32 => 6,
@@ -55,11 +55,11 @@ impl Scalar {
 /// Decimals with more digits are written as quotients.
 const MOST_DIGITS: usize = 17;
 
-/// The shortest literal that spells the magnitude exactly, if one of reasonable length does.
+/// The shortest literal that spells the absolute value exactly, if one of reasonable length does.
 pub(super) fn literal(value: &Rational) -> Option<String> {
     let (digits, exponent) = scientific(&value.abs())?;
     let places = i32::try_from(digits.len()).ok()?;
-    // The decimal point stands after `point` digits.
+    // The decimal point is after `point` digits.
     let point = places + exponent;
     let mantissa = match digits.split_at(1) {
         (head, "") => head.to_owned(),

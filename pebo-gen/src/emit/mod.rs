@@ -6,7 +6,7 @@
 //!
 //! In: a plant and its derivation, every claim proved. Out: the tokens and the text of one module
 //! that depends on `pebo_runtime` alone. Holds after: the tokens were interpreted again, and each
-//! function's value is, by the caller's zero test, what was derived.
+//! function's value is, by the caller's zero test, the derived one.
 
 mod accuracy;
 mod definition;
@@ -50,20 +50,20 @@ pub struct Emitted {
     pub text: String,
     /// The name of the type that implements `Model`.
     pub type_name: String,
-    /// What each function costs: its name with what it returns, and the operations of one call.
+    /// The cost of each function: its name with its result, and the operations of one call.
     #[cfg_attr(feature = "yaml", serde(skip))]
     pub costs: Vec<(String, Cost)>,
-    /// How many digits the functions keep.
+    /// The digits that the functions keep.
     pub accuracy: Accuracy,
 }
 
 /// Emits the module for a derivation.
 ///
-/// With `settings` the module has a constructor of the observer that they describe. `is_zero` decides whether an expression is zero wherever the model is defined; an emission whose
-/// tokens it cannot confirm is refused.
+/// With `settings` the module has a constructor of the observer that they describe. `is_zero` decides whether an
+/// expression is zero wherever the model is defined; an emission whose tokens it cannot confirm is refused.
 ///
 /// # Errors
-/// [`EmitError`] says what stands against it.
+/// [`EmitError`] has the obstacle.
 pub fn emit(
     plant: &Plant,
     derivation: &Derivation,
@@ -80,7 +80,7 @@ pub fn emit(
             .map_err(undeclared)?;
     let Choice { definitions, staged, .. } = choice;
     if arena.budget().is_exhausted() {
-        // What could not be enclosed was not measured.
+        // A value without an enclosure was not measured.
         return Err(EmitError::LimitReached);
     }
     let lost = accuracy.of(scalar).find(|(_, worst)| worst.is_refused());

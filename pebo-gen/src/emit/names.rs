@@ -4,18 +4,18 @@
 //! other of its scope. The rules, in order:
 //!
 //! 1. lower case, with `_` where a capital follows a small letter or a digit: `L1` is `l1`, `nP` is `n_p`;
-//! 2. what no Rust name may contain becomes `_`, and `_` neither leads, trails nor repeats;
-//! 3. of more than [`LONGEST_WRITTEN`] characters the words before the last are left out, as many as it takes;
+//! 2. characters that no Rust name may contain become `_`, and `_` neither leads, trails nor repeats;
+//! 3. a name of more than [`LONGEST_WRITTEN`] characters loses words before its last, as many as it takes;
 //! 4. a keyword, and a name that the emitted code uses itself (`y`, `self`), gets a trailing `_`: `type_`;
-//! 5. a name that is taken gets the first free number from 2; of names that differ in case alone, the one that is written as
-//!    Rust writes it stays as it is: `TL` and `tl` are `tl_2` and `tl`, whichever comes first.
+//! 5. a name that is taken gets the first free number from 2; of names that differ in case alone, the one that is
+//!    written as Rust writes it is kept: `TL` and `tl` are `tl_2` and `tl`, whichever comes first.
 
 use std::collections::BTreeSet;
 
 /// No name that is made of formulas is longer.
 pub(super) const LONGEST: usize = 20;
 
-/// Of the author's own names no more is kept, so that a line holds the product of two parameters.
+/// The most characters of the author's own names, so that a line holds the product of two parameters.
 const LONGEST_WRITTEN: usize = 28;
 
 /// The same for the model's type.
@@ -88,7 +88,7 @@ const RESERVED: [&str; 62] = [
     "z",
 ];
 
-/// What an emitted module declares or imports, and the names of the prelude and of the trait's items that it uses.
+/// Names that an emitted module declares or imports, and those of the prelude and of the trait's items that it uses.
 pub(super) const TYPES: [&str; 58] = [
     "Bounded",
     "Default",
@@ -213,7 +213,7 @@ fn cut(name: &str, longest: usize) -> String {
         }
         before = c;
     }
-    // What tells long names apart is as a rule the end, as the phase in `stator_resistance_of_the_winding_a`.
+    // Long names differ as a rule at the end, as by the phase in `stator_resistance_of_the_winding_a`.
     let mut words: Vec<&str> = snake.split('_').filter(|word| !word.is_empty()).collect();
     while words.len() > 2 && words.join("_").chars().count() > longest {
         words.remove(words.len() - 2);

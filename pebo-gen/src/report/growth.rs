@@ -30,14 +30,14 @@ impl Growth {
     /// The growth of an accepted model.
     pub(super) fn of(plant: &Plant, derivation: &Derivation) -> Option<Self> {
         let functions = functions(derivation)?;
-        let derived = together(plant, &functions)?;
+        let derived = combined(plant, &functions)?;
         let most = functions.iter().max_by_key(|function| operations(plant, &function.1))?.0;
         Some(Self { written: operations(plant, &written(plant))?, derived, most })
     }
 
     /// The growth of a model whose observer takes more than a page.
     pub(super) fn of_long(plant: &Plant, derivation: &Derivation) -> Option<Self> {
-        (together(plant, &functions(derivation)?)? > PAGE).then(|| Self::of(plant, derivation)).flatten()
+        (combined(plant, &functions(derivation)?)? > PAGE).then(|| Self::of(plant, derivation)).flatten()
     }
 
     /// The ratio, if it is large.
@@ -67,7 +67,7 @@ fn functions(derivation: &Derivation) -> Option<Vec<(&'static str, Vec<Expr>)>> 
 }
 
 /// The operations of one program for all functions.
-fn together(plant: &Plant, functions: &[(&'static str, Vec<Expr>)]) -> Option<usize> {
+fn combined(plant: &Plant, functions: &[(&'static str, Vec<Expr>)]) -> Option<usize> {
     let all: Vec<Expr> = functions.iter().flat_map(|function| &function.1).copied().collect();
     operations(plant, &all)
 }

@@ -27,7 +27,8 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
         }
         Equilibrium::Undecided(reason) => (Vec::new(), vec![format!("none was found: {reason}")]),
     });
-    let mut remarks: Vec<Remark> = plant.time.map(|time| remark("time", told(plant, time))).into_iter().collect();
+    let mut remarks: Vec<Remark> =
+        plant.time.map(|time| remark("time", time_is_input(plant, time))).into_iter().collect();
     let jumps = jumps(plant, derivation);
     remarks.extend((!jumps.is_empty()).then(|| remark("jumps", jumps)));
     remarks.extend(fundamental(plant, derivation));
@@ -46,7 +47,7 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
 }
 
 /// The remark that the time is an input.
-fn told(plant: &Plant, time: Symbol) -> Vec<String> {
+fn time_is_input(plant: &Plant, time: Symbol) -> Vec<String> {
     let name = plant.arena.name(time);
     vec![
         format!("`{name}` is not declared: it is a known input, the time in s"),

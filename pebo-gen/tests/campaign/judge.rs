@@ -15,7 +15,7 @@ pub(crate) const NAMES: [&str; 10] = ["x", "y", "z", "a", "b", "p", "q", "r", "t
 
 /// The verdict of sampling.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Sampled {
+pub(crate) enum SampledSign {
     /// Far from zero at some point, by much more than rounding.
     Differs,
     /// Zero up to rounding wherever it has a value.
@@ -42,7 +42,7 @@ pub(crate) fn point(draw: &mut Draw) -> Point {
 }
 
 /// Evaluates at random points.
-pub(crate) fn sample(formula: &Formula, draw: &mut Draw) -> Sampled {
+pub(crate) fn sample(formula: &Formula, draw: &mut Draw) -> SampledSign {
     let mut values = 0;
     let mut small = 0;
     for _ in 0..40 {
@@ -52,13 +52,13 @@ pub(crate) fn sample(formula: &Formula, draw: &mut Draw) -> Sampled {
         }
         values += 1;
         if differs((value, error)) {
-            return Sampled::Differs;
+            return SampledSign::Differs;
         }
         if value.abs() <= 1e3 * error && error < 1e-4 {
             small += 1;
         }
     }
-    if values >= 3 && small * 2 > values { Sampled::Vanishes } else { Sampled::Unclear }
+    if values >= 3 && small * 2 > values { SampledSign::Vanishes } else { SampledSign::Unclear }
 }
 
 /// The value is not zero, by much more than its rounding error.

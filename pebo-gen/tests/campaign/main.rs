@@ -24,7 +24,7 @@ use pebo_gen::model::formula::{Estimates, Formula, SpanMap, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 
 use draw::Draw;
-use judge::{NAMES, Point, Sampled};
+use judge::{NAMES, Point, SampledSign};
 use make::{Case, Class};
 
 /// Cases in a plain `cargo test`.
@@ -113,11 +113,11 @@ impl Tally {
         let formula = parse(&text);
         let sampled = judge::sample(&formula, draw);
         match (sampled, intended) {
-            (Sampled::Unclear, _) => {
+            (SampledSign::Unclear, _) => {
                 self.unclear += 1;
                 return;
             }
-            (Sampled::Differs, true) => {
+            (SampledSign::Differs, true) => {
                 self.mislabelled.push(text);
                 return;
             }
@@ -132,7 +132,7 @@ impl Tally {
         // A perturbation can stay true. It can also be false on a small part of the domain alone, as where `sign` or
         // `sat` has another value: floating point then differs at the witness, though at no point that was drawn.
         let differs_at_witness = matches!(answer, Answer::NonZero(_)) && judge::differs(judge::value(&formula, &point));
-        let truth = sampled == Sampled::Vanishes && (intended || !differs_at_witness);
+        let truth = sampled == SampledSign::Vanishes && (intended || !differs_at_witness);
         if taken > PATIENCE / 4 {
             println!("slow: {taken:?} {text}");
         }

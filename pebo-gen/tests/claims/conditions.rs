@@ -43,7 +43,7 @@ fn conditions_are_discharged_by_enclosures_over_the_assumed_box() {
 
 /// Facts about absolute values, greatest and least values are used, and those that hold for any arguments.
 #[test]
-fn conditions_are_discharged_by_what_bounds_magnitudes() {
+fn conditions_are_discharged_by_bounds_of_absolute_values() {
     let remaining = |assume: &str, rate: &str| {
         let plant = derived(&format!(
             "x: [p]\ny: [q]\nu: [v]\nassume: ['{assume}']\nf_x: {{p: '{rate}'}}\nf_y: {{q: p}}\nphi: [p]"
@@ -71,7 +71,7 @@ fn conditions_are_discharged_by_what_bounds_magnitudes() {
 
 /// A regression in several functions of an unknown has the denominator of the output's value, without its conjugate.
 #[test]
-fn a_regression_divides_by_what_the_value_of_an_output_does() {
+fn a_regression_has_the_denominator_of_the_value_of_an_output() {
     for (factor, listed) in [("1 + abs(q)", vec!["q != 0"]), ("1 + sqrt(q)", vec![])] {
         let plant = derived(&format!(
             "x: [p, b]\ny: [q, m]\nu: [v]\nassume: ['{}']\nf_x: {{p: v - p^2, b: 0}}\nf_y: {{q: v}}\n\
@@ -111,7 +111,7 @@ fn values_of_parameters_that_were_not_worked_out_are_no_conditions() {
 /// Three angular momenta of a spherical pendulum for two states: no two of them give both states everywhere, all three
 /// do.
 #[test]
-fn of_more_components_than_states_no_place_is_lost() {
+fn more_components_than_states_recover_the_states_everywhere() {
     let plant = derived(
         "parameters: [g, l, m]\nx: [pt, pp]\ny: [th, ph]\nassume: [l > 0, m > 0, sin(th) != 0]\n\
          f_x: {pt: pp^2*cos(th)/(m*l^2*sin(th)^3) - m*g*l*sin(th), pp: 0}\n\

@@ -39,7 +39,7 @@ const MATRICES: &[(&str, &str, Fundamental)] = &[
 ];
 
 #[test]
-fn boundedness_of_the_fundamental_matrix_is_shown_or_not_and_never_a_reason_to_refuse() {
+fn boundedness_of_the_fundamental_matrix_is_proved_or_not_and_never_a_reason_to_refuse() {
     for (matrix, what, fate) in MATRICES {
         let rates: Vec<String> = matrix
             .split(';')
@@ -80,7 +80,7 @@ fn a_mend_to_a_plain_cascade_is_offered_beside_a_generalised_one() {
 
 /// Only the component that fits neither cascade is refused, and the other class is named where it would do.
 #[test]
-fn a_refusal_is_about_what_fits_neither_cascade() {
+fn a_refusal_names_the_terms_that_fit_neither_cascade() {
     let both = derived("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: u - a, b: a*b}\nf_y: {y: a + b}\nphi: [a, b]");
     let said: Vec<&str> = both.derivation.diagnostics.iter().map(|d| &*d.message).collect();
     assert_eq!(said.len(), 1, "{said:?}");

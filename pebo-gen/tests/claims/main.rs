@@ -1,9 +1,9 @@
 //! Small plants for every verdict on every claim.
 
-mod bent;
 mod conditions;
 mod fundamental;
 mod implicit;
+mod non_smooth;
 mod refusals;
 mod relations;
 mod shapes;
@@ -60,7 +60,7 @@ fn a_derived_left_inverse_keeps_the_functions_of_the_outputs() {
 
 /// Both roots of a quadratic equation are candidates, and neither is right everywhere: the value of an output tells.
 #[test]
-fn what_outputs_measure_serves_where_the_transform_alone_is_not_solved() {
+fn outputs_complete_a_transform_that_alone_is_not_solved() {
     for (value, expected) in [("s - v", "w + z2"), ("1 + s - v", "w + z2 - 1"), ("2*v - 3*s", "(2*z2 - w)/3")] {
         let derived = derived(&format!(
             "x: [s, v]\ny: [w]\nu: [u]\nf_x: {{s: u, v: -u}}\ng_y: {{w: {value}}}\nphi: [s^2 + s, v]"

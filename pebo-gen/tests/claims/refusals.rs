@@ -7,7 +7,7 @@ use super::derived;
 use super::table::{Answer::Accepted, rows};
 
 #[test]
-fn a_refusal_says_what_and_how_to_mend_it() {
+fn a_refusal_has_its_cause_and_its_mend() {
     for (what, lines, answer) in rows() {
         if matches!(answer, Accepted(_)) {
             continue;
@@ -60,7 +60,7 @@ fn a_refutation_compares_points_of_the_domain() {
 }
 
 #[test]
-fn what_builds_on_a_failed_claim_is_skipped() {
+fn claims_that_build_on_a_failed_one_are_skipped() {
     let plant = derived("x: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x}\nf_y: {y: x*y}\nphi: [x*y]");
     assert_eq!(plant.derivation.cascade.verdict, Verdict::Refuted);
     assert_eq!(plant.derivation.regression.verdict, Verdict::Skipped);

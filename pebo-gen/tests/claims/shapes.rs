@@ -73,7 +73,7 @@ fn shown(derived: &Derived) -> Vec<String> {
 }
 
 #[test]
-fn results_keep_the_shape_of_what_is_written() {
+fn results_keep_the_shape_of_the_written_formulas() {
     for (what, lines, expected) in SHAPES {
         assert_eq!(shown(&derived(lines)), *expected, "{what}");
     }

@@ -4,9 +4,9 @@ use pebo_gen::Derived;
 use pebo_gen::analysis::{Class, Outcome};
 use pebo_gen::source::Code;
 
-use super::bent::BENT;
 use super::derived;
 use super::implicit::IMPLICIT;
+use super::non_smooth::NON_SMOOTH;
 use super::relations::RELATIONS;
 use super::timed::TIMED;
 
@@ -522,7 +522,7 @@ const TABLE: &[Row] = &[
 
 /// All of them.
 pub(super) fn rows() -> impl Iterator<Item = &'static Row> {
-    TABLE.iter().chain(BENT).chain(IMPLICIT).chain(RELATIONS).chain(TIMED)
+    TABLE.iter().chain(NON_SMOOTH).chain(IMPLICIT).chain(RELATIONS).chain(TIMED)
 }
 
 #[test]

@@ -2,11 +2,11 @@
 //! fail when a claim is false, `tests/oracle/certificates.py` shows with `SymPy`, of every shipped model.
 
 use pebo_gen::source::Source;
-use pebo_gen::{Ask, Standing, answer};
+use pebo_gen::{Request, Standing, answer};
 
 fn certificate(text: &str) -> (Standing, Option<String>) {
     let source = Source::new("m.yaml", text).unwrap();
-    let answer = answer(&source, &Ask::new().certificate());
+    let answer = answer(&source, &Request::new().certificate());
     (answer.standing, answer.certificate)
 }
 

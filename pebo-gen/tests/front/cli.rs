@@ -246,7 +246,7 @@ fn settings_of_the_call_are_refused_without_the_file() {
 }
 
 #[test]
-fn what_a_call_sets_is_as_if_the_file_said_so() {
+fn a_setting_of_a_call_is_as_one_in_the_file() {
     let folder = Folder::new();
     let model = folder.file("spring.yaml", spring("").replace("-4*q", "-k*q") + "parameters: {k: 1}\n");
     let set = run(&["simulate", &model, "--csv", "-", "--set", "k=4", "--set", "simulation.initial={v: 0.5, q: 1}"]);
@@ -392,7 +392,7 @@ fn several_models_in_one_call_end_with_the_worst_status() {
 }
 
 #[test]
-fn json_tells_what_drifts_and_where_the_plant_rests() {
+fn json_has_the_drift_and_the_equilibrium() {
     let printed = text(&run(&["check", CUK, "--format", "json"]).stdout);
     for part in [
         r#""drift":["chi1","chi2"]"#,
@@ -464,7 +464,7 @@ fn hostile_input_ends_in_a_diagnostic() {
 
 /// The library's tests have the models that take long (`limit.rs`): here is the program's behaviour.
 #[test]
-fn what_takes_too_long_is_undecided_and_names_the_phase() {
+fn a_derivation_that_takes_too_long_is_undecided_and_names_the_phase() {
     let folder = Folder::new();
     let tangents = (0..18).fold("q".to_owned(), |inner, _| format!("tan({inner} + u1)"));
     let content = "model: m\nx: [p]\ny: [q]\nu: [u1]\nf_y: {q: p}\nphi: [p]\n".to_owned()

@@ -4,11 +4,11 @@
 use std::path::PathBuf;
 
 use pebo_gen::source::Source;
-use pebo_gen::{Answer, Ask, Standing, answer};
+use pebo_gen::{Answer, Request, Standing, answer};
 
 fn asked(text: &str) -> Answer {
     let source = Source::new("m.yaml", text).expect("a text");
-    answer(&source, &Ask::new().page().mathml())
+    answer(&source, &Request::new().page().mathml())
 }
 
 fn page(text: &str) -> String {
@@ -101,7 +101,7 @@ fn terms_that_cancel_are_shown_before_they_do() {
 }
 
 #[test]
-fn what_an_author_writes_is_text() {
+fn text_of_an_author_is_escaped() {
     let hostile = "</title><script>alert(1)</script>&\\\"'\\u0007]]>";
     let model = format!(
         "model: m\ntitle: \"{hostile}\"\nreference: \"{hostile}\"\n{PLANT}# </code></pre><script>\nf_x: {{p: v}}\nf_y: {{q: p}}\nphi: [p]\n"

@@ -48,7 +48,7 @@ fn the_shipped_recording_is_replayed() {
 }
 
 #[test]
-fn the_shipped_recording_is_what_its_command_makes() {
+fn the_shipped_recording_is_the_output_of_its_command() {
     let lines = MODEL.lines().skip_while(|line| !line.contains("pebo-gen simulate"));
     let command: String = lines.take(2).map(|line| line.trim_start_matches('#')).collect();
     let command = command.split(" > ").next().expect("a command");
@@ -73,7 +73,7 @@ fn standard_input_and_output_serve() {
 }
 
 #[test]
-fn what_fails_leaves_no_file_and_says_where() {
+fn a_failure_leaves_no_file_and_has_its_position() {
     let folder = bench();
     let table = [
         ("t,q,u\n0,0,0\n1,x,0\n", 2, "log.csv, line 3, column 2: `x` in the column `q` is not a number"),

@@ -5,7 +5,7 @@ use std::path::Path;
 use pebo_gen::model::{Model, json_schema};
 use pebo_gen::report::{CHECK_SCHEMA, SOLVE_SCHEMA};
 use pebo_gen::source::{Code, Source};
-use pebo_gen::{Ask, answer, solve};
+use pebo_gen::{Request, answer, solve};
 use serde_json::Value;
 
 /// The departures of a value from a schema, for the words of JSON schema that ours use.
@@ -106,11 +106,11 @@ fn against(schema: &str, line: &str) -> Vec<String> {
 
 /// The object of a model.
 fn line(source: &Source) -> String {
-    answer(source, &Ask::new()).report.line()
+    answer(source, &Request::new()).report.line()
 }
 
 #[test]
-fn every_model_gives_what_the_schema_says() {
+fn every_model_satisfies_the_schema() {
     let mut seen = 0;
     for folder in ["../models", "../tests/models"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
@@ -140,7 +140,7 @@ fn refused_and_malformed_models_too() {
 /// A search that finds a transform, one that proves that there is none, one that would find one with other assumptions,
 /// and none at all.
 #[test]
-fn searches_give_what_the_schema_says() {
+fn searches_satisfy_the_schema() {
     let plant = |rates: &str| format!("model: m\nx: [a]\ny: [b]\nu: [v]\n{rates}\n");
     let cases = [
         (plant("f_x: {a: v - sin(b)}\nf_y: {b: a}"), r#""verdict":"found""#),
@@ -148,7 +148,7 @@ fn searches_give_what_the_schema_says() {
         ("model: [".to_owned(), r#""span":{"#),
     ];
     for (text, part) in cases {
-        let line = solve(&Source::new("m", text.as_str()).expect("a text"), None, &Ask::new()).report.line();
+        let line = solve(&Source::new("m", text.as_str()).expect("a text"), None, &Request::new()).report.line();
         assert!(line.contains(part), "{part} in {line}");
         assert_eq!(against(SOLVE_SCHEMA, &line), [""; 0], "{text}");
         assert!(!against(SOLVE_SCHEMA, &line.replacen("\"tried\"", "\"tries\"", 1)).is_empty());
@@ -212,7 +212,7 @@ fn every_model_file_fits_the_schema_of_its_keys() {
 }
 
 #[test]
-fn the_schema_refuses_what_the_reader_refuses() {
+fn the_schema_and_the_reader_refuse_the_same() {
     let plant = "model: m\nx: [a]\ny: [b]\n";
     let by_hand = format!("{plant}f_x: {{a: b}}\nphi: [a]\n");
     let by_class = format!("{plant}lti: {{A11: [[-1]], A21: 2}}\n");

@@ -17,12 +17,12 @@ pub(super) const BY_HAND: &[&str] = &[
 const GAP: &str = "...";
 
 /// A command with its output on the page, line by line.
-pub(super) struct Shown<'a> {
+pub(super) struct Transcript<'a> {
     pub(super) command: &'a str,
     pub(super) lines: Vec<&'a str>,
 }
 
-impl Shown<'_> {
+impl Transcript<'_> {
     /// A part of the output is left out.
     pub(super) fn has_gap(&self) -> bool {
         self.lines.contains(&GAP)
@@ -54,11 +54,11 @@ impl Shown<'_> {
 }
 
 /// The commands of a block.
-pub(super) fn commands(text: &str) -> Vec<Shown<'_>> {
-    let mut shown: Vec<Shown> = Vec::new();
+pub(super) fn commands(text: &str) -> Vec<Transcript<'_>> {
+    let mut shown: Vec<Transcript> = Vec::new();
     for line in text.lines() {
         match line.strip_prefix("$ ") {
-            Some(command) => shown.push(Shown { command, lines: Vec::new() }),
+            Some(command) => shown.push(Transcript { command, lines: Vec::new() }),
             None => shown.last_mut().expect("a command before its output").lines.push(line),
         }
     }
@@ -77,7 +77,7 @@ pub(super) fn said(command: &str, folder: &Path) -> (String, bool) {
 
 #[test]
 fn a_gap_stands_for_any_number_of_lines() {
-    let shown = |lines: &[&'static str]| Shown { command: "", lines: lines.to_vec() };
+    let shown = |lines: &[&'static str]| Transcript { command: "", lines: lines.to_vec() };
     for (lines, said, agrees) in [
         (&["a", "b"][..], "a\nb\n", true),
         (&["a"], "a\nb\n", false),

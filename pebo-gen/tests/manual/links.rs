@@ -95,7 +95,7 @@ fn every_link_leads_somewhere() {
 }
 
 #[test]
-fn a_wrong_link_is_seen() {
+fn a_wrong_link_is_found() {
     let readme = root().join("README.md");
     let text = "# A `b` c-d, e\n\n[1](#a-b-c-d-e) [2](docs/architecture.md#crates-and-layers) [3](https://docs.rs)\n";
     assert_eq!(broken(&readme, &text.replace("[1](#a-b-c-d-e)", "")), "");

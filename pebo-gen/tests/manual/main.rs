@@ -23,8 +23,8 @@
 //! -p pebo-gen --test manual` writes that and the output of commands anew; outputs with a line `...` are left alone.
 #![cfg(all(feature = "cli", feature = "simulate", unix))]
 
+mod blocks;
 mod commands;
 mod generated;
 mod links;
 mod page;
-mod shown;

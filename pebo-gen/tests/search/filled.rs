@@ -1,15 +1,15 @@
 //! Models by class with the found transform written into them.
 
 use pebo_gen::source::Source;
-use pebo_gen::{Ask, Standing, answer, solve};
+use pebo_gen::{Request, Standing, answer, solve};
 
 /// The text with its transform, which is accepted as it is.
 fn filled(text: &str) -> String {
     let source = Source::new("m.yaml", text).expect("a text");
-    let solution = solve(&source, None, &Ask::new());
+    let solution = solve(&source, None, &Request::new());
     assert_eq!(solution.standing, Standing::Accepted, "{text}");
     let filled = solution.filled.unwrap_or_else(|| panic!("nothing was written: {text}"));
-    let again = answer(&Source::new("m.yaml", filled.as_str()).expect("a text"), &Ask::new());
+    let again = answer(&Source::new("m.yaml", filled.as_str()).expect("a text"), &Request::new());
     assert_eq!(again.standing, Standing::Accepted, "{filled}");
     assert!(again.report.line().contains(r#""phi":{"origin":"class""#), "{filled}");
     filled

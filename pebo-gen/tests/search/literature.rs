@@ -206,7 +206,7 @@ fn class(lines: &str, found: &Search) -> Class {
 }
 
 #[test]
-fn what_is_true_of_plants_from_the_literature_is_said() {
+fn searches_find_the_truth_of_plants_from_the_literature() {
     for Case { from, lines, truth } in CASES {
         let (_, found) = search(lines, None);
         let formulas = found.candidates.first().map(pebo_gen::search::Candidate::formulas);

@@ -3,7 +3,7 @@
 use pebo_gen::analysis::Class;
 use pebo_gen::search::SearchVerdict;
 use pebo_gen::source::Source;
-use pebo_gen::{Ask, solve};
+use pebo_gen::{Request, solve};
 
 use super::{search, written};
 
@@ -255,7 +255,7 @@ fn coils_have_their_fluxes_where_nothing_better_is_found() {
     assert_eq!(found.candidates[0].formulas(), ["m*cos(n*q) + L*i1", "m*sin(n*q) + L*i2"]);
     // There is nothing to be written into the model.
     let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
-    assert_eq!(solve(&source, None, &Ask::new()).filled.as_deref(), Some(source.text()));
+    assert_eq!(solve(&source, None, &Request::new()).filled.as_deref(), Some(source.text()));
 }
 
 /// With the speed measured the fluxes are a linear regression, and nothing else is searched for; the class in the call
@@ -295,7 +295,7 @@ fn a_state_is_not_replaced_by_the_output_that_measures_it() {
 
 /// A damper of two constants: as a sum of products of q and signs it may jump where q is 1, and theta with it.
 #[test]
-fn a_transform_goes_over_where_the_rates_bend() {
+fn a_transform_is_continuous_where_the_rates_are_non_smooth() {
     let damper = "parameters: [m, d1, d2]\nassume: [m > 0]\nx: [p]\ny: [q]\nu: [F]\n\
                   f_x: {p: F - (d1 + (d2 - d1)*(1 + sign(q - 1))/2)*p/m}\nf_y: {q: p/m}";
     for lines in [damper, "x: [p]\ny: [q]\nu: [v]\nf_x: {p: v - p*sat(q)}\nf_y: {q: p}"] {
@@ -330,7 +330,7 @@ fn many_states_are_no_harder_than_few() {
 /// An output that is a sum of states tells one of them by the others: a sine of unknown frequency with a bias, and the
 /// way to an unknown level at an unknown rate.
 #[test]
-fn a_state_that_an_output_tells_together_with_others_is_no_unknown() {
+fn a_state_that_an_output_combines_with_others_is_no_unknown() {
     for (lines, class, phi) in [
         (
             "x: [p, s, w2, b]\ny: [a]\nassume: [w2 > 0]\nf_x: {p: s, s: -w2*p, w2: 0, b: 0}\ng_y: {a: p + b}",

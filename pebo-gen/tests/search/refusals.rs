@@ -3,7 +3,7 @@
 use pebo_gen::analysis::Class;
 use pebo_gen::search::{BoundClass, SearchVerdict};
 use pebo_gen::source::{Code, Source};
-use pebo_gen::{Ask, Standing, answer, solve};
+use pebo_gen::{Request, Standing, answer, solve};
 
 use super::search;
 
@@ -66,7 +66,7 @@ fn a_function_of_the_states_that_jumps_is_no_component() {
 }
 
 #[test]
-fn a_transform_whose_domain_is_not_shown_is_not_found() {
+fn a_transform_whose_domain_is_not_proved_is_not_found() {
     // Logarithms of x are the only plain cascade; they have values where x is positive.
     let lines = "parameters: [a1, a2, a, b]\nx: [x1, x2]\ny: [y]\nf_x: {x1: a1*x1, x2: a2*x2}\nf_y: {y: a*x1 + b*x2}";
     let logarithms = |found: &pebo_gen::search::Search| {
@@ -90,7 +90,7 @@ fn a_sign_that_would_do_is_named() {
 }
 
 fn answered(text: &str) -> pebo_gen::Answer {
-    answer(&Source::new("m.yaml", text).expect("a text"), &Ask::new())
+    answer(&Source::new("m.yaml", text).expect("a text"), &Request::new())
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_model_without_phi_is_answered_with_the_one_that_was_found() {
 }
 
 #[test]
-fn a_refusal_is_followed_by_what_was_found() {
+fn a_refusal_is_followed_by_the_result_of_a_search() {
     let refused = [
         // The rate of x is not free of x, that of x plus an integral over y is.
         ("class: pebo\nx: [x]\ny: [y]\nu: [u]\nf_x: {x: u - x*y}\nf_y: {y: x}\nphi: [x]", Code::CascadeRefuted),
@@ -134,7 +134,7 @@ fn a_refusal_is_followed_by_what_was_found() {
 
 /// A frame has as many components as there are momenta; a transform with more is not denied for it.
 #[test]
-fn a_transform_that_is_no_frame_is_told_to_a_mechanical_plant() {
+fn a_transform_that_is_no_frame_is_reported_for_a_mechanical_plant() {
     let refused = answered(
         "model: m\nx: [p1, p2]\ny: [q1, q2]\nu: [a, b]\n\
          mechanical: {M: [['1 + cos(q2)^2', 0], [0, 1]], V: 'cos(q2)', G: [[1, 0], [0, 1]], T: [[1, 0], [0, 1]]}\n",
@@ -153,15 +153,15 @@ fn the_transform_is_written_into_the_model_and_nothing_else_changes() {
     let head =
         "model: m          # a comment\nx: [p]\ny: [q]\nu: [v]\nf_x:\n  p: v - q*p      # friction\nf_y: {q: p}\n";
     let tail = "\n# the end\nassume: [q > 0]\n";
-    let solution = solve(&Source::new("m.yaml", format!("{head}{tail}")).expect("a text"), None, &Ask::new());
+    let solution = solve(&Source::new("m.yaml", format!("{head}{tail}")).expect("a text"), None, &Request::new());
     assert_eq!(solution.filled.expect("a model"), format!("{head}phi: [p + q^2/2]\n{tail}"));
     let given = format!("{head}phi: [p]\nphi_left: {{p: z1}}\n{tail}");
-    let solution = solve(&Source::new("m.yaml", given).expect("a text"), None, &Ask::new());
+    let solution = solve(&Source::new("m.yaml", given).expect("a text"), None, &Request::new());
     assert_eq!(solution.filled.expect("a model"), format!("{head}phi: [p + q^2/2]\n{tail}"));
 }
 
 #[test]
-fn a_refused_frame_is_told_how_many_killing_fields_there_are() {
+fn a_refused_frame_has_the_number_of_killing_fields() {
     let lines = "parameters: [m, J, g]\nx: [p1, p2]\ny: [r, th]\nu: [tau]\nassume: [m > 0, J > 0, g > 0]\n\
                  mechanical: {M: [[m, 0], [0, J + m*r^2]], V: m*g*r*sin(th), G: [[0], [1]], T: [[1, 0], [0, 1]]}";
     let answer = answered(&format!("model: m\nclass: pebo\n{lines}\n"));
@@ -176,7 +176,7 @@ fn a_refused_frame_is_told_how_many_killing_fields_there_are() {
 }
 
 #[test]
-fn nobody_is_told_to_choose_a_phi_where_there_is_none() {
+fn no_advice_is_to_choose_a_phi_where_there_is_none() {
     let lines = "parameters: [R, L, K]\nx: [i]\ny: [w]\nu: [V]\nassume: [R > 0, L > 0, K > 0]\n\
                  f_x: {i: (V - R*i - K*w)/L}\nf_y: {w: (K + V)*i}\nphi: [i]";
     let answer = answered(&format!("model: m\nclass: pebo\n{lines}\n"));
@@ -194,7 +194,7 @@ fn nobody_is_told_to_choose_a_phi_where_there_is_none() {
 fn a_model_without_a_transform_is_refused_in_a_few_notes() {
     let text = "model: m\nx: [a, b]\ny: [q]\nu: [v]\nf_x: {a: v - 2*a, b: 3*b}\nf_y: {q: a + sin(b)*q}\n";
     let source = Source::new("m.yaml", text).expect("a text");
-    let answer = answer(&source, &Ask::new());
+    let answer = answer(&source, &Request::new());
     let found = &answer.diagnostics[0];
     assert_eq!((found.code, source.slice(found.primary.span)), (Code::TransformNotFound, "a, b"));
     assert!(found.notes.len() <= 5 && !found.notes.iter().any(|note| note.starts_with("tried:")), "{:#?}", found.notes);
@@ -214,10 +214,10 @@ fn a_model_without_a_transform_is_refused_in_a_few_notes() {
 
 /// Proofs about transforms affine in x say nothing about others.
 #[test]
-fn none_says_what_it_leaves_open() {
+fn none_has_its_open_cases() {
     let said = |lines: &str| {
         let text = format!("model: m\n{lines}\n");
-        solve(&Source::new("m.yaml", text.as_str()).expect("a text"), None, &Ask::new()).summary
+        solve(&Source::new("m.yaml", text.as_str()).expect("a text"), None, &Request::new()).summary
     };
     let open = "not excluded: a phi that is not affine in x, with a generalised cascade";
     assert!(said(ARM).contains(open), "{}", said(ARM));

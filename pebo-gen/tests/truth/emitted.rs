@@ -322,7 +322,7 @@ fn run(cases: &[Case]) -> BTreeMap<(u64, usize, String), Vec<f64>> {
 }
 
 #[test]
-fn compiled_code_computes_what_was_derived() {
+fn compiled_code_computes_the_derived_formulas() {
     let (first, models) = (setting("PEBO_FIRST_MODEL", 1), setting("PEBO_EMITTED", MODELS));
     let models = usize::try_from(models).expect("a number of models");
     // At least one in four seeds is accepted.

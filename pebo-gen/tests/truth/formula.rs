@@ -20,7 +20,7 @@ pub(crate) type Values = BTreeMap<String, (f64, f64)>;
 
 /// A value, its rate, and the largest absolute value met.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Evaluated {
+pub(crate) struct Evaluation {
     pub(crate) value: f64,
     pub(crate) slope: f64,
     pub(crate) size: f64,
@@ -55,7 +55,7 @@ impl Comparison {
 
     /// It holds, by more than rounding.
     pub(crate) fn holds(&self, values: &Values) -> bool {
-        let sides: Vec<Evaluated> = self.sides.iter().map(|side| side.at(values)).collect();
+        let sides: Vec<Evaluation> = self.sides.iter().map(|side| side.at(values)).collect();
         sides.windows(2).zip(&self.relations).all(|(pair, relation)| {
             let difference = pair[0].value - pair[1].value;
             // A value within rounding of the bound counts as outside: nothing is asserted there.
@@ -91,28 +91,30 @@ impl Formula {
     }
 
     /// The value at the given values of its names.
-    pub(crate) fn at(&self, values: &Values) -> Evaluated {
+    pub(crate) fn at(&self, values: &Values) -> Evaluation {
         match self {
-            Self::Number(number) => Evaluated::new(*number, 0.0),
-            Self::Name(name) if name == "pi" && !values.contains_key("pi") => Evaluated::new(std::f64::consts::PI, 0.0),
+            Self::Number(number) => Evaluation::new(*number, 0.0),
+            Self::Name(name) if name == "pi" && !values.contains_key("pi") => {
+                Evaluation::new(std::f64::consts::PI, 0.0)
+            }
             Self::Name(name) => {
                 let (value, slope) = values.get(name).unwrap_or_else(|| panic!("no value for `{name}`"));
-                Evaluated::new(*value, *slope)
+                Evaluation::new(*value, *slope)
             }
             Self::Negative(inner) => {
                 let a = inner.at(values);
-                Evaluated { value: -a.value, slope: -a.slope, size: a.size }
+                Evaluation { value: -a.value, slope: -a.slope, size: a.size }
             }
             Self::Binary(operator, left, right) => binary(*operator, left.at(values), right.at(values)),
             Self::Call(name, arguments) => {
-                let arguments: Vec<Evaluated> = arguments.iter().map(|argument| argument.at(values)).collect();
+                let arguments: Vec<Evaluation> = arguments.iter().map(|argument| argument.at(values)).collect();
                 call(name, &arguments)
             }
         }
     }
 }
 
-impl Evaluated {
+impl Evaluation {
     fn new(value: f64, slope: f64) -> Self {
         Self { value, slope, size: value.abs().max(slope.abs()) }
     }
@@ -123,8 +125,8 @@ impl Evaluated {
     }
 }
 
-fn binary(operator: char, a: Evaluated, b: Evaluated) -> Evaluated {
-    let of = |value, slope| Evaluated::after(value, slope, &[a, b]);
+fn binary(operator: char, a: Evaluation, b: Evaluation) -> Evaluation {
+    let of = |value, slope| Evaluation::after(value, slope, &[a, b]);
     match operator {
         '+' => of(a.value + b.value, a.slope + b.slope),
         '-' => of(a.value - b.value, a.slope - b.slope),
@@ -136,12 +138,12 @@ fn binary(operator: char, a: Evaluated, b: Evaluated) -> Evaluated {
 }
 
 /// Real powers: any base under a whole exponent, else a base that is not negative.
-fn power(a: Evaluated, b: Evaluated) -> Evaluated {
+fn power(a: Evaluation, b: Evaluation) -> Evaluation {
     let whole = b.slope == 0.0 && b.value.fract() == 0.0;
     let value = if whole || a.value >= 0.0 { a.value.powf(b.value) } else { f64::NAN };
     let mut slope = 0.0;
     if b.slope == 0.0 && b.value == 0.0 {
-        return Evaluated::after(1.0, 0.0, &[a]);
+        return Evaluation::after(1.0, 0.0, &[a]);
     }
     // At a base of zero the derivative exists for exponents of one and more, whatever the rate.
     if b.slope == 0.0 {
@@ -149,10 +151,10 @@ fn power(a: Evaluated, b: Evaluated) -> Evaluated {
     } else {
         slope += value * (b.slope * a.value.ln() + b.value * a.slope / a.value);
     }
-    Evaluated::after(value, slope, &[a, b])
+    Evaluation::after(value, slope, &[a, b])
 }
 
-fn call(name: &str, arguments: &[Evaluated]) -> Evaluated {
+fn call(name: &str, arguments: &[Evaluation]) -> Evaluation {
     let a = arguments[0];
     let x = a.value;
     let (value, factor) = match name {
@@ -181,7 +183,7 @@ fn call(name: &str, arguments: &[Evaluated]) -> Evaluated {
             let first = (ahead > 0.0) == (name == "min");
             let chosen = if first { a } else { b };
             let slope = if ahead == 0.0 { f64::NAN } else { chosen.slope };
-            return Evaluated::after(chosen.value, slope, arguments);
+            return Evaluation::after(chosen.value, slope, arguments);
         }
         "atan2" => {
             let b = arguments[1];
@@ -189,11 +191,11 @@ fn call(name: &str, arguments: &[Evaluated]) -> Evaluated {
             let slope = (a.slope * b.value - x * b.slope) / square;
             // At the origin there is neither an angle nor a slope.
             let value = if square == 0.0 { f64::NAN } else { x.atan2(b.value) };
-            return Evaluated::after(value, slope, arguments);
+            return Evaluation::after(value, slope, arguments);
         }
         _ => panic!("no such function: {name}"),
     };
-    Evaluated::after(value, factor * a.slope, arguments)
+    Evaluation::after(value, factor * a.slope, arguments)
 }
 
 struct Reader<'a> {

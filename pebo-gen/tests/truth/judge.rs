@@ -9,7 +9,7 @@ use pebo_gen::analysis::Outcome;
 use serde_json::Value as Json;
 
 use super::draw::Draw;
-use super::formula::{Comparison, Evaluated, Formula, Values};
+use super::formula::{Comparison, Evaluation, Formula, Values};
 use super::plant::Plant;
 
 /// Points of a model that are looked at, of as many draws as it takes, up to the second number.
@@ -84,7 +84,7 @@ pub(crate) fn complaints(plant: &Plant, derived: &Derived, report: &Json, seed: 
         let Some(values) = plant.point(&mut draw) else { continue };
         points += 1;
         if claims.conditions.iter().all(|condition| condition.holds(&values)) {
-            let mut at = At::new(plant, &claims, values);
+            let mut at = DomainPoint::new(plant, &claims, values);
             at.cascade();
             at.left_inverse();
             at.regression(rows, &mut draw);
@@ -119,38 +119,38 @@ fn outside(plant: &Plant, report: &Json) -> Vec<String> {
 }
 
 /// A value that does not move.
-fn still(value: f64) -> Evaluated {
-    Evaluated { value, slope: 0.0, size: value.abs() }
+fn still(value: f64) -> Evaluation {
+    Evaluation { value, slope: 0.0, size: value.abs() }
 }
 
 /// `first` and the sum of the products.
-fn sum(terms: impl Iterator<Item = (Evaluated, Evaluated)>, first: Evaluated) -> Evaluated {
-    terms.fold(first, |total, (a, b)| Evaluated {
+fn sum(terms: impl Iterator<Item = (Evaluation, Evaluation)>, first: Evaluation) -> Evaluation {
+    terms.fold(first, |total, (a, b)| Evaluation {
         value: total.value + a.value * b.value,
         slope: total.slope + a.slope * b.value + a.value * b.slope,
         size: total.size.max(a.size * b.size.max(1.0)).max(b.size),
     })
 }
 
-fn all(formulas: &[Formula], values: &Values) -> Vec<Evaluated> {
+fn all(formulas: &[Formula], values: &Values) -> Vec<Evaluation> {
     formulas.iter().map(|formula| formula.at(values)).collect()
 }
 
 /// A point of the domain at which the claims are looked at.
-struct At<'a> {
+struct DomainPoint<'a> {
     plant: &'a Plant,
     claims: &'a Claims,
     values: Values,
     place: String,
-    z: Vec<Evaluated>,
-    h: Vec<Evaluated>,
+    z: Vec<Evaluation>,
+    h: Vec<Evaluation>,
     /// The largest absolute value met in the rates.
     moving: f64,
-    lambda: Option<Vec<Vec<Evaluated>>>,
+    lambda: Option<Vec<Vec<Evaluation>>>,
     found: Vec<String>,
 }
 
-impl<'a> At<'a> {
+impl<'a> DomainPoint<'a> {
     fn new(plant: &'a Plant, claims: &'a Claims, values: Values) -> Self {
         let place = values.iter().map(|(name, (value, _))| format!("{name} = {value}")).collect::<Vec<_>>().join(", ");
         Self {
@@ -166,7 +166,7 @@ impl<'a> At<'a> {
         }
     }
 
-    fn check(&mut self, what: &str, claimed: Evaluated, wanted: Evaluated) {
+    fn check(&mut self, what: &str, claimed: Evaluation, wanted: Evaluation) {
         let size = claimed.size.max(wanted.size).max(1.0);
         // Beyond this, digits are lost that the claim cannot be blamed for here.
         let told = wanted.value.is_finite() && (size < 1e10 || !size.is_finite());
@@ -180,7 +180,7 @@ impl<'a> At<'a> {
         for i in 0..self.z.len() {
             let component = self.z[i];
             // The rounding of the rates themselves: large terms may multiply an identity that is zero.
-            let along = Evaluated { value: component.slope, slope: 0.0, size: component.size.max(self.moving) };
+            let along = Evaluation { value: component.slope, slope: 0.0, size: component.size.max(self.moving) };
             let claimed = match &self.lambda {
                 None => self.h[i],
                 Some(lambda) => sum(lambda[i].iter().zip(&self.z).map(|(l, z)| (*l, still(z.value))), self.h[i]),
@@ -238,22 +238,22 @@ impl<'a> At<'a> {
         let mut at_theta = self.values.clone();
         at_theta.extend((1..).zip(&theta).map(|(i, theta)| (format!("theta{i}"), (*theta, 0.0))));
         // Functions of theta are constants: the slopes of other symbols in them do not count.
-        let eta: Vec<Evaluated> = claims.eta.iter().map(|eta| still(eta.at(&at_theta).value)).collect();
+        let eta: Vec<Evaluation> = claims.eta.iter().map(|eta| still(eta.at(&at_theta).value)).collect();
         for (row, (known, factors)) in claims.phi_0.iter().zip(&claims.phi_1).enumerate() {
             let (known, factors) = (known.at(&self.values), all(factors, &self.values));
-            let right = |first: Evaluated| sum(factors.iter().copied().zip(eta.iter().copied()), first);
+            let right = |first: Evaluation| sum(factors.iter().copied().zip(eta.iter().copied()), first);
             let what = format!("row {} of the regression", row + 1);
             match claims.kind.as_str() {
                 "static" => self.check(&what, right(still(0.0)), known),
                 "dynamic" => {
                     let rate = self.values[&self.plant.y[rows[row]]].1;
-                    self.check(&what, right(known), Evaluated { value: rate, slope: 0.0, size: known.size });
+                    self.check(&what, right(known), Evaluation { value: rate, slope: 0.0, size: known.size });
                 }
                 _ => {
                     let held = claims.primitive_1.get(row).map_or_else(Vec::new, |held| all(held, &self.values));
                     let first = claims.primitive_0[row].at(&self.values);
                     let held = sum(held.into_iter().zip(eta.iter().copied()), first);
-                    self.check(&what, right(known), Evaluated { value: held.slope, ..held });
+                    self.check(&what, right(known), Evaluation { value: held.slope, ..held });
                 }
             }
         }

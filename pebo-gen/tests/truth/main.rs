@@ -47,7 +47,7 @@ struct Counts {
 }
 
 /// The observations of one model.
-struct Seen {
+struct Observation {
     kind: &'static str,
     /// None where the model was malformed.
     outcome: Option<Outcome>,
@@ -59,13 +59,14 @@ struct Seen {
 }
 
 /// Checks the model of a seed, and compares the verdict with its truth and its formulas.
-fn look(seed: u64) -> Seen {
+fn look(seed: u64) -> Observation {
     let made = make::model(seed);
     let source = Source::new("m", made.text.as_str()).expect("a text");
     let start = Instant::now();
     let model = Model::parse(&source).unwrap_or_else(|d| panic!("{}\n{}", d[0].message, made.text));
     let plant = Plant::read(&source, &model).expect("a plant by its equations");
-    let mut seen = Seen { kind: made.kind, outcome: None, cause: None, slow: None, points: 0, wrong: Vec::new() };
+    let mut seen =
+        Observation { kind: made.kind, outcome: None, cause: None, slow: None, points: 0, wrong: Vec::new() };
     let derived = match Derived::of(model) {
         Ok(derived) => derived,
         Err(diagnostics) => {
@@ -99,7 +100,7 @@ fn look(seed: u64) -> Seen {
 }
 
 /// Looks at all models, on as many threads as there are processors, and tells how far it is; in the order of the seeds.
-fn look_at(seeds: Range<u64>) -> Vec<(u64, Seen)> {
+fn look_at(seeds: Range<u64>) -> Vec<(u64, Observation)> {
     let next = AtomicU64::new(seeds.start);
     let found = Mutex::new(Vec::new());
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
@@ -130,7 +131,7 @@ fn look_at(seeds: Range<u64>) -> Vec<(u64, Seen)> {
 }
 
 #[test]
-fn verdicts_agree_with_what_is_true() {
+fn verdicts_agree_with_the_truth() {
     let (first, models) = (setting("PEBO_FIRST_MODEL", 1), setting("PEBO_MODELS", MODELS));
     let mut counts: BTreeMap<&str, Counts> = BTreeMap::new();
     let mut causes: BTreeMap<String, usize> = BTreeMap::new();

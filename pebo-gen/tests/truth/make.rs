@@ -4,7 +4,7 @@
 //! outputs; the rates of the states follow from them. The truth of the model is that of its parts.
 
 use super::draw::Draw;
-use super::formula::{Comparison, Evaluated, Formula, Values};
+use super::formula::{Comparison, Evaluation, Formula, Values};
 
 /// The truth of a model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -18,7 +18,7 @@ pub(crate) enum Truth {
 }
 
 /// A model with its truth.
-pub(crate) struct Made {
+pub(crate) struct GeneratedModel {
     pub(crate) text: String,
     pub(crate) truth: Truth,
     pub(crate) kind: &'static str,
@@ -140,7 +140,7 @@ fn at(function: &str, argument: &str) -> String {
 }
 
 /// The model of a seed.
-pub(crate) fn model(seed: u64) -> Made {
+pub(crate) fn model(seed: u64) -> GeneratedModel {
     let mut draw = Draw::new(seed);
     let states = 1 + draw.below(3).min(draw.below(3));
     let kind = *draw.of(&[
@@ -327,7 +327,7 @@ impl Recipe {
         }
     }
 
-    fn written(mut self, rates: &[String]) -> Made {
+    fn written(mut self, rates: &[String]) -> GeneratedModel {
         let x: Vec<String> = self.parts.iter().map(|part| part.x.clone()).collect();
         let mut y: Vec<(String, String)> =
             (1..).zip(&self.outputs).map(|(i, rate)| (format!("q{i}"), rate.clone())).collect();
@@ -356,18 +356,18 @@ impl Recipe {
             f_y.join("\n"),
             phi.join("\n"),
         );
-        Made { text, truth: self.truth, kind: self.kind }
+        GeneratedModel { text, truth: self.truth, kind: self.kind }
     }
 }
 
 /// Values of formulas in a state where the assumptions on the state hold and all formulas have a value.
-fn sampled<const N: usize>(formulas: [&str; N], x: &str, domain: &[&str]) -> Vec<[Evaluated; N]> {
+fn sampled<const N: usize>(formulas: [&str; N], x: &str, domain: &[&str]) -> Vec<[Evaluation; N]> {
     let formulas = formulas.map(Formula::read);
     let at = |step: i32| {
         let value = f64::from(step) * 0.01 + 0.003;
         let values: Values = [(x, value), ("q1", 1.37)].map(|(name, value)| (name.to_owned(), (value, 0.0))).into();
         let inside = domain.iter().all(|text| Comparison::read(text).holds(&values));
-        let found: [Evaluated; N] = std::array::from_fn(|i| formulas[i].at(&values));
+        let found: [Evaluation; N] = std::array::from_fn(|i| formulas[i].at(&values));
         (inside && found.iter().all(|found| found.value.is_finite())).then_some(found)
     };
     (-400..400).filter_map(at).collect()

@@ -15,7 +15,7 @@ CASCADES = {
     "two-link arm": ("tests/bench/models/two_link_arm.yaml", ["t1 - g1*cos(q1) - g2*cos(q1 + q2)"]),
 }
 
-# What a person feeds to a system that knows no relation of kernels: the sine, the cosine and the roots as states
+# The input of a person for a system that knows no relation of kernels: the sine, the cosine and the roots as states
 # of their own (k^2 = c, r^2 = s for the cart), and a rational parametrisation of what relates them at the end.
 CIRCLE = [["S", "2*T/(1 + T^2)"], ["C", "(1 - T^2)/(1 + T^2)"]]
 BY_HAND = {

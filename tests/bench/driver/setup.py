@@ -1,4 +1,4 @@
-"""Builds what is run: our programs, the Python rivals in an environment of their own, the Rust rival in its workspace.
+"""Builds the programs of a run: ours, the Python rivals in an environment of their own, the Rust rival in its workspace.
 
 A rival that cannot be had is left out, and a line says so.
 """

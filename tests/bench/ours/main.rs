@@ -6,11 +6,11 @@ mod protocol;
 
 use std::process::ExitCode;
 
-use protocol::How;
+use protocol::JobOptions;
 use serde_json::Value;
 
 fn main() -> ExitCode {
-    protocol::serve(|job: &Value, how: &How| match job["kind"].as_str() {
+    protocol::serve(|job: &Value, how: &JobOptions| match job["kind"].as_str() {
         Some("model") => identity::derivation(job),
         Some("zero") => identity::proof(job, how.alone),
         Some("product") => polynomial::product(job),

@@ -15,7 +15,7 @@ const SHORT: f64 = 0.02;
 
 /// Options of a job.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct How {
+pub(crate) struct JobOptions {
     /// The system's method.
     pub(crate) recipe: String,
     /// A proof is timed alone, without the derivatives in its formula.
@@ -29,20 +29,20 @@ pub(crate) type Work = Box<dyn FnOnce() -> Check>;
 pub(crate) type Check = Box<dyn FnOnce() -> Result<(), String>>;
 
 /// Answers until the input ends; `prepare` makes the operands of a job, untimed.
-pub(crate) fn serve(prepare: impl Fn(&Value, &How) -> Result<Work, String>) -> ExitCode {
+pub(crate) fn serve(prepare: impl Fn(&Value, &JobOptions) -> Result<Work, String>) -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let [once, path, recipe] = arguments.as_slice()
         && once == "--once"
     {
-        let how = How { recipe: recipe.clone(), alone: false };
+        let how = JobOptions { recipe: recipe.clone(), alone: false };
         let done = read(path).and_then(|job| prepare(&job, &how)).and_then(|work| work()());
         return if done.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
     }
-    let mut last: BTreeMap<(String, How), f64> = BTreeMap::new();
+    let mut last: BTreeMap<(String, JobOptions), f64> = BTreeMap::new();
     for line in std::io::stdin().lock().lines().map_while(Result::ok) {
         let Ok(request) = serde_json::from_str::<Value>(&line) else { break };
         let field = |name: &str| request[name].as_str().unwrap_or_default().to_owned();
-        let key = (field("job"), How { recipe: field("recipe"), alone: field("part") == "proof" });
+        let key = (field("job"), JobOptions { recipe: field("recipe"), alone: field("part") == "proof" });
         let warm = last.get(&key).is_none_or(|seconds| *seconds < SHORT);
         let reply = match timed(&prepare, &key.0, &key.1, warm) {
             Ok(seconds) => {
@@ -60,9 +60,9 @@ pub(crate) fn serve(prepare: impl Fn(&Value, &How) -> Result<Work, String>) -> E
 }
 
 fn timed(
-    prepare: &impl Fn(&Value, &How) -> Result<Work, String>,
+    prepare: &impl Fn(&Value, &JobOptions) -> Result<Work, String>,
     path: &str,
-    how: &How,
+    how: &JobOptions,
     warm: bool,
 ) -> Result<f64, String> {
     let job = read(path)?;

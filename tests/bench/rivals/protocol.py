@@ -9,12 +9,12 @@ import json
 import sys
 import time
 
-# What is this fast is done once more before it is timed, with other operands: the caches have seen other processes.
+# A faster job is done once more before it is timed, with other operands: the caches have served other processes.
 SHORT = 0.02
 
 
 class Failed(Exception):
-    """Why there is no time."""
+    """The reason that there is no time."""
 
 
 def by_hand(job):

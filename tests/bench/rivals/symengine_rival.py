@@ -91,6 +91,6 @@ def gcd(*_how):
     raise protocol.Failed("-")
 
 
-# What it does not answer.
+# Jobs that it does not answer.
 JOBS = {"zero": proof, "product": product, "gcd": gcd, "power": gcd, "square_free": gcd}
 protocol.serve(lambda job, *how: JOBS[job["kind"]](job, *how))

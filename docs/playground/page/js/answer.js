@@ -1,4 +1,4 @@
-// What the generator says of a model: verdict, diagnostics, claims with derivations, transforms to choose from.
+// The generator's answer on a model: verdict, diagnostics, claims with derivations, transforms to choose from.
 
 import { element, markup, prose, show } from "./dom.js";
 import { fix, story } from "./editor.js";
@@ -42,7 +42,7 @@ export function verdict(answer) {
   );
 }
 
-/** What follows from a proof, further down. */
+/** Consequences of a proof, further down. */
 function contents() {
   const link = ([id, name]) => {
     const go = (event) => {

@@ -44,7 +44,7 @@ function declared(state) {
   return [...names].filter(Boolean);
 }
 
-/** What may stand at the cursor. */
+/** The keys that are possible at the cursor. */
 function completion(schema) {
   return (context) => {
     const word = context.matchBefore(/[\w-]*/);
@@ -86,7 +86,7 @@ function indented(state, number, indent) {
   return above;
 }
 
-/** What a key is, where the pointer rests on it. */
+/** The description of a key under the pointer. */
 function hover(schema) {
   return hoverTooltip((view, place) => {
     for (let node = syntaxTree(view.state).resolveInner(place, 1); node; node = node.parent) {

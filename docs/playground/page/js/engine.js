@@ -1,6 +1,6 @@
 // The generator in a worker: one question at a time, and stopped when it is no longer wanted.
 
-/** Why a question has no answer. */
+/** The reason that a question has no answer. */
 export class Stopped extends Error {}
 
 /** The generator, loaded once; a worker that is stopped is followed by another. */
@@ -56,7 +56,7 @@ export class Engine {
     return this.#waiting !== null;
   }
 
-  /** Answers a question; what was asked before and has no answer yet is stopped. */
+  /** Answers a question; an earlier one without an answer is stopped. */
   ask(question, progress) {
     this.stop();
     const asked = ++this.#asked;

@@ -8,7 +8,7 @@ const SEED = 1;
 export class Loop {
   #knobs = null;
   #values = {};
-  /** How large the outputs are in the file's own loop. */
+  /** The sizes of the outputs in the file's own loop. */
   sizes = null;
   #run;
   #later = 0;
@@ -17,7 +17,7 @@ export class Loop {
     this.#run = run;
   }
 
-  /** What is asked of the loop beside what the file says: settings as of `--set`, and how it is run. */
+  /** The request for the loop beside the file: settings as of `--set`, and options of the run. */
   get call() {
     const values = this.#values;
     const [set, how] = [[], {}];

@@ -20,7 +20,7 @@ let engine, editor, loop;
 /** The story of each diagnostic by its code. */
 let stories = {};
 let scalar = "f64";
-/** What was answered last, and on which text. */
+/** The last answer, and its text. */
 let last = { text: null, accepted: false, name: "model" };
 let table = null;
 let later = 0;
@@ -109,7 +109,7 @@ async function write(mine) {
   }
 }
 
-/** The largest magnitude of each output. */
+/** The largest absolute value of each output. */
 function sizes(csv, names) {
   const [head, ...rows] = csv.trim().split("\n").map((line) => line.split(","));
   return Object.fromEntries(
@@ -160,7 +160,7 @@ const ownSignals = () => table && replay("closed-loop.csv", table);
 
 function changed() {
   clearTimeout(later);
-  // What is being worked on is about an older text.
+  // The answer in progress is about an older text.
   turn++;
   engine.stop();
   history.replaceState(null, "", location.pathname + location.search);

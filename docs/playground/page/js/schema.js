@@ -1,4 +1,4 @@
-// What may stand at a place of a model file, by the generator's own schema of it.
+// The keys that are possible at a position of a model file, by the generator's own schema.
 
 /** The keys with their schemas, and the words that may be values, of the value under this path of keys. */
 export function below(schema, path) {
@@ -35,7 +35,7 @@ export function choices(schema, path) {
   return [...new Set(below(schema, path).flatMap((node) => node.enum ?? []))];
 }
 
-/** What a key is, in a line. */
+/** The description of a key, in a line. */
 export function about(schema, path) {
   return below(schema, path).map((node) => node.description).find(Boolean);
 }

@@ -67,8 +67,8 @@ fn connected(plant: &Plant, expr: Expr, basis: &[Expr]) -> Vec<usize> {
     }
 }
 
-/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values of
-/// an expression.
+/// Points of the domain with the same y, u and parameters at which no affine function of the transform takes the values
+/// of an expression.
 pub(super) fn refuted(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Contrast> {
     let mut basis = vec![plant.arena.one()];
     basis.extend(independent(plant, domain));

@@ -54,8 +54,8 @@ pub struct Plant {
     pub origin: TransformOrigin,
     /// The left inverse as the author gave it: states with formulas in z and y.
     pub phi_left: Option<Vec<(Symbol, Formula)>>,
-    /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of the
-    /// two.
+    /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of
+    /// the two.
     pub identities: Vec<Formula>,
     /// States that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,

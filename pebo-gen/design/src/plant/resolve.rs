@@ -1,7 +1,7 @@
 //! Resolves a written model to a plant.
 //!
-//! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every name and formula in it that
-//! has no meaning.
+//! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every
+//! name and formula in it that has no meaning.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;

@@ -191,9 +191,9 @@ pub struct FiniteTime<N> {
 }
 
 impl<N: Clone + PartialOrd> Settings<N> {
-    /// The settings that a section gives an observer of so many unknowns, coordinates and recovered states. There are none where the
-    /// section lacks something, and where a number cannot be read; lists of wrong lengths and bounds that exclude each
-    /// other are reported.
+    /// The settings that a section gives an observer of so many unknowns, coordinates and recovered states. There are
+    /// none where the section lacks something, and where a number cannot be read; lists of wrong lengths and bounds
+    /// that exclude each other are reported.
     pub fn resolve(
         written: &Observer,
         (unknowns, coordinates, states): (usize, usize, usize),

@@ -66,8 +66,8 @@ impl Angles {
     }
 }
 
-/// The expressions with the sine of a doubled angle as a product, where the single angle is called for: its number joins
-/// others.
+/// The expressions with the sine of a doubled angle as a product, where the single angle is called for: its number
+/// joins others.
 pub(super) fn halved(arena: &Arena, roots: &[Expr]) -> Vec<Expr> {
     let two = Rational::from(2);
     let parts = arena.postorder(roots);

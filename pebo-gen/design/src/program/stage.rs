@@ -47,7 +47,8 @@ pub struct StagedPrograms {
     pub terms: Vec<(Symbol, Expr)>,
     /// From the constants and the sampled symbols to the terms.
     pub sample: Program,
-    /// A program for each task; its inputs are the constants, the sampled symbols, the terms, then the task's arguments.
+    /// A program for each task; its inputs are the constants, the sampled symbols, the terms, then the task's
+    /// arguments.
     pub programs: Vec<Program>,
 }
 

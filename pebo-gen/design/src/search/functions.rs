@@ -139,8 +139,8 @@ fn add_atoms(problem: &Problem<'_>, formulas: &[Expr], admits: &impl Fn(Expr) ->
     }
 }
 
-/// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are too
-/// many, or where a rate is no polynomial in the outputs as it is written: `(q - q0)^4` loses digits as a sum.
+/// The power products of the outputs to a degree, each with its degree as weight, beginning with 1; none where they are
+/// too many, or where a rate is no polynomial in the outputs as it is written: `(q - q0)^4` loses digits as a sum.
 pub(super) fn monomials(problem: &Problem<'_>, outputs: &[Expr], degree: usize) -> Option<Vec<(Expr, usize)>> {
     let arena = problem.arena;
     let moving: BTreeSet<Symbol> = problem.y.iter().copied().collect();

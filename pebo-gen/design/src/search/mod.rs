@@ -9,8 +9,8 @@
 //! Everything before that proof only directs the search: values modulo a prime, null spaces, rules for integrals.
 //!
 //! It is linear: the rate of `phi = sum of c_k b_k` is linear in the `c_k`, and in dphi, however nonlinear the plant is
-//! (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015, eq. 3). Attempts go from simple forms to large ones; the first whose outputs
-//! are affine in z ends the search.
+//! (Ortega, Bobtsov, Pyrkin, Aranovskiy 2015, eq. 3). Attempts go from simple forms to large ones; the first whose
+//! outputs are affine in z ends the search.
 
 mod bounds;
 mod integral;
@@ -317,8 +317,8 @@ impl Attempts<'_> {
         }
     }
 
-    /// Constant combinations of the states with polynomials in the outputs, where the formulas are polynomials in all that
-    /// moves: of a few columns for a state, up to a high degree.
+    /// Constant combinations of the states with polynomials in the outputs, where the formulas are polynomials in all
+    /// that moves: of a few columns for a state, up to a high degree.
     fn shifted(&mut self) {
         let problem = self.problem;
         let arena = problem.arena;

@@ -16,7 +16,8 @@ use super::problem::Problem;
 /// Points that are given up because a denominator vanishes there.
 const MOST_POLES: usize = 50;
 
-/// Primes that are tried where kernels have no values modulo the first: a root of a root has one modulo every fourth or so.
+/// Primes that are tried where kernels have no values modulo the first: a root of a root has one modulo every fourth or
+/// so.
 const MOST_PRIMES: usize = 16;
 
 /// Rows that bring nothing new, after which no more are looked at.

@@ -54,9 +54,9 @@ impl Source {
     /// ```
     /// use pebo_design::source::Source;
     ///
-    /// let text = "model: m\nparameters: {a: 1}\nx: [p]\ny: [q]\nf_x: {p: -a*p}\nf_y: {q: p}\nphi: [p]\n";
-    /// let source = Source::new("m.yaml", text).and_then(|source| source.set(["a=2", "title=faster"])).expect("it is small");
-    /// let model = pebo_design::model::Model::parse(&source).expect("both are right");
+    /// let text = "model: m\nparameters: {a: 1}\nx: [p]\ny: [q]\nf_x: {p: -a*p}\nf_y: {q: p}\nphi: [p]\n"; let source =
+    /// Source::new("m.yaml", text).and_then(|source| source.set(["a=2", "title=faster"])).expect("it is small"); let
+    /// model = pebo_design::model::Model::parse(&source).expect("both are right");
     /// assert_eq!(model.parameters[0].value.as_ref().map(|number| number.value.text()), Some("2"));
     /// assert_eq!(source.text(), text);
     /// ```

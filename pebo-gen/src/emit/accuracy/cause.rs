@@ -1,6 +1,6 @@
-//! Who loses digits: the emitted form, the author, or nobody.
+//! The cause of a loss of digits: the emitted form, the author, or nobody.
 
-/// Whose loss of digits it is.
+/// The cause of a loss of digits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
@@ -10,6 +10,6 @@ pub enum Cause {
     Form,
     /// The author's: a part of the model's own formulas loses digits there, and these lose as much.
     Model,
-    /// Nobody's: the error is that of rounding what the value is elsewhere.
+    /// Nobody's: the error is a rounding of the value's size elsewhere.
     Small,
 }

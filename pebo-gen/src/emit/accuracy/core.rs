@@ -1,7 +1,7 @@
-//! What a part of a formula is, however it was arranged.
+//! Cores of formulas, which do not depend on their arrangement.
 //!
-//! In: formulas. Out: their parts with what all summands of a sum have in common taken out of it, also what all are divided
-//! by. Two sums that differ by such a factor lose the same digits: `a*c/s - b*d/(s*t)` is `(a*c*t - b*d)/(s*t)`.
+//! In: formulas. Out: their subexpressions without the common factors and denominators of the summands of a sum. Two
+//! sums that differ by such a factor lose the same digits: `a*c/s - b*d/(s*t)` is `(a*c*t - b*d)/(s*t)`.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use pebo_cas::{Arena, Expr, Node, Rational};
 /// A product: its number, and its powers.
 type Factors = (Rational, BTreeMap<Expr, Rational>);
 
-/// By part: the sum without its common factors; a part that is no sum with such sums in it.
+/// The core of each subexpression: a sum without its common factors; another one with such sums in it.
 pub(super) fn cores(arena: &Arena, formulas: &[Expr]) -> FxHashMap<Expr, Expr> {
     let mut whole: FxHashMap<Expr, Expr> = FxHashMap::default();
     let mut cores: FxHashMap<Expr, Expr> = FxHashMap::default();

@@ -1,7 +1,7 @@
 //! Exact values, and errors beside them.
 //!
-//! In: formulas and a place. Out: an enclosure of each value, and how much the value moves when all that it depends on is
-//! rounded; of computed values, their errors in units of what rounding causes.
+//! In: formulas and a point. Out: an enclosure of each value, and its variation when all its arguments are rounded;
+//! errors of computed values, in units of that variation.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,12 +19,12 @@ pub(super) const MOST: f64 = 100.0;
 /// An exact value, and how much it moves when all that it depends on is rounded; none where it does not exist.
 pub(super) type Value = Option<(Interval, f64)>;
 
-/// Exact values at a place.
+/// Exact values at a point.
 pub(super) struct Exact {
     pub(super) values: Vec<Value>,
 }
 
-/// Half the distance from 1 to the next number: what rounding moves an argument by.
+/// Half the distance from 1 to the next number: the relative variation of an argument by rounding.
 fn roundoff(scalar: Scalar) -> f64 {
     match scalar {
         Scalar::F32 => f64::from(f32::EPSILON) / 2.0,
@@ -60,8 +60,8 @@ pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place, scalar: Scal
     Some(values.collect())
 }
 
-/// The effects of the arguments one at a time, each moved by this part: together the effects of some would cancel, as those
-/// of b and c in a*b - c where that is small.
+/// The effects of the arguments one at a time, each varied by this part: combined, the effects of some would cancel, as
+/// those of b and c in a*b - c where that is small.
 fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], (place, part): (&Place, f64)) -> Vec<f64> {
     let mut effects = vec![0.0; exprs.len()];
     for symbol in arena.symbols_of(exprs) {
@@ -83,7 +83,7 @@ fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], (place, par
     effects
 }
 
-/// What expressions depend on, at a place; one of them may be moved by a part of it.
+/// The arguments of expressions at a point; one of them may be varied by a part of it.
 fn at(
     arena: &Arena,
     exprs: &[Expr],
@@ -100,7 +100,7 @@ fn at(
 }
 
 impl Exact {
-    /// The errors of computed values, in units of what rounding causes.
+    /// The errors of computed values, in units of the effect of rounding.
     pub(super) fn units(&self, computed: &[f64], scalar: Scalar) -> Vec<f64> {
         // The least number with all digits, and the largest.
         let (least, largest) = match scalar {
@@ -118,14 +118,13 @@ impl Exact {
                 .and_then(|found| found.sub(value, Precision::new(BITS)))
                 .map_or(f64::INFINITY, |error| magnitude(&error));
             let unit = roundoff(scalar) * (condition + surely(value));
-            // Without a unit the value is 0 and stays so, whatever the arguments: what is left is the rounding of numbers
-            // in the formula.
+            // Without a unit the value is 0 whatever the arguments: only numbers in the formula are rounded.
             if error > least && unit > 0.0 { error / unit } else { 0.0 }
         };
         self.values.iter().zip(computed).map(units).collect()
     }
 
-    /// What the units are parts of, for each value that exists: its magnitude, and how much it moves.
+    /// Sizes for units, one for each value that exists: its absolute value plus its variation.
     pub(super) fn sizes(&self) -> impl Iterator<Item = Option<f64>> {
         self.values.iter().map(|exact| exact.as_ref().map(|(value, condition)| condition + magnitude(value)))
     }
@@ -135,7 +134,7 @@ fn magnitude(value: &Interval) -> f64 {
     value.hi().abs().max(value.lo().abs())
 }
 
-/// The magnitude that a value has at least: what an enclosure of zero is wide is no size.
+/// The least absolute value in an enclosure: the width of an enclosure of zero is no size.
 fn surely(value: &Interval) -> f64 {
     if value.lo() <= 0.0 && value.hi() >= 0.0 { 0.0 } else { value.hi().abs().min(value.lo().abs()) }
 }
@@ -173,7 +172,7 @@ mod tests {
             arena.sub(arena.mul(a, arena.add(b, c)), arena.mul(a, b)),
         ] {
             let (effect, difference) = both(&arena, expr, PLACE);
-            // What the value bends over a move of 1e-9.
+            // The curvature of the value over a variation of 1e-9.
             let close = effect.is_some_and(|effect| (effect - difference).abs() <= 1e-6 * difference);
             assert!(close, "{}: {effect:?}, {difference}", arena.print(expr));
         }
@@ -199,7 +198,7 @@ mod tests {
 
     #[test]
     fn near_the_zero_of_a_root_a_rounding_is_no_move_of_more() {
-        // (a - b)^(1/3) is as steep there as it is for a rounding of a; over a larger move it bends.
+        // (a - b)^(1/3) is as steep there as it is for a rounding of a; over a larger variation it is curved.
         let arena = Arena::new();
         let [a, b] = ["a", "b"].map(|name| arena.variable(name));
         let root = arena.power(arena.sub(a, b), &Rational::new(1, 3).unwrap());

@@ -1,10 +1,10 @@
-//! How many digits the emitted functions keep, in `f32` and `f64`.
+//! Measures the digits that the emitted functions keep, in `f32` and `f64`.
 //!
 //! In: the programs that are emitted and the formulas that they must compute. Out: for each function the
-//! largest error over places of the domain, in units of what rounding of its arguments alone would cause:
-//! the change of the exact value when each argument and parameter moves by a relative unit roundoff, and
+//! largest error over points of the domain, in units of the effect of rounding its arguments alone:
+//! the change of the exact value when each argument and parameter varies by a relative unit roundoff, and
 //! the rounding of the result. Exact values are enclosures. Holds after: a function that loses more than
-//! [`MOST`] units, or is not finite where the exact value exists, is found out at the places looked at.
+//! [`MOST`] units, or is not finite where the exact value exists, is found at the points of the measurement.
 
 mod points;
 
@@ -36,7 +36,7 @@ use points::{Place, places};
 use rounded::{round, run};
 use spot::Spot;
 
-/// Steps of work that a measurement may take: beyond, fewer places are looked at.
+/// Steps of work that a measurement may take: beyond, it takes fewer points.
 const MOST_VALUES: usize = 100_000;
 
 /// The accuracy of all functions.
@@ -44,13 +44,13 @@ const MOST_VALUES: usize = 100_000;
 #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Accuracy {
-    /// How many places were looked at.
+    /// The number of points of the measurement.
     pub places: usize,
     /// The functions.
     pub losses: Vec<Loss>,
 }
 
-/// What one function loses.
+/// The loss of one function.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -68,17 +68,17 @@ pub struct Loss {
 #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Worst {
-    /// The error, in units of what rounding of the arguments causes; infinite if the value was not finite, which is
-    /// null in JSON.
+    /// The error, in units of the effect of rounding the arguments; infinite if the value was not finite, which is null
+    /// in JSON.
     pub units: f64,
-    /// Where, as `y2 = 0.01, z1 = 0.5`.
+    /// The point, as `y2 = 0.01, z1 = 0.5`.
     pub place: String,
-    /// Whose loss it is.
+    /// The cause of the loss.
     pub cause: Cause,
 }
 
 impl Accuracy {
-    /// What the author's formulas lose in this scalar wherever they are computed, worst first.
+    /// Losses of the author's formulas in this scalar wherever they are computed, worst first.
     pub fn cautions(&self, scalar: Scalar) -> Vec<(&'static str, &Worst)> {
         let mut found: Vec<(&'static str, &Worst)> =
             self.of(scalar).filter(|(_, worst)| worst.is_loss() && worst.cause == Cause::Model).collect();
@@ -86,14 +86,14 @@ impl Accuracy {
         found
     }
 
-    /// What is lost in this scalar.
+    /// The losses in this scalar.
     pub fn of(&self, scalar: Scalar) -> impl Iterator<Item = (&'static str, &Worst)> {
         self.losses.iter().map(move |loss| (loss.function, loss.worst(scalar)))
     }
 }
 
 impl Worst {
-    /// Whether the value itself is a number there.
+    /// The computed value is a number there.
     pub fn is_finite(&self) -> bool {
         self.units.is_finite()
     }
@@ -103,12 +103,12 @@ impl Worst {
         if self.is_finite() { told_units(self.units) } else { "not finite".to_owned() }
     }
 
-    /// Whether digits are lost that no author expects to lose.
+    /// It exceeds the loss that an author expects.
     pub(super) fn is_loss(&self) -> bool {
         self.units > MOST
     }
 
-    /// What is told before what: a refusal before the author's loss, that before one that does not matter.
+    /// The order of reports: a refusal before the author's loss, that before one that does not matter.
     fn rank(&self) -> (u8, f64) {
         let cause = match self.cause {
             _ if !self.is_loss() => 0,
@@ -119,7 +119,7 @@ impl Worst {
         (cause, self.units)
     }
 
-    /// Whether the emission is refused for it.
+    /// The emission is refused for it.
     pub(super) fn is_refused(&self) -> bool {
         self.is_loss() && self.cause == Cause::Form
     }
@@ -141,7 +141,7 @@ impl Loss {
     }
 }
 
-/// Where the functions of a plant are measured.
+/// The points at which the functions of a plant are measured.
 pub(super) struct Ground<'a> {
     plant: &'a Plant,
     spots: Vec<Spot>,
@@ -158,7 +158,7 @@ impl<'a> Ground<'a> {
         Self { plant, spots: spots.collect() }
     }
 
-    /// What loses digits somewhere in this scalar, the author's losses among it.
+    /// Entries that lose digits somewhere in this scalar, the author's losses among them.
     pub(super) fn losing(&self, definitions: &Definitions, staged: &StagedPrograms, scalar: Scalar) -> Losing {
         let arena = &self.plant.arena;
         let groups = definitions.groups();
@@ -177,7 +177,7 @@ impl<'a> Ground<'a> {
         losing
     }
 
-    /// Whether a formula, computed by itself, keeps its digits wherever the value that it is equal to exists.
+    /// A formula, computed by itself, keeps its digits wherever the equal value exists.
     pub(super) fn keeps(&self, form: Expr, value: Expr, definitions: &Definitions, scalar: Scalar) -> bool {
         let arena = &self.plant.arena;
         let parameters: Vec<Symbol> = self.plant.parameters.iter().map(|parameter| parameter.symbol).collect();
@@ -232,7 +232,7 @@ impl<'a> Ground<'a> {
         Accuracy { places: spots.len(), losses }
     }
 
-    /// The places that are looked at; the fewer, the longer the formulas are.
+    /// The points of the measurement; the fewer, the longer the formulas are.
     fn spots(&self, groups: &[Group]) -> &[Spot] {
         let size = self.plant.arena.postorder(&measured(groups)).len().max(1);
         &self.spots[..self.spots.len().min((MOST_VALUES / size).max(4))]
@@ -244,7 +244,7 @@ fn measured(groups: &[Group]) -> Vec<Expr> {
     groups.iter().filter(|group| is_measured(group)).flat_map(values).collect()
 }
 
-/// Whether a function runs with every sample.
+/// The function runs with every sample.
 fn is_measured(group: &Group) -> bool {
     group.name != VELOCITY && group.name != "theta"
 }
@@ -254,7 +254,7 @@ fn values(group: &Group) -> Vec<Expr> {
     group.members.iter().flat_map(|member| member.rows.concat()).collect()
 }
 
-/// A place with values of the transform, the extension and the fundamental matrix.
+/// A point with values of the transform, the extension and the fundamental matrix.
 fn extended(plant: &Plant, definitions: &Definitions, place: &Place) -> Option<Place> {
     let exact = intervals(place.iter().map(|(&symbol, &value)| (symbol, value)))?;
     let mut extended = place.clone();
@@ -279,7 +279,7 @@ fn extended(plant: &Plant, definitions: &Definitions, place: &Place) -> Option<P
     Some(extended)
 }
 
-/// What the functions of groups give at a place, group by group.
+/// The results of the functions of groups at a point, group by group.
 fn by_groups(
     plant: &Plant,
     definitions: &Definitions,
@@ -293,7 +293,7 @@ fn by_groups(
     computed(plant, staged, (&definitions.symbols(Argument::Y), &arguments), scalar, place)
 }
 
-/// What programs give at a place, for the sampled symbols and the arguments of each.
+/// The results of programs at a point, for the sampled symbols and the arguments of each.
 fn computed(
     plant: &Plant,
     staged: &StagedPrograms,
@@ -367,7 +367,7 @@ fn number(value: f64) -> String {
     if short.len() < plain.len() { short } else { plain }
 }
 
-/// A place as a reader takes it: what the formulas depend on.
+/// A point in text: the values of the formulas' symbols.
 fn told(arena: &Arena, exprs: &[Expr], place: &Place) -> String {
     let symbols = arena.symbols_of(exprs);
     let values = place.iter().filter(|(symbol, _)| symbols.contains(symbol));

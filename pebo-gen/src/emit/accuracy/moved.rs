@@ -1,8 +1,9 @@
-//! How much values move when what they depend on is rounded: to first order, and for all arguments in one pass.
+//! Variations of values when their arguments are rounded: to first order, and for all arguments in one pass.
 //!
-//! In: expressions, operands first, with enclosures of their values at a place. Out: the sum of `|a df/da|` over the
+//! In: expressions, operands first, with enclosures of their values at a point. Out: the sum of `|a df/da|` over the
 //! arguments `a`. Tangents are carried forward in `f64` beside exact values. Holds after: an effect that is given has
-//! the first of its digits right; where tangents cancel, or a value is not linear over a move of [`MOVE`], none is given.
+//! the first of its digits right; where tangents cancel, or a value is not linear over a move of [`MOVE`], none is
+//! given.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +22,7 @@ pub(super) const MOVE: f64 = 1.0 / 1_073_741_824.0;
 /// of 1e-16 each, have to be small beside it.
 const LEAST: f64 = 1.0 / 68_719_476_736.0;
 
-/// A base, or what is zero where a function has no derivative, has to be so many moves away from zero.
+/// A base, or an argument at whose zero a function has no derivative, has to be so many variations away from zero.
 const AWAY: f64 = 64.0;
 
 /// Values with their tangents.
@@ -32,11 +33,11 @@ pub(super) struct Moves<'a> {
     tangents: FxHashMap<Expr, Option<Tangent>>,
 }
 
-/// How a value moves when each argument moves by itself as a whole.
+/// The variation of a value when each argument varies by itself as a whole.
 #[derive(Clone, Debug)]
 struct Tangent {
     by_argument: Vec<f64>,
-    /// The magnitudes of all products that these are sums of.
+    /// The absolute values of all products in these sums, added.
     gross: f64,
 }
 
@@ -106,7 +107,7 @@ impl<'a> Moves<'a> {
         Some(tangent)
     }
 
-    /// Adds what an operand contributes.
+    /// Adds the contribution of an operand.
     fn add(&self, tangent: &mut Tangent, operand: Expr, partial: f64) -> Option<()> {
         let moved = self.tangents.get(&operand)?.as_ref()?;
         for (total, part) in tangent.by_argument.iter_mut().zip(&moved.by_argument) {
@@ -140,7 +141,7 @@ impl<'a> Moves<'a> {
         Some(partials.to_vec())
     }
 
-    /// Whether what depends on these operands keeps away from zero while they move.
+    /// The value of these operands is away from zero throughout their variation.
     fn is_away(&self, value: f64, operands: impl IntoIterator<Item = Expr>) -> Option<bool> {
         let moves: f64 = operands.into_iter().map(|operand| self.effect(operand)).sum::<Option<f64>>()?;
         Some(value.abs() > AWAY * MOVE * moves)

@@ -1,10 +1,10 @@
-//! Whether digits are lost that the author's own formulas lose too.
+//! Compares a loss of digits with that of the author's own formulas.
 //!
-//! In: an entry of a function, and a place at which it loses digits. Out: whose the loss is. The entry loses
-//! them where a part of it does whose own parts do not. That has to be a part of the author's formulas, and these have to
-//! lose as much there; or what they hide, by adding it to something large, has to be small beside what the entry is
-//! elsewhere. Where no part of the entry as it is written loses them, what its sums as the author wrote them lose is
-//! compared. A loss that is not the author's is nobody's where it is a rounding of what the entry is elsewhere.
+//! In: an entry of a function, and a point at which it loses digits. Out: the cause of the loss. Its culprits are the
+//! subexpressions that lose digits while their own operands do not. The loss is the author's if they are subexpressions
+//! of the author's formulas, and these lose as much there, or hide a value, by adding it to a large one, that is small
+//! beside the entry's size elsewhere. Without culprits in the entry as it is written, its sums are compared as the
+//! author wrote them. A loss that is not the author's is nobody's if it is a rounding of the entry's size elsewhere.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,18 +20,18 @@ use pebo_cas::{Arena, Expr, Node, Symbol};
 use pebo_design::plant::Plant;
 use pebo_design::program::lower;
 
-/// A loss up to so many times that of the author's formulas is theirs: a function that is made of several of them, as the
-/// rate of phi, adds up a few.
+/// A loss up to so many times that of the author's formulas is theirs: a function that is made of several of them, as
+/// the rate of phi, adds up a few.
 const LIKE: f64 = 4.0;
 
-/// The error of a form that is not the author's may be so many roundings of what the value is elsewhere: as much as some
-/// operations cause there.
+/// The error of a form that is not the author's may be so many roundings of the value's size elsewhere: as much as a
+/// few operations cause there.
 const ROUNDINGS: f64 = 4.0;
 
-/// At one place the roundings of a formula may happen to cancel: as many others beside it are looked at,
+/// At one point the roundings of a formula may happen to cancel: so many points beside it are measured too,
 const BESIDE: u32 = 6;
 
-/// this far from each other, which is little beside the distance to what the places are near to.
+/// this far from each other, which is little beside the distance to the limits near the points.
 const APART: f64 = 1.0 / 262_144.0;
 
 /// The author's formulas.
@@ -45,8 +45,8 @@ pub(super) struct Own<'a> {
 }
 
 impl<'a> Own<'a> {
-    /// The plant's equations and its transform, their slopes in the states, which they lose the digits of where the other
-    /// terms are small, and the equations at the states that the coordinates give.
+    /// The plant's equations and its transform, their slopes in the states, which they lose the digits of where the
+    /// other terms are small, and the equations at the states that the coordinates give.
     pub(super) fn of(plant: &'a Plant, definitions: &Definitions, spots: &'a [Spot]) -> Self {
         let arena = &plant.arena;
         let mut formulas: Vec<Expr> = plant.rates().into_values().chain(plant.transform()).collect();
@@ -77,7 +77,7 @@ impl<'a> Own<'a> {
         Self { arena, formulas: formulas.collect(), equations, written, spots }
     }
 
-    /// Whose a loss of so many units is.
+    /// The cause of a loss of so many units.
     pub(super) fn cause(&self, value: Expr, place: &Place, scalar: Scalar, units: f64) -> Cause {
         if self.is_authors(value, place, scalar, units) {
             Cause::Model
@@ -109,7 +109,7 @@ impl<'a> Own<'a> {
         formulas.iter().any(lose_as_much) || self.is_within(value, (place, scalar), units, MOST)
     }
 
-    /// The most units that the author's formulas lose together with those of their sums that the value holds.
+    /// The most units that the author's formulas and those of their sums in the value lose.
     fn of_sums(&self, value: Expr, place: &Place, scalar: Scalar) -> f64 {
         let arena = self.arena;
         let is_written = |part: &Expr| self.written.contains(part) || self.written.contains(&arena.neg(*part));
@@ -118,7 +118,7 @@ impl<'a> Own<'a> {
         self.units(&own, place, scalar).into_iter().fold(0.0, f64::max)
     }
 
-    /// Whether the error is at most so many roundings of what the value is elsewhere.
+    /// The error is at most so many roundings of the value's size elsewhere.
     fn is_within(&self, value: Expr, (place, scalar): (&Place, Scalar), units: f64, roundings: f64) -> bool {
         let first = |exact: Exact| exact.sizes().next().flatten();
         let there = self.spots.iter().map(|spot| spot.there(Scalar::F32));
@@ -128,7 +128,7 @@ impl<'a> Own<'a> {
         first(exact(self.arena, &[value], place, scalar)).is_some_and(|here| units * here <= roundings * usual)
     }
 
-    /// The parts of a value that lose digits although their own parts lose none, by what they are.
+    /// The subexpressions of a value that lose digits although their own operands lose none, by their cores.
     fn culprits(&self, value: Expr, place: &Place, scalar: Scalar) -> Vec<Expr> {
         let arena = self.arena;
         let is_made = |part: &Expr| matches!(arena.node(*part), Node::Sum(_) | Node::Product(_) | Node::Call(..));
@@ -141,7 +141,7 @@ impl<'a> Own<'a> {
         first.map(|part| cores[part]).collect()
     }
 
-    /// What formulas lose when they are computed as they are written.
+    /// The losses of formulas that are computed as they are written.
     fn units(&self, formulas: &[Expr], place: &Place, scalar: Scalar) -> Vec<f64> {
         let symbols: Vec<Symbol> = self.arena.symbols_of(formulas).into_iter().collect();
         let inputs: Vec<f64> = symbols.iter().map(|symbol| place.get(symbol).copied().unwrap_or(1.0)).collect();
@@ -150,7 +150,7 @@ impl<'a> Own<'a> {
     }
 }
 
-/// A place a few steps away, each number in its own direction.
+/// A point a few steps away, each number in its own direction.
 fn beside(scalar: Scalar, place: &Place, step: u32) -> Place {
     let moved = place.iter().enumerate().map(|(index, (&symbol, &value))| {
         let part = if index % 2 == 0 { APART } else { -APART };

@@ -1,8 +1,8 @@
-//! Where the accuracy is measured: points of the domain in numbers that every target holds.
+//! Points of the domain for the measurement of accuracy, in numbers that every target holds.
 //!
 //! In: plant and derivation. Out: values of states, outputs, inputs and parameters: points spread over the domain, the
-//! values 0, 1 and -1, and both sides of 0 and of every place where an assumption or a condition ends, as far as they are
-//! in the domain.
+//! values 0, 1 and -1, and both sides of 0 and of every limit of an assumption or a condition, as far as they are in
+//! the domain.
 
 use std::collections::BTreeMap;
 
@@ -23,11 +23,11 @@ const SPREAD: usize = 12;
 /// All points.
 const MOST: usize = 72;
 
-/// How far beside a limit a value is taken, in parts of it: no powers of two, with which sums and squares would be exact in
-/// `f32` and hide what is lost.
+/// Distances of values from a limit, in parts of it: no powers of two, with which sums and squares would be exact in
+/// `f32` and hide losses.
 const BESIDE: [f64; 2] = [1.0 / 129.0, 1.0 / 16389.0];
 
-/// The places, the spread ones first.
+/// The points, the spread ones first.
 pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
     let arena = &plant.arena;
     let domain = derivation.domain(plant);
@@ -67,7 +67,7 @@ pub(super) fn places(plant: &Plant, derivation: &Derivation) -> Vec<Place> {
             beside(symbol, value);
         }
     }
-    // Where plants rest: `1 - cos(q)` has lost its digits beside 0, and has them at 0.
+    // Equilibria of plants: `1 - cos(q)` has lost its digits beside 0, and has them at 0.
     for &symbol in signals.iter().chain(&states) {
         for part in BESIDE {
             beside(symbol, part);
@@ -110,9 +110,9 @@ impl<'a> Inside<'a> {
         point.is_some_and(|point| self.domain.contains(self.arena, &point))
     }
 
-    /// Values of the symbol at which a fact stops to hold, all others as at the place.
+    /// Values of the symbol at the limit of a fact, all others as at the point.
     fn limits(&self, arena: &Arena, symbol: Symbol, place: &Place) -> Vec<f64> {
-        /// Angles and duty cycles are in this range, and so is what is near 1.
+        /// Angles and duty cycles are in this range, and so are values near 1.
         const WIDEST: f64 = 8.0;
         const STEPS: u32 = 64;
         let mut limits = Vec::new();

@@ -1,7 +1,7 @@
-//! A place, and the exact values that are known there.
+//! A point, and the exact values that are known there.
 //!
-//! In: formulas. Out: their exact values, each enclosed once: the forms of the functions that are tried one after the other
-//! have most of their entries in common, and so have the measurements of these forms.
+//! In: formulas. Out: their exact values, each enclosed once: the forms of the functions that are tried one after the
+//! other have most of their entries in common, and so have the measurements of these forms.
 
 use std::cell::RefCell;
 
@@ -12,15 +12,15 @@ use super::exact::{Exact, Value, at_once, exact};
 use super::points::Place;
 use pebo_cas::{Arena, Expr};
 
-/// A place in the numbers of each scalar.
+/// A point in the numbers of each scalar.
 pub(super) struct Spot {
-    /// As it is told.
+    /// As it is reported.
     pub(super) place: Place,
     single: There,
     double: There,
 }
 
-/// A place in the numbers of one scalar.
+/// A point in the numbers of one scalar.
 pub(super) struct There {
     pub(super) place: Place,
     scalar: Scalar,
@@ -68,8 +68,8 @@ impl There {
     }
 }
 
-/// The place in numbers with all digits of the scalar, but for 0, 1 and -1: sums and products of numbers of `f32` are exact
-/// in `f64`, so that these would hide what is lost there.
+/// The point in numbers with all digits of the scalar, except for 0, 1 and -1: sums and products of numbers of `f32`
+/// are exact in `f64`, so that these would hide losses there.
 fn in_all_digits(scalar: Scalar, place: &Place) -> Place {
     /// Beyond the last digit of `f32`.
     const BEYOND: f64 = 1.0 / 33_554_432.0;

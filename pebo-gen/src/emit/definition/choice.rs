@@ -1,9 +1,9 @@
-//! Of equal forms of the functions, the cheapest that keeps its digits.
+//! Chooses among equal forms of the functions the cheapest that keeps its digits.
 //!
-//! In: the definitions as derived. Out: the definitions that are emitted, their programs, and the accuracy measured of
-//! these; of the others only which entries lose digits. What was derived comes first. Only for an entry that loses digits
-//! that way, also where its author's formulas do, other ways to write it are tried; the first that keeps them by itself is
-//! taken, if fewer entries lose digits then. If none does, it stays as it was derived.
+//! In: the definitions as derived. Out: the emitted definitions, their programs, and their measured accuracy; of other
+//! forms only the entries that lose digits. The derived form comes first. Only for an entry that loses digits in it,
+//! also if its author's formulas do, other forms are tried; the first that keeps them by itself is taken, if fewer
+//! entries lose digits then. If none does, the derived form is kept.
 
 use std::collections::BTreeSet;
 
@@ -19,18 +19,18 @@ use pebo_design::program::{StagedPrograms, UndeclaredSymbol};
 /// Ways to write an entry that are tried.
 const MOST_WAYS: usize = 12;
 
-/// A form may take so many times the operations of the entry: what takes more is not looked at, as each is measured.
+/// A form may take so many times the operations of the entry: longer ones are not tried, as each is measured.
 const MOST_LONGER: usize = 4;
 
 /// The part of the work that is left which these may take.
 const SHARE: u64 = 2;
 
-/// What is emitted.
+/// The emitted definitions and programs.
 #[derive(Clone, Debug)]
 pub(in crate::emit) struct Choice<'a> {
     pub(in crate::emit) definitions: Definitions<'a>,
     pub(in crate::emit) staged: StagedPrograms,
-    /// What loses digits.
+    /// Entries that lose digits.
     losing: Losing,
 }
 
@@ -40,7 +40,7 @@ impl Choice<'_> {
         if other.lost() < self.lost() { other } else { self }
     }
 
-    /// How many entries lose digits.
+    /// The number of entries that lose digits.
     fn lost(&self) -> usize {
         self.losing.values().map(BTreeSet::len).sum()
     }
@@ -81,7 +81,7 @@ pub(in crate::emit) fn choose<'a>(
                 ground.keeps(form, entry, &before, scalar) && is_zero(arena, arena.sub(form, entry))
             };
             let other = rewritten(before.clone(), function, |place, entry| {
-                // What keeps its digits may be written shorter beside what does not: they share their work.
+                // An entry that keeps its digits may be shorter beside one that does not: they share their work.
                 let is_losing = entries.contains(&place);
                 let own = operations(arena, entry);
                 let most = if is_losing { MOST_LONGER * own } else { own.saturating_sub(1) };
@@ -90,7 +90,7 @@ pub(in crate::emit) fn choose<'a>(
             });
             let Some(other) = other else { return Ok(None) };
             let other = measured(&other)?;
-            // What was not measured to the end may lose digits all the same.
+            // A form that was not measured to the end may lose digits all the same.
             Ok((!arena.budget().is_exhausted()).then_some(other))
         })?;
         if let Some(better) = better {

@@ -1,15 +1,15 @@
 //! Entries of the fundamental matrix that never change.
 //!
-//! In: `Lambda` of `Psi' = Lambda Psi`, `Psi(0) = I`. Out: which entries of Psi are 0 or 1 for ever, whatever the signals:
-//! `Psi_ij` is 0 unless a chain of non-zero entries of Lambda leads from j to i, and `Psi_ii` is 1 unless one leads from i
-//! back to i. Re-basing sets the identity, of which the same holds.
+//! In: `Lambda` of `Psi' = Lambda Psi`, `Psi(0) = I`. Out: which entries of Psi are 0 or 1 for ever, whatever the
+//! signals: `Psi_ij` is 0 unless a chain of non-zero entries of Lambda leads from j to i, and `Psi_ii` is 1 unless one
+//! leads from i back to i. Re-basing sets the identity, for which the same holds.
 
 use pebo_cas::{Arena, Expr};
 
 /// For each entry of Psi, by rows, its constant value if it has one.
 pub(in crate::emit) fn constant_entries(arena: &Arena, lambda: &[Vec<Expr>]) -> Vec<Vec<Option<Expr>>> {
     let size = lambda.len();
-    // reached[i][j]: from j to i, of which every index reaches itself.
+    // reached[i][j]: from j to i; every index reaches itself.
     let mut reached: Vec<Vec<bool>> = lambda
         .iter()
         .enumerate()

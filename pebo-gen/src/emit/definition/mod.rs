@@ -48,14 +48,14 @@ pub(super) struct Part {
     pub(super) columns: Vec<Vec<Symbol>>,
 }
 
-/// A size of the module: the name of its constant, its value, and what it counts.
+/// A size of the module: the name of its constant, its value, and the counted objects.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Size {
     pub(super) name: &'static str,
     pub(super) value: usize,
 }
 
-/// What a function returns.
+/// The shape of a function's result.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Shape {
     /// A vector of this size.
@@ -111,12 +111,12 @@ pub(super) struct Definitions<'a> {
     pub(super) chi: Vec<Symbol>,
     /// The columns of Psi, for a fundamental solution.
     pub(super) psi: Vec<Vec<Symbol>>,
-    /// The same as expressions: what stays 0 or 1 is that number.
+    /// The same as expressions: a constant entry is its number 0 or 1.
     pub(super) psi_entries: Vec<Vec<Expr>>,
 }
 
 impl<'a> Definitions<'a> {
-    /// Collects what an accepted derivation found.
+    /// Collects the formulas of an accepted derivation.
     pub(super) fn of(
         plant: &Plant,
         derivation: &'a Derivation,
@@ -173,7 +173,7 @@ impl<'a> Definitions<'a> {
         }
         if regression.kind == RegressionKind::Implicit {
             functions.push(vector("primitive_0", "NR", regression.primitive_0.clone()));
-            // The trait has it that nothing unknown stands under the derivative.
+            // The trait admits no unknown under the derivative.
             if regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor)) {
                 functions.push(matrix("primitive_1", "NR", "NE", &regression.primitive_1));
             }
@@ -210,7 +210,7 @@ impl<'a> Definitions<'a> {
         groups.filter(|group| !group.members.is_empty()).collect()
     }
 
-    /// What an argument holds.
+    /// The parts of an argument.
     pub(super) fn parts(&self, argument: Argument) -> Vec<Part> {
         let column = |access, symbols: &[Symbol]| Part { access, columns: vec![symbols.to_vec()] };
         match (argument, self.class) {

@@ -11,7 +11,7 @@ use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::RegressionKind;
 use pebo_design::program::{Cost, StagedPrograms, Task, UndeclaredSymbol, stage};
 
-/// More choices are made together, not one by one.
+/// More choices are made at once, not one by one.
 const MOST_SWITCHES: usize = 12;
 
 /// The programs of all groups, in their order; where any is computed by the factors of the regression, those as derived
@@ -71,7 +71,7 @@ pub(in crate::emit) fn varying(arguments: &[Argument]) -> impl Iterator<Item = A
 /// `phi_1 = B Psi`.
 struct Affine {
     rows: Vec<Row>,
-    /// Whether the velocities are what the regression says of the rates.
+    /// The velocities are the rates of the regression.
     has_velocity: bool,
 }
 
@@ -94,7 +94,7 @@ impl Affine {
         if definitions.regression.eta_symbols.len() != chi.len() {
             return None;
         }
-        // Y = S eta: what the extension knows of it is taken away.
+        // Y = S eta: the known terms of the extension are subtracted.
         let sign = if definitions.regression.kind == RegressionKind::Static { arena.number(-1) } else { arena.one() };
         let still: BTreeMap<Symbol, Expr> = chi.iter().map(|&chi| (chi, arena.zero())).collect();
         let diagonal = |row, column| if row == column { arena.one() } else { arena.zero() };
@@ -160,7 +160,7 @@ impl Affine {
         Some(affine)
     }
 
-    /// The rates of the outputs, those chosen in the names of the factors, for the coordinates in the place of the
+    /// The rates of the outputs, the chosen ones in the names of the factors, with the coordinates in place of the
     /// extension.
     fn rates(&self, arena: &Arena, definitions: &Definitions, chosen: &[bool]) -> Vec<Expr> {
         let z = definitions.symbols(Argument::Z).into_iter().map(|z| arena.of_symbol(z));
@@ -172,7 +172,7 @@ impl Affine {
         arena.substitute_all(&known, &coordinates)
     }
 
-    /// The tasks with the chosen equations by factors; behind these, whether the velocities are as the equations are.
+    /// The tasks with the chosen equations by factors; the last of the choices is that of the velocities.
     fn tasks(&self, arena: &Arena, definitions: &Definitions, chosen: &[bool]) -> Vec<Task> {
         let mut tasks = tasks(definitions);
         for (group, task) in definitions.groups().iter().zip(&mut tasks) {

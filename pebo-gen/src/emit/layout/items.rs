@@ -23,7 +23,7 @@ pub(super) fn module(file: &syn::File) -> Result<String, EmitError> {
             Item::Use(item) => root(&item.tree),
             _ => None,
         };
-        // Only what is used of one crate stands together.
+        // Uses of one crate are a group.
         if used.is_none() || used != used_before {
             page.line(0, "");
         }
@@ -166,7 +166,7 @@ fn statement(page: &mut Page, statement: &Stmt, indent: usize) -> Result<(), Emi
         Stmt::Local(local) => {
             let init = local.init.as_ref().ok_or_else(|| unknown(statement))?;
             let column = indent + "let ".len();
-            // What follows the pattern on its last line, at least.
+            // The text behind the pattern on its last line, at least.
             let opening = expression(&init.expr, indent, 0, 0)?;
             let opening = opening.lines().next().map_or(0, |line| line.chars().count());
             let name = pattern(&local.pat, indent, column, " = ;".len() + opening)?;

@@ -61,7 +61,7 @@ pub(super) fn expression(syntax: &Expr, indent: usize, column: usize, behind: us
     }
 }
 
-/// An array that stands alone in a call: over several lines, its only element opened with it.
+/// An array that is the only argument of a call: over several lines, its only element opened with it.
 fn broken(syntax: &Expr, indent: usize) -> Result<String, EmitError> {
     if let Expr::Array(array) = syntax
         && let [only @ Expr::Array(_)] = array.elems.iter().collect::<Vec<_>>()[..]
@@ -96,7 +96,7 @@ fn initialised(name: &str, value: String) -> String {
     if name == value { value } else { format!("{name}: {value}") }
 }
 
-/// Whether every list within is short enough for one line.
+/// Every list within is short enough for one line.
 fn is_narrow(syntax: &Expr) -> Result<bool, EmitError> {
     let list = |elements: Vec<&Expr>| -> Result<bool, EmitError> {
         let mut width = 0;
@@ -114,7 +114,7 @@ fn is_narrow(syntax: &Expr) -> Result<bool, EmitError> {
         Expr::Call(call) => list(call.args.iter().collect()),
         Expr::Struct(structure) => {
             let width = flat(syntax)?.chars().count();
-            // `Self { .. }`: what is not the contents.
+            // `Self { .. }`: all but the contents.
             let around = structure.path.to_token_stream().to_string().len() + " {  }".len();
             Ok(width <= around + STRUCTURE)
         }

@@ -1,7 +1,7 @@
-//! Names for parts of long formulas, so that people can read them.
+//! Names for subexpressions of long formulas, so that people can read them.
 //!
-//! In: all formulas that the documentation shows. Out: names for the parts that several of them have, and for parts that
-//! would fill lines by themselves. Where every formula is short there are none.
+//! In: all formulas of the documentation. Out: names for subexpressions that occur several times, and for those that
+//! would fill lines by themselves. Short formulas need none.
 
 use rustc_hash::FxHashMap;
 
@@ -10,10 +10,10 @@ use pebo_cas::{Arena, Expr, Node, Symbol};
 /// If no formula has more characters, none is abbreviated.
 const LONG: usize = 240;
 
-/// A part with more characters is named wherever it stands,
+/// A subexpression with more characters is named wherever it occurs,
 const WIDE: usize = 120;
 
-/// and with more than these if it stands in several places.
+/// and one with more than these if it occurs several times.
 const SHARED: usize = 16;
 
 /// Letters that numbered names may begin with, in the order in which they are tried.
@@ -65,14 +65,14 @@ impl Abbreviations {
         arena.print(self.short.get(&formula).copied().unwrap_or(formula))
     }
 
-    /// The same where a formula that has a name itself is to be seen.
+    /// The definition of a formula that has a name itself.
     pub(in crate::emit) fn defined(&self, arena: &Arena, formula: Expr) -> String {
         let short = self.short.get(&formula).copied().unwrap_or(formula);
         let part = self.parts.iter().find(|(name, _)| Some(*name) == arena.as_symbol(short));
         arena.print(part.map_or(short, |part| part.1))
     }
 
-    /// What each name stands for.
+    /// The definition of each name.
     pub(in crate::emit) fn lines(&self, arena: &Arena) -> Vec<String> {
         self.parts.iter().map(|(name, part)| format!("{} = {}", arena.name(*name), arena.print(*part))).collect()
     }
@@ -82,7 +82,7 @@ fn length(arena: &Arena, formula: Expr) -> usize {
     arena.print(formula).chars().count()
 }
 
-/// Whether it is a product of powers of symbols: short enough wherever it stands.
+/// It is a product of powers of symbols: short enough anywhere.
 fn is_monomial(arena: &Arena, expr: Expr) -> bool {
     matches!(arena.node(expr), Node::Product(product)
         if product.factors.iter().all(|(base, _)| arena.as_symbol(*base).is_some()))

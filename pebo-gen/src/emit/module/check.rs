@@ -1,7 +1,7 @@
 //! `Parameters::check`: whether given values are those that the proofs are about.
 //!
-//! In: what the derivation asks of the parameters. Out: a function that compares each parameter with zero, and what is
-//! asked of several together. The way back: what such a function, read from tokens, compares.
+//! In: the derivation's conditions on the parameters. Out: a function that compares each parameter with zero, and
+//! expressions in several. The way back: the comparisons of such a function, read from tokens.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -22,7 +22,7 @@ pub(in crate::emit) struct Condition {
     pub(in crate::emit) compared: Option<(Expr, Comparison)>,
 }
 
-/// How a value compares with zero.
+/// A comparison with zero.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(in crate::emit) enum Comparison {
     Greater,
@@ -34,7 +34,7 @@ pub(in crate::emit) enum Comparison {
 }
 
 impl Condition {
-    /// What the function has to say of an expression that is asked to have the sign.
+    /// The condition that an expression has the sign.
     pub(in crate::emit) fn of(arena: &Arena, (expr, sign): (Expr, Sign)) -> Self {
         let compared = match sign {
             Sign::Any => None,
@@ -45,13 +45,13 @@ impl Condition {
             Sign::Opposite(Relation::NonNegative) => Some(Comparison::LessOrEqual),
             Sign::Is(Relation::NonZero) | Sign::Opposite(Relation::NonZero) => Some(Comparison::Unequal),
         };
-        // What equals zero is finite; so is each parameter of a formula that is looked at after them.
+        // A value equal to zero is finite; so is each parameter of a formula that is checked after them.
         let alone = matches!(arena.node(expr), Node::Symbol(_)) && sign != Sign::Zero;
         Self { finite: alone.then_some(expr), compared: compared.map(|comparison| (expr, comparison)) }
     }
 }
 
-/// What is asked of the parameters, with what the divisors, roots and logarithms of the code ask as they are computed.
+/// The conditions on the parameters, with those of the divisors, roots and logarithms of the code as they are computed.
 pub(in crate::emit) fn with_guards(
     arena: &Arena,
     mut asked: Vec<(Expr, Sign)>,
@@ -135,7 +135,7 @@ impl Module<'_> {
     }
 }
 
-/// What a function compares, whose last expression this is.
+/// The comparisons of a function with this last expression.
 pub(in crate::emit) fn read(arena: &Arena, last: &Syntax, scope: &value::Scope) -> Result<Vec<Condition>, EmitError> {
     let unknown = || unreadable(last);
     let Syntax::Call(call) = last else { return Err(unknown()) };

@@ -264,7 +264,7 @@ impl Module<'_> {
         }
     }
 
-    /// The function that says what samples may be.
+    /// The function with the limits of samples.
     fn limits(&self, limits: &Limits<Rational>, scope: &mut Scope) -> TokenStream {
         let scalar = ident(self.scalar.name());
         let mut one = |value: &Rational| number(value, &mut |ratio| scope.ratio(ratio)).tokens;
@@ -479,7 +479,7 @@ impl Module<'_> {
     }
 }
 
-/// Whether estimates of states are kept within bounds.
+/// Estimates of states are kept within bounds.
 fn is_within(settings: &Settings<Rational>) -> bool {
     settings.within.iter().any(Option::is_some)
 }

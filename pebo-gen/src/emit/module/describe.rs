@@ -1,6 +1,6 @@
 //! Telling names for constants of the parameters: `g_over_c4` for G/C4.
 //!
-//! In: a formula. Out: a name, if there is a short one that says what the formula is.
+//! In: a formula. Out: a name, if there is a short one that describes the formula.
 
 use std::collections::BTreeMap;
 

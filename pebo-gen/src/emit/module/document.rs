@@ -1,4 +1,4 @@
-//! What the emitted module says about itself, in the author's names.
+//! The documentation of the emitted module, in the author's names.
 //!
 //! In: plant, derivation and programs. Out: lines of documentation. No date, no path: the same model
 //! gives the same text.
@@ -100,7 +100,7 @@ fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
     lines
 }
 
-/// What is zero by physics, but for the outputs that are given by their value.
+/// The identities, without the outputs that are given by value.
 fn identities(plant: &Plant) -> impl Iterator<Item = Expr> {
     let arena = &plant.arena;
     let of_output = |identity: &Expr| {
@@ -159,7 +159,7 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
     lines
 }
 
-/// What becomes of equations in which no unknown stands.
+/// The note on equations without unknowns.
 fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Vec<String> {
     let Some(whole) = &derivation.regression.result else { return Vec::new() };
     let arena = &plant.arena;
@@ -184,7 +184,7 @@ fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Ve
     vec![String::new(), format!("{} {verb} nothing unknown: {them} {told}.", names.join(", "))]
 }
 
-/// What becomes of the fundamental matrix, and what there is against it.
+/// The fate of the fundamental matrix, with its remedy.
 fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
     let fate = match derivation.cascade.result.as_ref().and_then(|cascade| cascade.fundamental) {
         None => return Vec::new(),
@@ -205,7 +205,7 @@ fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
     vec![String::new(), format!("{fate} {remedy}")]
 }
 
-/// What the extension does under a constant bias, and what there is against it.
+/// The drift of the extension under a constant bias, with its remedy.
 fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
     let Some(drift) = derivation.drift(plant) else { return Vec::new() };
     let remedy = match (derivation.class, rebase) {
@@ -299,7 +299,7 @@ fn compared(arena: &Arena, expr: Expr, relation: Relation) -> String {
     format!("`{} {}`", arena.print(expr), relation.sign())
 }
 
-/// The functions with what they return, and the operations of one call of each.
+/// The functions with their results, and the operations of one call of each.
 pub(in crate::emit) fn costs(definitions: &Definitions, staged: &StagedPrograms) -> Vec<(String, Cost)> {
     let mut costs = vec![("`new`, once".to_owned(), Cost::of(&staged.setup))];
     if !staged.terms.is_empty() {
@@ -314,7 +314,7 @@ pub(in crate::emit) fn costs(definitions: &Definitions, staged: &StagedPrograms)
     costs
 }
 
-/// What a size of the module counts.
+/// The objects that a size of the module counts.
 pub(in crate::emit) fn size(plant: &Plant, definitions: &Definitions, name: &str) -> String {
     let arena = &plant.arena;
     match name {
@@ -345,7 +345,7 @@ pub(in crate::emit) fn quantity(plant: &Plant, symbol: Symbol) -> String {
     }
 }
 
-/// What a function returns.
+/// The result of a function, in words.
 pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'static str {
     match group.name {
         "flow" if definitions.class == Class::Gpebo => {

@@ -8,7 +8,7 @@ use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::RegressionKind;
 use pebo_design::plant::Plant;
 
-/// What prints a formula.
+/// The printer of formulas.
 pub(super) type Print<'a> = (&'a Arena, &'a Abbreviations);
 
 /// The formulas of a function.
@@ -22,7 +22,7 @@ pub(super) fn of(print: Print, definitions: &Definitions, definition: &Definitio
     }
 }
 
-/// Whether the unknowns of the regression are `theta` itself.
+/// The unknowns of the regression are `theta` itself.
 pub(super) fn is_linear(arena: &Arena, definitions: &Definitions) -> bool {
     let regression = &definitions.regression;
     regression.theta.iter().copied().eq(regression.eta_symbols.iter().map(|&eta| arena.of_symbol(eta)))

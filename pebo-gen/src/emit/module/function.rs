@@ -92,8 +92,8 @@ impl Module<'_> {
         let similar = permission::for_names(&[named, variables].concat());
         let long = permission::for_length(statements.len() + program.outputs.len());
         let (name, doc) = (ident(group.name), doc(document::group(group, self.definitions)));
-        // What the trait does not know is the model's own. A step is compiled where it is called, often in another crate,
-        // and there keeps in registers what passes between functions that it may take in.
+        // A function outside the trait is the model's own. A step is compiled where it is called, often in another
+        // crate, and there keeps values in registers between functions that are inlined.
         let visibility = if group.name == VELOCITY { quote!(#[must_use] pub) } else { quote!(#[inline]) };
         quote! {
             #doc
@@ -151,7 +151,7 @@ fn source(argument: Argument, part: &Part) -> TokenStream {
     }
 }
 
-/// Whether the result is a part of an argument, as it is.
+/// The result is a part of an argument, as it is.
 fn is_copy(group: &Group, program: &Program, part: &Range<usize>) -> bool {
     matches!(group.members.as_slice(), [Definition { shape: Shape::Vector(_), .. }])
         && program.outputs.iter().copied().eq(part.clone().map(Operand::Input))

@@ -37,22 +37,22 @@ use pebo_design::program::{Constant, Program, StagedPrograms};
 /// The `INTERFACE` of the runtime library that emitted code is written for: it fails to compile against another.
 const INTERFACE: u32 = 2;
 
-/// What the items are made of.
+/// The inputs of the items.
 pub(super) struct Module<'a> {
     pub(super) plant: &'a Plant,
     pub(super) derivation: &'a Derivation,
     pub(super) definitions: &'a Definitions<'a>,
     pub(super) staged: &'a StagedPrograms,
-    /// What is asked of the parameters.
+    /// The conditions on the parameters.
     pub(super) asked: &'a [(Expr, Sign)],
-    /// What the observer is built with, where the model says it.
+    /// The settings of the observer, if the model has them.
     pub(super) settings: Option<&'a Settings<Rational>>,
-    /// From the parameters to the values that are asked for.
+    /// From the parameters to the values in these conditions.
     pub(super) checked: Program,
     pub(super) scalar: Scalar,
-    /// Whether the model may be re-based.
+    /// The model may be re-based.
     pub(super) rebase: bool,
-    /// How many digits the functions keep.
+    /// The digits that the functions keep.
     pub(super) accuracy: &'a Accuracy,
     /// Names for parts of the formulas in the documentation.
     pub(super) abbreviations: &'a Abbreviations,
@@ -60,9 +60,9 @@ pub(super) struct Module<'a> {
 
 /// The names of the module.
 pub(super) struct Scope {
-    /// Of parameters and arguments; all functions share them, so that a name means one thing.
+    /// Names of parameters and arguments; all functions share them, so that a name means one thing.
     pub(super) locals: BTreeMap<Symbol, String>,
-    /// Of the constants.
+    /// Names of the constants.
     pub(super) fields: Vec<String>,
     names: Names,
     /// The same without those of the terms: where these are computed, their names are free for their parts.
@@ -297,7 +297,7 @@ fn docs(lines: Vec<String>) -> TokenStream {
     quote!(#(#[doc = #lines])*)
 }
 
-/// A line as it stands behind `///`.
+/// A line as it is written behind `///`.
 fn spaced(line: &str) -> String {
     if line.is_empty() { String::new() } else { format!(" {line}") }
 }

@@ -1,8 +1,8 @@
 //! The paper's functions by name: `h`, `phi_0`, `phi_1`, `phi_left`, and `lambda` of a generalised cascade.
 //!
 //! In: the functions of the runtime's `Model`, which give these values in groups. Out: a method of the model's type for
-//! each of them, from named signals and arrays to an array. None computes anything by itself. The way back: what such a
-//! method, read from tokens, returns.
+//! each of them, from named signals and arrays to an array. None computes anything by itself. The way back: the result
+//! of such a method, read from tokens.
 
 use std::collections::BTreeMap;
 
@@ -105,7 +105,7 @@ impl Module<'_> {
     }
 }
 
-/// What a function of the paper is.
+/// The summary of a function of the paper.
 fn summary(name: &str, plant: &Plant, definitions: &Definitions) -> String {
     match (name, definitions.class) {
         ("h", Class::Pebo) => "The right side of the cascade `z' = h(y, u)`:".to_owned(),
@@ -119,13 +119,13 @@ fn summary(name: &str, plant: &Plant, definitions: &Definitions) -> String {
     }
 }
 
-/// Whether these are the methods.
+/// These are the methods.
 pub(in crate::emit) fn is_paper(item: &ItemImpl) -> bool {
     let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if FUNCTIONS.iter().any(|known| function.sig.ident == known.0));
     item.trait_.is_none() && !item.items.is_empty() && item.items.iter().all(named)
 }
 
-/// What the methods return: arguments by their position, and `Model`'s functions as they are known in the scope.
+/// The results of the methods: arguments by their position, and `Model`'s functions as they are known in the scope.
 pub(in crate::emit) fn read(
     arena: &Arena,
     definitions: &Definitions,
@@ -155,8 +155,8 @@ pub(in crate::emit) fn read(
     Ok(read)
 }
 
-/// Whether each of the methods is there, and returns what the function of `Model` gives: vectors as they are, matrices
-/// by rows.
+/// Each of the methods is there, and returns the result of the function of `Model`: vectors as they are, matrices by
+/// rows.
 pub(in crate::emit) fn agrees(definitions: &Definitions, paper: &Columns, model: &Columns) -> bool {
     let mut expected = Columns::new();
     for (definition, _) in functions(definitions) {

@@ -71,7 +71,7 @@ pub(in crate::emit) fn for_length(lines: usize) -> Option<TokenStream> {
 pub(in crate::emit) fn for_methods(constants: usize, longest: usize) -> TokenStream {
     /// Clippy wants values that are no larger than a pointer themselves; these are, in single precision.
     const MOST_CONSTANTS: usize = 2;
-    /// What takes more than 256 bytes in double precision it wants by reference.
+    /// The lint wants values of more than 256 bytes, in double precision, by reference.
     const MOST_NUMBERS: usize = 32;
     let lints: Vec<TokenStream> = [
         (longest > MOST_NUMBERS).then(|| quote!(clippy::large_types_passed_by_value)),

@@ -1,7 +1,7 @@
 //! The signals of a sample and of an estimate by name: the structures `X`, `Y` and `U`.
 //!
-//! In: the recovered states, the outputs and the inputs, in the order of their vectors. Out: a structure of each, and its
-//! conversions to and from the vector. The way back: whether such conversions keep the order.
+//! In: the recovered states, the outputs and the inputs, in the order of their vectors. Out: a structure of each, and
+//! its conversions to and from the vector. The way back: the order that such conversions keep.
 
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
@@ -16,7 +16,7 @@ use crate::emit::read_back::block::{body, name_of, only_function};
 use crate::emit::read_back::value::{Scope, Value, unreadable};
 use pebo_cas::{Arena, Expr, Symbol};
 
-/// The structures: name, name of its size, what its fields are.
+/// The structures: name, name of the size, meaning of the fields.
 const STRUCTURES: [(&str, &str, &str); 3] = [
     ("X", "NX", "The recovered states: what an estimate holds."),
     ("Y", "NY", "The outputs of a sample."),
@@ -87,7 +87,7 @@ impl Module<'_> {
 #[derive(Debug, Default)]
 pub(in crate::emit) struct Fields {
     structures: Vec<(String, Vec<String>)>,
-    /// How many conversions were read.
+    /// The number of conversions that were read.
     conversions: usize,
 }
 
@@ -101,7 +101,7 @@ impl Fields {
         }
     }
 
-    /// Reads a conversion: each field is the signal at its place, one way or the other.
+    /// Reads a conversion: each field is the signal at its index, one way or the other.
     pub(in crate::emit) fn convert(
         &mut self,
         arena: &Arena,
@@ -147,7 +147,7 @@ impl Fields {
         if same { Ok(()) } else { Err(unreadable(item)) }
     }
 
-    /// Whether there is every structure, with the conversions both ways.
+    /// There is every structure, with the conversions both ways.
     pub(in crate::emit) fn are_complete(&self) -> bool {
         self.structures.len() == STRUCTURES.len() && self.conversions == 2 * STRUCTURES.len()
     }

@@ -1,4 +1,4 @@
-//! What the functions need of a sample of the outputs: a type, and the function that computes it.
+//! The terms of a sample of the outputs that the functions need: a type, and the function that computes it.
 //!
 //! Holds: without terms the type is the vector of the outputs. With them it is a structure of its own: the outputs that
 //! are read, then the terms.
@@ -106,7 +106,7 @@ impl Module<'_> {
         }
     }
 
-    /// What the functions read of the terms, as inputs of a program: the outputs, then the terms.
+    /// The terms as inputs of a program: the outputs, then the terms.
     pub(in crate::emit) fn terms(&self, scope: &Scope) -> Vec<Piece> {
         let outputs = self.definitions.symbols(Argument::Y).into_iter();
         let symbols = outputs.chain(self.staged.terms.iter().map(|term| term.0));

@@ -26,7 +26,7 @@ use pebo_design::analysis::{RegressionKind, Sign};
 use pebo_design::plant::{Plant, Settings};
 use value::{Scope, Value, expression, unreadable};
 
-/// Confirms that the tokens compute what is defined.
+/// Confirms that the tokens compute the definitions.
 pub(super) fn confirm(
     plant: &Plant,
     definitions: &Definitions,
@@ -98,7 +98,7 @@ pub(super) fn confirm(
     Ok(())
 }
 
-/// Whether the conditions are the same, one by one.
+/// The conditions are the same, one by one.
 fn same_conditions(
     arena: &Arena,
     read: &[Condition],
@@ -117,7 +117,7 @@ fn same_conditions(
 }
 
 impl Definitions<'_> {
-    /// What an argument is when its function is read.
+    /// The value of an argument when its function is read.
     pub(super) fn value(&self, arena: &Arena, argument: Argument) -> Value {
         let columns = |columns: &[Vec<Symbol>]| {
             let column = |column: &Vec<Symbol>| column.iter().map(|&s| arena.of_symbol(s)).collect();
@@ -133,19 +133,19 @@ impl Definitions<'_> {
     }
 }
 
-/// What the tokens say.
+/// The content of the tokens.
 #[derive(Debug, Default)]
 struct Read {
     default: Option<Vec<Rational>>,
-    /// What is asked of the parameters.
+    /// The conditions on the parameters.
     checked: Vec<Condition>,
-    /// What the constructor of the observer sets.
+    /// The settings of the observer's constructor.
     settings: Option<Settings<Rational>>,
     /// Associated types and constants, by the last segment of their values.
     choices: BTreeMap<String, String>,
     /// The structures of the signals.
     signals: signals::Fields,
-    /// What the functions need of a sample.
+    /// The terms of a sample.
     terms: Option<Value>,
     /// The columns of each value.
     functions: paper::Columns,

@@ -1,6 +1,6 @@
 //! The constructor of the observer, read from tokens: the settings that it sets.
 //!
-//! Its statements bind names to what calls of the runtime's constructors return. Nothing of the emitter is used.
+//! Its statements bind names to results of the runtime's constructors. Nothing of the emitter is used.
 
 use std::collections::BTreeMap;
 
@@ -20,24 +20,24 @@ pub(in crate::emit) const WINDOW: &str = "NW";
 /// The constant with the number of unknowns of the output form, and its value.
 pub(in crate::emit) const UNKNOWNS: (&str, &str) = ("NO", "NR + NZ");
 
-/// The constant with the places of the outputs of the rows.
+/// The constant with the indices of the outputs of the rows.
 pub(in crate::emit) const ROWS: &str = "ROWS";
 
-/// What the regressand of a model is.
+/// The regressand of a model.
 #[derive(Clone, Debug)]
 enum Form {
     /// That of its regression.
     Own,
-    /// Its outputs, and estimates are made of those that are expected, at these places, if there are any.
+    /// Its outputs, and estimates are made of the expected ones at these indices, if there are any.
     Outputs(Option<Vec<usize>>),
 }
 
-/// What a name is bound to.
+/// The value of a name.
 #[derive(Clone, Debug)]
 enum Made {
     /// The model with its parameters, whether in its output form, and bounds of its states.
     Model(Form, [Option<Vec<Rational>>; 2]),
-    /// The places of the outputs of the rows.
+    /// The indices of the outputs of the rows.
     Rows(Vec<usize>),
     Number(Rational),
     List(Vec<Rational>),
@@ -48,7 +48,7 @@ enum Made {
     Estimator(Estimator<Rational>),
     Bounded(Estimator<Rational>, [Option<Vec<Rational>>; 2]),
     Extension(Extension<Rational>),
-    /// Whether samples are joined by straight lines.
+    /// Samples are joined by straight lines, or not.
     Hold(bool),
     Operator(Operator<Rational>, bool),
     Observer(Box<Settings<Rational>>),
@@ -59,13 +59,13 @@ enum Made {
     Open(Vec<Option<Rational>>, bool),
 }
 
-/// Whether these are the constructors beside `new`.
+/// These are the constructors beside `new`.
 pub(in crate::emit) fn is_constructors(item: &ItemImpl) -> bool {
     let named = |entry: &ImplItem| matches!(entry, ImplItem::Fn(function) if ["try_new", "gate", "limits", "observer"].iter().any(|name| function.sig.ident == name));
     item.trait_.is_none() && !item.items.is_empty() && item.items.iter().all(named)
 }
 
-/// What the constructor of the observer sets, where there is one; the other checks parameters before it takes them.
+/// The settings of the observer's constructor, if there is one; the other checks parameters before it takes them.
 pub(in crate::emit) fn read(
     arena: &Arena,
     item: &ItemImpl,
@@ -113,7 +113,7 @@ pub(in crate::emit) fn read(
 struct Reader<'a> {
     arena: &'a Arena,
     globals: &'a value::Scope,
-    /// The constants with the length of a window, and with the places of the outputs of the rows.
+    /// The constants with the length of a window, and with the indices of the outputs of the rows.
     constants: (Option<&'a Syntax>, Option<&'a Syntax>),
     made: BTreeMap<String, Made>,
 }
@@ -200,7 +200,7 @@ impl Reader<'_> {
         Ok(Made::List(entries))
     }
 
-    /// What a constructor of the runtime makes of its arguments.
+    /// The value that a constructor of the runtime gives for its arguments.
     fn call(&self, function: &str, arguments: Vec<Made>) -> Option<Made> {
         use Made::{Bounded, Hold, List, Model, Number};
         let mut arguments = arguments.into_iter();
@@ -250,7 +250,7 @@ impl Reader<'_> {
             ("Within::new", [Some(Model(form, [None, None])), Some(lower), Some(upper), None]) => {
                 Model(form, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
-            // Samples are joined to no signal: that they were, straight, is what the settings say.
+            // Samples are joined to no signal: the settings have straight lines then.
             ("SampledRegression::new", [Some(List(deviations)), None, None, None]) => {
                 Made::Operator(Operator::Sampled(deviations), true)
             }
@@ -303,7 +303,7 @@ impl Reader<'_> {
     }
 }
 
-/// What a method of the runtime's types makes of its receiver and argument.
+/// The value that a method of the runtime's types gives for its receiver and argument.
 fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
     let mut arguments = arguments.into_iter();
     Some(match (name, receiver, arguments.next(), arguments.next()) {
@@ -355,7 +355,7 @@ fn bound(made: Made, side: bool) -> Result<Option<Vec<Rational>>, ()> {
     }
 }
 
-/// The numbers of an array of places.
+/// The numbers of an array of indices.
 fn places(array: &Syntax) -> Option<Vec<usize>> {
     let Syntax::Array(array) = array else { return None };
     array.elems.iter().map(|place| compact(place).parse().ok()).collect()

@@ -11,7 +11,7 @@ use crate::emit::error::EmitError;
 use crate::emit::literal::read;
 use pebo_cas::{Arena, Expr, Function};
 
-/// What an emitted expression can be.
+/// The value of an emitted expression.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::emit) enum Value {
     Scalar(Expr),
@@ -20,7 +20,7 @@ pub(in crate::emit) enum Value {
     Matrix(Vec<Vec<Expr>>),
     /// Named numbers: parameters, stored constants.
     Fields(BTreeMap<String, Expr>),
-    /// What the methods of an extension return, and the fields of what a function of `Model` does.
+    /// The results of the methods of an extension, and the fields of the result of a function of `Model`.
     Parts(BTreeMap<String, Vec<Vec<Expr>>>),
 }
 
@@ -53,11 +53,11 @@ impl Value {
     }
 }
 
-/// The names that are known at a place.
+/// The names that are known at a point of the code.
 #[derive(Clone, Debug, Default)]
 pub(in crate::emit) struct Scope {
     values: BTreeMap<String, Value>,
-    /// The methods of `self`: the arguments that they were read with, and what they return of these.
+    /// The methods of `self`: the arguments that they were read with, and their results.
     methods: BTreeMap<String, (Vec<Value>, Value)>,
 }
 
@@ -67,7 +67,7 @@ impl Scope {
         self.values.insert(name.to_owned(), value);
     }
 
-    /// A method of `self`, with its arguments and what it returns of these.
+    /// A method of `self`, with its arguments and its result.
     pub(in crate::emit) fn declare_method(&mut self, name: &str, arguments: Vec<Value>, value: Value) {
         self.methods.insert(name.to_owned(), (arguments, value));
     }
@@ -249,7 +249,7 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
         return Ok(Value::Parts(BTreeMap::from([("chi".to_owned(), start.clone())])));
     }
     if (owner.as_str(), name.as_str(), arguments.len()) == ("SMatrix", "zeros", 0) {
-        // No columns: what is not there.
+        // No columns: an absent value.
         return Ok(Value::Matrix(Vec::new()));
     }
     let scalars: Option<Vec<Expr>> = arguments.iter().map(Value::scalar).collect();

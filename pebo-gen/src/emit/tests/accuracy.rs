@@ -1,4 +1,4 @@
-//! What is measured of the emitted functions.
+//! Measurements of emitted functions.
 
 use super::fixtures::{CUK, PENDULUM, Sketch, vanishes};
 use crate::emit::{Accuracy, Cause, EmitError, Scalar, emit};
@@ -82,11 +82,11 @@ fn a_sum_that_the_author_wrote_may_lose_its_digits_alone() {
     let found = accuracy(with_h(sum, within), Scalar::F64).unwrap();
     let (_, worst) = found.of(Scalar::F64).find(|(function, _)| *function == "flow").unwrap();
     assert!(worst.cause == Cause::Model && worst.units > 100.0, "{worst:?}");
-    // Where the author has no such sum, its error is a rounding of what the sum is elsewhere.
+    // If the author has no such sum, its error is a rounding of the sum's size elsewhere.
     let found = accuracy(with_h(sum, "1000000.0 + v4"), Scalar::F64).unwrap();
     let (_, worst) = found.of(Scalar::F64).find(|(function, _)| *function == "flow").unwrap();
     assert!(worst.cause == Cause::Small && worst.units > 100.0, "{worst:?}");
-    // The error of a quotient by something small is not small beside what the quotient is elsewhere.
+    // The error of a quotient with a small denominator is not small beside the quotient elsewhere.
     let quotient = "(v2*Real::cos(v2) - Real::sin(v2))/(v2*v2*v2)";
     assert!(accuracy(with_h(quotient, "1000000.0 + v4"), Scalar::F64).is_err());
 }

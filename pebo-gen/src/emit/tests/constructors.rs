@@ -40,7 +40,7 @@ fn tuned(settings: &Settings<Rational>) -> String {
     emit(&plant, &derivation, Some(settings), Scalar::F64, vanishes).unwrap().text
 }
 
-/// The module is what was given, and each change of its text is found out.
+/// The module has the given settings, and each change of its text is found.
 fn refuse_changed(given: &Settings<Rational>, changes: &[(&str, &str)]) {
     let (plant, derivation) = CUK.build();
     let definitions = Definitions::of(&plant, &derivation, Some(given)).unwrap();
@@ -83,7 +83,7 @@ fn without_settings_there_is_only_the_check() {
     assert!(text.contains("pub fn try_new(") && !text.contains("Tuned") && !text.contains("Filter"), "{text}");
 }
 
-/// What is emitted was read back, and is what was given: so it is for every estimator.
+/// Emitted settings are read back and are the given ones, for every estimator.
 #[test]
 fn every_estimator_is_built() {
     let gain = || numbers(["1", "2"]);

@@ -1,4 +1,4 @@
-//! Plants and derivations written by hand: what the analysis would find.
+//! Plants and derivations written by hand, as the analysis would find them.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub(crate) struct Sketch {
     pub(crate) x: &'static [(&'static str, &'static str)],
     pub(crate) y: &'static [(&'static str, &'static str)],
     pub(crate) u: &'static [&'static str],
-    /// What is greater than zero.
+    /// Expressions greater than zero.
     pub(crate) assume: &'static [&'static str],
     pub(crate) phi: &'static [&'static str],
     pub(crate) h: &'static [&'static str],

@@ -1,4 +1,4 @@
-//! What is emitted, and what is refused.
+//! Emissions and refusals.
 
 mod constructors;
 
@@ -299,7 +299,7 @@ fn parameters_are_checked_for_what_is_assumed() {
         "self.g.is_finite() && self.g > 0.0,",
         "self.e.is_finite() && self.e < 0.0,",
         "self.c4 - 3.0 * self.l1 * self.g > 0.0,",
-        // The code divides by these, of which no row above says that they are not zero as they are rounded.
+        // The code divides by these, and no row above says that they are not zero as they are rounded.
         "self.c4.is_finite() && self.c4 > 0.0,",
         "self.l3.is_finite() && self.l3 != 0.0,",
     ];
@@ -317,15 +317,15 @@ fn checked(phi_0: &'static [&'static str], assume: &'static [&'static str]) -> V
 
 #[test]
 fn what_is_divided_by_is_checked_in_the_form_in_which_it_is_computed() {
-    // Where the first is positive, the second can be 0.
+    // If the first is positive, the second can be 0.
     let quotient = checked(&["v2/(L1 - C2*C2/L3)", "0.0"], &["L1*L3 - C2*C2"]);
     let expected =
         ["let t1 = self.c2 * self.c2;", "self.l1 * self.l3 - t1 > 0.0,", "self.l1 - t1 * (1.0 / self.l3) > 0.0,"];
     assert_eq!(quotient, expected);
-    // What is checked already is not checked twice, and neither are products of what is not zero.
+    // Nothing is checked twice, and neither are products of nonzero factors.
     assert_eq!(checked(&["v2/(L1*L3 - C2*C2)", "0.0"], &["L1*L3 - C2*C2"]).len(), 1);
     assert_eq!(checked(&["v2/(L1*C2)", "0.0"], &["L1"]), [""; 0]);
-    // Of negative divisors the sign is asked for, and of those without a sign that they are not zero.
+    // The sign of negative divisors is checked, and that those without a sign are not zero.
     assert_eq!(checked(&["v2/(L1 - C2)", "0.0"], &["C2 - L1"])[1..], ["self.l1 - self.c2 < 0.0,"]);
     assert_eq!(checked(&["v2/(L1 - C2)", "0.0"], &["L1"]), ["self.l1 - self.c2 != 0.0,"]);
 }

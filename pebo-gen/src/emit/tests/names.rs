@@ -34,7 +34,7 @@ fn the_estimate_is_no_parameter_of_its_name() {
     assert!(function.split_once("\n    }").expect("its end").0.contains("*eta"), "{function}");
 }
 
-/// Of eleven components, row 1 column 11 and row 11 column 1 are two entries of the fundamental matrix.
+/// With eleven components, row 1 column 11 and row 11 column 1 are two entries of the fundamental matrix.
 #[test]
 fn each_entry_of_a_wide_fundamental_matrix_is_read_where_it_stands() {
     const COMPONENTS: usize = 11;
@@ -85,7 +85,7 @@ fn the_type_is_named_like_nothing_that_the_module_uses() {
     }
 }
 
-/// The identifiers that start with a capital, but for those of attributes and what is found in another type or module.
+/// The identifiers that start with a capital, except for those of attributes, of other types and of other modules.
 fn capitalised(code: proc_macro2::TokenStream) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut before = String::new();

@@ -3,7 +3,7 @@
 use pebo_runtime::Real;
 
 use super::{Extension, Regression};
-use crate::counted::arm::TUNING;
+use crate::counted::arm::SETTINGS;
 
 const M1: f32 = 0.8;
 const L1: f32 = 0.5;
@@ -126,13 +126,13 @@ impl ByHand {
 
         let (known_start, known_end) = (earlier.phi_0(start), posture.phi_0(end));
         let regression = &mut self.regression;
-        regression.use_sample_time(TUNING.alpha, dt);
+        regression.use_sample_time(SETTINGS.alpha, dt);
         for row in 0..2 {
             let rate = (y[row] - before[row]) / dt;
             let known = [rate - known_start[row], rate - known_end[row]];
             regression.filter(row, known, [earlier.regressor[row], posture.regressor[row]]);
         }
-        regression.correct(TUNING.gains, dt);
+        regression.correct(SETTINGS.gains, dt);
     }
 }
 

@@ -4,7 +4,7 @@
 use pebo_runtime::Real;
 
 use super::{Extension, Regression};
-use crate::counted::motor::TUNING;
+use crate::counted::motor::SETTINGS;
 
 const R: f32 = 8.875;
 const L: f32 = 40.03e-3;
@@ -107,13 +107,13 @@ impl ByHand {
         let (known_start, known_end) = (before.phi_0(start, u), sample.phi_0(end, u));
         let (factor_start, factor_end) = (before.phi_1(), sample.phi_1());
         let regression = &mut self.regression;
-        regression.use_sample_time(TUNING.alpha, dt);
+        regression.use_sample_time(SETTINGS.alpha, dt);
         for row in 0..3 {
             let rate = (sample.y[row] - before.y[row]) / dt;
             let known = [rate - known_start[row], rate - known_end[row]];
             regression.filter(row, known, [factor_start[row], factor_end[row]]);
         }
-        regression.correct(TUNING.gains, dt);
+        regression.correct(SETTINGS.gains, dt);
     }
 }
 

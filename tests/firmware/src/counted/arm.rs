@@ -3,7 +3,7 @@
 use pebo_runtime::Fault;
 use pebo_runtime::nalgebra::SVector;
 
-use super::{Plant, Tuning, waves};
+use super::{Plant, Settings, waves};
 use crate::by_hand::arm::ByHand;
 use crate::emitted::arm::{Arm as Model, Observer, Parameters, U, X, Y};
 
@@ -11,7 +11,7 @@ use crate::emitted::arm::{Arm as Model, Observer, Parameters, U, X, Y};
 const DT: f32 = 1e-3;
 
 /// The settings of both observers.
-pub const TUNING: Tuning = Tuning { gains: [1.0, 2.0], alpha: 50.0 };
+pub const SETTINGS: Settings = Settings { gains: [1.0, 2.0], alpha: 50.0 };
 
 /// Angles, then the torques of the interval before.
 pub type Sample = ([f32; 2], [f32; 2]);
@@ -28,7 +28,7 @@ impl Plant for Arm {
 
     fn observers() -> Result<(Observer, ByHand), Fault> {
         let model = Model::new(&Parameters::default());
-        let (gradient, filter) = TUNING.parts()?;
+        let (gradient, filter) = SETTINGS.parts()?;
         Ok((Observer::new(model, gradient, filter, SVector::zeros())?, ByHand::new()))
     }
 

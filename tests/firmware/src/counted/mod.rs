@@ -58,14 +58,14 @@ pub trait Plant {
 }
 
 /// The settings of both observers of a plant with two unknowns.
-pub struct Tuning {
+pub struct Settings {
     /// The gains of the gradient estimator.
     pub gains: [f32; 2],
     /// The filter, in rad/s.
     pub alpha: f32,
 }
 
-impl Tuning {
+impl Settings {
     /// The estimator and the filter of the emitted observer.
     fn parts(&self) -> Result<(Gradient<f32, 2>, Filter<f32>), Fault> {
         Ok((Gradient::diagonal(&self.gains.into())?, Filter::new(self.alpha, Hold::First)?))

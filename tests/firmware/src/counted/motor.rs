@@ -4,7 +4,7 @@
 use pebo_runtime::Fault;
 use pebo_runtime::nalgebra::SVector;
 
-use super::{Plant, Tuning, waves};
+use super::{Plant, Settings, waves};
 use crate::by_hand::motor::ByHand;
 use crate::emitted::motor::{Motor as Model, Observer, Parameters, U, X, Y};
 
@@ -12,7 +12,7 @@ use crate::emitted::motor::{Motor as Model, Observer, Parameters, U, X, Y};
 const DT: f32 = 1e-4;
 
 /// The settings of both observers.
-pub const TUNING: Tuning = Tuning { gains: [2e-5, 1e-5], alpha: 500.0 };
+pub const SETTINGS: Settings = Settings { gains: [2e-5, 1e-5], alpha: 500.0 };
 
 /// Currents and speed, then the voltages of the interval before.
 pub type Sample = ([f32; 3], [f32; 2]);
@@ -29,7 +29,7 @@ impl Plant for Motor {
 
     fn observers() -> Result<(Observer, ByHand), Fault> {
         let model = Model::new(&Parameters::default());
-        let (gradient, filter) = TUNING.parts()?;
+        let (gradient, filter) = SETTINGS.parts()?;
         Ok((Observer::new(model, gradient, filter, SVector::zeros())?, ByHand::new()))
     }
 

@@ -6,8 +6,8 @@
 //! z_i' = h_i + v' (L_{T_i} M) v / 2
 //! ```
 //!
-//! so the terms vanish exactly if each column of T is a Killing field of M. That is decided directly, without an inverse.
-//! Ortega et al. 2015 state the same as Assumption 3: `B_(i) + B_(i)' = 0` with
+//! so the terms vanish exactly if each column of T is a Killing field of M. That is decided directly, without an
+//! inverse. Ortega et al. 2015 state the same as Assumption 3: `B_(i) + B_(i)' = 0` with
 //!
 //! ```text
 //! B_(i) = sum over j of [T_i, T_j] T_j' (M T T')^-1 + T_ji T d/dq_j (T' M T)^-1 T' / 2

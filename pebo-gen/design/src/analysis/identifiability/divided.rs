@@ -62,7 +62,8 @@ impl Formulas {
     }
 }
 
-/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is open.
+/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is
+/// open.
 pub(super) fn decide(
     plant: &Plant,
     domain: &Domain,

@@ -1,8 +1,8 @@
 //! Solves a transform that is affine in the states and has more components than states.
 //!
-//! In: a plant with `phi = M(y) x + s(y)`, M with more rows than columns. Out: `x = (M'M)^-1 M' (z - s)`, which
-//! divides by `det(M'M)`, a sum of squares, alone: it has a value wherever the columns of M are independent, while solving
-//! some of the rows may divide by what vanishes there.
+//! In: a plant with `phi = M(y) x + s(y)`, M with more rows than columns. Out: `x = (M'M)^-1 M' (z - s)`, which divides
+//! by `det(M'M)`, a sum of squares, alone: it has a value wherever the columns of M are independent, while solving some
+//! of the rows may divide by what vanishes there.
 
 use std::collections::{BTreeMap, BTreeSet};
 

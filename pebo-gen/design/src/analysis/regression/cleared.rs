@@ -1,8 +1,8 @@
 //! Identities in the form in which the components of the transform are linear.
 //!
-//! In: the plant's identities; the value `g` of an output is one, `V - g = 0`. Out: of each the first form that is affine in
-//! the transform, with the identity as it is written first: `V = p/(1 + p)` is `V + (V - 1)*p = 0`. Each form is proved to
-//! vanish on the domain.
+//! In: the plant's identities; the value `g` of an output is one, `V - g = 0`. Out: of each the first form that is
+//! affine in the transform, with the identity as it is written first: `V = p/(1 + p)` is `V + (V - 1)*p = 0`. Each form
+//! is proved to vanish on the domain.
 
 use std::collections::{BTreeMap, BTreeSet};
 

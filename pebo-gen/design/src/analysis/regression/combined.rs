@@ -156,7 +156,8 @@ fn affine(plant: &Plant, domain: &Domain, rate: Expr) -> Option<(Expr, Vec<Expr>
     (free && decide(arena, arena.sub(rate, rebuilt), domain).is_zero()).then_some((known, factors))
 }
 
-/// The equations of a regression with nothing unknown under the derivative: z = chi + theta at theta = 0, with z for chi.
+/// The equations of a regression with nothing unknown under the derivative: z = chi + theta at theta = 0, with z for
+/// chi.
 pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Vec<Equation>> {
     let arena = &plant.arena;
     let held = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));

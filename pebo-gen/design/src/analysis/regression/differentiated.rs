@@ -6,10 +6,11 @@
 //! a(y) + b(y).z + z'C z = 0
 //! ```
 //!
-//! Out: the equations `d/dt (-(a + b.z)/2) = z'C (Lambda z + h)`. Where the right side is affine in z, as always under a
-//! plain cascade, or becomes so by the relation itself (`z'C Lambda z = mu z'C z`), the regression that they make has theta itself for its unknowns, and `theta'C theta`, which the relation
-//! itself would add to these, is gone. The motor's fluxes lie on a circle, `|z - L i|^2 = lambda_m^2` (Ortega et al. 2015,
-//! eq. 28): `d/dt (L i.z - L^2 |i|^2/2) = z.h`.
+//! Out: the equations `d/dt (-(a + b.z)/2) = z'C (Lambda z + h)`. Where the right side is affine in z, as always under
+//! a plain cascade, or becomes so by the relation itself (`z'C Lambda z = mu z'C z`), the regression that they make has
+//! theta itself for its unknowns, and `theta'C theta`, which the relation itself would add to these, is gone. The
+//! motor's fluxes lie on a circle, `|z - L i|^2 = lambda_m^2` (Ortega et al. 2015, eq. 28): `d/dt (L i.z - L^2 |i|^2/2)
+//! = z.h`.
 
 use std::collections::BTreeSet;
 

@@ -55,7 +55,8 @@ fn on_domain_side(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     field.and_then(|field| Ok(field.show(&field.fraction(rate)?))).unwrap_or(rate)
 }
 
-/// A form in which the unknowns of a rate that is not affine may be linear all the same, if not all such forms were tried.
+/// A form in which the unknowns of a rate that is not affine may be linear all the same, if not all such forms were
+/// tried.
 fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> Option<OtherForm> {
     let arena = &plant.arena;
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
@@ -101,8 +102,8 @@ pub(super) fn of_affine_rates(
     (!rows.is_empty()).then(|| Claim { verdict: Verdict::Proved, result: Some(regression()) })
 }
 
-/// The regression in functions of theta of the rates that are made of such functions, where there are others too; none if no
-/// rate is.
+/// The regression in functions of theta of the rates that are made of such functions, where there are others too; none
+/// if no rate is.
 pub(super) fn of_separable_rates(
     plant: &Plant,
     domain: &Domain,

@@ -1,6 +1,7 @@
 //! The reader of models in plain Rust.
 //!
-//! In: a module's tokens, and those of its attribute. Out: a [`Model`] as far as it could be read, its mistakes collected.
+//! In: a module's tokens, and those of its attribute. Out: a [`Model`] as far as it could be read, its mistakes
+//! collected.
 //!
 //! ```text
 //! tokens -> items::Items -> evaluate::Reader -> Model
@@ -10,7 +11,8 @@
 //! of the result keeps the formula of its computation. Rust's own rules hold: an accepted model means what the compiled
 //! function computes, but for rounding.
 //!
-//! There is no text here: a [`Span`](crate::source::Span) is a range of [`TokenSpans`], each of which is a run of tokens.
+//! There is no text here: a [`Span`](crate::source::Span) is a range of [`TokenSpans`], each of which is a run of
+//! tokens.
 
 mod spans;
 

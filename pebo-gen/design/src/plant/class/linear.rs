@@ -39,8 +39,8 @@ pub struct Linear {
     pub span: Span,
 }
 
-/// States up to which T2 is written by minors: there are twice as many of them with each further row, and every claim goes
-/// through all of them.
+/// States up to which T2 is written by minors: there are twice as many of them with each further row, and every claim
+/// goes through all of them.
 const MOST_BY_MINORS: usize = 6;
 
 pub(super) fn expand(
@@ -175,8 +175,8 @@ fn transform(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> Result<(
     Ok((Matrix::new(rows), unsolved))
 }
 
-/// `T2 = -A11 adj(A21) / det(A21)` and the determinant, which is not zero: as expressions that share their minors, where
-/// their normal forms are too long to be written out.
+/// `T2 = -A11 adj(A21) / det(A21)` and the determinant, which is not zero: as expressions that share their minors,
+/// where their normal forms are too long to be written out.
 fn by_cofactors(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> (Matrix, Expr) {
     let arena = context.arena;
     let (adjugate, determinant) = a21.adjugate(arena);

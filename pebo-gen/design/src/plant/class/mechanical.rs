@@ -4,10 +4,10 @@
 //! H = p' M(q)^-1 p / 2 + V(q)      q' = dH/dp = M^-1 p      p' = -dH/dq + G(q) u      z = T(q)' p
 //! ```
 //!
-//! With v = q' the force of inertia is `-d/dq (p' M^-1 p / 2) = v' (dM/dq) v / 2`. Everything is inverted
-//! through W = T' M T, which is simple where T is worth its name: `M^-1 = T W^-1 T'`, and the velocities
-//! are `v = (T' M)^-1 z = T W^-1 z` (Ortega et al. 2015, Section 5.1). Where W is not simple, its inverse is not written
-//! out: formulas hold it as cofactors over the determinant, and are shown in the velocities.
+//! With v = q' the force of inertia is `-d/dq (p' M^-1 p / 2) = v' (dM/dq) v / 2`. Everything is inverted through W =
+//! T' M T, which is simple where T is worth its name: `M^-1 = T W^-1 T'`, and the velocities are `v = (T' M)^-1 z = T
+//! W^-1 z` (Ortega et al. 2015, Section 5.1). Where W is not simple, its inverse is not written out: formulas hold it
+//! as cofactors over the determinant, and are shown in the velocities.
 
 use std::collections::BTreeSet;
 
@@ -261,8 +261,8 @@ fn inverse_metric(
     Ok(metric.inverse(context.arena, &context.domain.facts)?.map(|inverse| (inverse, false)))
 }
 
-/// `W^-1` as cofactors over the determinant, where its normal form would be out of proportion: if a column of T is no Killing
-/// field of M, so that the cascade is refused and nothing is to be proved of the inverse but that it exists.
+/// `W^-1` as cofactors over the determinant, where its normal form would be out of proportion: if a column of T is no
+/// Killing field of M, so that the cascade is refused and nothing is to be proved of the inverse but that it exists.
 fn implicit_inverse(
     context: &ClassContext<'_>,
     (inertia, frame): (&Matrix, &Matrix),

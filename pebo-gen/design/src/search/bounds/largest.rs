@@ -7,14 +7,14 @@ use super::{Bound, BoundClass, LARGEST_ORDER, bound};
 use crate::search::completion::decision::decided;
 use crate::search::problem::Problem;
 
-/// The bound of the transforms affine in x with a plain cascade, by completion, or where that says nothing by series; for
-/// values of the parameters that are found after so many others.
+/// The bound of the transforms affine in x with a plain cascade, by completion, or where that says nothing by series;
+/// for values of the parameters that are found after so many others.
 pub(in crate::search) fn affine(problem: &Problem<'_>, others: usize) -> Option<Bound> {
     decided(problem, BoundClass::Affine, others).or_else(|| bound(problem, BoundClass::Affine, (LARGEST_ORDER, others)))
 }
 
-/// The bound of the smooth transforms with a plain cascade by completion, where that of the affine ones is known; for values
-/// of the parameters that are found after so many others.
+/// The bound of the smooth transforms with a plain cascade by completion, where that of the affine ones is known; for
+/// values of the parameters that are found after so many others.
 pub(in crate::search) fn smooth(problem: &Problem<'_>, affine: Option<&Bound>, others: usize) -> Option<Bound> {
     if !is_driven(problem) {
         return None;

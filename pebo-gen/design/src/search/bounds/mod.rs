@@ -98,9 +98,9 @@ pub enum BoundClass {
     AffineRate,
 }
 
-/// Bounds the rank of transforms of one class by series to this order, at the first point that is found or after so many
-/// others; none where no point was found, or the equations are too many. Where identities hold, a rate has to be free of x
-/// on them alone, and nothing is said.
+/// Bounds the rank of transforms of one class by series to this order, at the first point that is found or after so
+/// many others; none where no point was found, or the equations are too many. Where identities hold, a rate has to be
+/// free of x on them alone, and nothing is said.
 pub(super) fn bound(problem: &Problem<'_>, class: BoundClass, (largest, others): (usize, usize)) -> Option<Bound> {
     if !problem.plant.identities.is_empty() {
         return None;

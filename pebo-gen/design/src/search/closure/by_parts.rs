@@ -6,8 +6,8 @@
 //! `z' = -a*y + u`. The rates then consist of the components, and of products of constants and known signals, which are
 //! components too.
 //!
-//! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply measured
-//! signals alone (Marino and Tomei 1992).
+//! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply
+//! measured signals alone (Marino and Tomei 1992).
 
 use std::collections::BTreeSet;
 

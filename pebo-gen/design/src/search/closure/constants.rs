@@ -44,8 +44,8 @@ pub(in crate::search) fn constants(problem: &Problem<'_>) -> BTreeSet<Symbol> {
     problem.x.iter().copied().filter(is_constant).collect()
 }
 
-/// The functions, by a plain cascade with a left inverse of the plant whose constants are measured; none where there are
-/// too many, or the rates hold others.
+/// The functions, by a plain cascade with a left inverse of the plant whose constants are measured; none where there
+/// are too many, or the rates hold others.
 pub(in crate::search) fn closure(problem: &Problem<'_>, candidate: &Candidate) -> Result<Option<Vec<Expr>>, Obstacle> {
     let arena = problem.arena;
     let derivation = &candidate.derivation;

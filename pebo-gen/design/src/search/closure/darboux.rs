@@ -5,8 +5,8 @@
 //! The rate of `log(q)` is then a polynomial, and that of a sum of such logarithms may be free of x (Darboux 1878;
 //! Prelle and Singer 1983).
 //!
-//! The coefficients are undetermined: q = 0 is solved for a state, or the square of one, and put into the rate of q, which
-//! has to vanish whatever the other signals are. That gives equations for the coefficients alone.
+//! The coefficients are undetermined: q = 0 is solved for a state, or the square of one, and put into the rate of q,
+//! which has to vanish whatever the other signals are. That gives equations for the coefficients alone.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -41,8 +41,8 @@ pub(in crate::search) fn terms(
     Ok(Some(terms))
 }
 
-/// A polynomial as a product: of the factors that hold hidden kernels, and of the others; none where a factor holds known ones
-/// too.
+/// A polynomial as a product: of the factors that hold hidden kernels, and of the others; none where a factor holds
+/// known ones too.
 pub(in crate::search) fn apart(
     field: &Field<'_>,
     polynomial: &Poly,

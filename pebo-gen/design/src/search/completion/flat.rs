@@ -1,9 +1,10 @@
 //! Solutions of a flat connection in closed form.
 //!
-//! In: functions of the outputs by their derivatives, `dw = G w`, whose second derivatives agree. A function that depends on
-//! itself and on earlier ones alone is an exponential of an integral times an integral; two that depend on each other are
-//! an exponential of a constant matrix, or of one that does not vary with the output that is integrated along. Where an
-//! integral is not found, the solutions that need it are left out. Out: solutions, by the values of all functions.
+//! In: functions of the outputs by their derivatives, `dw = G w`, whose second derivatives agree. A function that
+//! depends on itself and on earlier ones alone is an exponential of an integral times an integral; two that depend on
+//! each other are an exponential of a constant matrix, or of one that does not vary with the output that is integrated
+//! along. Where an integral is not found, the solutions that need it are left out. Out: solutions, by the values of all
+//! functions.
 
 use std::collections::BTreeSet;
 
@@ -117,7 +118,8 @@ impl<'a> Flat<'a> {
         Some(Block { values: vec![vec![unit]], inverse: vec![vec![inverse]] })
     }
 
-    /// Two functions whose derivatives are `d I + a J` times them, with the same constant J of trace zero for all outputs.
+    /// Two functions whose derivatives are `d I + a J` times them, with the same constant J of trace zero for all
+    /// outputs.
     fn of_constant_matrix(&self, pair: [usize; 2]) -> Result<Option<Block>, Obstacle> {
         let arena = self.problem.arena;
         let (mut common, mut turning, mut matrix) = (Vec::new(), Vec::new(), None);

@@ -4,9 +4,9 @@
 //! equations for T and the gradient of s, completed -> dw = G w -> T, and s by its gradient -> T(y) x + s(y)
 //! ```
 //!
-//! In: a plant whose equations for `T(y) x + s(y)` complete to a flat connection (see [`crate::search::completion`]), so that a
-//! solution is given by its values at a point. Out: transforms, for those solutions that have a closed form; nothing is
-//! proved of the domain.
+//! In: a plant whose equations for `T(y) x + s(y)` complete to a flat connection (see [`crate::search::completion`]),
+//! so that a solution is given by its values at a point. Out: transforms, for those solutions that have a closed form;
+//! nothing is proved of the domain.
 
 use crate::plant::matrix::dot;
 use pebo_cas::forms::tidy::shortest;

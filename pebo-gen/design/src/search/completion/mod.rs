@@ -203,8 +203,8 @@ impl<'a> System<'a> {
         Ok(())
     }
 
-    /// Makes unknown functions of the derivatives that are not given, keeps the others as rows, and gives the equations that
-    /// say that second derivatives agree.
+    /// Makes unknown functions of the derivatives that are not given, keeps the others as rows, and gives the equations
+    /// that say that second derivatives agree.
     fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<EquationRow>, Obstacle> {
         let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
         let width = before * directions;

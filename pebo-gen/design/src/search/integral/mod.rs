@@ -1,8 +1,8 @@
 //! Antiderivatives of simple functions.
 //!
-//! In: a formula and a symbol. Out: a function whose derivative it is, proved; none where the rules end: sums, powers and
-//! functions of affine arguments, products of these with polynomials, `c g' g^n`, and quotients of
-//! polynomials, or of sines and cosines.
+//! In: a formula and a symbol. Out: a function whose derivative it is, proved; none where the rules end: sums, powers
+//! and functions of affine arguments, products of these with polynomials, `c g' g^n`, and quotients of polynomials, or
+//! of sines and cosines.
 
 pub(crate) mod logarithm;
 mod rational;

@@ -6,7 +6,7 @@ mod protocol;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
-use protocol::{How, Work, entries, number, pairs, terms, texts};
+use protocol::{JobOptions, Work, entries, number, pairs, terms, texts};
 use serde_json::Value;
 use symplex::num_bigint::BigInt;
 use symplex::num_rational::Ratio;
@@ -15,7 +15,7 @@ use symplex::prelude::{Assumption, Context, Ex, MultiPoly};
 type Poly = MultiPoly<symplex::multipoly::Lex>;
 
 fn main() -> ExitCode {
-    protocol::serve(|job: &Value, how: &How| match job["kind"].as_str() {
+    protocol::serve(|job: &Value, how: &JobOptions| match job["kind"].as_str() {
         Some("zero") if how.recipe == "by hand" && job["by_hand"].is_null() => Err("nothing by hand".to_owned()),
         Some("zero") if how.recipe == "by hand" => proof(&job["by_hand"], how),
         Some("zero") => proof(job, how),
@@ -68,7 +68,7 @@ impl Reader {
 }
 
 /// The rates of the transform less their known values, and identities as they are: all zero.
-fn proof(job: &Value, how: &How) -> Result<Work, String> {
+fn proof(job: &Value, how: &JobOptions) -> Result<Work, String> {
     let context = Context::new();
     let assumed: Vec<&str> = texts(job, "assume").collect();
     let mut reader = Reader { context, names: BTreeMap::new() };

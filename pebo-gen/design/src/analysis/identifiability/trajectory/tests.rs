@@ -145,8 +145,8 @@ fn outputs_at_which_the_plant_rests_unseen_are_listed() {
     assert!(lines.iter().any(|line| line.contains("q - 1 = 0`, it was not decided")), "{lines:?}");
 }
 
-/// The factors of a determinant do not show the values at which functions of signals are equal, or constant, nor those at
-/// which several coefficients vanish.
+/// The factors of a determinant do not show the values at which functions of signals are equal, or constant, nor those
+/// at which several coefficients vanish.
 #[test]
 fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of() {
     let open = "it was not worked out for which special values of the parameters this is not so";

@@ -42,19 +42,19 @@ macro_rules! converge {
 }
 
 converge! {
-    gradient_by_window: "tests/tuned/gradient_by_window.yaml",
-    normalised_gradient: "tests/tuned/normalised_gradient.yaml",
-    least_squares: "tests/tuned/least_squares.yaml",
-    drem: "tests/tuned/drem.yaml",
-    finite_time_drem: "tests/tuned/finite_time_drem.yaml",
-    gradient_drem: "tests/tuned/gradient_drem.yaml",
-    least_squares_drem: "tests/tuned/least_squares_drem.yaml",
+    gradient_by_window: "tests/settings/gradient_by_window.yaml",
+    normalised_gradient: "tests/settings/normalised_gradient.yaml",
+    least_squares: "tests/settings/least_squares.yaml",
+    drem: "tests/settings/drem.yaml",
+    finite_time_drem: "tests/settings/finite_time_drem.yaml",
+    gradient_drem: "tests/settings/gradient_drem.yaml",
+    least_squares_drem: "tests/settings/least_squares_drem.yaml",
 }
 
 /// Each estimator of the language has its row above.
 #[test]
 fn every_estimator_is_among_them() {
-    let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tuned");
+    let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/settings");
     let files = std::fs::read_dir(here).expect("the folder").map(|entry| entry.expect("a file").path());
     let texts: Vec<String> = files.map(|file| std::fs::read_to_string(file).expect("a text")).collect();
     for name in pebo_gen::model::Estimator::NAMES {

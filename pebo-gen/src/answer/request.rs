@@ -19,31 +19,31 @@ type Watch = dyn Fn(Stage) -> ControlFlow<()>;
 ///
 /// use pebo_gen::emit::Scalar;
 /// use pebo_gen::source::Source;
-/// use pebo_gen::{Ask, Standing, answer};
+/// use pebo_gen::{Request, Standing, answer};
 ///
 /// // The code too, in single precision, with two seconds for the proofs; a caller that stops it gets no verdict.
-/// let ask = Ask::new().emit(Scalar::F32).limit(2.0).watch(|_| ControlFlow::Continue(()));
+/// let request = Request::new().emit(Scalar::F32).limit(2.0).watch(|_| ControlFlow::Continue(()));
 /// let text = "model: m\nx: [p]\ny: [q]\nf_x: {p: 0}\nf_y: {q: p}\n";
-/// let answer = answer(&Source::new("m.yaml", text).expect("a short text"), &ask);
+/// let answer = answer(&Source::new("m.yaml", text).expect("a short text"), &request);
 /// assert_eq!(answer.standing, Standing::Accepted);
 /// assert!(answer.emitted.is_some());
 /// ```
 #[derive(Clone)]
-pub struct Ask {
+pub struct Request {
     pub(super) name: Option<String>,
     pub(super) seconds: f64,
     pub(super) watch: Option<Rc<Watch>>,
     pub(super) scalar: Option<Scalar>,
     pub(super) mathml: bool,
     pub(super) certificate: bool,
-    pub(super) explained: Explained,
+    pub(super) explained: Explanation,
     #[cfg(feature = "simulate")]
-    pub(super) run: Option<AskRun>,
+    pub(super) run: Option<RunRequest>,
 }
 
 /// The form of an explanation of the proofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Explained {
+pub(super) enum Explanation {
     Not,
     Page,
     Sections,
@@ -74,7 +74,7 @@ pub enum Stage {
 /// The results to keep of a run of the closed loop beside the errors of its estimates.
 #[cfg(feature = "simulate")]
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct AskRun {
+pub struct RunRequest {
     /// Settings that override those of the file.
     pub overrides: Overrides,
     /// Keep the table of all signals.
@@ -86,7 +86,7 @@ pub struct AskRun {
     pub runs: Option<u64>,
 }
 
-impl Ask {
+impl Request {
     /// To check the model, and no more.
     pub fn new() -> Self {
         Self {
@@ -96,7 +96,7 @@ impl Ask {
             scalar: None,
             mathml: false,
             certificate: false,
-            explained: Explained::Not,
+            explained: Explanation::Not,
             #[cfg(feature = "simulate")]
             run: None,
         }
@@ -149,7 +149,7 @@ impl Ask {
     /// model is accepted and describes one.
     #[must_use]
     pub fn page(mut self) -> Self {
-        self.explained = Explained::Page;
+        self.explained = Explanation::Page;
         self
     }
 
@@ -157,14 +157,14 @@ impl Ask {
     /// is among them if it is requested, and nothing is run for them. A call gives these or the page.
     #[must_use]
     pub fn sections(mut self) -> Self {
-        self.explained = Explained::Sections;
+        self.explained = Explanation::Sections;
         self
     }
 
     /// To run the closed loop too, if everything is proved.
     #[cfg(feature = "simulate")]
     #[must_use]
-    pub fn run(mut self, run: AskRun) -> Self {
+    pub fn run(mut self, run: RunRequest) -> Self {
         self.run = Some(run);
         self
     }
@@ -178,14 +178,14 @@ impl Ask {
     }
 }
 
-impl Default for Ask {
+impl Default for Request {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl fmt::Debug for Ask {
+impl fmt::Debug for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Ask").field("seconds", &self.seconds).field("scalar", &self.scalar).finish_non_exhaustive()
+        f.debug_struct("Request").field("seconds", &self.seconds).field("scalar", &self.scalar).finish_non_exhaustive()
     }
 }

@@ -216,7 +216,7 @@ fn replaced(whole: &str, part: &str) -> String {
 }
 
 #[test]
-fn pages_show_what_is_so() {
+fn pages_are_true() {
     let _held = held();
     // Pages are independent of one another: a thread each.
     let wrong: String = std::thread::scope(|scope| {

@@ -6,7 +6,7 @@ use pebo_gen::source::Code;
 use super::table::Answer::{Accepted, Rejected, Undecided};
 use super::table::Row;
 
-pub(super) const BENT: &[Row] = &[
+pub(super) const NON_SMOOTH: &[Row] = &[
     (
         "Coulomb friction and a load, told apart once the speed has had both signs",
         "x: [f, l]\ny: [w]\nu: [u]\nf_x: {f: 0, l: 0}\nf_y: {w: u - f*sign(w) - l}\nphi: [f, l]",

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use pebo_cas::Budget;
 use pebo_gen::source::{Diagnostic, Source};
-use pebo_gen::{Ask, Derived, Stage, derive_within};
+use pebo_gen::{Derived, Request, Stage, derive_within};
 
 /// The last model with its derivation, and the observer of a call's progress.
 #[derive(Debug)]
-pub(super) struct Kept {
+pub(super) struct ModelCache {
     progress: fn(f64),
     last: Option<Last>,
 }
@@ -16,16 +16,16 @@ pub(super) struct Kept {
 /// A text, its limit, and its derivation.
 type Last = (String, Option<f64>, Result<Derived, Vec<Diagnostic>>);
 
-impl Kept {
+impl ModelCache {
     /// Nothing yet. A run of the closed loop tells which part of it is done, 0 to 1.
     pub(super) fn new(progress: fn(f64)) -> Self {
         Self { progress, last: None }
     }
 
     /// The request for every model, within so many seconds.
-    pub(super) fn ask(&self) -> Ask {
+    pub(super) fn ask(&self) -> Request {
         let progress = self.progress;
-        Ask::new().named("model").watch(move |stage| {
+        Request::new().named("model").watch(move |stage| {
             if let Stage::Run { done, .. } = stage {
                 progress(done);
             }
