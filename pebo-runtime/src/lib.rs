@@ -14,7 +14,7 @@
 //! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
 //! - [`Monitor`]: whether the data so far determine the unknown, and how well;
 //! - [`Observer::standard_error`], [`Observer::innovation`] and [`Gate`]: how far an estimate and a sample can be
-//! trusted;
+//!   trusted;
 //! - [`OutputForm`] and [`SampledRegression`]: the outputs themselves as the regressand, nothing differentiated;
 //! - [`Limits`], [`Gap`], [`Drift`], [`State`]: ranges of samples, intervals without one, forms without drift, saving;
 //! - [`Within`]: bounds of the state;

@@ -33,7 +33,7 @@ mod timing;
 mod tests;
 
 #[cfg(feature = "simulate")]
-pub use crate::settings::{Known, Numbers, Value};
+pub use crate::settings::{KnownNumbers, Numbers, Value};
 #[cfg(feature = "simulate")]
 pub use closed_loop::ensemble::{Ensemble, Quantiles, Spread};
 #[cfg(feature = "simulate")]
@@ -53,4 +53,4 @@ pub use score::faults::Faults;
 #[cfg(feature = "simulate")]
 pub use score::{SETTLED, Score};
 #[cfg(feature = "simulate")]
-pub use summary::{Estimate, Rated, Summary};
+pub use summary::{Estimate, EstimateScore, Summary};

@@ -4,7 +4,7 @@ use pebo_cas::Expr;
 use pebo_design::model::Simulation;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
-use super::layout::{rival_estimates, time};
+use super::layout::{baseline_estimates, time};
 use super::overrides::Overrides;
 use super::scope::{Estimates, Names, Sight, View};
 
@@ -45,7 +45,7 @@ fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
         Simulation::TRUTH => names.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol))).collect(),
         name => {
             let baseline = names.simulation.baselines.iter().find(|entry| entry.name.value == name);
-            let estimates = baseline.into_iter().flat_map(|entry| rival_estimates(names.plant, entry));
+            let estimates = baseline.into_iter().flat_map(|entry| baseline_estimates(names.plant, entry));
             estimates.map(|(x, estimate)| (x, arena.of_symbol(estimate))).collect()
         }
     }

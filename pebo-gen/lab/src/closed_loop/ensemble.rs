@@ -13,7 +13,7 @@ use pebo_design::source::Diagnostic;
 
 use super::failure::Failure;
 use super::layout::TIME;
-use super::panel::Panel;
+use super::panels::Panel;
 use super::scenario::Scenario;
 use crate::figure::label::Label;
 use crate::figure::{Band, Sheet};
@@ -48,7 +48,7 @@ pub struct Ensemble {
     #[serde(skip)]
     pub(crate) unsettled: (u64, Option<Summary>),
     #[serde(skip)]
-    pub(crate) courses: Vec<Course>,
+    pub(crate) courses: Vec<ErrorCourse>,
 }
 
 /// How the estimate of a state is spread over the runs; a number that most runs or a tenth of them do not have is absent.
@@ -79,7 +79,7 @@ pub struct Quantiles {
 }
 
 /// The largest error in each span of time: instants, each with the quantiles of 10, 50 and 90 %.
-pub(crate) type Course = Vec<(f64, [f64; 3])>;
+pub(crate) type ErrorCourse = Vec<(f64, [f64; 3])>;
 
 impl Scenario {
     /// Runs the loop so many times, with the seed of the scenario and those after it, for a caller who is told now and then
@@ -99,8 +99,8 @@ impl Scenario {
             self.seed = seed.wrapping_add(run);
             let mut peaks = pool.empty();
             let followed = self.follow(
-                &mut |sample, shown| {
-                    pool.spans.keep(&mut peaks, (sample, shown.table[TIME]), shown.errors);
+                &mut |sample, snapshot| {
+                    pool.spans.keep(&mut peaks, (sample, snapshot.table[TIME]), snapshot.errors);
                 },
                 &mut |done| progress((real(run) + done) / real(runs)),
             );
@@ -163,7 +163,7 @@ struct Pool {
 
 impl Pool {
     fn new(scenario: &Scenario, runs: u64) -> Self {
-        let estimates = scenario.judged.len();
+        let estimates = scenario.scored.len();
         let room = MOST_ERRORS / runs / u64::try_from(estimates).unwrap_or(1).max(1);
         let samples = scenario.timing.samples;
         let count = room.clamp(FEWEST_SPANS, SPANS).min(samples + 1);
@@ -189,9 +189,9 @@ impl Pool {
         for (all, run) in self.peaks.iter_mut().zip(peaks) {
             all.iter_mut().zip(run).for_each(|(all, peak)| all.push(peak));
         }
-        for (all, rated) in self.summaries.iter_mut().zip(&summary.estimates) {
-            let score = rated.score;
-            let expected = rated.expected.unwrap_or(f64::INFINITY);
+        for (all, scored) in self.summaries.iter_mut().zip(&summary.estimates) {
+            let score = scored.score;
+            let expected = scored.expected.unwrap_or(f64::INFINITY);
             all.push([score.settled.unwrap_or(f64::INFINITY), score.rms, score.worst, expected]);
         }
         if !summary.unsettled().is_empty() {
@@ -212,7 +212,7 @@ impl Pool {
         let Some(first) = self.first else {
             return Err(self.failure.unwrap_or(Failure::Stopped { at: 0.0 }));
         };
-        let course = |spans: Vec<Vec<f64>>| -> Course {
+        let course = |spans: Vec<Vec<f64>>| -> ErrorCourse {
             let sorted = spans.into_iter().map(|mut all| quantiles(&mut all, [0.1, 0.5, 0.9]));
             self.spans.ends.iter().copied().zip(sorted).collect()
         };
@@ -226,7 +226,7 @@ impl Pool {
             let unsettled = all.iter().fold(0, |count, row| count + u64::from(!row[0].is_finite()));
             Spread { estimate, settled: of(0), unsettled, rms: of(1), worst: of(2), expected: of(3) }
         };
-        let estimates = scenario.judged.iter().map(|judged| judged.estimate.clone());
+        let estimates = scenario.scored.iter().map(|scored| scored.estimate.clone());
         let ensemble = Ensemble {
             seed,
             runs,

@@ -53,11 +53,11 @@ impl Layout {
         let y = add(plant.y.iter().map(|output| output.symbol).collect());
         let own = add(baselines()
             .filter_map(|b| Some((&b.name.value, b.value.equations()?)))
-            .flat_map(|(name, b)| b.state.iter().map(|entry| rival_state(arena, name, &entry.name.value)))
+            .flat_map(|(name, b)| b.state.iter().map(|entry| baseline_state(arena, name, &entry.name.value)))
             .collect());
         let u = add(plant.u.clone());
         let hat = add(recovered.iter().map(|state| estimate(arena, &arena.name(*state))).collect());
-        let rivals = add(baselines().flat_map(|b| rival_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
+        let rivals = add(baselines().flat_map(|b| baseline_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
         let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
         let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
         let signals = add(signals.chain(courses).collect());
@@ -112,25 +112,25 @@ pub(crate) fn estimate(arena: &Arena, state: &str) -> Symbol {
 }
 
 /// A state of a baseline.
-pub(crate) fn rival_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
+pub(crate) fn baseline_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
     arena.generated(&format!("{baseline}.{state}"))
 }
 
 /// The states that a baseline estimates, with its estimates.
-pub(crate) fn rival_estimates(plant: &Plant, baseline: &Entry<Baseline>) -> Vec<(String, Symbol)> {
+pub(crate) fn baseline_estimates(plant: &Plant, baseline: &Entry<Baseline>) -> Vec<(String, Symbol)> {
     let arena = &plant.arena;
     let states: Vec<String> = match baseline.value.equations() {
         Some(equations) => equations.estimate.iter().map(|entry| entry.name.value.clone()).collect(),
         None => plant.x.iter().map(|state| arena.name(state.symbol)).collect(),
     };
     let estimate = |state: String| {
-        let symbol = rival_estimate(arena, &baseline.name.value, &state);
+        let symbol = baseline_estimate(arena, &baseline.name.value, &state);
         (state, symbol)
     };
     states.into_iter().map(estimate).collect()
 }
 
 /// A baseline's estimate of a state.
-pub(crate) fn rival_estimate(arena: &Arena, baseline: &str, state: &str) -> Symbol {
+pub(crate) fn baseline_estimate(arena: &Arena, baseline: &str, state: &str) -> Symbol {
     arena.generated(&format!("{baseline}.hat({state})"))
 }

@@ -10,7 +10,7 @@ pub(crate) mod layout;
 mod noise;
 pub(crate) mod ode;
 pub(crate) mod overrides;
-pub(crate) mod panel;
+pub(crate) mod panels;
 pub(crate) mod run;
 pub(crate) mod scenario;
 mod scope;

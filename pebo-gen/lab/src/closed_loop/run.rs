@@ -17,18 +17,18 @@ use super::growth::Growth;
 use super::layout::TIME;
 use super::ode::Flow;
 use super::ode::equation::Stuck;
-use super::scenario::{Judged, Scenario};
-use super::sensor::{Sensing, instant};
-use super::signal::Course;
+use super::scenario::{ScoredEstimate, Scenario};
+use super::sensor::{SensorState, instant};
+use super::signal::SignalCursor;
 use super::trace::Trace;
 use crate::figure::curve::Curve;
-use crate::observe::certainty::Following;
-use crate::observe::excitation::Watch;
+use crate::observe::certainty::CertaintyMonitor;
+use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
-use crate::observe::stepping::Stepping;
-use crate::score::Scoring;
-use crate::score::expected::Expected;
-use crate::summary::{Rated, Summary};
+use crate::observe::stepping::ObserverDriver;
+use crate::score::Scorer;
+use crate::score::expected::ExpectedErrors;
+use crate::summary::{EstimateScore, Summary};
 use crate::timing::real;
 
 /// How often progress is reported.
@@ -51,15 +51,15 @@ impl Scenario {
     /// Runs the loop, shows its table at each sample, and gives what it came to.
     pub(crate) fn follow(
         &self,
-        show: &mut dyn FnMut(u64, Shown<'_>),
+        show: &mut dyn FnMut(u64, Snapshot<'_>),
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Summary, Failure> {
-        let mut machine = Machine::start(self)?;
+        let mut machine = LoopState::start(self)?;
         let mut errors = Formulas::new(&self.errors);
-        let mut scores: Vec<Scoring> = self.judged.iter().map(|judged| Scoring::new(judged.period)).collect();
-        let (mut watch, mut expected) = (Watch::default(), Expected::default());
-        let mut certain = Following::new(&self.design.wanted);
-        let mut outside = vec![false; self.judged.len()];
+        let mut scores: Vec<Scorer> = self.scored.iter().map(|scored| Scorer::new(scored.period)).collect();
+        let (mut watch, mut expected) = (ExcitationMonitor::default(), ExpectedErrors::default());
+        let mut certain = CertaintyMonitor::new(&self.design.wanted);
+        let mut outside = vec![false; self.scored.len()];
         let samples = self.timing.samples;
         let stride = (samples / REPORTS).max(1);
         for sample in 0..=samples {
@@ -69,13 +69,13 @@ impl Scenario {
             machine.control()?;
             let table = &machine.table;
             let errors = errors.of(table);
-            for ((score, judged), error) in scores.iter_mut().zip(&self.judged).zip(errors) {
-                score.add(table[TIME], *error, table[judged.truth]);
+            for ((score, scored), error) in scores.iter_mut().zip(&self.scored).zip(errors) {
+                score.add(table[TIME], *error, table[scored.truth]);
             }
-            for (place, (outside, judged)) in outside.iter_mut().zip(&self.judged).enumerate() {
-                *outside |= judged.estimate.baseline.is_none() && self.design.is_outside(place, table[judged.truth]);
+            for (place, (outside, scored)) in outside.iter_mut().zip(&self.scored).enumerate() {
+                *outside |= scored.estimate.baseline.is_none() && self.design.is_outside(place, table[scored.truth]);
             }
-            show(sample, Shown { table, errors });
+            show(sample, Snapshot { table, errors });
             if sample % stride == 0 || sample == samples {
                 watch.look(table[TIME], &machine.stepping.observer.said());
                 let predicted = machine.stepping.standard_errors();
@@ -86,16 +86,16 @@ impl Scenario {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
-        let rated = |(place, (judged, score)): (usize, (&Judged, &Scoring))| {
+        let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
-            let own = judged.estimate.baseline.is_none();
+            let own = scored.estimate.baseline.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
-            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: outside[place] }
+            EstimateScore { estimate: scored.estimate.clone(), score, expected, step: scored.step, outside: outside[place] }
         };
         Ok(Summary {
             end: machine.table[TIME],
             samples,
-            estimates: self.judged.iter().zip(&scores).enumerate().map(rated).collect(),
+            estimates: self.scored.iter().zip(&scores).enumerate().map(rated).collect(),
             excitation: watch.excitation(&self.design.unknown_names),
             faults: machine.stepping.faults().clone(),
             dropped: machine.stepping.dropped(),
@@ -110,7 +110,7 @@ impl Scenario {
 
 /// What there is to see at a sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shown<'a> {
+pub(crate) struct Snapshot<'a> {
     /// All values.
     pub(crate) table: &'a [f64],
     /// The errors of the estimates.
@@ -137,15 +137,15 @@ impl Formulas {
 
 /// The loop at one sample.
 #[derive(Debug)]
-pub(crate) struct Machine<'a> {
+pub(crate) struct LoopState<'a> {
     scenario: &'a Scenario,
     /// All values, see [`Layout`](super::layout::Layout).
     pub(crate) table: Vec<f64>,
-    pub(crate) stepping: Stepping,
+    pub(crate) stepping: ObserverDriver,
     flow: Flow,
     growth: Growth,
-    sensing: Sensing<'a>,
-    signals: Vec<Course>,
+    sensing: SensorState<'a>,
+    signals: Vec<SignalCursor>,
     given: Formulas,
     measured: Formulas,
     rivals: Formulas,
@@ -153,7 +153,7 @@ pub(crate) struct Machine<'a> {
     control: Formulas,
 }
 
-impl<'a> Machine<'a> {
+impl<'a> LoopState<'a> {
     /// The loop at its first sample, before the first control.
     pub(crate) fn start(scenario: &'a Scenario) -> Result<Self, Failure> {
         let layout = &scenario.layout;
@@ -162,7 +162,7 @@ impl<'a> Machine<'a> {
         let mut machine = Self {
             scenario,
             table: vec![0.0; layout.symbols.len()],
-            stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
+            stepping: ObserverDriver::new(observer(&scenario.design).map_err(refused)?),
             sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
                 (&scenario.rates, Some(&scenario.slopes)),
@@ -285,7 +285,7 @@ impl<'a> Machine<'a> {
         self.table[layout.rivals.clone()].copy_from_slice(estimates);
         // The observer's first call gives its inputs and its step no effect.
         let y = &mut self.measured.values;
-        if self.stepping.observer.has_parts() {
+        if self.stepping.observer.admits_partial() {
             self.scenario.sensors.leave_out(sample, y);
         }
         let (before, after) = self.table.split_at_mut(layout.hat.start);
@@ -335,7 +335,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    fn take(&mut self, sample: u64, Shown { table, errors }: Shown<'_>) {
+    fn take(&mut self, sample: u64, Snapshot { table, errors }: Snapshot<'_>) {
         let timing = &self.scenario.timing;
         for (curve, value) in self.curves.iter_mut().zip(self.values.of(table)) {
             curve.add(sample, timing.samples, (table[TIME], *value));

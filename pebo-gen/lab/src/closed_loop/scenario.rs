@@ -15,11 +15,11 @@ use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_runtime::Fault;
 
-use super::baseline::{Rival, Sampled};
+use super::baseline::{ResolvedBaseline, NamedBaseline};
 use super::changed::{changed, told};
 use super::failure::Failure;
-use super::layout::{Layout, estimate, program, rival_estimate};
-use super::ode::switching::{Switched, Switches};
+use super::layout::{Layout, estimate, program, baseline_estimate};
+use super::ode::switching::{SwitchPrograms, Switches};
 use super::overrides::Overrides;
 use super::panel::{Panel, Panels};
 use super::scope::{Estimates, Names, Sight, View};
@@ -68,15 +68,15 @@ pub struct Scenario {
     /// Their derivatives by the state, by rows, with signs held.
     pub(crate) slopes: Program,
     /// The signs in them, if there are any.
-    pub(crate) switches: Option<Switched>,
+    pub(crate) switches: Option<SwitchPrograms>,
     /// The baselines' estimates.
     pub(crate) rivals: Program,
     /// Baselines that are fed samples, with where they write their estimates.
-    pub(crate) followers: Vec<(Range<usize>, Sampled)>,
+    pub(crate) followers: Vec<(Range<usize>, NamedBaseline)>,
     /// The inputs.
     pub(crate) control: Program,
     /// The estimates, those of the observer first.
-    pub(crate) judged: Vec<Judged>,
+    pub(crate) scored: Vec<ScoredEstimate>,
     /// Their errors.
     pub(crate) errors: Program,
     pub(crate) panels: Vec<Panel>,
@@ -93,7 +93,7 @@ pub struct Scenario {
 
 /// An estimate that is compared with the state that it is of.
 #[derive(Debug)]
-pub(crate) struct Judged {
+pub(crate) struct ScoredEstimate {
     pub(crate) estimate: Estimate,
     /// Where the state stands in the table.
     pub(crate) truth: usize,
@@ -205,13 +205,13 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names.asked(), derivation, &numbers, overrides.step, problems);
+        let design = Design::resolve(&names.request(), derivation, &numbers, overrides.step, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
         let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
-        let mut rivals: Vec<Rival> =
-            simulation.baselines.iter().filter_map(|entry| Rival::resolve(&names, entry, problems)).collect();
+        let mut rivals: Vec<ResolvedBaseline> =
+            simulation.baselines.iter().filter_map(|entry| ResolvedBaseline::resolve(&names, entry, problems)).collect();
         let truth = Truth::resolve(&names, problems);
         let start = start(&names, &truth, &rivals, problems);
         let rates = rates(&names, &truth, &rivals, problems);
@@ -251,8 +251,8 @@ impl Resolution<'_> {
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
-        let (judged, errors) =
-            judged((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &rivals);
+        let (scored, errors) =
+            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &rivals);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
@@ -272,7 +272,7 @@ impl Resolution<'_> {
             rivals: compile(&estimates)?,
             followers,
             control: compile(&control)?,
-            judged,
+            scored,
             errors: compile(&errors)?,
             curves: compile(&panels.values)?,
             panels: panels.panels,
@@ -296,7 +296,7 @@ fn moved(names: &Names) -> Option<String> {
 }
 
 /// x, y and the baselines' states at the start, where the inputs are still 0.
-fn start(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Vec<Expr> {
+fn start(names: &Names, truth: &Truth, rivals: &[ResolvedBaseline], problems: &mut Diagnostics) -> Vec<Expr> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol);
     let states: Vec<Symbol> = states.chain(plant.y.iter().map(|output| output.symbol)).collect();
@@ -335,7 +335,7 @@ fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr],
 }
 
 /// The rates of x, y and the baselines' states; of what is not integrated, 0.
-fn rates(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Option<Vec<Expr>> {
+fn rates(names: &Names, truth: &Truth, rivals: &[ResolvedBaseline], problems: &mut Diagnostics) -> Option<Vec<Expr>> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let rate = |symbol: Symbol, rate: Expr| if truth.gives(symbol) { arena.zero() } else { rate };
     let mut found: Vec<Expr> = plant.x.iter().map(|state| rate(state.symbol, state.rate.expr)).collect();
@@ -365,11 +365,11 @@ fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
 }
 
 /// The baselines that are fed samples, with where they write.
-fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range<usize>, Sampled)> {
+fn followers(plant: &Plant, layout: &Layout, rivals: &mut [ResolvedBaseline]) -> Vec<(Range<usize>, NamedBaseline)> {
     let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
-    let follower = |rival: &mut Rival| {
+    let follower = |rival: &mut ResolvedBaseline| {
         let sampled = rival.sampled.take()?;
-        let symbol = rival_estimate(&plant.arena, &rival.name, &first);
+        let symbol = baseline_estimate(&plant.arena, &rival.name, &first);
         let start = layout.symbols.iter().position(|known| *known == symbol)?;
         Some((start..start + plant.x.len(), sampled))
     };
@@ -413,18 +413,18 @@ fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
 }
 
 /// Every estimate with its error: those of the observer, then those of each baseline.
-pub(crate) fn judged(
+pub(crate) fn scored(
     (plant, table): (&Plant, &[Symbol]),
     periods: &Periods,
     hats: &Estimates,
-    rivals: &[Rival],
-) -> (Vec<Judged>, Vec<Expr>) {
+    rivals: &[ResolvedBaseline],
+) -> (Vec<ScoredEstimate>, Vec<Expr>) {
     let arena = &plant.arena;
     let of_rivals = rivals.iter().flat_map(|rival| {
         let estimates = rival
             .estimates
             .iter()
-            .map(|(state, _)| (state.clone(), arena.of_symbol(rival_estimate(arena, &rival.name, state))));
+            .map(|(state, _)| (state.clone(), arena.of_symbol(baseline_estimate(arena, &rival.name, state))));
         estimates.map(|estimate| (Some(rival.name.clone()), estimate))
     });
     let own = hats.iter().cloned().map(|estimate| (None, estimate));
@@ -435,18 +435,18 @@ pub(crate) fn judged(
             let program = program(arena, &[], &[*periods.get(&symbol)?], Span::NOWHERE).ok()?;
             Interpreter::new(&program).evaluate(|_| f64::NAN).next()
         };
-        Some(Judged {
+        Some(ScoredEstimate {
             estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
             truth: table.iter().position(|known| *known == symbol)?,
             period: number(&periods.of_angles),
             step: number(&periods.steps),
         })
     };
-    let judged = baselines.into_iter().zip(&estimates).filter_map(judge).collect();
-    (judged, errors(plant, periods, &estimates))
+    let scored = baselines.into_iter().zip(&estimates).filter_map(judge).collect();
+    (scored, errors(plant, periods, &estimates))
 }
 
-fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String> {
+fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[ResolvedBaseline]) -> Vec<String> {
     let arena = &plant.arena;
     let states = plant.x.iter().map(|state| state.symbol);
     let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());

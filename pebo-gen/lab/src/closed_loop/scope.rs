@@ -11,8 +11,8 @@ use pebo_design::model::{Entry, Equations, Formula, Model, Simulation};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::layout::{rival_state, shown, time};
-use crate::observe::request::Asked;
+use super::layout::{baseline_state, shown, time};
+use crate::observe::request::Request;
 
 /// Estimates by the state's name.
 pub(crate) type Estimates = Vec<(String, Expr)>;
@@ -62,14 +62,14 @@ impl<'a> Names<'a> {
         numbers.chain(entries).chain(signals).chain(feedback).min().unwrap_or(self.model.name.span)
     }
 
-    /// The observer of the model, asked for by its simulation.
-    pub(crate) fn asked(&self) -> Asked<'a> {
-        Asked { model: self.model, plant: self.plant, section: self.section(), who: "the simulation" }
+    /// The observer of the model, request for by its simulation.
+    pub(crate) fn request(&self) -> Request<'a> {
+        Request { model: self.model, plant: self.plant, section: self.section(), who: "the simulation" }
     }
 
     /// The values of the parameters that have one.
     pub(crate) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
-        self.asked().numbers()
+        self.request().numbers()
     }
 
     /// What the sensor of an output showed last.
@@ -118,7 +118,7 @@ impl<'a> Names<'a> {
         }
         if let Some((name, baseline)) = view.own {
             for state in &baseline.state {
-                let symbol = rival_state(arena, name, &state.name.value);
+                let symbol = baseline_state(arena, name, &state.name.value);
                 scope.define(&state.name.value, arena.of_symbol(symbol));
             }
         }
@@ -177,7 +177,7 @@ impl<'a> Names<'a> {
         for definition in &self.simulation.define {
             problems.keep(lower(arena, &scope, &definition.value));
         }
-        self.asked().check(problems);
+        self.request().check(problems);
         for unmeasured in &self.plant.w {
             let name = arena.name(*unmeasured);
             if !self.simulation.signals.iter().any(|signal| signal.name.value == name) {

@@ -78,8 +78,8 @@ impl Sensors {
     }
 
     /// The sensors before their first sample, with chance by this seed. Instants closer than `slack` are one.
-    pub(crate) fn begin(&self, seed: u64, slack: f64) -> Sensing<'_> {
-        Sensing { sensors: self, seed, slack, past: vec![VecDeque::new(); self.each.len()] }
+    pub(crate) fn begin(&self, seed: u64, slack: f64) -> SensorState<'_> {
+        SensorState { sensors: self, seed, slack, past: vec![VecDeque::new(); self.each.len()] }
     }
 }
 
@@ -96,7 +96,7 @@ pub(crate) fn deviation(simulation: &Simulation, output: &str) -> f64 {
 
 /// Sensors at work.
 #[derive(Debug)]
-pub(crate) struct Sensing<'a> {
+pub(crate) struct SensorState<'a> {
     sensors: &'a Sensors,
     seed: u64,
     slack: f64,
@@ -104,7 +104,7 @@ pub(crate) struct Sensing<'a> {
     past: Vec<VecDeque<(f64, f64)>>,
 }
 
-impl Sensing<'_> {
+impl SensorState<'_> {
     /// Takes the outputs at the instant `t` of a sample. Writes what the sensors show if it arrives, and says whether it
     /// does; perfect ones show nothing.
     pub(crate) fn sample(&mut self, sample: u64, t: f64, outputs: &[f64], shown: &mut [f64]) -> bool {

@@ -39,8 +39,8 @@ impl Signal {
     }
 
     /// The signal, ready to be followed from its start.
-    pub(crate) fn course(&self) -> Course {
-        Course {
+    pub(crate) fn course(&self) -> SignalCursor {
+        SignalCursor {
             pieces: self.pieces.iter().map(|(from, program)| (*from, Interpreter::new(program))).collect(),
             active: 0,
         }
@@ -49,12 +49,12 @@ impl Signal {
 
 /// A signal that is followed through time.
 #[derive(Debug)]
-pub(crate) struct Course {
+pub(crate) struct SignalCursor {
     pieces: Vec<(f64, Interpreter)>,
     active: usize,
 }
 
-impl Course {
+impl SignalCursor {
     /// Moves on to the formula that holds at `t`; time does not run backwards.
     pub(crate) fn select(&mut self, t: f64) {
         while self.pieces.get(self.active + 1).is_some_and(|(from, _)| *from <= t) {

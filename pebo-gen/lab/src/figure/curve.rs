@@ -89,7 +89,7 @@ impl Span {
 
 /// The same of a curve that is as long as it turns out to be: its spans grow with it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Growing {
+pub(crate) struct GrowingCurve {
     /// At most twice as many as a curve of known length has.
     spans: Vec<Span>,
     /// A span has two to this power samples.
@@ -97,7 +97,7 @@ pub(crate) struct Growing {
     samples: u64,
 }
 
-impl Growing {
+impl GrowingCurve {
     /// Adds the next sample.
     pub(crate) fn add(&mut self, point: (f64, f64)) {
         let mut index = self.samples >> self.doublings;

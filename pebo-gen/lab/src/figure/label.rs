@@ -7,12 +7,12 @@ use pebo_design::model::formula::{Formula, Operator, Term};
 /// A label: pieces of text in a row.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Label {
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<Piece>,
 }
 
 /// A piece of a label.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
+pub(crate) struct Piece {
     pub(crate) text: String,
     /// Variables are slanted; numbers, functions and signs are not.
     pub(crate) italic: bool,
@@ -197,7 +197,7 @@ impl Label {
         }
         match self.runs.last_mut() {
             Some(last) if last.italic == italic && last.height == height => last.text.push_str(text),
-            _ => self.runs.push(Run { text: text.to_owned(), italic, height }),
+            _ => self.runs.push(Piece { text: text.to_owned(), italic, height }),
         }
     }
 }

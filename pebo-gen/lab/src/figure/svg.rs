@@ -176,7 +176,7 @@ pub(super) fn width(label: &Label, size: f64) -> f64 {
         '\u{1100}'.. => 1.0,
         _ => 0.65,
     };
-    let run = |run: &crate::figure::label::Run| {
+    let run = |run: &crate::figure::label::Piece| {
         let scale = if run.height == Height::Line { size } else { INDEX * size };
         run.text.chars().map(em).sum::<f64>() * scale
     };

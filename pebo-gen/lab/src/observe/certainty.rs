@@ -47,7 +47,7 @@ pub(crate) struct Wanted {
 
 /// The certainty as time goes on.
 #[derive(Debug)]
-pub(crate) struct Following<'a> {
+pub(crate) struct CertaintyMonitor<'a> {
     wanted: &'a [Wanted],
     known: State,
     /// The one that is known least, with its standard error.
@@ -61,7 +61,7 @@ enum State {
     Lost(f64),
 }
 
-impl<'a> Following<'a> {
+impl<'a> CertaintyMonitor<'a> {
     /// Before the first sample.
     pub(crate) fn new(wanted: &'a [Wanted]) -> Self {
         Self { wanted, known: State::NotYet, weakest: None }
@@ -94,13 +94,13 @@ impl<'a> Following<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Certainty, Following, Wanted};
+    use super::{Certainty, CertaintyMonitor, Wanted};
 
     #[test]
     fn certainty_comes_and_goes_with_the_standard_errors() {
         let wanted = |estimate: usize, state: &str, error| Wanted { estimate, state: state.to_owned(), error };
         let both = [wanted(1, "p", 0.1), wanted(0, "q", 2.0)];
-        let mut following = Following::new(&both);
+        let mut following = CertaintyMonitor::new(&both);
         following.look(0.0, None);
         let unknown = Certainty::NotYet { weakest: "p".to_owned(), error: None, wanted: 0.1 };
         assert_eq!(following.certainty(), Some(unknown));
@@ -116,6 +116,6 @@ mod tests {
         assert_eq!(following.certainty(), Some(Certainty::Lost { since: 4.0, weakest: "p".to_owned() }));
         following.look(5.0, Some(&[1.9, 0.1]));
         assert_eq!(following.certainty(), Some(Certainty::Converged { since: 5.0 }));
-        assert_eq!(Following::new(&[]).certainty(), None);
+        assert_eq!(CertaintyMonitor::new(&[]).certainty(), None);
     }
 }

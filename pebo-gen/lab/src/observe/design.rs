@@ -8,7 +8,7 @@ use pebo_design::program::Program;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::certainty::Wanted;
-use super::request::Asked;
+use super::request::Request;
 use super::setup::Settings;
 use super::sizes::LARGEST;
 use crate::closed_loop::layout::program;
@@ -56,18 +56,18 @@ pub(crate) struct Design {
 impl Design {
     /// The design of an accepted derivation; `numbers` are the values of the parameters.
     pub(crate) fn resolve(
-        asked: &Asked,
+        request: &Request,
         derivation: &Derivation,
         numbers: &BTreeMap<Symbol, Expr>,
         period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
-        let plant = asked.plant;
-        let span = asked.model.name.span;
+        let plant = request.plant;
+        let span = request.model.name.span;
         let cascade = derivation.cascade.result.as_ref()?;
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        let settings = Settings::resolve(asked, derivation, (regression, inverse), period, problems)?;
+        let settings = Settings::resolve(request, derivation, (regression, inverse), period, problems)?;
         let arena = &plant.arena;
         let regression = &regression.computed(arena, settings.output || settings.gate.is_some());
         let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {
@@ -112,7 +112,7 @@ impl Design {
                 .chain(regression.eta.iter().map(|unknown| arena.print(*unknown)))
                 .collect(),
             settings,
-            wanted: wanted(asked, inverse, problems),
+            wanted: wanted(request, inverse, problems),
         };
         problems.keep(design.admit_size(span))?;
         Some(design)
@@ -151,10 +151,10 @@ impl Design {
 }
 
 /// The standard errors that are wanted of the recovered states; of a state that is not recovered none can be had.
-fn wanted(asked: &Asked, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
-    let arena = &asked.plant.arena;
+fn wanted(request: &Request, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
+    let arena = &request.plant.arena;
     let mut found = Vec::new();
-    for entry in &asked.model.observer.wanted {
+    for entry in &request.model.observer.wanted {
         let state = &entry.name.value;
         let Some(estimate) = inverse.x.iter().position(|(recovered, _)| arena.name(*recovered) == *state) else {
             let message = format!("`wanted` names `{state}`, which this observer does not recover");

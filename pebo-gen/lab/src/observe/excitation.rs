@@ -51,7 +51,7 @@ pub enum Excitation {
 
 /// The sum of squares of the regressors.
 #[derive(Clone, Debug)]
-pub(crate) struct Information<const N: usize> {
+pub(crate) struct Gramian<const N: usize> {
     unknowns: usize,
     forgetting: f64,
     gramian: SMatrix<f64, N, N>,
@@ -59,7 +59,7 @@ pub(crate) struct Information<const N: usize> {
     is_measure: bool,
 }
 
-impl<const N: usize> Information<N> {
+impl<const N: usize> Gramian<N> {
     /// Before any data; forgetting is in 1/s.
     pub(crate) fn new(unknowns: usize, forgetting: f64) -> Self {
         Self { unknowns, forgetting, gramian: SMatrix::zeros(), is_measure: forgetting > 0.0 }
@@ -92,11 +92,11 @@ impl<const N: usize> Information<N> {
     }
 
     /// What the data say of each component.
-    pub(crate) fn said(&self) -> Said {
+    pub(crate) fn said(&self) -> ComponentInformation {
         let data: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)]).collect();
         let shares = (0..self.unknowns).map(|i| if data[i] > 0.0 { self.share(i, &data) } else { 0.0 }).collect();
         // What nobody forgets, nobody loses.
-        Said { data: if self.is_measure { data } else { Vec::new() }, shares }
+        ComponentInformation { data: if self.is_measure { data } else { Vec::new() }, shares }
     }
 
     /// What is said of a component that the others do not explain, 0 to 1.
@@ -133,7 +133,7 @@ impl<const N: usize> Information<N> {
 
 /// What the data say of each component of the unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Said {
+pub(crate) struct ComponentInformation {
     /// What the others do not explain, 0 to 1.
     shares: Vec<f64>,
     /// The sum of squares; empty where nothing is forgotten.
@@ -142,7 +142,7 @@ pub(crate) struct Said {
 
 /// The excitation as time goes on.
 #[derive(Debug, Default)]
-pub(crate) struct Watch {
+pub(crate) struct ExcitationMonitor {
     state: State,
     weakest: usize,
     /// Of each component the variance that was just enough when all were determined first, in units of the noise.
@@ -157,12 +157,12 @@ enum State {
     Lost(f64),
 }
 
-impl Watch {
+impl ExcitationMonitor {
     /// Looks at the data at this instant.
     ///
-    /// Lost is judged by what the data say of a component, and not by its share alone: where the extension starts again
+    /// Lost is scored by what the data say of a component, and not by its share alone: where the extension starts again
     /// from the estimate, old data of a state that dies out become ever more certain, and all others small beside them.
-    pub(crate) fn look(&mut self, t: f64, said: &Said) {
+    pub(crate) fn look(&mut self, t: f64, said: &ComponentInformation) {
         let least = |values: &mut dyn Iterator<Item = f64>| {
             values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
@@ -201,7 +201,7 @@ impl Watch {
 mod tests {
     use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-    use super::{Excitation, Information, Watch};
+    use super::{Excitation, Gramian, ExcitationMonitor};
 
     /// One equation `[cos a, sin a, 0]` of two unknowns, padded.
     fn row(angle: f64) -> SMatrix<f64, 3, 3> {
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn the_share_is_what_the_others_do_not_explain() {
-        let mut information = Information::<3>::new(2, 0.0);
+        let mut information = Gramian::<3>::new(2, 0.0);
         for angle in [0.3, 0.9] {
             information.add(&row(angle), 0.1);
         }
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn excitation_comes_and_goes_with_the_data() {
-        let (mut information, mut watch) = (Information::<3>::new(2, 1.0), Watch::default());
+        let (mut information, mut watch) = (Gramian::<3>::new(2, 1.0), ExcitationMonitor::default());
         let mut states = Vec::new();
         for step in 0..600_u32 {
             let t = f64::from(step) * 0.1;
@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_component_without_data_is_named() {
-        let (mut information, mut watch) = (Information::<3>::new(2, 0.0), Watch::default());
+        let (mut information, mut watch) = (Gramian::<3>::new(2, 0.0), ExcitationMonitor::default());
         information.add(&row(0.0), 1.0);
         watch.look(0.0, &information.said());
         assert_eq!(watch.excitation(&names()), Excitation::NotYet { weakest: "theta2".to_owned() });

@@ -19,21 +19,21 @@ use pebo_design::plant::settings::PATIENCE;
 use pebo_design::program::{Interpreter, Program};
 
 use super::design::Design;
-use super::excitation::Said;
-use super::information::Watched;
+use super::excitation::ComponentInformation;
+use super::monitored::MonitoredEstimator;
 use super::setup::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
-use super::uncertainty::{Interval, Told, Uncertainty};
-use super::window::Passage;
+use super::uncertainty::{Interval, NoiseModel, Uncertainty};
+use super::window::PaddedOperator;
 
 /// An observer of some size.
-pub(crate) trait Estimation: fmt::Debug {
+pub(crate) trait DynObserver: fmt::Debug {
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An output
-    /// that is missing is NaN, where [`has_parts`](Self::has_parts).
+    /// that is missing is NaN, where [`admits_partial`](Self::admits_partial).
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
 
     /// Whether a sample may lack outputs.
-    fn has_parts(&self) -> bool;
+    fn admits_partial(&self) -> bool;
 
     /// The standard errors of the estimates, if the last sample is so many seconds old; nothing where they are not known.
     fn standard_errors(&self, age: f64) -> Option<Vec<f64>>;
@@ -45,7 +45,7 @@ pub(crate) trait Estimation: fmt::Debug {
     fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
 
     /// What the data so far say of each component of the unknown.
-    fn said(&self) -> Said;
+    fn said(&self) -> ComponentInformation;
 
     /// The coordinates z that a value of theta gives with the extension as it is.
     #[cfg(test)]
@@ -53,7 +53,7 @@ pub(crate) trait Estimation: fmt::Debug {
 }
 
 /// The observer of a design, of the smallest size that has room for it: a step takes time as the square of that, or its cube.
-pub(crate) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+pub(crate) fn observer(design: &Design) -> Result<Box<dyn DynObserver>, Fault> {
     const FEW: usize = SMALL[0];
     const SOME: usize = SMALL[1];
     let size = design.size();
@@ -68,20 +68,20 @@ pub(crate) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
     }
 }
 
-fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn DynObserver>, Fault> {
     if design.settings.output {
-        return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
+        return Ok(Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?));
     }
     Ok(match (design.is_generalised, design.is_static) {
-        (false, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
-        (false, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
-        (true, false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
-        (true, true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
+        (false, false) => Box::new(PaddedObserver::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (false, true) => Box::new(PaddedObserver::<Integrator<f64, N>, Static, N>::new(design)?),
+        (true, false) => Box::new(PaddedObserver::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (true, true) => Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?),
     })
 }
 
 /// The kind of a regression, as a type.
-trait Kind: fmt::Debug + 'static {
+trait RegressionType: fmt::Debug + 'static {
     const REGRESSION: Regression;
 }
 
@@ -90,16 +90,16 @@ struct Dynamic;
 #[derive(Debug)]
 struct Static;
 
-impl Kind for Dynamic {
+impl RegressionType for Dynamic {
     const REGRESSION: Regression = Regression::Dynamic;
 }
 
-impl Kind for Static {
+impl RegressionType for Static {
     const REGRESSION: Regression = Regression::Static;
 }
 
 /// An extension that shows what the regression depends on.
-trait Known<const N: usize>: Extension<f64, N> + 'static {
+trait ReadableExtension<const N: usize>: Extension<f64, N> + 'static {
     /// A number of an extension of `n` coordinates: one of these, or behind them of its fundamental matrix by rows.
     fn value(&self, n: usize, place: usize) -> f64;
 
@@ -107,7 +107,7 @@ trait Known<const N: usize>: Extension<f64, N> + 'static {
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
 }
 
-impl<const N: usize> Known<N> for Integrator<f64, N> {
+impl<const N: usize> ReadableExtension<N> for Integrator<f64, N> {
     fn value(&self, _: usize, place: usize) -> f64 {
         self.chi()[place]
     }
@@ -117,7 +117,7 @@ impl<const N: usize> Known<N> for Integrator<f64, N> {
     }
 }
 
-impl<const N: usize> Known<N> for Fundamental<f64, N> {
+impl<const N: usize> ReadableExtension<N> for Fundamental<f64, N> {
     fn value(&self, n: usize, place: usize) -> f64 {
         if place < n { self.xi()[place] } else { self.psi()[((place - n) / n, (place - n) % n)] }
     }
@@ -150,7 +150,7 @@ struct Derived<X, K, const N: usize> {
     kind: PhantomData<(X, K)>,
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
         let nz = design.coordinates;
         Self {
@@ -230,7 +230,7 @@ fn rows<const N: usize>(values: &mut impl Iterator<Item = f64>, columns: usize) 
     padded
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
     type Scalar = f64;
     type Extension = X;
     type X = SVector<Self::Scalar, N>;
@@ -312,13 +312,13 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
 }
 
 /// The promise is kept by those who ask for re-basing: a design has it only where it is proved.
-impl<X: Known<N>, K: Kind, const N: usize> pebo_runtime::Rebase<N, N, N, N, N> for Derived<X, K, N> {}
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> pebo_runtime::Rebase<N, N, N, N, N> for Derived<X, K, N> {}
 
 type Inner<X, K, const N: usize> =
-    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
+    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, MonitoredEstimator<N>, N>, N, N, N, N, N, N, PaddedOperator<N>>;
 
 /// The runtime's observer at size N.
-struct Padded<X: Known<N>, K: Kind, const N: usize> {
+struct PaddedObserver<X: ReadableExtension<N>, K: RegressionType, const N: usize> {
     observer: Inner<X, K, N>,
     /// What refuses outliers.
     gate: Option<Gate<f64>>,
@@ -338,12 +338,12 @@ struct Padded<X: Known<N>, K: Kind, const N: usize> {
     uncertainty: Option<Uncertainty<N>>,
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator = Bounded::new(Watched::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
-        let passage = Passage::new(settings)?;
+        let estimator = Bounded::new(MonitoredEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
+        let passage = PaddedOperator::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
@@ -398,14 +398,14 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
 }
 
 /// What is told of the noise of a design, where that of a sample is elsewhere than in its row too.
-fn told(design: &Design, whole: bool) -> Option<Told> {
+fn told(design: &Design, whole: bool) -> Option<NoiseModel> {
     let settings = &design.settings;
     let (Some(Prediction::Noise(noise)), Operator::Sampled(weights), Estimator::LeastSquares(Covariance { start, .. })) =
         (&settings.prediction, &settings.operator, &settings.estimator)
     else {
         return None;
     };
-    Some(Told {
+    Some(NoiseModel {
         sensors: noise.sensors.clone(),
         weights: weights.clone(),
         start: start.clone(),
@@ -432,13 +432,13 @@ fn limits<const N: usize>(known: &setup::Limits) -> Result<Limits<f64, N, N>, Fa
     }
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> fmt::Debug for PaddedObserver<X, K, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Padded").field(self.observer.model()).finish()
+        f.debug_tuple("PaddedObserver").field(self.observer.model()).finish()
     }
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for PaddedObserver<X, K, N> {
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         if let Some(limits) = &self.limits {
             // What is missing is in no range: it is left out, or refused for that.
@@ -469,7 +469,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         Ok(())
     }
 
-    fn has_parts(&self) -> bool {
+    fn admits_partial(&self) -> bool {
         self.rows.is_some()
     }
 
@@ -501,7 +501,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         self.restarts
     }
 
-    fn said(&self) -> Said {
+    fn said(&self) -> ComponentInformation {
         self.observer.estimator().estimator().said()
     }
 

@@ -4,7 +4,7 @@ pub(crate) mod certainty;
 pub(crate) mod design;
 pub(crate) mod estimator;
 pub(crate) mod excitation;
-mod information;
+mod monitored;
 pub(crate) mod interpreted;
 pub(crate) mod request;
 pub(crate) mod setup;

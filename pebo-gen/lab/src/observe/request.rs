@@ -9,7 +9,7 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// What an observer is made from, for a run of some kind.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked<'a> {
+pub(crate) struct Request<'a> {
     pub(crate) model: &'a Model,
     pub(crate) plant: &'a Plant,
     /// Where the run is described, for what is missing there.
@@ -18,7 +18,7 @@ pub(crate) struct Asked<'a> {
     pub(crate) who: &'static str,
 }
 
-impl Asked<'_> {
+impl Request<'_> {
     /// The values of the parameters that have one.
     pub(crate) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
         let given = self.plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.clone()?)));

@@ -2,14 +2,14 @@
 
 use pebo_runtime::{Drift, Hold};
 
-use crate::settings::{Known, Prediction, Tuned, start};
+use crate::settings::{KnownNumbers, Prediction, DerivedSettings, start};
 use pebo_cas::Rational;
 use pebo_design::analysis::{Derivation, LeftInverse, Regression};
 use pebo_design::model::{self, Decimal, Observer};
 use pebo_design::plant::settings;
 use pebo_design::source::{Code, Diagnostic, Diagnostics};
 
-use super::request::Asked;
+use super::request::Request;
 use super::sizes::{LONGEST, MOST_MIXED};
 
 /// Settings of an observer, with a value for each unknown where there may be one.
@@ -37,7 +37,7 @@ pub(crate) struct Settings {
     /// What samples may be.
     pub(crate) limits: Option<Limits>,
     /// What the settings were derived from, if the author did not choose them.
-    pub(crate) known: Option<Known>,
+    pub(crate) known: Option<KnownNumbers>,
     /// How the errors of the estimates are predicted, where the numbers are known.
     pub(crate) prediction: Option<Prediction>,
 }
@@ -91,28 +91,28 @@ pub(crate) type FiniteTime = settings::FiniteTime<f64>;
 impl Settings {
     /// The settings of a model with this regression; what is missing in the section is reported.
     pub(crate) fn resolve(
-        asked: &Asked,
+        request: &Request,
         derivation: &Derivation,
         (regression, inverse): (&Regression, &LeftInverse),
         period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let (unknowns, states) = (regression.eta.len(), inverse.x.len());
-        let written = &asked.model.observer;
+        let written = &request.model.observer;
         if !written.has_gains() {
-            return Self::of_known(asked, (derivation, states), period, problems);
+            return Self::of_known(request, (derivation, states), period, problems);
         }
-        let mut section = Section { asked, written, problems };
+        let mut section = Section { request, written, problems };
         section.operator();
         section.estimator(unknowns);
-        let sizes = (unknowns, asked.plant.phi.len(), states);
+        let sizes = (unknowns, request.plant.phi.len(), states);
         let read = |number: &Decimal| Some(number.to_f64());
         let resolved = settings::Settings::resolve(written, sizes, read, section.problems)?;
         let mixes = matches!(resolved.estimator, Estimator::Drem { .. });
         if mixes && unknowns > MOST_MIXED {
             return None;
         }
-        let begun = if written.extension.is_empty() { start(asked.model, asked.plant, derivation) } else { None };
+        let begun = if written.extension.is_empty() { start(request.model, request.plant, derivation) } else { None };
         let begun = begun.map(|z| z.iter().map(Rational::to_f64).collect());
         Some(Self {
             operator: match resolved.operator {
@@ -132,7 +132,7 @@ impl Settings {
             within: bounds(resolved.within, states),
             chi_0: begun.unwrap_or(resolved.chi_0),
             gate: None,
-            limits: Limits::of(asked.model, read),
+            limits: Limits::of(request.model, read),
             known: None,
             prediction: None,
         })
@@ -140,16 +140,16 @@ impl Settings {
 
     /// The settings that known numbers come to: those of the emitted code.
     fn of_known(
-        asked: &Asked,
+        request: &Request,
         (derivation, states): (&Derivation, usize),
         period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let before = problems.has_errors();
-        let Some(tuned) = Tuned::of(asked.model, asked.plant, derivation, period, problems) else {
+        let Some(tuned) = DerivedSettings::of(request.model, request.plant, derivation, period, problems) else {
             if before || !problems.has_errors() {
-                let message = format!("{} needs the observer's numbers", asked.who);
-                problems.push(Diagnostic::error(Code::SimulationIncomplete, asked.section, message).help(
+                let message = format!("{} needs the observer's numbers", request.who);
+                problems.push(Diagnostic::error(Code::SimulationIncomplete, request.section, message).help(
                     "add `observer: {sensors: .., start: .., disturbance: ..}` with standard deviations:                      docs/estimators.md has examples",
                 ));
             }
@@ -165,7 +165,7 @@ impl Settings {
                     process_noise: process_noise.as_deref().map(all),
                 })
             }
-            // Known numbers come to least squares.
+            // KnownNumbers numbers come to least squares.
             _ => return None,
         };
         let chi_0 = all(&settings.chi_0);
@@ -187,7 +187,7 @@ impl Settings {
             estimator,
             chi_0,
             gate: settings.gate.as_ref().map(Rational::to_f64),
-            limits: Limits::of(asked.model, |number| Some(number.to_f64())),
+            limits: Limits::of(request.model, |number| Some(number.to_f64())),
             known: tuned.known,
             prediction: Some(tuned.prediction),
         })
@@ -213,15 +213,15 @@ fn whole(wanted: f64) -> Option<u32> {
 }
 
 struct Section<'a> {
-    asked: &'a Asked<'a>,
+    request: &'a Request<'a>,
     written: &'a Observer,
     problems: &'a mut Diagnostics,
 }
 
 impl Section<'_> {
     fn lacks(&mut self, what: &str, help: String) {
-        let message = format!("{} needs {what}", self.asked.who);
-        self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.asked.section, message).help(help));
+        let message = format!("{} needs {what}", self.request.who);
+        self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.request.section, message).help(help));
     }
 
     /// Reports that there is neither filter nor window, or no room for the window.
@@ -257,7 +257,7 @@ impl Section<'_> {
         let mixes = !matches!(name, Name::Gradient | Name::NormalisedGradient | Name::LeastSquares);
         if mixes && unknowns > MOST_MIXED {
             let message = format!("DREM of {unknowns} unknowns is too large to be simulated");
-            let place = self.written.estimator.as_ref().map_or(self.asked.section, |estimator| estimator.span);
+            let place = self.written.estimator.as_ref().map_or(self.request.section, |estimator| estimator.span);
             self.problems.push(Diagnostic::error(Code::SimulationUnsupported, place, message).help(format!(
                 "the simulator has room for {MOST_MIXED}: simulate the emitted code, or choose `least-squares`"
             )));

@@ -21,7 +21,7 @@ use super::sizes::{pad, padded};
 
 /// What is told of the noise that an observer has to do with, each with a value for every output or coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct NoiseModel {
     /// The standard deviations of the outputs' samples.
     pub(crate) sensors: Vec<f64>,
     /// Those of the rows of the regression, by which they are weighed.
@@ -46,12 +46,12 @@ pub(crate) struct Uncertainty<const N: usize> {
     rows: usize,
     measured: Vec<usize>,
     /// None before the first sample.
-    joint: Option<Joint<N>>,
+    joint: Option<JointCovariance<N>>,
 }
 
 /// Of the error of z, and of the noise of the last sample.
 #[derive(Clone, Copy, Debug)]
-struct Joint<const N: usize> {
+struct JointCovariance<const N: usize> {
     errors: SMatrix<f64, N, N>,
     /// The expectation of error times noise.
     both: SMatrix<f64, N, N>,
@@ -71,7 +71,7 @@ pub(crate) struct Interval<'a, const N: usize> {
 
 /// What an interval makes of errors, before its sample is taken: `F`, `G` and `E`, and the map `H` of the rows.
 #[derive(Clone, Copy, Debug)]
-struct Propagated<const N: usize> {
+struct Propagation<const N: usize> {
     of_errors: SMatrix<f64, N, N>,
     of_noise: SMatrix<f64, N, N>,
     of_sample: SMatrix<f64, N, N>,
@@ -79,7 +79,7 @@ struct Propagated<const N: usize> {
 }
 
 impl<const N: usize> Uncertainty<N> {
-    pub(crate) fn new(told: &Told) -> Self {
+    pub(crate) fn new(told: &NoiseModel) -> Self {
         Self {
             sensors: pad(&told.sensors),
             weights: padded(&told.weights, 1.0),
@@ -109,7 +109,7 @@ impl<const N: usize> Uncertainty<N> {
             let (seen, size) = (both * of_sample.transpose(), (self.rows, self.rows));
             errors.view_mut((0, 0), size).copy_from(&seen.view((0, 0), size));
         }
-        self.joint = Some(Joint { errors, both, noise });
+        self.joint = Some(JointCovariance { errors, both, noise });
     }
 
     /// Takes a step that went well, after which least squares have the covariance `root root^T` of z. A missing output has
@@ -127,8 +127,8 @@ impl<const N: usize> Uncertainty<N> {
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
-        let Some(Joint { errors, both, noise }) = self.joint else { return Ok(()) };
-        let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval)?;
+        let Some(JointCovariance { errors, both, noise }) = self.joint else { return Ok(()) };
+        let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval)?;
         let one = SMatrix::<f64, N, N>::identity();
         let (mut present, mut expected) = (one, SMatrix::<f64, N, N>::zeros());
         let mut weights = self.weights.map(|deviation| 1.0 / (deviation * deviation));
@@ -152,7 +152,7 @@ impl<const N: usize> Uncertainty<N> {
                 + by_noise * (both.transpose() * right[0].transpose() + noise * right[1].transpose())
                 + by_sample * sensors * right[2].transpose()
         };
-        self.joint = Some(Joint {
+        self.joint = Some(JointCovariance {
             errors: between(&to_errors, &to_errors) + told * drift * told.transpose(),
             both: between(&to_errors, &to_noise) + told * drift * expected.transpose(),
             noise: between(&to_noise, &to_noise) + expected * drift * expected.transpose(),
@@ -171,8 +171,8 @@ impl<const N: usize> Uncertainty<N> {
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
-        let Joint { errors, both, noise } = self.joint?;
-        let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
+        let JointCovariance { errors, both, noise } = self.joint?;
+        let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
         let (by_error, by_noise, by_sample) = (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
         let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
@@ -212,7 +212,7 @@ impl<const N: usize> Uncertainty<N> {
 
     /// The columns of a root of the covariance: by how much z and the outputs err together.
     fn columns(&self, age: f64) -> Option<Vec<(SVector<f64, N>, SVector<f64, N>)>> {
-        let Joint { errors, both, noise } = self.joint.as_ref()?;
+        let JointCovariance { errors, both, noise } = self.joint.as_ref()?;
         let errors = errors + SMatrix::from_diagonal(&(self.drift * age));
         let at = |i: usize, j: usize| match (i.checked_sub(N), j.checked_sub(N)) {
             (None, None) => errors[(i, j)],
@@ -242,7 +242,7 @@ impl<const N: usize> Uncertainty<N> {
         columns.iter().all(|(e, n)| e.iter().chain(n.iter()).all(|value| value.is_finite())).then_some(columns)
     }
 
-    fn propagated<M>(&self, model: &M, interval: &Interval<'_, N>) -> Result<Propagated<N>, Fault>
+    fn propagated<M>(&self, model: &M, interval: &Interval<'_, N>) -> Result<Propagation<N>, Fault>
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
@@ -261,7 +261,7 @@ impl<const N: usize> Uncertainty<N> {
         // The mean of both ends drives the flow over the interval; what it does in it, by the trapezoidal rule.
         let of_noise = (one + of_errors) * self.slopes(after, rate) * (0.25 * dt);
         let rows = model.regression(&M::Extension::new(SVector::zeros()), after, u).factor;
-        Ok(Propagated { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows })
+        Ok(Propagation { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows })
     }
 
     /// How the rows of a sample change with its outputs: what they show, less what is expected at z.

@@ -58,16 +58,16 @@ impl Residuals {
     }
 
     /// At work.
-    pub(super) fn start(&self) -> Course<'_> {
+    pub(super) fn start(&self) -> ResidualState<'_> {
         let nothing = vec![0.0; self.outputs.len()];
         let interpreter = Interpreter::new(&self.formulas);
-        Course { residuals: self, interpreter, end: nothing.clone(), start: None, values: nothing }
+        ResidualState { residuals: self, interpreter, end: nothing.clone(), start: None, values: nothing }
     }
 }
 
 /// Residuals from sample to sample.
 #[derive(Debug)]
-pub(super) struct Course<'a> {
+pub(super) struct ResidualState<'a> {
     residuals: &'a Residuals,
     interpreter: Interpreter,
     /// The formulas at the end of an interval.
@@ -77,7 +77,7 @@ pub(super) struct Course<'a> {
     values: Vec<f64>,
 }
 
-impl Course<'_> {
+impl ResidualState<'_> {
     /// Takes an accepted sample, at the end of an interval of `dt` seconds; `y` is part of the table, the inputs are those
     /// of the interval. Of the first sample nothing is known.
     pub(super) fn sample(&mut self, table: &[f64], y: &[f64], dt: f64) {

@@ -10,22 +10,22 @@
 use std::io::Write;
 use std::ops::ControlFlow;
 
-use crate::closed_loop::scenario::Judged;
+use crate::closed_loop::scenario::ScoredEstimate;
 use crate::closed_loop::trace::write_number;
 use crate::figure::Sheet;
 use crate::figure::label::Label;
-use crate::observe::certainty::Following;
-use crate::observe::excitation::Watch;
+use crate::observe::certainty::CertaintyMonitor;
+use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
-use crate::observe::stepping::Stepping;
-use crate::score::Scoring;
-use crate::score::expected::Expected;
-use crate::summary::{Rated, Summary};
+use crate::observe::stepping::ObserverDriver;
+use crate::score::Scorer;
+use crate::score::expected::ExpectedErrors;
+use crate::summary::{EstimateScore, Summary};
 use pebo_design::program::Interpreter;
 
 use super::clock::{Clock, Instant};
 use super::failure::Failure;
-use super::fault::{Faults, Kind};
+use super::fault::{RowFaults, RowFault};
 use super::log::{Blank, Log, Next};
 use super::panels::Curves;
 use super::replayed::{OutputResidual, Replayed};
@@ -50,14 +50,14 @@ impl Replay {
         estimates: Option<&mut dyn Write>,
         watch: &mut dyn FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<Replayed, Failure> {
-        let mut machine = Machine::start(self, estimates)?;
+        let mut machine = ReplayState::start(self, estimates)?;
         machine.header()?;
         loop {
             let next = machine.read(log)?;
             let line = match next {
                 Next::Row(line) => line,
                 Next::Cut(line) => {
-                    machine.faults.count(Kind::Cut, line);
+                    machine.faults.count(RowFault::Cut, line);
                     break;
                 }
                 Next::End => break,
@@ -75,7 +75,7 @@ impl Replay {
 }
 
 /// The observer at one row.
-struct Machine<'a, 'w> {
+struct ReplayState<'a, 'w> {
     replay: &'a Replay,
     clock: Clock,
     signals: Interpreter,
@@ -84,16 +84,16 @@ struct Machine<'a, 'w> {
     said: Vec<f64>,
     /// All values, see [`Layout`](super::layout::Layout).
     table: Vec<f64>,
-    stepping: Stepping,
-    residuals: residual::Course<'a>,
+    stepping: ObserverDriver,
+    residuals: residual::ResidualState<'a>,
     errors: (Interpreter, Vec<f64>),
-    faults: Faults,
+    faults: RowFaults,
     curves: Curves<'a>,
-    scores: Vec<Scoring>,
-    misfits: Vec<Scoring>,
-    watch: Watch,
-    expected: Expected,
-    certain: Following<'a>,
+    scores: Vec<Scorer>,
+    misfits: Vec<Scorer>,
+    watch: ExcitationMonitor,
+    expected: ExpectedErrors,
+    certain: CertaintyMonitor<'a>,
     rows: u64,
     samples: u64,
     /// The first instant, and that of the last accepted sample.
@@ -105,7 +105,7 @@ struct Machine<'a, 'w> {
     text: String,
 }
 
-impl<'a, 'w> Machine<'a, 'w> {
+impl<'a, 'w> ReplayState<'a, 'w> {
     fn start(replay: &'a Replay, estimates: Option<&'w mut dyn Write>) -> Result<Self, Failure> {
         let Replay { signals, layout, design, residuals, .. } = replay;
         Ok(Self {
@@ -115,17 +115,17 @@ impl<'a, 'w> Machine<'a, 'w> {
             cells: vec![0.0; signals.wanted.len()],
             said: vec![0.0; signals.program.outputs.len()],
             table: vec![0.0; layout.len()],
-            stepping: Stepping::new(observer(design).map_err(Failure::Refused)?),
+            stepping: ObserverDriver::new(observer(design).map_err(Failure::Refused)?),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
-            faults: Faults::default(),
+            faults: RowFaults::default(),
             curves: replay.panels.start(),
-            scores: replay.judged.iter().map(|judged| Scoring::new(judged.period)).collect(),
+            scores: replay.scored.iter().map(|scored| Scorer::new(scored.period)).collect(),
             // Of these none is small in itself: what is told is the last tenth.
-            misfits: residuals.outputs.iter().map(|_| Scoring::new(Some(0.0))).collect(),
-            watch: Watch::default(),
-            expected: Expected::default(),
-            certain: Following::new(&design.wanted),
+            misfits: residuals.outputs.iter().map(|_| Scorer::new(Some(0.0))).collect(),
+            watch: ExcitationMonitor::default(),
+            expected: ExpectedErrors::default(),
+            certain: CertaintyMonitor::new(&design.wanted),
             rows: 0,
             samples: 0,
             first: None,
@@ -141,12 +141,12 @@ impl<'a, 'w> Machine<'a, 'w> {
         let wanted = &replay.signals.wanted;
         // An output that is not there is no fault of an observer that leaves its row out.
         let is_part = |column: usize, blank| {
-            matches!(blank, Blank::Empty) && stepping.observer.has_parts() && replay.signals.of_outputs[column]
+            matches!(blank, Blank::Empty) && stepping.observer.admits_partial() && replay.signals.of_outputs[column]
         };
         let place = |column: usize| wanted.iter().position(|known| *known == column).unwrap_or_default();
         let mut count = |column, blank, line| {
             if !is_part(place(column), blank) {
-                faults.count(Kind::of_cell(place(column), blank), line);
+                faults.count(RowFault::of_cell(place(column), blank), line);
             }
         };
         log.next(wanted, cells, &mut count).map_err(Failure::Unreadable)
@@ -164,16 +164,16 @@ impl<'a, 'w> Machine<'a, 'w> {
             Instant::First(t) => (t, 1.0),
             Instant::Later { t, dt, gap } => {
                 if gap {
-                    self.faults.count(Kind::Gap, line);
+                    self.faults.count(RowFault::Gap, line);
                 }
                 (t, dt)
             }
             Instant::Backwards => {
-                self.faults.count(Kind::Backwards, line);
+                self.faults.count(RowFault::Backwards, line);
                 return Ok(());
             }
             Instant::Timeless => {
-                self.faults.count(Kind::Timeless, line);
+                self.faults.count(RowFault::Timeless, line);
                 return Ok(());
             }
         };
@@ -187,7 +187,7 @@ impl<'a, 'w> Machine<'a, 'w> {
             if value.is_finite() {
                 self.table[layout.u.start + input] = value;
             } else {
-                self.faults.count(Kind::Input(input), line);
+                self.faults.count(RowFault::Input(input), line);
             }
         }
         if accepted {
@@ -235,10 +235,10 @@ impl<'a, 'w> Machine<'a, 'w> {
         }
         let (errors, values) = &mut self.errors;
         errors.run(&self.table, values);
-        for ((score, judged), error) in self.scores.iter_mut().zip(&self.replay.judged).zip(values) {
+        for ((score, scored), error) in self.scores.iter_mut().zip(&self.replay.scored).zip(values) {
             // A cell without a number has been counted.
             if error.is_finite() {
-                score.add(t, *error, self.table[judged.truth]);
+                score.add(t, *error, self.table[scored.truth]);
             }
         }
         true
@@ -296,12 +296,12 @@ impl<'a, 'w> Machine<'a, 'w> {
             let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
             return Err(Failure::Silent { rows: self.rows, faults, refused });
         };
-        let rated = |((judged, score), place): ((&Judged, &Scoring), &usize)| {
+        let rated = |((scored, score), place): ((&ScoredEstimate, &Scorer), &usize)| {
             let score = score.finish();
             let expected = self.expected.since(score.since, *place);
-            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: false }
+            EstimateScore { estimate: scored.estimate.clone(), score, expected, step: scored.step, outside: false }
         };
-        let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
+        let misfit = |((output, _), score): (&(usize, bool), &Scorer)| OutputResidual {
             output: names.y[*output].clone(),
             unit: names.units[*output].clone(),
             score: score.finish(),
@@ -324,7 +324,7 @@ impl<'a, 'w> Machine<'a, 'w> {
             summary: Summary {
                 end: self.last,
                 samples: self.rows - 1,
-                estimates: self.replay.judged.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
+                estimates: self.replay.scored.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
                 excitation: self.watch.excitation(&design.unknown_names),
                 faults: self.stepping.faults().clone(),
                 dropped: 0,

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::closed_loop::layout::program;
-use crate::observe::request::Asked;
+use crate::observe::request::Request;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::formula::{Formula, PI};
 use pebo_design::model::{Entry, Recording, unknown_name};
@@ -33,11 +33,11 @@ pub(super) struct Signals {
 }
 
 impl Signals {
-    pub(super) fn resolve(asked: &Asked, log: &Log, problems: &mut Diagnostics) -> Option<Self> {
-        let written = asked.model.recording.clone().unwrap_or_default();
-        let columns = Columns::of(asked, log);
-        let mut pass = Pass { asked, log, written: &written, columns, problems };
-        let (plant, arena) = (asked.plant, &asked.plant.arena);
+    pub(super) fn resolve(request: &Request, log: &Log, problems: &mut Diagnostics) -> Option<Self> {
+        let written = request.model.recording.clone().unwrap_or_default();
+        let columns = Columns::of(request, log);
+        let mut pass = SignalResolver { request, log, written: &written, columns, problems };
+        let (plant, arena) = (request.plant, &request.plant.arena);
         let period = written.step.as_ref().map(|step| pass.period(step));
         let mut formulas = Vec::new();
         if period.is_none() {
@@ -60,7 +60,7 @@ impl Signals {
         let before = inputs - plant.y.len();
         let others = arena.symbols_of(&[&formulas[..before], &formulas[inputs..]].concat());
         let of_outputs = symbols.iter().map(|symbol| !others.contains(symbol)).collect();
-        let program = problems.keep(program(arena, &symbols, &formulas, asked.section))?;
+        let program = problems.keep(program(arena, &symbols, &formulas, request.section))?;
         Some(Self { wanted, program, period, measured, of_outputs })
     }
 }
@@ -75,8 +75,8 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(asked: &Asked, log: &Log) -> Self {
-        let arena = &asked.plant.arena;
+    fn of(request: &Request, log: &Log) -> Self {
+        let arena = &request.plant.arena;
         let symbols: Vec<Symbol> =
             (0..log.columns().len()).map(|place| arena.generated(&format!("column {}", place + 1))).collect();
         let mut places: BTreeMap<String, Option<usize>> = BTreeMap::new();
@@ -84,8 +84,8 @@ impl Columns {
             places.entry(name.clone()).and_modify(|other| *other = None).or_insert(Some(place));
         }
         let mut scope = Scope::new();
-        let numbers = asked.numbers();
-        let parameters = asked.plant.parameters.iter().map(|parameter| parameter.symbol);
+        let numbers = request.numbers();
+        let parameters = request.plant.parameters.iter().map(|parameter| parameter.symbol);
         let parameters: BTreeMap<String, Expr> =
             parameters.filter_map(|symbol| Some((arena.name(symbol), *numbers.get(&symbol)?))).collect();
         for (name, value) in &parameters {
@@ -106,15 +106,15 @@ impl Columns {
     }
 }
 
-struct Pass<'a> {
-    asked: &'a Asked<'a>,
+struct SignalResolver<'a> {
+    request: &'a Request<'a>,
     log: &'a Log<'a>,
     written: &'a Recording,
     columns: Columns,
     problems: &'a mut Diagnostics,
 }
 
-impl Pass<'_> {
+impl SignalResolver<'_> {
     /// The meaning of a formula; each of its names that is none is reported.
     fn formula(&mut self, formula: &Formula) -> Option<Expr> {
         let known: BTreeSet<&str> =
@@ -128,12 +128,12 @@ impl Pass<'_> {
         if !unknown.is_empty() {
             return None;
         }
-        self.problems.keep(lower(&self.asked.plant.arena, &self.columns.scope, formula))
+        self.problems.keep(lower(&self.request.plant.arena, &self.columns.scope, formula))
     }
 
     /// The period, a number above zero.
     fn period(&mut self, step: &Entry<Formula>) -> Option<(f64, f64)> {
-        let arena = &self.asked.plant.arena;
+        let arena = &self.request.plant.arena;
         let value = self.formula(&step.value)?;
         let number = arena.as_number(value).filter(|number| number.signum() > 0);
         if number.is_none() {
@@ -151,7 +151,7 @@ impl Pass<'_> {
             return self.formula(&entry.value);
         }
         let declared =
-            self.asked.plant.time.is_none() && self.asked.model.names().any(|name| name.value == Recording::T);
+            self.request.plant.time.is_none() && self.request.model.names().any(|name| name.value == Recording::T);
         if let Some(column) = self.column(Recording::T).filter(|_| !declared) {
             return Some(column);
         }
@@ -186,13 +186,13 @@ impl Pass<'_> {
     /// The column of this name.
     fn column(&self, name: &str) -> Option<Expr> {
         let place = (*self.columns.places.get(name)?)?;
-        Some(self.asked.plant.arena.of_symbol(self.columns.symbols[place]))
+        Some(self.request.plant.arena.of_symbol(self.columns.symbols[place]))
     }
 
     fn lacks(&mut self, what: &str, help: &str) {
         let message = format!("{} does not say {what}", self.log.name());
         self.problems.push(
-            Diagnostic::error(Code::RecordingIncomplete, self.asked.section, message).note(self.listed()).help(help),
+            Diagnostic::error(Code::RecordingIncomplete, self.request.section, message).note(self.listed()).help(help),
         );
     }
 

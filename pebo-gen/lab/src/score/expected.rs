@@ -2,14 +2,14 @@
 
 /// What was expected at some instants.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Expected {
+pub(crate) struct ExpectedErrors {
     instants: Vec<(f64, Vec<f64>)>,
 }
 
 /// More instants than that are thinned out.
 const MOST: usize = 4096;
 
-impl Expected {
+impl ExpectedErrors {
     /// Takes what is expected at an instant, if that is known.
     pub(crate) fn add(&mut self, t: f64, errors: Option<Vec<f64>>) {
         let Some(errors) = errors else { return };

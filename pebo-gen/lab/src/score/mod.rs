@@ -52,7 +52,7 @@ pub struct Score {
 
 /// The errors of an estimate so far.
 #[derive(Clone, Debug)]
-pub(super) struct Scoring {
+pub(super) struct Scorer {
     /// What a hundredth is meant of, if that is no magnitude of the state.
     period: Option<f64>,
     largest: f64,
@@ -99,7 +99,7 @@ impl Span {
     }
 }
 
-impl Scoring {
+impl Scorer {
     /// Before the first sample; an angle has its period.
     pub(super) fn new(period: Option<f64>) -> Self {
         Self { period, largest: 0.0, stairs: Vec::new(), spans: Vec::new(), width: 1, last: (0.0, 0.0), first: None }
@@ -172,11 +172,11 @@ impl Scoring {
 
 #[cfg(test)]
 mod tests {
-    use super::{Score, Scoring};
+    use super::{Score, Scorer};
 
     /// The score of an error over `count + 1` instants from 0 to 10.
     fn score(count: u32, period: Option<f64>, error: impl Fn(f64) -> f64, truth: impl Fn(f64) -> f64) -> Score {
-        let mut scoring = Scoring::new(period);
+        let mut scoring = Scorer::new(period);
         for sample in 0..=count {
             let t = 10.0 * f64::from(sample) / f64::from(count);
             scoring.add(t, error(t), truth(t));

@@ -14,9 +14,9 @@ use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::derived::Tuned;
+use super::derived::DerivedSettings;
 use super::digits::rounded;
-use super::kind::Kind;
+use super::kind::ObserverKind;
 use super::magnitude::Deviations;
 use super::point::Point;
 #[cfg(feature = "simulate")]
@@ -24,7 +24,7 @@ use super::prediction::{Noise, Prediction};
 use super::spread::Slopes;
 use super::start::beginning;
 #[cfg(feature = "simulate")]
-use crate::settings::words::Known;
+use crate::settings::words::KnownNumbers;
 
 /// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
 pub(crate) const BANDWIDTH: f64 = 0.1;
@@ -39,17 +39,17 @@ pub(super) fn derive(
     derivation: &Derivation,
     period: Option<f64>,
     problems: &mut Diagnostics,
-) -> Option<Tuned> {
+) -> Option<DerivedSettings> {
     let can_rebase = derivation.can_rebase(plant);
     let kind = kind(model, plant, derivation, problems)?;
-    if let Some(hold) = model.observer.hold.as_ref().filter(|_| kind != Kind::Filtered) {
+    if let Some(hold) = model.observer.hold.as_ref().filter(|_| kind != ObserverKind::Filtered) {
         problems.push(idle_hold(plant, hold.span));
         return None;
     }
     let frame = frame(model, plant, derivation, problems)?;
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
-    let formulas = Formulas::of(plant, derivation, kind == Kind::Output || frame.gate.is_some())?;
+    let formulas = Formulas::of(plant, derivation, kind == ObserverKind::Output || frame.gate.is_some())?;
     let said = Point::of(model, plant);
     let asked = model.observer.known();
     if let Some(lacking) = said.lacks(&formulas.needed(plant)) {
@@ -69,26 +69,26 @@ pub(super) fn derive(
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     let Coordinates { covariance, mut drift, noise } = coordinates;
     #[cfg(feature = "simulate")]
-    let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
+    let known = KnownNumbers::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
     let mut chi_0 = start;
     let (operator, covariance, noise) = match kind {
-        Kind::Output => {
+        ObserverKind::Output => {
             let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
             drift.splice(0..0, of_rows.iter().copied());
-            let of_rows = heard(&formulas.rates, &point, &deviations, period, &of_rows)?;
+            let of_rows = with_sensor_noise(&formulas.rates, &point, &deviations, period, &of_rows)?;
             // The first sample is where the outputs begin.
             let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
             chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
             (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
         }
-        Kind::Sampled => {
+        ObserverKind::Sampled => {
             let [covariance, noise] = formulas.of_unknowns(&point, [&covariance, &noise])?;
             (Operator::Sampled(rows), covariance, noise)
         }
-        Kind::Filtered => {
+        ObserverKind::Filtered => {
             let Some(period) = period else {
                 if let Some(asked) = asked {
                     problems.push(no_period(plant, asked));
@@ -105,8 +105,8 @@ pub(super) fn derive(
     };
     let settings = Settings {
         operator,
-        output: kind == Kind::Output,
-        expected: if kind == Kind::Output { expected(plant, derivation) } else { None },
+        output: kind == ObserverKind::Output,
+        expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
         straight: frame.straight,
         estimator: Estimator::LeastSquares(Covariance {
             start,
@@ -123,10 +123,10 @@ pub(super) fn derive(
     };
     #[cfg(feature = "simulate")]
     let prediction = {
-        let is_heard = is_heard(plant, derivation, &formulas, kind);
-        Prediction::of(kind, is_heard, can_rebase, Noise { sensors: deviations.sensors, drift })
+        let is_elsewhere = is_elsewhere(plant, derivation, &formulas, kind);
+        Prediction::of(kind, is_elsewhere, can_rebase, Noise { sensors: deviations.sensors, drift })
     };
-    Some(Tuned {
+    Some(DerivedSettings {
         settings,
         #[cfg(feature = "simulate")]
         known: Some(known.predicted(&prediction)),
@@ -138,12 +138,12 @@ pub(super) fn derive(
 /// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
 /// the left inverse.
 #[cfg(feature = "simulate")]
-fn is_heard(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: Kind) -> bool {
+fn is_elsewhere(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: ObserverKind) -> bool {
     let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
     let y = plant.y.iter().map(|output| output.symbol).collect();
     let left_inverse = derivation.left_inverse.result.as_ref();
     let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
-    recovered || depends(&formulas.flow) || (kind == Kind::Output && depends(&formulas.rates))
+    recovered || depends(&formulas.flow) || (kind == ObserverKind::Output && depends(&formulas.rates))
 }
 
 /// Variances of the coordinates.
@@ -169,7 +169,7 @@ impl Coordinates {
         let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
         let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
         let drift = formulas.phi.variances(point, &drifts)?;
-        let noise = heard(&formulas.flow, point, deviations, period, &drift)?;
+        let noise = with_sensor_noise(&formulas.flow, point, deviations, period, &drift)?;
         let written = frame.process_noise.as_ref().map(all);
         Some(Self {
             covariance: frame.covariance.as_ref().map_or(at_start, all),
@@ -180,7 +180,7 @@ impl Coordinates {
 }
 
 /// Variances with what the noise of samples adds to rates, a sample for a period.
-fn heard(
+fn with_sensor_noise(
     rates: &Slopes,
     point: &Point,
     deviations: &Deviations,
@@ -218,15 +218,15 @@ fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (O
 }
 
 /// What the regression admits and the section asks for.
-fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Kind> {
+fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<ObserverKind> {
     let regression = derivation.regression.result.as_ref()?;
     let is_static = regression.kind == RegressionKind::Static;
     let written = model.observer.form.as_ref();
     let Some(form) = written.filter(|form| form.value == Form::Output) else {
         return Some(match written {
-            _ if is_static => Kind::Sampled,
-            None if derivation.can_rebase(plant) => Kind::Output,
-            _ => Kind::Filtered,
+            _ if is_static => ObserverKind::Sampled,
+            None if derivation.can_rebase(plant) => ObserverKind::Output,
+            _ => ObserverKind::Filtered,
         });
     };
     let refused = |message: String, help: &str| Diagnostic::error(Code::SettingConflict, form.span, message).help(help);
@@ -241,7 +241,7 @@ fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Di
             "remove `form`: it takes a regression that is affine in z, with theta itself as its unknown",
         )
     } else {
-        return Some(Kind::Output);
+        return Some(ObserverKind::Output);
     };
     problems.push(problem);
     None
@@ -307,7 +307,7 @@ struct Formulas {
     /// Its rate, or what a static regression says to be zero, by y.
     rates: Slopes,
     /// How these slopes change with the unknowns, of each row.
-    bends: Vec<Expr>,
+    curvatures: Vec<Expr>,
     /// The unknowns, by theta.
     unknowns: Slopes,
     eta: Vec<Symbol>,
@@ -360,7 +360,7 @@ impl Formulas {
         Some(Self {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
             flow: Slopes::new(plant, &flow, &y),
-            bends: if is_static { rates.iter().flat_map(bent).collect() } else { Vec::new() },
+            curvatures: if is_static { rates.iter().flat_map(bent).collect() } else { Vec::new() },
             held: Slopes::new(plant, &held, &y),
             rates: Slopes::new(plant, &rates, &y),
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
@@ -371,7 +371,7 @@ impl Formulas {
 
     /// What must have numbers: all slopes, and phi itself, at which most of them are taken.
     fn needed(&self, plant: &Plant) -> Vec<Expr> {
-        let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.bends];
+        let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.curvatures];
         let mut needed: Vec<Expr> = slopes.into_iter().flatten().copied().collect();
         let here = plant.z.iter().chain(&self.eta).chain(&plant.chi).chain(&plant.xi).copied().collect();
         if needed.iter().any(|slope| plant.arena.depends_on(*slope, &here)) {
@@ -391,19 +391,19 @@ impl Formulas {
     fn deviations(&self, point: &Point, sensors: &[f64], covariance: &[f64]) -> Option<Vec<f64>> {
         let rows = if self.is_static { &self.rates } else { &self.held };
         let variances = rows.variances(point, sensors)?;
-        let bends = point.values(&self.bends)?;
+        let curvatures = point.values(&self.curvatures)?;
         let width = sensors.len() * self.eta.len();
         let deviation = |(row, variance): (usize, f64)| {
             if variance > 0.0 {
                 return variance.sqrt();
             }
             // Where the plant is, its outputs say nothing: away from there they do.
-            let bend = |(place, bend): (usize, &f64)| {
+            let curvature = |(place, curvature): (usize, &f64)| {
                 let (sensor, unknown) = (place / self.eta.len(), place % self.eta.len());
                 let spread = covariance.get(unknown).copied().unwrap_or(1.0);
-                (bend * sensors[sensor]).powi(2) * spread
+                (curvature * sensors[sensor]).powi(2) * spread
             };
-            let around: f64 = bends.iter().skip(row * width).take(width).enumerate().map(bend).sum();
+            let around: f64 = curvatures.iter().skip(row * width).take(width).enumerate().map(curvature).sum();
             if around > 0.0 { around.sqrt() } else { 1.0 }
         };
         Some(variances.into_iter().enumerate().map(deviation).collect())

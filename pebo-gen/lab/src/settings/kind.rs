@@ -2,7 +2,7 @@
 
 /// What the observer of known numbers is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ObserverKind {
     /// The outputs themselves as the regressand.
     Output,
     /// A static regression, sample by sample.

@@ -19,7 +19,7 @@ const START: f64 = 10.0;
 const SAMPLES: f64 = 1000.0;
 
 /// A state that has a rate drifts by this part of that: its rate says the rest.
-const MOVED: f64 = 0.02;
+const DRIFT: f64 = 0.02;
 
 /// Or as much as it would if all the summands of its rate erred by this part for so long; but by no more than its start may
 /// be wrong by. Summands that cancel, as those of a converter with a small inductance, would say that nothing is known of
@@ -78,7 +78,7 @@ impl Deviations {
                     return Some(size / root);
                 }
                 let erring = if rate.is_finite() { (RATE * rate * root).min(START * size / root) } else { 0.0 };
-                Some((MOVED * size / root).max(erring))
+                Some((DRIFT * size / root).max(erring))
             }
             None => Some(0.0),
         };

@@ -37,7 +37,7 @@ use pebo_design::plant::settings::{Limits, cannot_rebase};
 use pebo_design::plant::{Plant, Settings};
 use pebo_design::source::Diagnostics;
 
-pub use derived::Tuned;
+pub use derived::DerivedSettings;
 pub(crate) use start::start;
 
 #[cfg(feature = "simulate")]
@@ -45,9 +45,9 @@ pub(crate) use derive::BANDWIDTH;
 #[cfg(feature = "simulate")]
 pub(crate) use prediction::Prediction;
 #[cfg(feature = "simulate")]
-pub use words::{Known, Numbers, Value};
+pub use words::{KnownNumbers, Numbers, Value};
 
-impl Tuned {
+impl DerivedSettings {
     /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what
     /// it says is reported. `period` is that of the samples in seconds, where the model does not say it.
     pub fn of(

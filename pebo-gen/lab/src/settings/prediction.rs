@@ -1,6 +1,6 @@
 //! How far the errors of an observer follow from the numbers that are known.
 
-use super::kind::Kind;
+use super::kind::ObserverKind;
 
 /// How the standard errors of estimates follow from the numbers that are known.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,10 +25,10 @@ pub(crate) struct Noise {
 impl Prediction {
     /// That of an observer, with whether noise is heard elsewhere than in its row, whether the extension follows the
     /// estimate, and the noise.
-    pub(super) fn of(kind: Kind, is_heard: bool, can_rebase: bool, noise: Noise) -> Self {
+    pub(super) fn of(kind: ObserverKind, is_elsewhere: bool, can_rebase: bool, noise: Noise) -> Self {
         match kind {
-            Kind::Filtered => Self::None(FILTERED),
-            _ if !is_heard => Self::Covariance,
+            ObserverKind::Filtered => Self::None(FILTERED),
+            _ if !is_elsewhere => Self::Covariance,
             _ if can_rebase => Self::Noise(noise),
             _ => Self::None(ACCUMULATES),
         }

@@ -14,7 +14,7 @@ use super::point::Point;
 
 /// Parts of the state that the plant is said to start with which the extension may start from, the first that will do: not
 /// the state itself before all others, which the observer is to find.
-const PARTS: [f64; 4] = [0.5, 2.0, 0.9, 1.0];
+const SHARES: [f64; 4] = [0.5, 2.0, 0.9, 1.0];
 
 /// Of so many states, all signs are tried at a distance of 1 from zero.
 const MOST_SIGNS: usize = 6;
@@ -60,7 +60,7 @@ pub(super) fn beginning(said: &Point, plant: &Plant, derivation: &Derivation) ->
     };
     let origin = of_state(&vec![0.0; x.len()]);
     let known: Option<Vec<f64>> = x.iter().map(|state| said.of_symbol(*state)).collect();
-    let near = known.into_iter().flat_map(|state| PARTS.map(|part| state.iter().map(|value| part * value).collect()));
+    let near = known.into_iter().flat_map(|state| SHARES.map(|part| state.iter().map(|value| part * value).collect()));
     let signs = (0..1_usize << x.len().min(MOST_SIGNS)).map(|signs| -> Vec<f64> {
         (0..x.len()).map(|place| if signs >> place.min(MOST_SIGNS) & 1 == 1 { -1.0 } else { 1.0 }).collect()
     });

@@ -1,4 +1,4 @@
-//! Known numbers in, settings out; and what does not go together.
+//! KnownNumbers numbers in, settings out; and what does not go together.
 
 use pebo_cas::Rational;
 use pebo_design::analysis::Derivation;
@@ -7,7 +7,7 @@ use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Operator, Rebase, Settings};
 use pebo_design::source::{Diagnostic, Diagnostics, Source};
 
-use super::Tuned;
+use super::DerivedSettings;
 
 const CUK: &str = "
 model: cuk
@@ -33,7 +33,7 @@ fn tuned(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
     let plant = Plant::resolve(&model).unwrap();
     let derivation = Derivation::derive(&plant);
     let mut problems = Diagnostics::new();
-    let tuned = Tuned::of(&model, &plant, &derivation, None, &mut problems);
+    let tuned = DerivedSettings::of(&model, &plant, &derivation, None, &mut problems);
     (tuned.map(|tuned| tuned.settings), problems.into_vec())
 }
 

@@ -5,13 +5,13 @@ use serde::Serialize;
 use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 
-use super::kind::Kind;
+use super::kind::ObserverKind;
 use super::magnitude::Deviations;
 use super::prediction::Prediction;
 
 /// What is known of sensors, start and disturbances, with what was derived of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Known {
+pub struct KnownNumbers {
     /// What the observer is, in words.
     pub observer: String,
     /// Each kind of number with its values.
@@ -42,12 +42,12 @@ pub struct Value {
     pub unit: Option<String>,
 }
 
-impl Known {
+impl KnownNumbers {
     pub(super) fn new(
         plant: &Plant,
         model: &Model,
         deviations: &Deviations,
-        (kind, rebased): (Kind, bool),
+        (kind, rebased): (ObserverKind, bool),
         [covariance, noise]: [&[f64]; 2],
     ) -> Self {
         let arena = &plant.arena;
@@ -78,10 +78,10 @@ impl Known {
         drifts.extend(named(&y, &deviations.of_outputs, root).into_iter().filter(|drift| drift.value > 0.0));
         let numbers = |what: &str, assumed, values| Numbers { what: what.to_owned(), assumed, values };
         let observer = match (kind, rebased) {
-            (Kind::Output, _) => "output form, a Kalman filter of the transformed plant",
-            (Kind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
-            (Kind::Sampled, false) => "least squares of samples",
-            (Kind::Filtered, _) => "least squares through a filter",
+            (ObserverKind::Output, _) => "output form, a Kalman filter of the transformed plant",
+            (ObserverKind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
+            (ObserverKind::Sampled, false) => "least squares of samples",
+            (ObserverKind::Filtered, _) => "least squares through a filter",
         };
         let silent = written.known().is_none_or(|(key, _)| key == "form");
         Self {

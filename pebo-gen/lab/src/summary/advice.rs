@@ -7,7 +7,7 @@
 
 use pebo_design::source::{Code, Diagnostic, Span, listed};
 
-use super::{Rated, Summary, short};
+use super::{EstimateScore, Summary, short};
 use crate::observe::excitation::Excitation;
 use crate::observe::setup::Estimator;
 use crate::score::SETTLED;
@@ -41,7 +41,7 @@ pub(crate) fn advise(
         let message = "the recording does not determine all estimates";
         return unexcited(Diagnostic::warning(Code::NotConverged, where_said, message), summary).filter(|_| is_blind);
     };
-    let names = listed(unsettled.iter().map(|rated| rated.estimate.state.as_str()));
+    let names = listed(unsettled.iter().map(|scored| scored.estimate.state.as_str()));
     let message = match unsettled.len() {
         1 => format!("the estimate of {names} has not settled to 1 % within {} s", short(summary.end)),
         _ => format!("the estimates of {names} have not settled to 1 % within {} s", short(summary.end)),
@@ -63,8 +63,8 @@ pub(crate) fn advise(
         diagnostic
             .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples + 1))
             .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
-    } else if let Some(rated) = unsettled.iter().find(|rated| rated.outside) {
-        let state = &rated.estimate.state;
+    } else if let Some(scored) = unsettled.iter().find(|scored| scored.outside) {
+        let state = &scored.estimate.state;
         diagnostic
             .note(format!(
                 "`{state}` itself is beyond the bounds of `within` in this run, and its estimate is kept within them"
@@ -72,8 +72,8 @@ pub(crate) fn advise(
             .help(format!("widen the bounds of `{state}` under `within`, or start the plant within them"))
     } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
         diagnostic
-    } else if let Some((rated, steps, step)) = unsettled.iter().find_map(|rated| steps_away(rated)) {
-        let state = &rated.estimate.state;
+    } else if let Some((scored, steps, step)) = unsettled.iter().find_map(|scored| steps_away(scored)) {
+        let state = &scored.estimate.state;
         let count = if steps.abs() > 1.0 { format!("{} steps", steps.abs()) } else { "one step".to_owned() };
         diagnostic
             .note(format!("the estimate of `{state}` is {count} of {} off, which the outputs do not show", short(step)))
@@ -123,18 +123,18 @@ pub(crate) fn advise(
 }
 
 /// The standard error that the observer expects, if the errors are no larger: then nothing else is wrong.
-fn explained(rated: &Rated) -> Option<f64> {
-    rated.expected.filter(|expected| rated.score.rms <= *expected)
+fn explained(scored: &EstimateScore) -> Option<f64> {
+    scored.expected.filter(|expected| scored.score.rms <= *expected)
 }
 
 /// The number of steps that an estimate rests away from its state, and their length, where the outputs show the state only
 /// up to multiples of these.
-fn steps_away(rated: &Rated) -> Option<(&Rated, f64, f64)> {
-    let (step, error) = (rated.step?.abs(), rated.score.last);
+fn steps_away(scored: &EstimateScore) -> Option<(&EstimateScore, f64, f64)> {
+    let (step, error) = (scored.step?.abs(), scored.score.last);
     let count = (error / step).round();
     // What an angle has settled to, and on average too: it was no moment on the way.
     let rests = |error: f64| (error.abs() - count.abs() * step).abs() <= SETTLED * step;
-    (count != 0.0 && rests(error) && rests(rated.score.rms)).then_some((rated, count, step))
+    (count != 0.0 && rests(error) && rests(scored.score.rms)).then_some((scored, count, step))
 }
 
 /// With what there is to say of data that do not determine the unknown.

@@ -11,7 +11,7 @@ use super::score::Score;
 use crate::observe::certainty::Certainty;
 use crate::observe::excitation::Excitation;
 use crate::score::faults::Faults;
-use crate::settings::{Known, Numbers, Value};
+use crate::settings::{KnownNumbers, Numbers, Value};
 
 /// What a run comes to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,7 +21,7 @@ pub struct Summary {
     /// The samples after the first.
     pub samples: u64,
     /// The estimates of the model's observer, then those of each baseline.
-    pub estimates: Vec<Rated>,
+    pub estimates: Vec<EstimateScore>,
     /// What the data of the model's observer were good for.
     pub excitation: Excitation,
     /// The samples that the model's observer refused.
@@ -38,12 +38,12 @@ pub struct Summary {
     /// Whether estimates are known as well as `wanted`; none where nothing is wanted.
     pub certainty: Option<Certainty>,
     /// What the settings of the model's observer were derived from; none where the author chose them.
-    pub known: Option<Known>,
+    pub known: Option<KnownNumbers>,
 }
 
 /// The estimate of a state, with how good it was.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rated {
+pub struct EstimateScore {
     /// Whose estimate, and of what.
     #[serde(flatten)]
     pub estimate: Estimate,
@@ -87,9 +87,9 @@ impl Estimate {
 
 impl Summary {
     /// The states whose estimates by the model's own observer did not settle.
-    pub fn unsettled(&self) -> Vec<&Rated> {
-        let own = self.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
-        own.filter(|rated| rated.score.settled.is_none()).collect()
+    pub fn unsettled(&self) -> Vec<&EstimateScore> {
+        let own = self.estimates.iter().filter(|scored| scored.estimate.baseline.is_none());
+        own.filter(|scored| scored.score.settled.is_none()).collect()
     }
 
     /// A table of the estimates, and a line each for excitation, faults and lost samples.
@@ -106,7 +106,7 @@ impl Summary {
         let headings =
             ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then", "expected"];
         let mut rows = vec![headings.map(str::to_owned)];
-        for Rated { estimate, score, expected, .. } in &self.estimates {
+        for EstimateScore { estimate, score, expected, .. } in &self.estimates {
             let settled = match score.settled {
                 Some(t) => format!("{} s", short(t)),
                 None => "no".to_owned(),
@@ -117,7 +117,7 @@ impl Summary {
             rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst), expected]);
         }
         // A column that nobody has anything in is none.
-        if self.estimates.iter().all(|rated| rated.expected.is_none()) {
+        if self.estimates.iter().all(|scored| scored.expected.is_none()) {
             for row in &mut rows {
                 row[6].clear();
             }

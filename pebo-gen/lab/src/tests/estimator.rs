@@ -8,7 +8,7 @@ use pebo_runtime::{
 
 use super::{CUK_CASE_2, resolve, run};
 use crate::Overrides;
-use crate::observe::estimator::Chosen;
+use crate::observe::estimator::PaddedEstimator;
 use crate::observe::setup::{self, Covariance, Extension};
 use crate::observe::sizes::{LARGEST, MOST_MIXED, padded};
 use crate::observe::window::Window;
@@ -70,7 +70,7 @@ fn same(settings: &setup::Estimator, plain: impl Estimator<f64, 3, 2>) {
 }
 
 fn same_of<const N: usize>(settings: &setup::Estimator, mut plain: impl Estimator<f64, 3, 2>) {
-    let mut erased = Chosen::<N>::new(settings).unwrap();
+    let mut erased = PaddedEstimator::<N>::new(settings).unwrap();
     for k in 0..50 {
         let (factor, known) = data(k);
         erased.advance(&padded_square(&factor), &padded(known.as_slice(), 0.0), 0.1).unwrap();

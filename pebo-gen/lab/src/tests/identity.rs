@@ -11,7 +11,7 @@ use std::path::Path;
 
 use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
-use crate::closed_loop::run::Machine;
+use crate::closed_loop::run::LoopState;
 use crate::{Overrides, Scenario};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -109,7 +109,7 @@ impl Loop {
         let state = 1..=states.len() + extension.len();
         let state = *state.start()..state.end() + 1;
 
-        let mut machine = Machine::start(&scenario).unwrap();
+        let mut machine = LoopState::start(&scenario).unwrap();
         let mut table = vec![0.0; symbols.len()];
         for (state, place) in states.iter().zip(1..) {
             let position = layout.symbols.iter().position(|symbol| symbol == state).unwrap();
@@ -162,7 +162,7 @@ impl Loop {
         let symbols = &layout.symbols[..layout.state.end];
         let z_of = lower(&plant.arena, symbols, &self.at_values(&plant.transform())).unwrap();
         let mut z_of = Interpreter::new(&z_of);
-        let mut machine = Machine::start(&scenario).unwrap();
+        let mut machine = LoopState::start(&scenario).unwrap();
         let mut z = vec![0.0; plant.phi.len()];
         z_of.run(&machine.table[..symbols.len()], &mut z);
         let theta: Vec<f64> = z.iter().zip(&scenario.design.settings.chi_0).map(|(z, chi)| z - chi).collect();

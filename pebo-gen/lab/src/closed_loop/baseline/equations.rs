@@ -9,7 +9,7 @@ use crate::closed_loop::scope::{Estimates, Names, Sight, View};
 
 /// The equations of a baseline, resolved.
 #[derive(Debug, Default)]
-pub(super) struct Motion {
+pub(super) struct ResolvedEquations {
     /// The rates of its states.
     pub(super) rates: Vec<Expr>,
     /// Its states at the start, in outputs.
@@ -19,7 +19,7 @@ pub(super) struct Motion {
 }
 
 /// Resolves a baseline of this name.
-pub(super) fn resolve(names: &Names, (name, baseline): (&str, &Equations), problems: &mut Diagnostics) -> Motion {
+pub(super) fn resolve(names: &Names, (name, baseline): (&str, &Equations), problems: &mut Diagnostics) -> ResolvedEquations {
     let arena = &names.plant.arena;
     let seen = View { sight: Sight::Inputs, own: Some((name, baseline)), ..View::default() };
 
@@ -37,5 +37,5 @@ pub(super) fn resolve(names: &Names, (name, baseline): (&str, &Equations), probl
         written.map_or(Some(arena.zero()), |entry| problems.keep(lower(arena, &scope, &entry.value)))
     };
     let start = baseline.state.iter().filter_map(&mut begin).collect();
-    Motion { rates, start, estimates }
+    ResolvedEquations { rates, start, estimates }
 }

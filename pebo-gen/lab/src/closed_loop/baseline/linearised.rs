@@ -19,7 +19,7 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// The programs of a plant in states and inputs.
 #[derive(Debug)]
-pub(super) struct Linearised {
+pub(super) struct LinearisedPlant {
     /// The states of x, then outputs that have rates.
     pub(super) states: Vec<Symbol>,
     /// The number of outputs.
@@ -35,7 +35,7 @@ pub(super) struct Linearised {
     values: Program,
 }
 
-impl Linearised {
+impl LinearisedPlant {
     /// The programs; `span` is where they are asked for.
     pub(super) fn resolve(names: &Names, (name, span): (&str, Span), problems: &mut Diagnostics) -> Option<Self> {
         let (plant, arena) = (names.plant, &names.plant.arena);
@@ -96,7 +96,7 @@ impl Linearised {
 
 /// The programs, with room for their values, padded to N.
 #[derive(Debug)]
-pub(super) struct Padded<const N: usize> {
+pub(super) struct PaddedPlant<const N: usize> {
     states: usize,
     outputs: usize,
     inputs: usize,
@@ -108,7 +108,7 @@ pub(super) struct Padded<const N: usize> {
 
 /// What a step does to states and their errors.
 #[derive(Clone, Debug)]
-pub(super) struct Step<const N: usize> {
+pub(super) struct Transition<const N: usize> {
     /// The states at its end.
     pub(super) state: SVector<f64, N>,
     /// The derivative of the states in the middle of the step by those at its start.
@@ -117,8 +117,8 @@ pub(super) struct Step<const N: usize> {
     pub(super) whole: SMatrix<f64, N, N>,
 }
 
-impl<const N: usize> Padded<N> {
-    pub(super) fn new(plant: &Linearised) -> Self {
+impl<const N: usize> PaddedPlant<N> {
+    pub(super) fn new(plant: &LinearisedPlant) -> Self {
         let most = plant.rates.outputs.len().max(plant.values.outputs.len());
         Self {
             states: plant.states.len(),
@@ -137,14 +137,14 @@ impl<const N: usize> Padded<N> {
     ///
     /// # Errors
     /// A step that is too long for an exponential.
-    pub(super) fn advance(&mut self, state: &SVector<f64, N>, u: &[f64], dt: f64) -> Result<Step<N>, Fault> {
+    pub(super) fn advance(&mut self, state: &SVector<f64, N>, u: &[f64], dt: f64) -> Result<Transition<N>, Fault> {
         let (h, lambda) = self.at(state, u, true);
         let flow = Flow { lambda, h };
         let mut motion = Fundamental::<f64, N>::new(SVector::zeros());
         motion.advance(&flow, &flow, dt / 2.0)?;
         let half = *motion.psi();
         motion.advance(&flow, &flow, dt / 2.0)?;
-        Ok(Step { state: state + motion.xi(), half, whole: *motion.psi() })
+        Ok(Transition { state: state + motion.xi(), half, whole: *motion.psi() })
     }
 
     /// The outputs, and their derivatives by the states.

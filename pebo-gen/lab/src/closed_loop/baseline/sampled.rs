@@ -1,6 +1,6 @@
 //! Baselines that are given by their name: observers of all states, fed sample by sample.
 //!
-//! In: the plant's model and the settings of the baseline. Out: a [`Sampled`] description, and of it a [`Follower`] that takes
+//! In: the plant's model and the settings of the baseline. Out: a [`NamedBaseline`] description, and of it a [`Follower`] that takes
 //! what the model's own observer takes, and writes an estimate of each unmeasured state.
 
 use std::fmt;
@@ -18,12 +18,12 @@ use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::gain::{self, Gain, Sample};
-use super::linearised::{Linearised, Padded};
+use super::linearised::{LinearisedPlant, PaddedPlant};
 
 /// An observer by name, ready to be built.
 #[derive(Debug)]
-pub(crate) struct Sampled {
-    plant: Linearised,
+pub(crate) struct NamedBaseline {
+    plant: LinearisedPlant,
     /// From the outputs to the estimates of x at the start.
     start: Program,
     rule: Rule,
@@ -37,11 +37,11 @@ enum Rule {
     Luenberger(Vec<f64>),
 }
 
-impl Sampled {
+impl NamedBaseline {
     /// Resolves a baseline that has no equations; what is wrong with it is reported.
     pub(super) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
         let place = (entry.name.value.as_str(), entry.name.span);
-        let plant = Linearised::resolve(names, place, problems)?;
+        let plant = LinearisedPlant::resolve(names, place, problems)?;
         let (rule, initial) = match &entry.value {
             Baseline::Equations(_) => return None,
             Baseline::Kalman(written) => (kalman(names, written, &plant, place, problems)?, &written.initial),
@@ -69,9 +69,9 @@ impl Sampled {
     /// The observer at its first sample, where the states are truly `x`.
     pub(crate) fn follower(&self, x: &[f64], y: &[f64], dt: f64) -> Box<dyn Follower> {
         match self.plant.states.len().max(self.plant.outputs) {
-            0..=4 => Box::new(Following::<4>::new(self, x, y, dt)),
-            5..=8 => Box::new(Following::<8>::new(self, x, y, dt)),
-            _ => Box::new(Following::<LARGEST>::new(self, x, y, dt)),
+            0..=4 => Box::new(PaddedFollower::<4>::new(self, x, y, dt)),
+            5..=8 => Box::new(PaddedFollower::<8>::new(self, x, y, dt)),
+            _ => Box::new(PaddedFollower::<LARGEST>::new(self, x, y, dt)),
         }
     }
 }
@@ -84,7 +84,7 @@ fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
 fn kalman(
     names: &Names,
     written: &Kalman,
-    plant: &Linearised,
+    plant: &LinearisedPlant,
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
@@ -119,7 +119,7 @@ fn kalman(
 
 fn luenberger(
     written: &Luenberger,
-    plant: &Linearised,
+    plant: &LinearisedPlant,
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
@@ -145,15 +145,15 @@ pub(crate) trait Follower: fmt::Debug {
 }
 
 #[derive(Debug)]
-struct Following<const N: usize> {
-    plant: Padded<N>,
+struct PaddedFollower<const N: usize> {
+    plant: PaddedPlant<N>,
     gain: Gain<N>,
     state: SVector<f64, N>,
     dt: f64,
 }
 
-impl<const N: usize> Following<N> {
-    fn new(sampled: &Sampled, x: &[f64], y: &[f64], dt: f64) -> Self {
+impl<const N: usize> PaddedFollower<N> {
+    fn new(sampled: &NamedBaseline, x: &[f64], y: &[f64], dt: f64) -> Self {
         let mut start = vec![0.0; x.len()];
         Interpreter::new(&sampled.start).run(y, &mut start);
         let mut state = pad::<N>(&start);
@@ -185,11 +185,11 @@ impl<const N: usize> Following<N> {
                 })
             }
         };
-        Self { plant: Padded::new(&sampled.plant), gain, state, dt }
+        Self { plant: PaddedPlant::new(&sampled.plant), gain, state, dt }
     }
 }
 
-impl<const N: usize> Follower for Following<N> {
+impl<const N: usize> Follower for PaddedFollower<N> {
     fn sample(&mut self, y: Option<&[f64]>, u: &[f64]) {
         let Ok(step) = self.plant.advance(&self.state, u, self.dt) else {
             self.state.fill(f64::NAN);

@@ -11,9 +11,9 @@ use pebo_runtime::nalgebra::{SMatrix, SVector};
 
 use pebo_design::program::Interpreter;
 
-use super::switching::Switching;
+use super::switching::SwitchState;
 use crate::closed_loop::layout::TIME;
-use crate::closed_loop::signal::Course;
+use crate::closed_loop::signal::SignalCursor;
 
 /// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
 pub(crate) const RELATIVE: f64 = 1e-10;
@@ -30,7 +30,7 @@ pub(crate) const SHORTEST: f64 = 1e-12;
 
 /// The integration came to a stand.
 #[derive(Clone, Debug)]
-pub(crate) struct Stuck {
+pub(crate) struct Standstill {
     /// The steps that it took.
     pub(crate) steps: u64,
     /// When, in seconds.
@@ -53,13 +53,13 @@ pub(crate) struct Rates {
     /// Where the integration began.
     pub(crate) origin: f64,
     /// Signals that the rates depend on, with their positions in the table.
-    pub(crate) signals: Vec<(usize, Course)>,
+    pub(crate) signals: Vec<(usize, SignalCursor)>,
     pub(crate) formulas: Interpreter,
     /// The derivatives of the formulas by the state, by rows.
     pub(crate) slopes: Option<Interpreter>,
     /// Whether the rates depend on more than the state.
     pub(crate) moves: bool,
-    pub(crate) switching: Option<Switching>,
+    pub(crate) switching: Option<SwitchState>,
     /// How far to either side of an instant signals are looked at for their rates, in seconds.
     pub(crate) aside: f64,
 }
@@ -121,10 +121,10 @@ impl Rates {
 }
 
 /// Told of each step's end, in seconds since the start, with the state there; whether to end there.
-pub(crate) type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
+pub(crate) type StepCallback<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
 
 /// What moves a state on.
-pub(crate) trait Solve: fmt::Debug {
+pub(crate) trait Solver: fmt::Debug {
     /// Moves the state on by `length` seconds in at most so many steps, or to where it is watched to end; gives the number of
     /// steps.
     fn solve(
@@ -133,8 +133,8 @@ pub(crate) trait Solve: fmt::Debug {
         state: &mut [f64],
         length: f64,
         most: u64,
-        watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck>;
+        watch: Option<&mut StepCallback<'_>>,
+    ) -> Result<u64, Standstill>;
 }
 
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {

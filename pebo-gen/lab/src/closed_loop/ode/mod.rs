@@ -17,15 +17,15 @@ use pebo_design::program::{Interpreter, Program};
 use super::layout::TIME;
 use super::signal::Signal;
 use crate::timing::real;
-use equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solve, Stuck};
-use explicit::Explicit;
-use stiff::Stiff;
-use switching::{Switched, Switching};
+use equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solver, Standstill};
+use explicit::ExplicitMethod;
+use stiff::StiffMethod;
+use switching::{SwitchPrograms, SwitchState};
 
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
-/// Explicit steps between two samples from which on the plant may be stiff.
+/// ExplicitMethod steps between two samples from which on the plant may be stiff.
 const MANY_STEPS: u64 = 1000;
 
 /// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
@@ -53,9 +53,9 @@ const ASIDE: f64 = 1e-4;
 #[derive(Debug)]
 pub(crate) struct Flow {
     rates: Equation,
-    solver: Box<dyn Solve>,
+    solver: Box<dyn Solver>,
     /// The method for stiff plants, until it has shown that it needs as many steps.
-    stiff: Option<Box<dyn Solve>>,
+    stiff: Option<Box<dyn Solver>>,
     /// Whether the plant has shown that it is stiff.
     is_stiff: bool,
     state: Range<usize>,
@@ -74,7 +74,7 @@ impl Flow {
     /// the `signals`, those that it reads are followed.
     pub(crate) fn new(
         (rates, slopes): (&Program, Option<&Program>),
-        switches: Option<&Switched>,
+        switches: Option<&SwitchPrograms>,
         state: Range<usize>,
         signals: &[(usize, &Signal)],
         slack: f64,
@@ -93,15 +93,15 @@ impl Flow {
             formulas: Interpreter::new(rates),
             slopes: slopes.map(Interpreter::new),
             moves: !read.is_empty() || rates.reads(TIME),
-            switching: switches.map(|switches| Switching::new(switches, (RELATIVE, ABSOLUTE))),
+            switching: switches.map(|switches| SwitchState::new(switches, (RELATIVE, ABSOLUTE))),
             aside: 0.0,
         };
         // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
-        let (solver, stiff): (Box<dyn Solve>, Box<dyn Solve>) = match state.len() {
-            0..=4 => (Box::new(Explicit::<4>::new()), Box::new(Stiff::<4>::new())),
-            5..=8 => (Box::new(Explicit::<8>::new()), Box::new(Stiff::<8>::new())),
-            9..=16 => (Box::new(Explicit::<16>::new()), Box::new(Stiff::<16>::new())),
-            _ => (Box::new(Explicit::<LARGEST>::new()), Box::new(Stiff::<LARGEST>::new())),
+        let (solver, stiff): (Box<dyn Solver>, Box<dyn Solver>) = match state.len() {
+            0..=4 => (Box::new(ExplicitMethod::<4>::new()), Box::new(StiffMethod::<4>::new())),
+            5..=8 => (Box::new(ExplicitMethod::<8>::new()), Box::new(StiffMethod::<8>::new())),
+            9..=16 => (Box::new(ExplicitMethod::<16>::new()), Box::new(StiffMethod::<16>::new())),
+            _ => (Box::new(ExplicitMethod::<LARGEST>::new()), Box::new(StiffMethod::<LARGEST>::new())),
         };
         let rates = Equation(RefCell::new(inner));
         // Where signs change, steps are short for another reason.
@@ -126,7 +126,7 @@ impl Flow {
     }
 
     /// Moves the state in `table` from the instant `from` to `to`, all other values held.
-    pub(crate) fn advance(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+    pub(crate) fn advance(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Standstill> {
         let mut at = from;
         while let Some(&jump) = self.jumps.get(self.next_jump).filter(|jump| **jump < to - self.slack) {
             self.next_jump += 1;
@@ -140,12 +140,12 @@ impl Flow {
         if taken > ENOUGH_STEPS && real(taken) * self.until > real(MOST_STEPS_IN_ALL) * to {
             let state = table[self.state.clone()].to_vec();
             let fast = self.rates.0.get_mut().fastest(&state);
-            return Err(Stuck { steps: taken, at: to, state, fast });
+            return Err(Standstill { steps: taken, at: to, state, fast });
         }
         Ok(())
     }
 
-    fn integrate(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+    fn integrate(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Standstill> {
         let rates = self.rates.0.get_mut();
         rates.table.copy_from_slice(table);
         rates.origin = from;
@@ -163,7 +163,7 @@ impl Flow {
     }
 
     /// Moves the state on by `length` seconds of smooth rates; gives the number of steps.
-    fn smooth(&mut self, state: &mut [f64], length: f64) -> Result<u64, Stuck> {
+    fn smooth(&mut self, state: &mut [f64], length: f64) -> Result<u64, Standstill> {
         let most = self.left.min(MOST_STEPS);
         let Some(stiff) = &mut self.stiff else { return self.solver.solve(&self.rates, state, length, most, None) };
         if self.is_stiff {
@@ -191,7 +191,7 @@ impl Flow {
     }
 
     /// Moves the state on from one change of a sign to the next.
-    fn switch(&mut self, state: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+    fn switch(&mut self, state: &mut [f64], from: f64, to: f64) -> Result<(), Standstill> {
         let length = to - from;
         let (mut at, mut reached, mut most) = (0.0, Vec::new(), self.left.min(MOST_STEPS));
         let left = most;

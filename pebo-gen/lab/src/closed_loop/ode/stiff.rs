@@ -10,7 +10,7 @@
 
 use pebo_runtime::nalgebra::{Const, DimMin, SMatrix, SVector};
 
-use super::equation::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solve, Stuck, Watch};
+use super::equation::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solver, Standstill, StepCallback};
 
 /// The diagonal of the method.
 const GAMMA: f64 = 0.25;
@@ -62,18 +62,18 @@ const APART: f64 = 1e-4;
 
 /// The method for states of up to so many components.
 #[derive(Debug)]
-pub(crate) struct Stiff<const N: usize> {
+pub(crate) struct StiffMethod<const N: usize> {
     /// The first step of the last interval, after which a fast part of the state follows a jump of the inputs.
     first: f64,
 }
 
-impl<const N: usize> Stiff<N> {
+impl<const N: usize> StiffMethod<N> {
     pub(crate) fn new() -> Self {
         Self { first: f64::INFINITY }
     }
 }
 
-impl<const N: usize> Solve for Stiff<N>
+impl<const N: usize> Solver for StiffMethod<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
@@ -83,8 +83,8 @@ where
         state: &mut [f64],
         length: f64,
         most: u64,
-        _watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck> {
+        _watch: Option<&mut StepCallback<'_>>,
+    ) -> Result<u64, Standstill> {
         let mut y = SVector::<f64, N>::zeros();
         y.as_mut_slice()[..state.len()].copy_from_slice(state);
         let (mut t, mut h, mut steps) = (0.0, length.min(MOST * self.first), 0);
@@ -93,7 +93,7 @@ where
             h = h.min(length - t);
             if steps == most || h.is_nan() || h <= SHORTEST * length {
                 let state = y.as_slice()[..state.len()].to_vec();
-                return Err(Stuck { steps, at: rates.origin() + t, state, fast: None });
+                return Err(Standstill { steps, at: rates.origin() + t, state, fast: None });
             }
             steps += 1;
             let &mut (ref slopes, drift) =

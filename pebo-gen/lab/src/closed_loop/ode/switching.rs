@@ -86,14 +86,14 @@ impl Switches {
 
     /// The same as programs on a table of these symbols, at whose end stand those that were put in; none where there are no
     /// switches.
-    pub(crate) fn programs(&self, arena: &Arena, table: &[Symbol], span: Span) -> Result<Option<Switched>, Diagnostic> {
+    pub(crate) fn programs(&self, arena: &Arena, table: &[Symbol], span: Span) -> Result<Option<SwitchPrograms>, Diagnostic> {
         if self.levels.is_empty() {
             return Ok(None);
         }
         let first = table.len() - self.symbols.len();
         let rates = first + self.levels.len()..table.len();
         let place = |symbol: &Symbol| table.iter().position(|known| known == symbol);
-        Ok(Some(Switched {
+        Ok(Some(SwitchPrograms {
             levels: program(arena, table, &self.levels, span)?,
             slopes: program(arena, table, &self.slopes, span)?,
             places: first..rates.start,
@@ -104,7 +104,7 @@ impl Switches {
 
 /// The same as programs on the table of a run.
 #[derive(Debug)]
-pub(crate) struct Switched {
+pub(crate) struct SwitchPrograms {
     pub(crate) levels: Program,
     pub(crate) slopes: Program,
     /// Where the signs stand in the table.
@@ -124,7 +124,7 @@ enum Mode {
 
 /// Switches at work.
 #[derive(Debug)]
-pub(crate) struct Switching {
+pub(crate) struct SwitchState {
     levels: Interpreter,
     slopes: Interpreter,
     places: Range<usize>,
@@ -140,9 +140,9 @@ pub(crate) struct Switching {
     moves: Vec<f64>,
 }
 
-impl Switching {
+impl SwitchState {
     /// Before a run, with the relative and the absolute tolerance of the integrator.
-    pub(crate) fn new(switched: &Switched, tolerance: (f64, f64)) -> Self {
+    pub(crate) fn new(switched: &SwitchPrograms, tolerance: (f64, f64)) -> Self {
         let count = switched.places.len();
         Self {
             levels: Interpreter::new(&switched.levels),
@@ -182,7 +182,7 @@ impl Switching {
         for _ in 0..ROUNDS {
             let mut change: f64 = 0.0;
             for &switch in &open {
-                let (value, mode) = self.way_on(switch, table);
+                let (value, mode) = self.value_at_zero(switch, table);
                 let place = self.places.start + switch;
                 change = change.max((value - table[place]).abs());
                 (table[place], self.modes[switch]) = (value, mode);
@@ -194,7 +194,7 @@ impl Switching {
     }
 
     /// The value of a switch whose level is at zero, with the others as they are.
-    fn way_on(&mut self, switch: usize, table: &mut [f64]) -> (f64, Mode) {
+    fn value_at_zero(&mut self, switch: usize, table: &mut [f64]) -> (f64, Mode) {
         let (below, above) = self.sides(switch, table);
         let level = self.at[switch];
         let sign = if level == 0.0 { 0.0 } else { level.signum() };

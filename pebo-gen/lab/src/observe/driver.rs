@@ -6,7 +6,7 @@
 
 use pebo_runtime::{Fault, Gap};
 
-use super::interpreted::Estimation;
+use super::interpreted::DynObserver;
 use super::sizes::{LARGEST, pad};
 use crate::score::faults::Faults;
 
@@ -14,13 +14,13 @@ use crate::score::faults::Faults;
 /// bring it back.
 const PATIENCE: u64 = 100;
 
-/// Samples from one innovation that is judged to the next: each costs a step.
-const JUDGED: u64 = 16;
+/// Samples from one innovation that is scored to the next: each costs a step.
+const JUDGING_INTERVAL: u64 = 16;
 
 /// An observer at work.
 #[derive(Debug)]
-pub(crate) struct Stepping {
-    pub(crate) observer: Box<dyn Estimation>,
+pub(crate) struct ObserverDriver {
+    pub(crate) observer: Box<dyn DynObserver>,
     /// Intervals since the last accepted sample, if there are any but the current one.
     gap: Option<Gap<f64, LARGEST>>,
     started: bool,
@@ -29,15 +29,15 @@ pub(crate) struct Stepping {
     dropped: u64,
     /// The samples that lacked outputs.
     parted: u64,
-    /// Samples since an innovation was judged.
+    /// Samples since an innovation was scored.
     unjudged: u64,
     /// The sum of the normalised squares of innovations, and their number.
     surprise: (f64, u64),
 }
 
-impl Stepping {
+impl ObserverDriver {
     /// Before the first sample.
-    pub(crate) fn new(observer: Box<dyn Estimation>) -> Self {
+    pub(crate) fn new(observer: Box<dyn DynObserver>) -> Self {
         Self {
             observer,
             gap: None,
@@ -59,7 +59,7 @@ impl Stepping {
     pub(crate) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let is_parted = y.iter().any(|output| output.is_nan());
         self.unjudged += 1;
-        if self.unjudged >= JUDGED
+        if self.unjudged >= JUDGING_INTERVAL
             && self.gap.is_none()
             && !is_parted
             && let Some(square) = self.observer.surprise(y, u, dt)

@@ -10,8 +10,8 @@ use pebo_design::model::Scale;
 use pebo_design::plant::{Plant, lower};
 use pebo_design::source::Diagnostics;
 
-use super::baseline::Rival;
-use super::layout::{estimate, rival_estimate};
+use super::baseline::ResolvedBaseline;
+use super::layout::{estimate, baseline_estimate};
 use super::scope::{Estimates, Names, Sight, View};
 use crate::figure::label::Label;
 use crate::figure::unit;
@@ -67,10 +67,10 @@ impl Panels {
         names: &Names,
         hats: &Estimates,
         errors: &[Expr],
-        rivals: &[Rival],
+        rivals: &[ResolvedBaseline],
         problems: &mut Diagnostics,
     ) -> Self {
-        let mut pass = Pass { names, hats, rivals, found: Self::default() };
+        let mut pass = PanelResolver { names, hats, rivals, found: Self::default() };
         if names.simulation.panels.is_empty() {
             pass.usual(errors);
         } else {
@@ -80,14 +80,14 @@ impl Panels {
     }
 }
 
-struct Pass<'a> {
+struct PanelResolver<'a> {
     names: &'a Names<'a>,
     hats: &'a Estimates,
-    rivals: &'a [Rival],
+    rivals: &'a [ResolvedBaseline],
     found: Panels,
 }
 
-impl Pass<'_> {
+impl PanelResolver<'_> {
     /// As the file has them; estimate less truth is the error, which of an angle is the shorter way round.
     fn written(&mut self, errors: &[Expr], problems: &mut Diagnostics) {
         let arena = &self.names.plant.arena;
@@ -121,7 +121,7 @@ impl Pass<'_> {
         let measured = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), self.names.measured(symbol));
         let outputs = plant.y.iter().map(|output| measured(output.symbol)).collect();
         let inputs = plant.commanded().map(named).collect();
-        self.signals("Estimation errors", Scale::Log, errors);
+        self.signals("DynObserver errors", Scale::Log, errors);
         self.signals("Outputs", Scale::Linear, outputs);
         self.signals("Inputs", Scale::Linear, inputs);
     }
@@ -157,11 +157,11 @@ impl Pass<'_> {
 }
 
 /// The value with a baseline's estimates in place of the observer's, if there are any in it and it has them all.
-fn through(names: &Names, hats: &Estimates, value: Expr, rival: &Rival) -> Option<Expr> {
+fn through(names: &Names, hats: &Estimates, value: Expr, rival: &ResolvedBaseline) -> Option<Expr> {
     let arena = &names.plant.arena;
     let symbols: BTreeSet<Symbol> = hats.iter().filter_map(|(_, hat)| arena.as_symbol(*hat)).collect();
     let own: BTreeMap<Symbol, Expr> = (rival.estimates.iter())
-        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(rival_estimate(arena, &rival.name, state))))
+        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(baseline_estimate(arena, &rival.name, state))))
         .collect();
     let replaced = arena.substitute(value, &own);
     (arena.depends_on(value, &symbols) && !arena.depends_on(replaced, &symbols)).then_some(replaced)
